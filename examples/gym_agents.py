@@ -11,7 +11,7 @@ from sim import ObjectNavEnv
 from stubborn import GroundTruthSegmenter
 
 
-def play(name: str, episode_id: str = "val_0011", max_steps: int = 500) -> dict:
+def run_episode(name: str, episode_id: str = "val_0011", max_steps: int = 500) -> dict:
     """Runs one episode with the agent of a name; returns the last `info`."""
     env = gymnasium.make("sim.gym:stubborn/ObjectNav-v0", sensors=("depth", "semantic"), max_steps=max_steps)
     world, env = env.unwrapped, RecordEpisodeStatistics(env)
@@ -29,7 +29,7 @@ def play(name: str, episode_id: str = "val_0011", max_steps: int = 500) -> dict:
 
 if __name__ == "__main__":
     for name in ("random", "stubborn"):
-        info = play(name)
+        info = run_episode(name)
         print(
             f"{name}: {info['goal']} {'found' if info['success'] else 'not found'} after {info['episode']['l']} steps, "
             f"{info['collisions']} collisions, SPL {info['spl']:.2f}"

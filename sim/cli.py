@@ -1,6 +1,6 @@
 """Builds command lines from dataclasses, and reports each error of a command in one line on stderr.
 
-`run` is the entry point of every command, also of those in `tools`. Exit status 2 is an error that the user can
+`run` is the entry point of every command, including those in `tools`. Exit status 2 is an error that the user can
 correct: a wrong option, a broken file, a full disk. 130 and 143 are Ctrl-C and SIGTERM. `--debug`, which every command
 takes, shows the traceback as well.
 
@@ -95,7 +95,7 @@ def run(
         args_type: dataclass of the options.
         main: the command.
         argv: the words of the command line; those of the process when None.
-        stopped: what Ctrl-C and SIGTERM print.
+        stopped: the message that is printed after Ctrl-C or SIGTERM.
     """
     words = list(sys.argv[1:] if argv is None else argv)
     _print_any_text()

@@ -1,7 +1,7 @@
 """One tree of settings from nested frozen dataclasses: set a field by its path, read a file, write it all as JSON.
 
-A path names a field from the root, with dots: `agent.planning.dilation_m`. Values of a command line are text, those of
-a file JSON or TOML. msgspec converts them to the declared type of the field, and the checks of the dataclass run.
+A path names a field from the root, with dots: `agent.planning.dilation_m`. Values of a command line are text; values of
+a file are JSON or TOML. msgspec converts them to the declared type of the field, and the checks of the dataclass run.
 """
 
 from __future__ import annotations

@@ -18,15 +18,15 @@ from numpy.typing import NDArray
 from sim.errors import ConfigError
 
 _PREFIX_LETTERS = 40
-"""Letters of a file's name that the name of its part file begins with, so that long names stay allowed."""
+"""Number of letters of a file's name that its part file's name begins with, so that long names stay allowed."""
 _TRIAL_BYTES = 4096
-"""A trial of whether a folder can be written writes this much, which fails on a full disk."""
+"""Number of bytes written to test whether a folder is writable; the test fails on a full disk."""
 
 
 def inside(folder: Path, name: str, *, what: str) -> Path:
     """Returns the path of a name that comes from data, in the folder to which it belongs.
 
-    Every path that data can choose is made by this function, so that no data can have files written elsewhere.
+    Every path that data can choose is made by this function, so that no data can cause a file to be written elsewhere.
 
     Args:
         folder: the folder; it need not exist.

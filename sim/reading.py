@@ -52,7 +52,7 @@ class Lines(NamedTuple):
     whole_bytes: int
     """Length of the complete lines."""
     torn: str
-    """A sentence on an incomplete last line that was left out; "" where there is none."""
+    """A sentence on an incomplete last line that was left out; "" if every line is complete."""
 
 
 def open_plain(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> BinaryIO:
@@ -286,7 +286,7 @@ def printable(text: str) -> str:
 
 
 def first_unprintable(words: Iterable[str]) -> str | None:
-    """Returns the first word with a control character or a byte that is not UTF-8; None where there is none."""
+    """Returns the first word with a control character or a byte that is not UTF-8, or None."""
     return next((word for word in words if printable(word) != word or "\n" in word or "\t" in word), None)
 
 

@@ -4,8 +4,8 @@
     stubborn report runs/before runs/after            # writes runs/after/report_against_before.html
     stubborn report runs/may runs/june runs/july      # writes runs/july/report_of_3_runs.html
 
-For a run with `--record` it has a plan and a picture of each episode, with `--video` its video. No episode is run
-again; the page needs no network.
+For a run with `--record` it shows a floor plan and a picture of each episode; with `--video`, its video. No episode is
+run again; the page needs no network.
 """
 
 from __future__ import annotations

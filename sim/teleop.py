@@ -105,7 +105,7 @@ def drive(args: Args, cockpit: Cockpit) -> tuple[Path, dict[str, Any]]:
     record = RunDirectory(options.out, content)
     try:
         episode = choose(args, episodes, {line["episode_id"] for line in record.lines})
-        line = play(setup, episode, cockpit, content)
+        line = run_episode(setup, episode, cockpit, content)
         record.append(line)
         record.write_summary({"split": split})
     finally:
@@ -165,10 +165,12 @@ def choose(args: Args, episodes: Sequence[Episode], done: set[str]) -> Episode:
     for episode in left:
         if episode.episode_id == args.episode_id:
             return episode
-    raise ConfigError(f"There is no episode '{args.episode_id}' here; there are '{episodes[0].episode_id}' and others.")
+    raise ConfigError(
+        f"There is no episode '{args.episode_id}' here; available: '{episodes[0].episode_id}' and others."
+    )
 
 
-def play(setup: Setup, episode: Episode, cockpit: Cockpit, content: dict[str, Any]) -> dict[str, Any]:
+def run_episode(setup: Setup, episode: Episode, cockpit: Cockpit, content: dict[str, Any]) -> dict[str, Any]:
     """Lets a person drive through an episode; returns its result line, once the trajectory is written."""
     options = setup.options
     assert options.out is not None

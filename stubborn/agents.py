@@ -183,5 +183,5 @@ def _known(name: str, table: Mapping[str, Any], kind: str) -> str:
     if name not in table:
         near = difflib.get_close_matches(name, table, n=1)
         hint = f" Did you mean {near[0]!r}?" if near else ""
-        raise ConfigError(f"No {kind} {name!r}.{hint} There is: {', '.join(table)}.")
+        raise ConfigError(f"No {kind} {name!r}.{hint} Available: {', '.join(table)}.")
     return name

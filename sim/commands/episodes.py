@@ -13,11 +13,11 @@ each goal that the start reaches, or with `--recipe traps` three with different 
 The folder's name selects the recipe (`sim.episodes.recipes`): how many episodes each house has, the limits of the
 distance from start to goal, and which starts count; other folders use the default recipe, or the one of `--recipe`.
 
-The order goes round the houses; the next goal of a house is the one with the fewest episodes so far, so that the first
-N episodes are balanced for any N. In a house of two storeys, the episodes take turns on them, and a goal counts as
-reachable on the storey of the start only. A start is uniform over the free space that the recipe allows, and the robot
-has been placed there without contact. Goals are categories with an instance that can be reached; instances that cannot
-are listed in `unreachable.json`. The same seed, houses, version and success rule give the same bytes.
+The houses take turns; the next goal of a house is the one with the fewest episodes so far, so that the first N episodes
+are balanced for any N. In a house of two storeys, the episodes take turns on them, and a goal counts as reachable on
+the storey of the start only. A start is sampled uniformly from the free space that the recipe allows, and the robot has
+no contact there. Goals are categories with an instance that can be reached; instances that cannot be reached are listed
+in `unreachable.json`. The same seed, houses, version and success rule give the same bytes.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ class Args:
     pictures: bool = True
     """Write a map of the starts and goals of each house to pictures/ in the split's folder."""
     success: SuccessRule = field(default_factory=SuccessRule)
-    """When a STOP succeeds: distances, view points and unreachable goals depend on it."""
+    """Conditions under which a STOP succeeds; distances, view points and unreachable goals depend on them."""
 
 
 def main(args: Args) -> int:
@@ -183,7 +183,7 @@ def house_files(folder: Path) -> tuple[str, ...]:
         tuple(read_house_list(folder).recipes) if listed else tuple(sorted(file.stem for file in folder.glob("*.xml")))
     )
     if not names:
-        raise ConfigError(f"There are 0 houses in '{folder}' (`{command('houses', 'generate')}` makes some).")
+        raise ConfigError(f"There is no house in '{folder}' (`{command('houses', 'generate')}` makes some).")
     return names
 
 
@@ -196,7 +196,7 @@ def recipe_of(args: Args) -> EpisodeRecipe:
     if args.recipe is None:
         return EPISODE_RECIPES.get(folder_of(args).resolve().name, DEFAULT_RECIPE)
     if args.recipe not in EPISODE_RECIPES:
-        raise ConfigError(f"No recipe '{args.recipe}'. There is: {', '.join(EPISODE_RECIPES)}.")
+        raise ConfigError(f"No recipe '{args.recipe}'. Available: {', '.join(EPISODE_RECIPES)}.")
     return EPISODE_RECIPES[args.recipe]
 
 

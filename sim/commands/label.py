@@ -1,12 +1,12 @@
-"""Proposes category labels for a scene from elsewhere, and shows what a file of label rules makes of it.
+"""Proposes category labels for a scene from elsewhere, or shows the labels that a file of rules gives it.
 
     stubborn label --house kitchen.xml --out labels.json --picture labels.png
     stubborn label --house kitchen.xml --labels labels.json --picture labels.png
 
 The first command writes rules for the names in the scene, from the words in them and from sizes
-(`sim.houses.proposals`); names that say nothing get `void`. Edit the categories in the file, then check it with the
+(`sim.houses.proposals`); names without a known word get `void`. Edit the categories in the file, then check it with the
 second command. Both print a table of the instances: name, category, number of geoms, size and height above the floor,
-and what is doubtful. The picture shows the scene from above, in its own colours and in those of the categories.
+and doubts about the label. The picture shows the scene from above, in its own colours and in those of the categories.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from sim.interface import GOAL_CATEGORIES, MPCAT40
 from sim.viewers.house_pictures import distinct_colours, draw_top
 
 TABLE_WIDTH = 120
-"""Letters of a line where the output is not a terminal."""
+"""Width of a line in characters if the output is not a terminal."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,7 +136,7 @@ def rules_text(rules: Mapping[str, str]) -> str:
 
 
 def _warn(console: Console, house: House, model: mujoco.MjModel) -> None:
-    """Prints why a run would refuse the scene with the proposed rules, if it would."""
+    """Prints a warning if a run would refuse the scene with the proposed rules."""
     try:
         validate_house(house, model)
     except HouseError as error:
@@ -151,7 +151,7 @@ def _check(args: Args) -> None:
 
 
 def _read(args: Args) -> tuple[House, mujoco.MjModel]:
-    """Returns a scene without what a house may not contain, and its compiled model."""
+    """Returns a scene without the elements that a house may not contain, and its compiled model."""
     if not args.house.is_file():
         raise HouseError(f"House '{args.house}': there is no such file.")
     require_root(args.root)

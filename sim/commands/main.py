@@ -20,7 +20,7 @@ class Command:
     summary: str
     """One line of the list of commands."""
     stopped: str = "Stopped."
-    """What Ctrl-C and SIGTERM print."""
+    """The message that is printed after Ctrl-C or SIGTERM."""
 
 
 COMMANDS: Mapping[str, Command] = {

@@ -128,7 +128,7 @@ def without_times(line: Line) -> dict[str, Any]:
 def merged_config(runs: Sequence[Run]) -> dict[str, Any]:
     """Returns the config of the merged run: without a shard, with the hashes of all code that ran episodes.
 
-    Where all runs name their episodes (`--only`), it names them all.
+    If all runs name their episodes (`--only`), the config names all of these.
     """
     versions = [run.config.get("versions", {}) for run in runs]
     codes = [

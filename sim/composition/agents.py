@@ -7,14 +7,12 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
-import importlib
 import inspect
-import os
-import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
+from sim.composition.imports import import_attribute
 from sim.composition.isolation import HABITAT
 from sim.errors import AgentError, ConfigError, ObjectNavError
 from sim.evaluation.own_code import place_of, text_of
@@ -57,7 +55,8 @@ def find_agent(name: str) -> AgentSpec:
 
     Args:
         name: one of `SPECS`, or `package.module:NAME`, where NAME is an `AgentSpec` or a factory. A plain factory
-            declares nothing, so its agent gets RGB and depth and no ground truth.
+            declares nothing, so its agent gets RGB and depth and no ground truth. After `habitat:`, a class, factory
+            or `AgentSpec` of agents with Habitat's interface (`sim.bridges.habitat.agents`).
 
     Raises:
         ConfigError: the name is unknown.
@@ -71,9 +70,10 @@ def find_agent(name: str) -> AgentSpec:
         near = difflib.get_close_matches(name, SPECS, n=1)
         hint = f" Did you mean '{near[0]}'?" if near else ""
         raise ConfigError(
-            f"Unknown agent '{name}'.{hint} There is: {', '.join(SPECS)}, or your own as package.module:NAME."
+            f"Unknown agent '{name}'.{hint} Available: {', '.join(SPECS)}, or your own as package.module:NAME or "
+            "habitat:package.module:CLASS."
         )
-    found = _import_attribute(name, module_name, attribute)
+    found = import_attribute(name, module_name, attribute)
     if isinstance(found, AgentSpec):
         return found
     if not callable(found):
@@ -91,7 +91,7 @@ def _find_habitat_agent(name: str) -> AgentSpec:
         raise ConfigError(f"--agent '{name}' must have the form habitat:package.module:CLASS.")
     stand_in.install()
     with bridge.own_command_line():
-        found = _import_attribute(name, module_name, attribute, explain=stand_in.lacking)
+        found = import_attribute(name, module_name, attribute, explain=stand_in.lacking)
     return bridge.spec_of(name, found)
 
 
@@ -118,9 +118,10 @@ def find_explorer(name: str) -> ExplorerConfig:
     module_name, separator, attribute = name.partition(":")
     if not separator or not attribute:
         raise ConfigError(
-            f"Unknown --explorer '{name}'. There is: {', '.join(agents.EXPLORERS)}, or your own as package.module:NAME."
+            f"Unknown --explorer '{name}'. Available: {', '.join(agents.EXPLORERS)}, or your own as "
+            "package.module:NAME."
         )
-    found = _import_attribute(name, module_name, attribute)
+    found = import_attribute(name, module_name, attribute)
     if not dataclasses.is_dataclass(found) or isinstance(found, type) or not isinstance(found, ExplorerConfig):
         raise ConfigError(f"--explorer '{name}' must be a dataclass object with a method make(camera).")
     return found
@@ -155,40 +156,5 @@ def build_agent(
     except BaseException as error:
         if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
             raise
-        told = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
-        raise ConfigError(f"Agent '{name}' cannot be built: {told}") from error
-
-
-def _import_attribute(
-    name: str, module_name: str, attribute: str, explain: Callable[[BaseException], str | None] = lambda error: None
-) -> Any:
-    """Returns an attribute of a module of the user's.
-
-    Args:
-        name: of the option, for messages.
-        module_name: the module.
-        attribute: its attribute.
-        explain: returns a sentence on an error of the import, if it knows its cause.
-
-    Raises:
-        ConfigError: the module cannot be imported, or has no such attribute.
-    """
-    if "" not in sys.path:
-        sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
-    folder = os.getcwd()
-    try:
-        module = importlib.import_module(module_name)
-    except ModuleNotFoundError as error:
-        raise ConfigError(f"'{name}': no module '{error.name}' can be imported from here.") from None
-    except BaseException as error:  # the user's code
-        if is_stop(error):
-            raise
-        place = "" if isinstance(error, SyntaxError) else place_of(error, below=__file__)  # its text names the line
-        told = f"{type(error).__name__}: {text_of(error)}{place}"
-        raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {told}") from error
-    finally:
-        os.chdir(folder)  # the options' paths are relative to it
-    try:
-        return vars(module)[attribute]
-    except KeyError:
-        raise ConfigError(f"'{name}': module '{module_name}' has no '{attribute}'.") from None
+        reason = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
+        raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error

@@ -30,7 +30,7 @@ KEYS: dict[str, Action] = {
 }
 HUMAN_NAME = "human"
 """The agent's name in the results of a person."""
-HELP = "arrows or wad drive  x STOP  g distance  c camera  m layout  p plan  q quit"
+HELP = "arrows or wad drive  x STOP  g distance  c camera  m layout  p path  q quit"
 CAMERAS = ("rgb", "semantic", "depth")
 LAYOUTS = ("both", "camera", "map")
 _STRUCTURE = frozenset(MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling", "door", "window"))
@@ -52,7 +52,7 @@ class Cockpit(Protocol):
 
 
 class Human:
-    """An `Agent` that asks a person; a Stubborn agent next to it draws the map and can show its plan."""
+    """An `Agent` that asks a person; a Stubborn agent next to it draws the map and can show its route."""
 
     def __init__(self, env: ObjectNavEnv, cockpit: Cockpit) -> None:
         self._env, self._cockpit = env, cockpit
@@ -97,7 +97,7 @@ class Human:
             self.painter.show_route = not self.painter.show_route
             advised = self.mapper.last_action
             if advised is None or not self.painter.show_route:
-                return "the agent's plan is hidden"
+                return "the agent's path is hidden"
             return f"the agent would: {ACTION_WORDS[advised]} ({describe_intention(self.mapper)})"
         return "that key does nothing"
 

@@ -16,7 +16,8 @@ class RunOptions:
     """Let an agent look for objects in apartments, and write the results to a folder."""
 
     agent: str = "stubborn"
-    """The agent: a name of --list-agents, or your own as package.module:NAME (an AgentSpec or a factory)."""
+    """The agent: a name of --list-agents, or your own as package.module:NAME (an AgentSpec or a factory), or
+    habitat:package.module:CLASS for one with Habitat's interface (docs/habitat.md)."""
     explorer: str | None = None
     """The explorer of agents that take one: a name of --list-agents, or your own as package.module:NAME."""
     semantics: str = "rednet"
@@ -24,7 +25,7 @@ class RunOptions:
     weights: Path | None = None
     """With --semantics rednet: your network in place of the shipped one."""
     verification: str = "naive-bayes"
-    """How candidates are verified: naive-bayes (the paper's), logistic, threshold or none."""
+    """Method that verifies candidates: naive-bayes (the paper's), logistic, threshold or none."""
     verifier: Path | None = None
     """Parameters of verification (`stubborn train verifier`) in place of those shipped for this segmentation."""
     split: str = "val"
@@ -44,7 +45,7 @@ class RunOptions:
     episodes: cli.Count = 5
     """The first N episodes of the split; with --house, N episodes are sampled."""
     only: tuple[str, ...] = ()
-    """IDs of episodes of the split: these in place of the first N, for example a failure to film."""
+    """IDs of the episodes of the split to run, in place of the first N: for example a failure that you want to film."""
     seed: cli.Seed = 0
     """Seed of agents, noise and, with --house, starts and goals."""
     seed_key: str | None = None

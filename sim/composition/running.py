@@ -60,13 +60,16 @@ def run_missing(
         if options.retry_errors:
             console.print(f"{len(again)} episodes that ended with an error are run again.")
         todo = [episode for episode in episodes if episode.episode_id not in done]
-        segmentation = f" with {options.semantics} segmentation" if setup.spec.uses_segmentation else ""
+        named = setup.segmentation_name
+        segmentation = f" with segmentation by {named}" if named else ""
         console.print(
             f"{options.agent}{segmentation}, {display.counted(len(episodes), 'episode')} of {split['name']} "
             f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
         )
         for note in notes_on(options.agent):
             console.print(note, highlight=False, soft_wrap=True)
+        if setup.borrowed_parameters:
+            console.print(setup.borrowed_parameters, highlight=False, markup=False, soft_wrap=True)
         _report_resumed(run, len(episodes), len(todo), code_of(options), console)
         if todo and must_compile():
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
@@ -112,7 +115,7 @@ def report_house(options: RunOptions, console: Console) -> None:
 def _report_resumed(run: RunDirectory, total: int, todo: int, code: str, console: Console) -> None:
     """Prints how many episodes the folder holds already, and whether other code ran them."""
     if todo < total:
-        console.print(f"{total - todo} of them were there already, {todo} to go.")
+        console.print(f"{total - todo} of them exist already, {todo} remain.")
     for name, (before, now) in (run.other_versions() if 0 < todo < total else {}).items():
         console.print(
             f"The run began with {name} {before}; these episodes run with {now}, and their results may differ.",
@@ -123,7 +126,7 @@ def _report_resumed(run: RunDirectory, total: int, todo: int, code: str, console
     others = run.record_code(code) if todo else []
     if others:
         console.print(
-            f"The episodes that were there were run by other code ({', '.join(others)}) than these ({code}).",
+            f"The existing episodes were run by other code ({', '.join(others)}) than these ({code}).",
             highlight=False,
             soft_wrap=True,
         )

@@ -132,7 +132,7 @@ class NoisySegmenter:
             ConfigError: there is no such category.
         """
         if goal not in MPCAT40_ID:
-            raise ConfigError(f"No category {goal!r} in mpcat40. There is: {', '.join(MPCAT40_ID)}.")
+            raise ConfigError(f"No category {goal!r} in mpcat40. Available: {', '.join(MPCAT40_ID)}.")
         shown, classified, rng = self._classified()
         return self._score(shown, classified, MPCAT40_ID[goal], rng)
 

@@ -16,8 +16,8 @@ _KEPT_BYTES = 16_000_000
 def give_large_blocks_pages_of_their_own() -> None:
     """Makes `malloc` return each large block to the system as soon as it is freed.
 
-    By itself glibc stops this after the first large block: it then puts blocks of up to 32 MB on the heap, where
-    smaller ones between them keep freed ones from being returned (docs/performance.md has the difference).
+    By default glibc does so for the first large block only: it then puts blocks of up to 32 MB on the heap, where
+    smaller blocks between them prevent the return of freed ones (docs/performance.md has the difference).
     """
     with contextlib.suppress(OSError, AttributeError):  # not glibc
         libc = ctypes.CDLL(None)

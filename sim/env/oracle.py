@@ -1,8 +1,8 @@
 """The oracle: an agent that follows the true shortest path with the same four actions and the same body.
 
-It is an upper bound: if it fails, the task, the free space or the robot is wrong. It plans by weighted A* over steps of
-"turn, then drive 0.25 m" on the 12 headings, with the geodesic distance as heuristic. It plans again when the robot is
-not where the plan expects it; a step that was blocked is not tried again.
+It is an upper bound: if it fails, the task, the free space or the robot is wrong. It searches its route by weighted A*
+over steps of "turn, then drive 0.25 m" on the 12 headings, with the geodesic distance as heuristic. It searches again
+when the robot is not where the route expects it; a step that was blocked is not tried again.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from sim.world.freespace import CELL_M
 
 HEADINGS = round(math.tau / TURN_RAD)
 HEURISTIC_WEIGHT = 1.5
-"""Weight of the heuristic: plans are slightly longer than the shortest and found many times faster."""
+"""Weight of the heuristic: routes are slightly longer than the shortest one and are found many times faster."""
 TURN_COST_M = 0.02
 """Cost of a turn, in metres of path."""
 MARGIN_M = 0.05
@@ -31,9 +31,9 @@ MARGIN_M = 0.05
 TIGHT_COST_M = 0.25
 """Additional cost of such a step, in metres of path."""
 NODE_M = 0.05
-"""Nodes with one heading and the same multiple of this in x and y are one node of a plan."""
+"""Nodes with one heading and the same multiple of this in x and y are one node of a route."""
 DRIFT_M = 0.03
-"""The oracle plans again when the robot is farther than this from the position in the plan."""
+"""The oracle searches a new route when the robot is farther than this from its position on the route."""
 MAX_EXPANSIONS = 30_000
 
 Node = tuple[float, float, int]
@@ -78,24 +78,24 @@ class Oracle:
         yaws = task.start.yaw_rad + np.arange(HEADINGS) * TURN_RAD
         along = np.linspace(CELL_M, FORWARD_M, round(FORWARD_M / CELL_M))
         self._swept_m = along[None, :, None] * np.stack([np.cos(yaws), np.sin(yaws)], axis=1)[:, None, :]
-        self._plan: deque[tuple[Action, Node]] = deque()
+        self._route: deque[tuple[Action, Node]] = deque()
         self._expected: Node | None = None
         self._blocked: set[Key] = set()
 
     def act(self, observation: Observation) -> Action:
-        """Returns the next action of the plan; STOP as soon as it succeeds."""
+        """Returns the next action of the route; STOP as soon as it succeeds."""
         del observation
         here = self._here()
         if self._region.succeeds(*here[:2]):
             return Action.STOP
         if self._expected is not None and not _same(here, self._expected):
             self._blocked.add(_key(here))
-            self._plan.clear()
-        if not self._plan:
-            self._plan.extend(self._search(here))
-        if not self._plan:
+            self._route.clear()
+        if not self._route:
+            self._route.extend(self._search(here))
+        if not self._route:
             return Action.TURN_LEFT
-        action, self._expected = self._plan.popleft()
+        action, self._expected = self._route.popleft()
         return action
 
     def _here(self) -> Node:
@@ -104,7 +104,7 @@ class Oracle:
         return pose.x_m, pose.y_m, round(turned) % HEADINGS
 
     def _search(self, begin: Node) -> list[tuple[Action, Node]]:
-        """Returns actions to a goal cell, else to the nearest node that can be reached; each with its end node."""
+        """Returns the actions to a goal cell, or to the reachable node nearest to one; each with its end node."""
         came: dict[Key, Node] = {}
         cost = {_key(begin): 0.0}
         tie = itertools.count()
@@ -133,7 +133,7 @@ class Oracle:
         return [action for node, after in itertools.pairwise(nodes[::-1]) for action in _actions(node, after)]
 
     def _steps(self, node: Node) -> Iterator[tuple[float, Node, float]]:
-        """Yields cost, end and remaining distance of each step from a node: a turn, then a forward."""
+        """Yields cost, end and remaining distance of each step from a node: a turn, then MOVE_FORWARD."""
         x, y, heading = node
         cells = self._frame.to_cells(self._swept_m + np.array([x, y]))  # (headings, samples, 2)
         inside = self._frame.inside(cells).all(axis=1)
@@ -162,7 +162,7 @@ def _same(here: Node, expected: Node) -> bool:
 
 
 def _actions(node: Node, after: Node) -> Iterator[tuple[Action, Node]]:
-    """Yields the turns and the forward from a node to the next, each with the node it leads to."""
+    """Yields the turns and the MOVE_FORWARD from a node to the next, each with the node that it leads to."""
     turns = _turns(node[2], after[2])
     turn, sign = (Action.TURN_LEFT, 1) if turns > 0 else (Action.TURN_RIGHT, -1)
     for i in range(1, abs(turns) + 1):

@@ -57,7 +57,7 @@ class Episode:
 
     def __post_init__(self) -> None:
         if self.goal not in GOAL_CATEGORIES:
-            raise EpisodeError(f"Unknown goal '{self.goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
+            raise EpisodeError(f"Unknown goal '{self.goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
         require_start(self.start)
 
 
@@ -163,7 +163,9 @@ def load_split(name_or_path: str | Path) -> Split:
     folder = assets_dir() / name_or_path if str(name_or_path) in shipped else Path(name_or_path)
     if not folder.is_dir():
         there_is = ", ".join(shipped) or "none"
-        raise ConfigError(f"Unknown split '{name_or_path}': neither a shipped one (there is: {there_is}) nor a folder.")
+        raise ConfigError(
+            f"Unknown split '{name_or_path}': neither a shipped one (available: {there_is}) nor a folder."
+        )
     folder = folder.resolve()
     if not _index_of(folder).is_file():
         raise ConfigError(

@@ -73,7 +73,7 @@ def make_executor(
         ConfigError: an unknown name, options that contradict each other, no `ray` installed, or no cluster there.
     """
     if name not in EXECUTORS:
-        raise ConfigError(f"Unknown --executor '{name}'. There is: {', '.join(EXECUTORS)}.")
+        raise ConfigError(f"Unknown --executor '{name}'. Available: {', '.join(EXECUTORS)}.")
     if workers < 1:
         raise ConfigError(f"--workers must be at least 1, got {workers}.")
     isolation = isolation or Isolation()

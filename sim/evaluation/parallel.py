@@ -18,7 +18,7 @@ ResultT = TypeVar("ResultT")
 
 @dataclass(frozen=True)
 class Shard:
-    """Every `count`-th item from item `index` on: the part of the work that one of several machines does."""
+    """Every `count`-th item from item `index` on: the part of the work that one of several machines processes."""
 
     index: int = 0
     """From 0 on; users and names of folders number shards from 1 on."""

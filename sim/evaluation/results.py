@@ -40,10 +40,11 @@ VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save")
 """Options that start viewers; they change no result."""
 WITHOUT_EFFECT = frozenset({"workers", "out", "record", "seed_key", *PLACEMENT_OPTIONS, *VIEWER_OPTIONS})
 """Entries of the config that change no result, or differ between all runs by chance (`seed_key`)."""
-NOT_COMPARED = WITHOUT_EFFECT | {"versions", "codes", "episodes", "only", "settings"}
+NOT_COMPARED = WITHOUT_EFFECT | {"versions", "codes", "episodes", "only", "settings", "segmentation"}
 """Entries of the config in which a resumed run may differ; with more episodes it runs the additional ones.
 
-`settings` are the assignments of the command line; what counts is the tree that they lead to, `config`.
+`settings` are the assignments of the command line; only the tree that results from them, `config`, has to be equal.
+`segmentation` follows from `semantics` and the code.
 """
 
 
@@ -149,7 +150,7 @@ class RunDirectory:
             raise ConfigError(f"Another process is writing to --out '{self.path}'.") from None
         self._created = [self.path / ".lock", *([] if existed else [self.path])]
         self.healed = ""
-        """A sentence on an incomplete last line that was dropped; "" where there was none."""
+        """A sentence on an incomplete last line that was dropped; "" if every line was complete."""
         try:
             self._write_or_compare_config()
             self.lines: list[dict[str, Any]] = self._read_and_heal()
@@ -300,9 +301,9 @@ class RunDirectory:
         return [other for other in codes if other != code]
 
     def other_versions(self) -> dict[str, tuple[str, str]]:
-        """Returns what differs between the versions that the run began with and those of now, the code apart.
+        """Returns the versions that have changed since the run began, except that of the code.
 
-        Both are given for each name, the earlier one first.
+        The values are the earlier and the present version for each name.
         """
         before, now = read_record(self.path / "config.json").get("versions", {}), self.config.get("versions", {})
         return {

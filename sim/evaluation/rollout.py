@@ -81,20 +81,20 @@ def play_episode(
     for viewer in viewers:
         viewer.begin(env)
     began_s = time.perf_counter()
-    played = _Played(env, agent, name, on_step, viewers, observation, info)
-    while not played.done:
-        played.step()
+    running = _RunningEpisode(env, agent, name, on_step, viewers, observation, info)
+    while not running.done:
+        running.step()
     wall_time_s = time.perf_counter() - began_s
-    line = played.line()
+    line = running.line()
     for viewer in viewers:
         viewer.end(line)
-    rate = played.steps / wall_time_s if played.steps else 0.0
+    rate = running.steps / wall_time_s if running.steps else 0.0
     return line | {"wall_time_s": round(wall_time_s, 3), "steps_per_s": round(rate, 2)}
 
 
 @dataclass
-class _Played:
-    """An episode as far as it has run."""
+class _RunningEpisode:
+    """A running episode: its environment and agent, and its state so far."""
 
     env: ObjectNavEnv
     agent: Agent
@@ -106,7 +106,7 @@ class _Played:
     steps: int = 0
     done: bool = False
     error: str | None = None
-    """Why the episode broke; None: it did not."""
+    """Message of the error that ended the episode; None: no error."""
     confidence: float | None = None
     """The agent's confidence at its STOP."""
 
@@ -141,8 +141,8 @@ class _Played:
         if target_xy_m is None:
             return
         scene, observation = self.env.scene, self.observation
-        told = Pose(float(observation["gps"][0]), float(observation["gps"][1]), float(observation["compass"][0]))
-        ahead = Pose(*target_xy_m, 0.0).relative_to(told)
+        observed = Pose(float(observation["gps"][0]), float(observation["gps"][1]), float(observation["compass"][0]))
+        ahead = Pose(*target_xy_m, 0.0).relative_to(observed)
         x_m, y_m = scene.world.pose.place_of(ahead.x_m, ahead.y_m)
         scene.task.stops_for(round(x_m, 6), round(y_m, 6))
 
@@ -173,13 +173,17 @@ def ask(where: str, call: Callable[[], Any]) -> Any:
     try:
         with marked(where):
             return call()
+    except AgentError as error:  # of a part of the agent, which names its own line
+        raise AgentError(f"{where}: {error}") from error
     except BaseException as error:  # also `SystemExit`, `CancelledError` and classes of the user
         if is_stop(error):
             raise
         if debug():
             traceback.print_exc()
-        told = f"{type(error).__name__}: {text_of(error)}"
-        raise AgentError(f"{where}: {told}{place_of(error, below=__file__)}") from error
+        if isinstance(error, AgentError):
+            raise AgentError(f"{where}: {text_of(error)}") from error
+        reason = f"{type(error).__name__}: {text_of(error)}"
+        raise AgentError(f"{where}: {reason}{place_of(error, below=__file__)}") from error
 
 
 def next_action(agent: Agent, observation: Observation, where: str) -> Action:

@@ -20,7 +20,7 @@ from sim.evaluation.own_code import text_of
 _log = logging.getLogger(__name__)
 ItemT = TypeVar("ItemT", bound="WorkItem")
 MAX_TRIES = 2
-"""Number of times an item is started; then a dying worker makes it an error."""
+"""Number of times that an item is started; if its worker dies each time, the item is an error."""
 MAX_FAILED_STARTS = 3
 """Number of workers that may die in succession before any of them was ready."""
 

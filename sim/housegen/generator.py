@@ -103,7 +103,7 @@ def generate(
     unknown = sorted(set(fields) - {each.name for each in dataclasses.fields(HouseConfig)})
     if unknown:
         there_is = ", ".join(each.name for each in dataclasses.fields(HouseConfig))
-        raise ConfigError(f"generate has no option '{unknown[0]}'. There is: {there_is}.")
+        raise ConfigError(f"generate has no option '{unknown[0]}'. Available: {there_is}.")
     return generate_house(seed, replace(config or HouseConfig(), **fields), catalogue).spec
 
 

@@ -103,7 +103,7 @@ def get_noise(name: str) -> NoiseConfig:
         ConfigError: there is no such preset.
     """
     if name not in NOISE_PRESETS:
-        raise ConfigError(f"Unknown noise '{name}'. There is: {', '.join(NOISE_PRESETS)}.")
+        raise ConfigError(f"Unknown noise '{name}'. Available: {', '.join(NOISE_PRESETS)}.")
     return NOISE_PRESETS[name]
 
 
@@ -127,7 +127,7 @@ def noise_from_dict(given: Mapping[str, Any] | str) -> NoiseConfig:
         if part == "preset":
             continue
         if part not in parts:
-            raise ConfigError(f"Unknown part of noise '{part}'. There is: preset, {', '.join(parts)}.")
+            raise ConfigError(f"Unknown part of noise '{part}'. Available: preset, {', '.join(parts)}.")
         changed[part] = _changed(part, getattr(config, part), values)
     return replace(config, **changed)
 
@@ -139,7 +139,7 @@ def _changed(part: str, config: Any, values: Any) -> Any:
     names = [each.name for each in fields(config)]
     for name in values:
         if name not in names:
-            raise ConfigError(f"Noise '{part}' has no field '{name}'. There is: {', '.join(names)}.")
+            raise ConfigError(f"Noise '{part}' has no field '{name}'. Available: {', '.join(names)}.")
     return replace(
         config, **{name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
     )
@@ -195,5 +195,5 @@ class SensorNoise:
         noisy = dict(readings)
         for model, rng in zip(self._models, self._streams, strict=True):
             if model is not None:
-                noisy |= model.apply(noisy, images, rng)
+                noisy |= model.apply(noisy, {name: images[name] for name in model.images}, rng)
         return noisy

@@ -67,7 +67,7 @@ class Outcome:
     headline: str
     """For example "Found after 48 steps"."""
     sentence: str
-    """Why it counts, or why it does not."""
+    """Reason why the STOP counts, or does not count."""
 
 
 def in_words(category: str) -> str:

@@ -107,7 +107,7 @@ def _stopped_for_the_goal(trajectory: Trajectory) -> bool:
 
 
 def first_trapped_step(positions_m: NDArray[np.floating]) -> int | None:
-    """Returns the first step of the first window in which the robot was trapped, None: none; positions (n + 1, 2)."""
+    """Returns the first step of the first window in which the robot was trapped, or None; positions (n + 1, 2)."""
     positions = positions_m.astype(np.float64)
     for begin in range(len(positions) - TRAPPED_WINDOW_STEPS):
         window = positions[begin : begin + TRAPPED_WINDOW_STEPS + 1]
@@ -117,7 +117,7 @@ def first_trapped_step(positions_m: NDArray[np.floating]) -> int | None:
 
 
 def first_looping_step(trajectory: Trajectory) -> int | None:
-    """Returns the first step of the first window that the robot spent on old ground; None where there is none."""
+    """Returns the first step of the first window that the robot spent on old ground; None if there is none."""
     if trajectory.num_steps < LOOP_STEPS:
         return None
     path_m = np.concatenate([[0.0], np.cumsum(trajectory.moved_m)])
@@ -128,7 +128,7 @@ def first_looping_step(trajectory: Trajectory) -> int | None:
 
 
 def on_new_ground(positions_m: NDArray[np.floating]) -> NDArray[np.bool_]:
-    """Returns (n,) which of the positions (n, 2) are farther than `NEW_GROUND_M` from every such position before."""
+    """Returns (n,) whether each position (n, 2) is farther than `NEW_GROUND_M` from all earlier such positions."""
     new = np.zeros(len(positions_m), dtype=np.bool_)
     landmarks = np.empty_like(positions_m)
     count = 0

@@ -57,12 +57,12 @@ class Footprint:
     """Height of the floor below the instance."""
 
     def near(self, xy_m: NDArray[np.float64], margin_m: float) -> NDArray[np.bool_]:
-        """Returns (n,) which places (n, 2) are in the bounding box grown by a margin."""
+        """Returns (n,) whether each of the places (n, 2) is in the bounding box grown by a margin."""
         x0, y0, x1, y1 = self.bounds_m
         return np.all((xy_m >= (x0 - margin_m, y0 - margin_m)) & (xy_m <= (x1 + margin_m, y1 + margin_m)), axis=1)
 
     def contains(self, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Returns (n,) which places (n, 2) are in the footprint."""
+        """Returns (n,) whether each of the places (n, 2) is in the footprint."""
         inside = np.zeros(len(xy_m), dtype=np.bool_)
         candidates = np.flatnonzero(self.near(xy_m, 0.0))
         for part in self.parts if candidates.size else ():
@@ -102,7 +102,7 @@ class Footprints:
 def footprint_of(
     model: mujoco.MjModel, data: mujoco.MjData, instance: Instance, floors: Sequence[Floor] = ()
 ) -> Footprint | None:
-    """Returns the footprint of an instance; None where nothing of it is rendered."""
+    """Returns the footprint of an instance; None if nothing of it is rendered."""
     from scipy.spatial import KDTree  # on demand: a quarter of a second at every start
 
     rendered = rendered_geoms(model)

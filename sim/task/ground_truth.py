@@ -170,7 +170,7 @@ class GroundTruth:
 
     def _region(self, goal: str, floor_z_m: float, data: mujoco.MjData) -> GoalRegion:
         if goal not in GOAL_CATEGORIES:
-            raise EpisodeError(f"Unknown goal '{goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
+            raise EpisodeError(f"Unknown goal '{goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
         return GoalRegion(
             data,
             self.world.labels,

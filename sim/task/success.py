@@ -105,7 +105,7 @@ class GoalRegion:
         return min(distances, default=None)
 
     def satisfied(self, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Returns (n,) at which of the places (n, 2) a STOP succeeds."""
+        """Returns (n,) whether a STOP succeeds at each of the places (n, 2)."""
         satisfied = np.zeros(len(xy_m), dtype=np.bool_)
         for footprint in self.footprints:
             near = np.flatnonzero(~satisfied & footprint.near(xy_m, self.distance_m))
@@ -124,7 +124,7 @@ class GoalRegion:
         return mask
 
     def reaches(self, footprint: Footprint, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Returns (n,) from which places (n, 2) some point of the footprint is near enough and in sight."""
+        """Returns (n,) whether some point of the footprint is near enough and in sight from each place (n, 2)."""
         x0, y0, x1, y1 = footprint.bounds_m
         r = self.distance_m
         blockers = [b for b in self._blockers if _overlap(b.bounds_m, (x0 - r, y0 - r, x1 + r, y1 + r))]

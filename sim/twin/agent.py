@@ -46,7 +46,7 @@ class TwinAgent(StubbornAgent):
         return note_sighting(self.navmap, whole, look.target_rows, look.target_cols, pose)
 
 
-def play(
+def run_episode(
     agent: TwinAgent,
     camera: PlanCamera,
     goal: str,
@@ -83,7 +83,7 @@ def play(
 
 
 def _end_reason(episode: PlanEpisode, until_sight: bool) -> str:
-    """Returns the reason why an episode of `play` ended."""
+    """Returns the reason why an episode of `run_episode` ended."""
     if episode.stopped:
         return "stop"
     return "sight" if until_sight and episode.first_seen_step is not None else "max_steps"

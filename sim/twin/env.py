@@ -241,7 +241,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
             EpisodeError: there is no such goal.
         """
         if goal not in GOAL_CATEGORIES:
-            raise EpisodeError(f"Unknown goal '{goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
+            raise EpisodeError(f"Unknown goal '{goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
         for number in (*range(first, len(self.files)), *range(first)):
             try:
                 return number, *draw_goal_and_start(self.camera(number).plan, self.np_random, goal)

@@ -110,8 +110,8 @@ def in_one_line(record: logging.LogRecord) -> bool:
     """Replaces the traceback of a log record by the error, unless --debug is given: clients can cause it."""
     if record.exc_info and not debug():
         error = record.exc_info[1]
-        told = " ".join(f"{record.getMessage()} {type(error).__name__}: {error}".split())
-        record.msg, record.args, record.exc_info, record.exc_text = printable(told), (), None, None
+        line = " ".join(f"{record.getMessage()} {type(error).__name__}: {error}".split())
+        record.msg, record.args, record.exc_info, record.exc_text = printable(line), (), None, None
     return True
 
 

@@ -68,7 +68,7 @@ class Hub:
         self.clients: set[Client] = set()
         self.session = Session(self, driven)
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._told: Mapping[str, Any] = {"phase": "idle", "message": "Choose a house, a goal and an agent."}
+        self._state: Mapping[str, Any] = {"phase": "idle", "message": "Choose a house, a goal and an agent."}
         self._frame: Frame | None = None
         self._state_number = self._frame_number = 1
         self._wanted: frozenset[str] = frozenset()
@@ -88,7 +88,7 @@ class Hub:
 
     def tell(self, state: Mapping[str, Any]) -> None:
         """Takes the newest state from the simulating thread."""
-        self._in_loop(lambda: self._keep(told=state))
+        self._in_loop(lambda: self._keep(state=state))
 
     def changed(self) -> None:
         """Sends the state to all clients again, after a command."""
@@ -106,7 +106,7 @@ class Hub:
         controls = self.session.controls
         names = ("driver", "paused", "per_s", "hints")
         live = {name: getattr(controls, name) for name in names}
-        return {"kind": "state", **self._told, **live, "clients": len(self.clients)}
+        return {"kind": "state", **self._state, **live, "clients": len(self.clients)}
 
     async def serve(self, client: Client, socket: WebSocket) -> None:
         """Sends a client what is new, until it is gone."""
@@ -120,13 +120,13 @@ class Hub:
             await client.news.wait()
             client.news.clear()
 
-    def _keep(self, *, frame: Frame | None = None, told: Mapping[str, Any] | None = None) -> None:
+    def _keep(self, *, frame: Frame | None = None, state: Mapping[str, Any] | None = None) -> None:
         if frame is not None:
             self._frame = frame
             self._frame_number += 1
         else:
-            self._told = told or self._told
-            if self._told["phase"] == "loading":
+            self._state = state or self._state
+            if self._state["phase"] == "loading":
                 self._frame = None  # that of the last episode
             self._state_number += 1
         for client in self.clients:

@@ -22,6 +22,8 @@ from stubborn.detection.classifiers import Classifier, Features, Logistic, Naive
 
 FOLDER = Path(__file__).parent / "verifiers"
 """Folder of the shipped parameters."""
+DEFAULT_KIND = "rednet"
+"""The kind whose parameters another kind gets that has none: those of a network are nearer to it than none."""
 METHODS: Mapping[str, Callable[[Mapping[str, Any]], Classifier]] = MappingProxyType(
     {"naive-bayes": NaiveBayes.from_dict, "logistic": Logistic.from_dict, "threshold": Logistic.from_dict}
 )
@@ -123,7 +125,7 @@ class FittedVerifier:
             ConfigError: there is no such method, or the file is missing or holds something else.
         """
         if method not in METHODS:
-            raise ConfigError(f"Unknown verification '{method}'. There is: {', '.join((*METHODS, ACCEPT_ALL))}.")
+            raise ConfigError(f"Unknown verification '{method}'. Available: {', '.join((*METHODS, ACCEPT_ALL))}.")
         make, where = METHODS[method], f"Verifier file '{file}'"
         methods = read_json(file, _File, what="Verifier file").methods
         if method not in methods:
@@ -142,7 +144,7 @@ class FittedVerifier:
     def probability(self, goal: str, features: Features) -> float:
         """Returns the probability in [0, 1] that a candidate for this goal is true."""
         if goal not in GOAL_CATEGORIES:
-            raise ConfigError(f"Unknown goal '{goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
+            raise ConfigError(f"Unknown goal '{goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
         return self.by_category.get(goal, self.pooled).probability(features)
 
     def accepts(self, goal: str, features: Features) -> bool:
@@ -154,25 +156,24 @@ class FittedVerifier:
         return self.accepts(goal, features)
 
 
-def verifier_for(
-    semantics: str, spec: SegmenterSpec, file: Path | None = None, method: str = "naive-bayes"
-) -> Verifier:
+def has_parameters(kind: str) -> bool:
+    """Returns whether parameters are shipped for this kind of segmentation; others get those of `DEFAULT_KIND`."""
+    return (FOLDER / f"{kind}.json").is_file()
+
+
+def verifier_for(spec: SegmenterSpec, file: Path | None = None, method: str = "naive-bayes") -> Verifier:
     """Returns the verifier of a kind of segmentation: the shipped one, or `AcceptAll` where no verification is needed.
 
     Args:
-        semantics: name of the kind.
-        spec: specification of its segmenter.
+        spec: specification of its segmenter; a kind without parameters gets those of `DEFAULT_KIND`.
         file: parameters in place of the shipped ones.
         method: one of `METHODS`, or `ACCEPT_ALL`.
 
     Raises:
-        ConfigError: no parameters are shipped for this kind, the file holds none, or there is no such method.
+        ConfigError: the file holds no parameters, or there is no such method.
     """
     if method == ACCEPT_ALL or (file is None and not spec.needs_verification):
         return AcceptAll()
     if file is None:
-        file = FOLDER / f"{semantics}.json"
-        if not file.is_file():
-            kinds = sorted(each.stem for each in FOLDER.glob("*.json"))
-            raise ConfigError(f"No verifier for semantics '{semantics}'. There is: {', '.join(kinds)}.")
+        file = FOLDER / f"{spec.kind if has_parameters(spec.kind) else DEFAULT_KIND}.json"
     return FittedVerifier.read(file, method)

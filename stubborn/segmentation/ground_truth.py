@@ -24,7 +24,7 @@ class GroundTruthSegmenter:
             ConfigError: the goal is not a category of mpcat40.
         """
         if goal not in MPCAT40_ID:
-            raise ConfigError(f"No category {goal!r} in mpcat40. There is: {', '.join(MPCAT40_ID)}.")
+            raise ConfigError(f"No category {goal!r} in mpcat40. Available: {', '.join(MPCAT40_ID)}.")
         return Scores(*scores_of_category(observation["semantic"], np.uint8(MPCAT40_ID[goal])))
 
     def categories(self, observation: Observation) -> NDArray[np.uint8]:

@@ -123,7 +123,7 @@ class NetworkSegmenter:
             ConfigError: the goal is not a category of the network.
         """
         if goal not in MPCAT40_ID or goal == "void":
-            raise ConfigError(f"A network has no category {goal!r}. There is: {', '.join(MPCAT40_ID)}.")
+            raise ConfigError(f"A network has no category {goal!r}. Available: {', '.join(MPCAT40_ID)}.")
         posteriors, channel = self.posteriors(observation), MPCAT40_ID[goal] - 1
         others = np.maximum(
             posteriors[:channel].max(axis=0, initial=0.0), posteriors[channel + 1 :].max(axis=0, initial=0.0)

@@ -120,7 +120,7 @@ def test_explorers_are_compared_in_the_same_episodes(plans: Path, tmp_path: Path
 @pytest.mark.parametrize(
     ("explorer", "message"),
     [
-        ("corner", "there is no 'corner'. There is: corners, "),
+        ("corner", "there is no 'corner'. Available: corners, "),
         ("semexp:colour=red", "semexp:colour=red: There is no field 'colour'. The configuration has: weights, "),
         (
             "informed-tour:potentials.colour=red",
@@ -147,7 +147,7 @@ def test_fields_of_explorers_are_set():
     [
         ({"batch": 1}, "must be >= 2, got 1 and 1024"),
         ({"envs": 1, "rollout": 1}, "must be >= 2, got 256 and 1"),
-        ({"beside": (Path("other"),)}, r"--beside: 'other/train.csv' is no curve of this command"),
+        ({"beside": (Path("other"),)}, r"--beside: 'other/train.csv' is not a curve of this command"),
     ],
 )
 def test_options_that_would_fail_later_are_refused(

@@ -40,7 +40,7 @@ def test_a_missing_curve_stays_missing_and_a_foreign_table_is_refused(tmp_path: 
     assert list(tmp_path.iterdir()) == []
     file = tmp_path / "val.csv"
     file.write_text("name,price\nbed,100\n")
-    with pytest.raises(ConfigError, match=r"val\.csv' is no curve of this command: it has no column 'step'"):
+    with pytest.raises(ConfigError, match=r"val\.csv' is not a curve of this command: it has no column 'step'"):
         cut_rows(file, "step", 0)
     assert file.read_text() == "name,price\nbed,100\n"
 

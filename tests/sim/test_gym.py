@@ -233,9 +233,9 @@ def _stand_in_for_moviepy(monkeypatch: pytest.MonkeyPatch, given: list[tuple[int
 
 
 def test_the_example_runs_both_agents_in_one_episode() -> None:
-    from examples.gym_agents import play
+    from examples.gym_agents import run_episode
 
-    ends = [play(name, max_steps=4) for name in ("random", "stubborn")]
+    ends = [run_episode(name, max_steps=4) for name in ("random", "stubborn")]
     assert ends[0]["episode_id"] == ends[1]["episode_id"]
     assert [end["num_steps"] for end in ends] == [end["episode"]["l"] for end in ends] == [4, 4]
 

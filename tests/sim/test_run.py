@@ -228,7 +228,7 @@ def test_a_run_resumed_by_other_code_says_so_and_names_both(
     assert codes == ["0lder"]
     out, codes = run_quitter(2)
     assert [line for line in out.splitlines() if "0lder" in line] == [
-        f"The episodes that were there were run by other code (0lder) than these ({code})."
+        f"The existing episodes were run by other code (0lder) than these ({code})."
     ]
     assert codes == ["0lder", code]
 

@@ -304,7 +304,7 @@ def test_a_larger_success_distance_lets_the_agent_stop_farther_away():
 
 
 def test_an_unknown_name_or_option_is_refused_with_the_names_that_exist():
-    with pytest.raises(ConfigError, match=r"No agent 'stuborn'\. Did you mean 'stubborn'\? There is: stubborn, "):
+    with pytest.raises(ConfigError, match=r"No agent 'stuborn'\. Did you mean 'stubborn'\? Available: stubborn, "):
         build("stuborn")
     with pytest.raises(ConfigError, match=r"no option 'speed'\. It has: cell_m, "):
         build("stubborn", speed=2)

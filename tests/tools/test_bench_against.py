@@ -32,7 +32,7 @@ def test_a_commit_is_unpacked_as_it_was(tmp_path: Path) -> None:
     assert not (tmp_path / ".git").exists()
 
 
-class Told(Worker):
+class Scripted(Worker):
     """A version whose rounds take the given seconds; after the last one its process has ended."""
 
     def __init__(self, name: str, seconds: list[float], order: list[str]) -> None:
@@ -48,7 +48,7 @@ class Told(Worker):
 
 def test_versions_take_turns_and_the_first_round_does_not_count() -> None:
     order: list[str] = []
-    here, there = Told("here", [9.0, 1.0, 2.0, 1.0], order), Told("there", [9.0, 3.0, 3.0, 2.0], order)
+    here, there = Scripted("here", [9.0, 1.0, 2.0, 1.0], order), Scripted("there", [9.0, 3.0, 3.0, 2.0], order)
     (found,) = in_turns("step", here, there, 3, "v1")
     assert order == ["there", "here", "here", "there", "there", "here", "here", "there"]
     assert found.what == "a step"
@@ -59,4 +59,4 @@ def test_versions_take_turns_and_the_first_round_does_not_count() -> None:
 def test_a_version_that_cannot_run_a_part_is_named() -> None:
     order: list[str] = []
     with pytest.raises(ConfigError, match="Part step does not run in 'v1': ImportError: no such part"):
-        in_turns("step", Told("here", [1.0], order), Told("there", [], order), 1, "v1")
+        in_turns("step", Scripted("here", [1.0], order), Scripted("there", [], order), 1, "v1")

@@ -74,10 +74,10 @@ def test_the_agent_has_the_explorer_and_the_settings_of_the_run(run: Path, optio
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"agent": "stubborn-plus"}, "the agent 'stubborn-plus', which the twin cannot play. It plays: stubborn, "),
-        ({"agent": "latest-frame"}, "the twin cannot play"),
-        ({"agent": "random"}, "the twin cannot play"),
-        ({"agent": "oracle"}, "the twin cannot play"),
+        ({"agent": "stubborn-plus"}, "the agent 'stubborn-plus', which the twin cannot run. Available: stubborn, "),
+        ({"agent": "latest-frame"}, "the twin cannot run"),
+        ({"agent": "random"}, "the twin cannot run"),
+        ({"agent": "oracle"}, "the twin cannot run"),
         ({"config": ("task.max_steps=300",)}, "has another task than the twin"),
         ({"config": ("camera.height_m=1.0",)}, "has another camera than the twin"),
         ({"robot": "cart.xml"}, r"has a robot of its own \(cart.xml\)"),

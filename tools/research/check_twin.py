@@ -42,7 +42,7 @@ from sim.sensors.noise import NoiseConfig
 from sim.task.config import TaskConfig
 from sim.task.metrics import EXPLORED_SHARE, steps_to_first_sight
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
-from sim.twin.agent import TwinAgent, play, twin_config
+from sim.twin.agent import TwinAgent, run_episode, twin_config
 from stubborn.agent import AgentConfig
 from stubborn.agents import PRESETS
 from stubborn.detection.seeker import TargetSeekerConfig
@@ -123,13 +123,13 @@ def agent_config(run: Run) -> AgentConfig:
     """Returns the configuration of a run's agent, as the run's `config.json` records it.
 
     Raises:
-        ConfigError: the twin cannot play this agent, or the run had another robot, camera, task, segmentation or noise.
+        ConfigError: the twin cannot run this agent, or the run had another robot, camera, task, segmentation or noise.
     """
     name = str(run.recorded("agent"))
     config = next((config for there, (_, config) in PRESETS.items() if there == name and _is_playable(config)), None)
     if config is None:
         there = ", ".join(name for name, (_, config) in PRESETS.items() if _is_playable(config))
-        raise ConfigError(f"'{run.path}' has the agent '{name}', which the twin cannot play. It plays: {there}.")
+        raise ConfigError(f"'{run.path}' has the agent '{name}', which the twin cannot run. Available: {there}.")
     if run.config.get("robot"):
         raise ConfigError(f"'{run.path}' has a robot of its own ({run.config['robot']}), which the twin does not have.")
     if run.recorded("semantics") != "gt":
@@ -176,7 +176,9 @@ def explore(agent: TwinAgent, cameras: Cameras, recorded: Recorded, shift_m: flo
     line, start = recorded.line, recorded.start
     x_m, y_m = start.ahead(-shift_m)
     seed = episode_seed(int(line["seed"]), line["episode_id"])
-    return dict(play(agent, cameras.of(line["house"]), line["goal"], replace(start, x_m=x_m, y_m=y_m), seed=seed))
+    return dict(
+        run_episode(agent, cameras.of(line["house"]), line["goal"], replace(start, x_m=x_m, y_m=y_m), seed=seed)
+    )
 
 
 def _explored(agent: TwinAgent, cameras: Cameras, recorded: Sequence[Recorded], shift_m: float) -> list[dict[str, Any]]:

@@ -4,7 +4,7 @@ python -m tools.research.compare_explorers --plans runs/plans/train runs/plans/l
     --explorers corners random-goals semexp semexp:semantics=shuffled semexp:goal=wrong semexp:semantics=none
 
 The whole agent runs, with an exact camera and a map as in the real environment; an episode ends with the first frame
-that shows the target, or after 500 steps. All explorers play the same episodes, in the houses that
+that shows the target, or after 500 steps. All explorers run the same episodes, in the houses that
 `stubborn train semexp` holds back; `stubborn train poni` holds back others (--houses held-back-poni). Intervals are
 from 2000 bootstrap samples of the houses.
 """
@@ -31,7 +31,7 @@ from sim.plans.episode import draw_goal_and_start
 from sim.plans.plan import read_plan
 from sim.plans.sight import PlanCamera
 from sim.twin import potential_files
-from sim.twin.agent import TwinAgent, play, twin_config
+from sim.twin.agent import TwinAgent, run_episode, twin_config
 from stubborn.agent import AgentConfig
 from stubborn.agents import EXPLORERS
 from stubborn.exploration.explorer import ExplorerConfig
@@ -107,7 +107,7 @@ def explorer_config(text: str, weights: Path | None) -> ExplorerConfig:
             raise ConfigError(f"--explorers {text}: {RANDOM} has no fields.")
         return RandomGoals()
     if name not in EXPLORERS:
-        raise ConfigError(f"--explorers: there is no '{name}'. There is: {', '.join((*EXPLORERS, RANDOM))}.")
+        raise ConfigError(f"--explorers: there is no '{name}'. Available: {', '.join((*EXPLORERS, RANDOM))}.")
     assignments = [field for field in fields.split(",") if field]
     if name == "semexp" and weights is not None and not any(each.startswith("weights=") for each in assignments):
         assignments.append(f"weights={weights}")
@@ -122,7 +122,7 @@ def episode(agent: TwinAgent, plans: Sequence[Path], number: int, seed: int) -> 
     file = plans[number % len(plans)]
     plan = _read(file)
     goal, start = draw_goal_and_start(plan, np.random.default_rng((seed, number)))
-    found = play(agent, PlanCamera(plan), goal, start, seed=seed + number, until_sight=True)
+    found = run_episode(agent, PlanCamera(plan), goal, start, seed=seed + number, until_sight=True)
     return {"house": file.stem, "goal": goal, "episode": number, **found}
 
 

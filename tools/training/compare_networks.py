@@ -151,7 +151,7 @@ def _check(args: Args) -> None:
     """Raises ConfigError for arguments that are not allowed."""
     unknown = [name for name in args.networks if name not in (*NETWORKS, PRETRAINED)]
     if unknown:
-        raise ConfigError(f"No network '{unknown[0]}'. There is: {', '.join((*NETWORKS, PRETRAINED))}.")
+        raise ConfigError(f"No network '{unknown[0]}'. Available: {', '.join((*NETWORKS, PRETRAINED))}.")
     if args.hours < 0 or args.turn_hours <= 0:
         raise ConfigError(f"--hours must be at least 0 and --turn-hours > 0, got {args.hours} and {args.turn_hours}.")
 

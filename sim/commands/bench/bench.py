@@ -4,10 +4,10 @@ stubborn bench                                             # all parts, half an 
 stubborn bench --parts a,b,d                               # rendering, the agent's step
 stubborn bench --parts j                                   # steps per second by image size, sensors and number
 stubborn bench --out runs/bench.json --markdown docs/performance.md
-stubborn bench --quick                                     # does everything run? the figures mean nothing
+stubborn bench --quick                                     # tests that everything runs; its figures have no meaning
 
-Absolute figures depend on the machine and on its load, ratios much less. Before each part and at the end, three fixed
-pieces of work are timed; they show how steady the machine was. See docs/performance.md.
+Absolute figures depend on the machine and on its load; ratios depend on them much less. Before each part and at the
+end, three fixed pieces of work are timed; they show how steady the machine was. See docs/performance.md.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ class Args:
     """Measure parts, print the figures and write them to files."""
 
     parts: str = ",".join(PARTS)
-    """Letters with commas between: a, b rendering; c the environment's step; d the agent's; e episodes; f views;
-    g houses; h workers; i growth; j steps of a training; k starts."""
+    """Letters of parts, separated by commas: a, b rendering; c the environment's step; d the agent's step; e episodes;
+    f views; g houses; h workers; i growth; j steps of a training; k starts."""
     quick: bool = False
     """Measure as little as possible, to test that everything runs."""
     out: cli.OutFile | None = None

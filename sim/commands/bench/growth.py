@@ -142,7 +142,7 @@ def memory_mb() -> dict[str, float]:
 
 
 def hall(geoms: int) -> mujoco.MjSpec:
-    """Returns a hall of 12 x 12 m with so many geoms: walls, floor, a bed, and small boxes along the walls."""
+    """Returns a hall of 12 x 12 m with this number of geoms: walls, floor, a bed, and small boxes along the walls."""
     spec, half_m = mujoco.MjSpec(), 6.0
     world = spec.worldbody
     world.add_light(pos=(0, 0, 2.4), dir=(0, 0, -1))

@@ -1,4 +1,4 @@
-"""Part (j): steps per second of the environment alone, as a training has them: by image size, sensors and number."""
+"""Part (j): steps per second of the environment alone, as in a training, by image size, sensors and number."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ VECTOR_SIZE_PX = (128, 96)
 CACHED = 2
 """Houses that stay loaded in the measurement with resets."""
 ROUNDS = 5
-"""The cases take turns in so many rounds; the fastest round of each counts."""
+"""Number of rounds in which the cases take turns; the fastest round of each counts."""
 _MOVES = (Action.MOVE_FORWARD, Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_RIGHT)
 
 

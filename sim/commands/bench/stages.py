@@ -1,4 +1,4 @@
-"""Shared by the parts: amounts of work, poses in houses, and an agent that runs step by step."""
+"""Defines what the parts share: amounts of work, poses in houses, and an agent that runs step by step."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Amount:
 
     houses: int = 8
     poses: int = 10
-    """In each house."""
+    """Number of poses in each house."""
     repeats: int = 2
     steps: int = 1500
     """Agent steps that are split into their parts."""
@@ -43,7 +43,7 @@ class Amount:
     """Pieces of equal work, shared by workers."""
     piece_steps: int = 60
     growth_steps: int = 80
-    """At each size."""
+    """Number of steps at each size."""
     memory_episodes: int = 50
     training_steps: int = 200
     """Random steps of each size, set of sensors and vector of environments."""
@@ -57,7 +57,7 @@ QUICK = Amount(
     houses=1, poses=2, repeats=1, steps=6, episodes=1, views=2, made_houses=1, pieces=4, piece_steps=3, growth_steps=4,
     memory_episodes=2, training_steps=5, image_sizes=1, vectors=1, starts=1,
 )  # fmt: skip
-"""Enough to test that everything runs; the figures mean nothing."""
+"""Smallest amounts, to test that everything runs; the figures have no meaning."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def free_poses(world: World, count: int, rng: np.random.Generator) -> list[Pose]
 def stubborn_agent(env: ObjectNavEnv, *, semantics: str = "gt", **options: Any) -> Agent:
     """Returns the agent of the paper with this kind of segmentation and its verifier."""
     segmenter = make_segmenter(semantics, env)
-    options.setdefault("verifier", verifier_for(semantics, segmenter.spec))
+    options.setdefault("verifier", verifier_for(segmenter.spec))
     return agents.make("stubborn", camera=env.camera_model, robot=env.robot_model, segmenter=segmenter, **options)
 
 

@@ -20,7 +20,7 @@ LISTING, PLAIN = ("-m", "sim.run", "--list-agents"), ("-c", "import numpy, rich,
 
 
 def starts(setting: Setting) -> list[Figure]:
-    """(k) Measures both."""
+    """(k) Measures the start of a command, and the first step in a new house."""
     return [command(setting), first_step(setting)]
 
 
@@ -57,11 +57,11 @@ def first_step(setting: Setting) -> Figure:
 
 
 def _first_step(env: ObjectNavEnv, episode: object) -> Callable[[], object]:
-    def play() -> None:
+    def run() -> None:
         env.reset(seed=0, options={"episode": episode})
         env.step(Action.TURN_LEFT)
 
-    return play
+    return run
 
 
 def _cpu_ms(words: tuple[str, ...]) -> float:

@@ -97,7 +97,7 @@ def network_of(run: Run) -> NetworkSegmenter:
     """Returns the network of a run, with its calibration.
 
     Raises:
-        ConfigError: the run had another robot or camera than ours, or its weights are not there any more or are others.
+        ConfigError: the run had another robot or camera than ours, or its weights have been deleted or replaced.
     """
     tree = run.config.get("config", {})
     if run.config.get("robot"):
@@ -115,7 +115,7 @@ def network_of(run: Run) -> NetworkSegmenter:
 
 
 def _others(recorded: Sequence[Mapping[str, Any]], cause: str) -> str:
-    """Returns a sentence on the recorded failures by other causes; "" where there is none."""
+    """Returns a sentence on the recorded failures by other causes; "" if there are no such failures."""
     others = Counter(line["failure"] for line in recorded if line["failure"] != cause)
     if not others:
         return ""

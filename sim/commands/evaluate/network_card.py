@@ -41,9 +41,9 @@ class Measured:
     """The results of an evaluation."""
 
     iou: Iou
-    """Of the network's own logits."""
+    """Results of the network's own logits."""
     calibrated: Iou
-    """Of calibrated logits, as the agent uses them; the parts below are of these too, the matrix is not."""
+    """Results of calibrated logits, as the agent uses them; the fields below are of these too, except for `matrix`."""
     matrix: Int64[np.ndarray, "classes classes"]
     """Confusion matrix, see `stubborn.segmentation.evaluation.confusion`."""
     breakdown: Breakdown
@@ -51,9 +51,9 @@ class Measured:
     """Calibrated mIoU over the goal categories of each folder of views."""
     views: int
     before: Reliability
-    """On the houses to which the calibration was not fitted, without one."""
+    """Reliability without a calibration, on the houses to which the calibration was not fitted."""
     after: Reliability
-    """The same with the network's calibration."""
+    """Reliability with the network's calibration, on the same houses."""
     calibration: Calibration
     frame_ms: float
 

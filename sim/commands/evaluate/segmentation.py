@@ -39,6 +39,7 @@ from stubborn.segmentation.networks import Network
 from stubborn.segmentation.preprocess import padding, shrink
 from stubborn.segmentation.rednet import CLASSES
 from stubborn.segmentation.samples import NONE, Sampler, Samples
+from stubborn.segmentation.shipped import SHIPPED_REDNET
 from stubborn.segmentation.slivers import without_slivers
 
 TIMED_FRAMES = 30
@@ -56,11 +57,13 @@ class Args:
     count: cli.Amount = 0
     """Number of views of each folder, spread over its shards; 0: all."""
     calibrate: bool = False
-    """Fit the calibration and write it to the file of the weights."""
+    """Fit the calibration and write it to the file of the weights, --weights."""
+    shipped: bool = False
+    """With --calibrate: allow that the file is that of the weights that ship."""
     card: cli.OutFile | None = None
     """File of the model card to write."""
     curves: tuple[Path, ...] = ()
-    """With --card: folders of the trainings that led to the network, first one first, for a picture of the curves."""
+    """With --card: folders of the trainings that led to the network, in their order, for a picture of the curves."""
     block_px: cli.Count | None = None
     """Factor by which the 640 x 480 image is shrunk, in place of the stored one; --calibrate stores it."""
     mirror: bool = False
@@ -73,7 +76,7 @@ class Args:
 
 @dataclass
 class Predictions:
-    """What a network predicted on the views of some folders."""
+    """The predictions of a network on the views of some folders."""
 
     matrix: Int64[np.ndarray, "classes classes"]
     """Confusion matrix, see `stubborn.segmentation.evaluation.confusion`."""
@@ -88,13 +91,18 @@ class Predictions:
 
 
 def main(args: Args) -> int:
-    """Evaluates, prints and, where asked to, writes; returns the exit status."""
+    """Evaluates the network, prints and writes the results; returns the exit status."""
     for name in ("threads", "block_px"):
         value = getattr(args, name)
         if value is not None and value < 1:
             raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {value}.")
     torch.set_num_threads(args.threads)
     file = weights_file(args.weights)
+    if args.calibrate and not args.shipped and file.resolve() == SHIPPED_REDNET.resolve():
+        raise ConfigError(
+            "--calibrate writes into the file of the weights, and these are those that ship. Give --weights FILE, a "
+            "copy of them for example, or --shipped to change the shipped file."
+        )
     if args.calibrate and file.suffix != ".safetensors":
         raise ConfigError(
             f"--calibrate writes into the file of the weights, and '{file}' is not of this project; train with --init "

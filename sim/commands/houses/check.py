@@ -56,9 +56,9 @@ class Args:
     first_seed: cli.Seed = 900_000
     """The first of consecutive seeds; no split has seeds from 900000 on."""
     kind: PlanKind | None = None
-    """Kind of floor plan; drawn when not given."""
+    """Kind of floor plan; sampled when not given."""
     area_m2: cli.Positive | None = None
-    """Floor area; drawn when not given."""
+    """Floor area; sampled when not given."""
     movable: bool = False
     """Whether light furniture can be pushed."""
     split: str | None = None
@@ -86,7 +86,7 @@ class Checked:
     notes: tuple[str, ...] = ()
     """What is unusual in a house of the user's, but does not keep it from being used."""
     tries: int = 1
-    """Number of times that the generator drew the house."""
+    """Number of attempts that the generator made."""
     rejects: tuple[str, ...] = ()
     """The reason why each earlier try was rejected."""
     seconds: float = 0.0

@@ -64,9 +64,9 @@ class Args:
     pool: Pool = "train"
     """Without a split: styles and textures that may appear."""
     kind: PlanKind | None = None
-    """Without a split: kind of floor plan; drawn when not given."""
+    """Without a split: kind of floor plan; sampled when not given."""
     area_m2: cli.Positive | None = None
-    """Without a split: floor area of the ground storey, met to within 5 %; drawn when not given."""
+    """Without a split: floor area of the ground storey, met to within 5 %; sampled when not given."""
     rooms: tuple[str, ...] = ()
     """Without a split: private rooms that each house has, such as gym, office, laundry, closet; a kind may repeat."""
     storeys: Literal[1, 2] = 1
@@ -74,7 +74,7 @@ class Args:
     hazards: tuple[str, ...] = ()
     """Without a split: families of hazards (glass, slab, overhang, legs, scan, loose)."""
     clutter: cli.Share | None = None
-    """Without a split: 0 without small objects to 1 with many; drawn when not given."""
+    """Without a split: 0 without small objects to 1 with many; sampled when not given."""
     movable: bool = False
     """Without a split: whether light furniture can be pushed."""
     furniture: Path | None = None
@@ -126,7 +126,7 @@ def main(args: Args) -> int:
 def _write_split(args: Args, split: str) -> Iterator[Made]:
     """Writes the houses of a split that is shipped as files."""
     if split not in SPLITS:
-        raise ConfigError(f"No split '{split}'. There is: {', '.join(SPLITS)}, train.")
+        raise ConfigError(f"No split '{split}'. Available: {', '.join(SPLITS)}, train.")
     textures = args.out.resolve().parent / "textures"
     if not textures.is_dir():
         copy_textures(textures)

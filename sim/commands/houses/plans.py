@@ -6,7 +6,7 @@
 
 Houses of a split are read, houses of a pool are generated from consecutive seeds; those of pool `train` use styles and
 textures that no house of val, test, large or hazards has. A plan that exists is kept, so that a killed run is resumed
-by the same command; one of other options or of another generator is refused.
+by the same command; a plan that was made with other options or by another generator is refused.
 """
 
 from __future__ import annotations
@@ -53,9 +53,9 @@ class Args:
     first_seed: cli.Seed = 0
     """Without a split: the first of consecutive seeds."""
     kind: PlanKind | None = None
-    """Without a split: kind of floor plan; drawn when not given."""
+    """Without a split: kind of floor plan; sampled when not given."""
     area_m2: cli.Positive | None = None
-    """Without a split: floor area; drawn when not given."""
+    """Without a split: floor area; sampled when not given."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Exported:
 
 
 def main(args: Args) -> int:
-    """Writes the plans; returns 1 if a house gave none."""
+    """Writes the plans; returns 1 if a house gave no plan."""
     args.out.mkdir(parents=True, exist_ok=True)
     results = []
     for exported in _exported(args):
@@ -125,7 +125,7 @@ def house_of(config: HouseConfig, seed: int) -> House:
 
 
 def _export(out: Path, name: str, source: dict[str, Any], make: Any) -> Exported:
-    """Writes the plans of the house that `make` returns, the lowest storey last: it says that the house is done.
+    """Writes the plans of the house that `make` returns, and that of the lowest storey last, as a mark of completion.
 
     Raises:
         ConfigError: there is a plan of that name from another source.

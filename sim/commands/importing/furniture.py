@@ -4,8 +4,8 @@ stubborn import furniture --source /usr/share/sweethome3d/furniture --out runs/m
 stubborn houses generate --furniture runs/models --houses 4 --out runs/houses
 
 The source is a folder with catalogues of Sweet Home 3D (.sh3f), or with OBJ, glTF or other models and a table
-models.csv or models.toml (docs/furniture.md). Needs the extra `models`. No model is part of this repository; you answer
-for keeping the licences, which are written into models.json and into the houses, with the authors.
+models.csv or models.toml (docs/furniture.md). Needs the extra `models`. No model is part of this repository; you are
+responsible for following the licences, which are written into models.json and into the houses, with the authors.
 """
 
 from __future__ import annotations
@@ -79,5 +79,5 @@ def _print_result(models: Sequence[Model], left_out: Sequence[tuple[str, str]], 
 
 
 def _kind(reason: str) -> str:
-    """Returns a reason without what differs from model to model."""
+    """Returns a reason without the parts that differ from model to model."""
     return reason.partition(" (")[0].partition("'")[0].strip() or reason

@@ -1,4 +1,4 @@
-"""What one run of a table evaluates: an agent with its options, written as on the command line of `stubborn run`."""
+"""Describes what a run of a table evaluates: an agent with its options, as on the command line of `stubborn run`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sim.configuration import as_json, parse_assignments
 from sim.errors import ConfigError
 
 GROUND_TRUTH = "gt"
-"""The segmentation of agents that use none: they are run once, under this name."""
+"""The segmentation of agents that do not use one: they are run once, under this name."""
 FORM = "AGENT [--explorer NAME] [--verification METHOD] [--config FIELD=VALUE ...]"
 """The text that `AgentSetup.named` takes."""
 

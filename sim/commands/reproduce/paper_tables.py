@@ -236,7 +236,7 @@ def table_named(name: str) -> PaperTable:
         ConfigError: there is no such table.
     """
     if name not in TABLES:
-        raise ConfigError(f"There is no table '{name}'. There is: {', '.join(TABLES)}.")
+        raise ConfigError(f"There is no table '{name}'. Available: {', '.join(TABLES)}.")
     return TABLES[name]
 
 
@@ -276,7 +276,7 @@ def _differences(
 
 
 def _has_own_name(setup: AgentSetup, names: Mapping[str, str]) -> bool:
-    """Returns True for an agent with a name in the table; with options of its own it is another one."""
+    """Returns whether an agent is one of those that the table names, without further options."""
     return setup.agent in names and not setup.variant
 
 
@@ -285,7 +285,7 @@ def _against_first(setups: Sequence[AgentSetup]) -> list[tuple[AgentSetup, Agent
 
 
 def _against(first: Sequence[Line], second: Sequence[Line]) -> list[Cell | str]:
-    """Returns the ratio of the median steps to first sight, and in how many episodes second is sooner and later."""
+    """Returns the ratio of the median steps to first sight, and how many episodes second has sooner and later."""
     if first is second:
         return ["1", "", ""]
     values = [[metric_value(line, FIRST_SIGHT.key) for line in lines] for lines in (first, second)]

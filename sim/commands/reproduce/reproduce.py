@@ -5,14 +5,16 @@
     stubborn reproduce failures --minutes 0            # only the table, from the existing runs
     stubborn reproduce splits --splits val large hazards --episodes 200 --workers 2
 
-Tables: failures, ablation, exploration, categories, overall, or all of these, the paper's; verification, which compares
-its methods; splits, which compares the rows of the ablation and two explorers on each of several splits; and explorers,
-which compares all explorers, the learned ones with their controls, also by the median time to first sight. Each run has
-a folder `<out>/<agent>_<semantics>_...`, as `stubborn run --record` writes it; the tables share the runs. The agents
-take turns, a chunk of episodes (with several splits, of each of them), so that they have the same first episodes
-whenever the command is stopped; the same command resumes. Tables are printed and written to `<out>/tables`; the options
---semantics, --agents, --noise, --split and --seed become part of the name if they are given. With `--minutes 0` no
-episode is run, and runs of older code are accepted if they have the same agent, segmentation, split, seed and noise.
+The tables of the paper are failures, ablation, exploration, categories and overall; `all` makes these five. The table
+`verification` compares the methods of verification. `splits` compares the rows of the ablation and two explorers on
+each of several splits. `explorers` compares all explorers, also by the median time to first sight, and the learned ones
+with their controls.
+
+Each run has a folder `<out>/<agent>_<semantics>_...`, as `stubborn run --record` writes it; the tables share the runs.
+The agents take turns: each runs a chunk of episodes of every split. All agents have therefore run the same first
+episodes when the command is stopped; the same command resumes. Tables are printed and written to `<out>/tables`; the
+options --semantics, --agents, --noise, --split and --seed become part of the name if they are given. With `--minutes 0`
+no episode is run, and runs of older code are accepted if they have the same agent, segmentation, split, seed and noise.
 See docs/running.md.
 """
 
@@ -67,7 +69,7 @@ class Args:
     workers: cli.Count = 1
     """Number of processes."""
     executor: str = "local"
-    """Where episodes run: local processes, or ray (extra `ray`) for a cluster whose machines can all access --out."""
+    """Executor: local processes, or ray (extra `ray`) for a cluster whose machines can all access --out."""
     address: str | None = None
     """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine belongs to."""
     split: str = "val"
@@ -88,7 +90,7 @@ class Args:
     chunk: cli.Count | None = None
     """Number of episodes that an agent runs in its turn; 20, with several splits 60."""
     minutes: cli.NotNegative | None = None
-    """Start no chunk that would end later than this; 0 runs nothing and makes the tables from the existing runs."""
+    """Time limit: a chunk that would end later is not started. 0 makes the tables from the existing runs only."""
 
 
 def main(args: Args) -> int:
@@ -330,8 +332,8 @@ def _read(args: Args, setup: AgentSetup, split: Split) -> Run:
         ConfigError: the folder holds a run with another agent, segmentation, split, seed or noise.
     """
     found = read_run(_folder(args, setup))
-    told = ("verification", "explorer", "settings")  # older code did not write all of them
-    expected = {key: value for key, value in setup.expected().items() if key in found.config or key not in told}
+    optional = ("verification", "explorer", "settings")  # older code did not write all of them
+    expected = {key: value for key, value in setup.expected().items() if key in found.config or key not in optional}
     expected |= {"noise": args.noise, "seed": args.seed, "split_identity": _identity(split)}
     for path, actual, wanted in differing_fields({key: found.config.get(key) for key in expected}, expected):
         raise ConfigError(

@@ -1,4 +1,4 @@
-"""Trains the policy of `--agent cloned` on demonstrations: it learns to do what they did.
+"""Trains the policy of `--agent cloned` on demonstrations: it learns to choose the same actions.
 
     stubborn train cloned --demonstrations runs/demonstrations --minutes 60 --out runs/cloned
 
@@ -24,15 +24,16 @@ from torch.nn import functional
 
 from sim import cli
 from sim.commands.train.timed_training import PRINT_EVERY_S, TimedTraining, stride
-from sim.commands.train.training_files import read_columns
+from sim.commands.train.training_files import read_columns, tell_next
 from sim.datasets.demonstrations import Demonstration, list_demonstrations, read_demonstration
 from sim.interface import GOAL_CATEGORIES, Action, ConfigError
+from sim.invocation import command
 from stubborn.baselines.cloned_data import LabelledSteps, Piece, Streams
 from stubborn.baselines.cloned_input import HEIGHT_PX, NO_ACTION, WIDTH_PX, Steps, depth_levels, motions
 from stubborn.baselines.cloned_net import FILES, ClonedNet
 
 HELD_BACK = 10
-"""One house in so many is held back."""
+"""One house in this number is held back."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,9 +47,9 @@ class Args:
     minutes: cli.Positive = 60.0
     """Time of the training, to which the learning rate is fitted."""
     streams: cli.Count = 24
-    """Demonstrations side by side."""
+    """Number of demonstrations in a batch."""
     length: cli.Count = 32
-    """Steps of each stream in a step of the training; gradients do not pass to earlier ones."""
+    """Steps of each demonstration in a step of the training; gradients do not pass to earlier steps."""
     rate: cli.Positive = 1.5e-3
     """Peak learning rate of AdamW."""
     weight_decay: cli.NotNegative = 0.01
@@ -56,7 +57,7 @@ class Args:
     threads: cli.Count = 1
     """Number of threads of PyTorch."""
     val_count: cli.Amount = 150
-    """Most held-back demonstrations of an evaluation; 0: all."""
+    """Largest number of held-back demonstrations in an evaluation; 0: all."""
     seed: cli.Seed = 0
     """Seed of the initial weights and of the order."""
 
@@ -68,6 +69,9 @@ def main(args: Args) -> int:
     train, val = read_all(files)
     Trainer(args, train, val, files).run()
     draw_curve(args.out)
+    weights = args.out / "cloned.safetensors"
+    chosen = ("--agent", "cloned", "--semantics", "gt", "--config", f"agent.weights={weights}")
+    tell_next(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
     return 0
 
 
@@ -92,7 +96,7 @@ def read_all(files: Sequence[Path]) -> tuple[list[LabelledSteps], list[LabelledS
 
 
 def labelled_steps_of(given: Demonstration, file: Path) -> LabelledSteps:
-    """Returns a demonstration as the policy sees it.
+    """Returns a demonstration in the form that the policy reads.
 
     Raises:
         ConfigError: its images have another size.
@@ -181,12 +185,12 @@ class Trainer(TimedTraining):
 def agreement(
     found: np.ndarray, true: np.ndarray, changes: np.ndarray, losses: np.ndarray
 ) -> dict[str, float | int | None]:
-    """Returns how far the most probable actions are those of the demonstrator.
+    """Returns how often the most probable actions are those of the demonstrator.
 
     Args:
         found: (n,) the most probable actions.
         true: (n,) those of the demonstrator.
-        changes: (n,) whether the true one differs from the one before.
+        changes: (n,) whether the true one differs from the previous one.
         losses: (n,) cross entropies.
     """
     right = found == true

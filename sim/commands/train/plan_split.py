@@ -11,7 +11,7 @@ from sim.invocation import command
 from sim.plans.plan import house_of
 
 HELD_BACK = 10
-"""One of so many houses is held back from training, by a hash of its name."""
+"""One house in this number is held back from training, by a hash of its name."""
 
 
 def split_plans(folders: Iterable[Path]) -> tuple[list[Path], list[Path]]:

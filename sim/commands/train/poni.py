@@ -24,7 +24,7 @@ from torch.nn import functional
 
 from sim import cli
 from sim.commands.train.timed_training import PRINT_EVERY_S, TimedTraining, stride
-from sim.commands.train.training_files import read_columns
+from sim.commands.train.training_files import read_columns, tell_next
 from sim.interface import ConfigError
 from sim.invocation import command
 from sim.plans.plan import read_plan
@@ -34,7 +34,7 @@ from sim.twin.potentials import SampleConfig, samples_of
 from stubborn.exploration.poni_net import FILES, MAPS, PoniNet, PoniNetConfig
 
 OBJECT_WEIGHT = 5.0
-"""Weight of the mean loss over the goal categories; that of the area has 1."""
+"""Weight of the mean loss over the goal categories; the loss of the area has weight 1."""
 SMOOTHED_ROWS = 8
 """Rows of `train.csv` of a running mean in the picture."""
 
@@ -50,7 +50,7 @@ class Args:
     samples: cli.OutFolder | None = None
     """Folder of the samples, which runs may share; None: OUT/samples."""
     minutes: cli.Positive = 30.0
-    """Time of the training, to which the learning rate is fitted; the samples' is not counted."""
+    """Time of the training, to which the learning rate is fitted, without the time to make the samples."""
     walks: cli.Count = 6
     """Walks in each plan."""
     maps: cli.Count = 8
@@ -66,9 +66,9 @@ class Args:
     threads: cli.Count = 1
     """Number of threads of PyTorch."""
     val_count: cli.Amount = 900
-    """Most held-back samples of an evaluation; 0: all."""
+    """Largest number of held-back samples in an evaluation; 0: all."""
     seed: cli.Seed = 0
-    """Seed of the initial weights, the order and the turns of the samples; the samples have their own."""
+    """Seed of the initial weights, the order and the rotations of the samples; the samples have a seed of their own."""
 
 
 def main(args: Args) -> int:
@@ -78,11 +78,14 @@ def main(args: Args) -> int:
     files = make_samples(args, config)
     Trainer(args, config, files).run()
     draw_curve(args.out)
+    weights = args.out / "poni.safetensors"
+    chosen = ("--agent", "poni", "--semantics", "gt", "--config", f"agent.explorer.weights={weights}")
+    tell_next(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
     return 0
 
 
 def make_samples(args: Args, config: SampleConfig) -> list[Path]:
-    """Writes the samples of all plans that have none yet, and returns the files of all."""
+    """Writes the missing samples of plans, and returns the files of all samples."""
     plans = [file for folder in args.plans for file in sorted(folder.glob("*.npz"))]
     if not plans:
         raise ConfigError(f"No plan in {', '.join(map(str, args.plans))}: `{command('houses', 'plans')}` writes them.")
@@ -159,12 +162,12 @@ class Trainer(TimedTraining):
         for name, choices in (("area", area), ("objects", objects)):
             row |= {f"{name}_choices": choices.count}
             row |= {f"{name}_{key}": value for key, value in choices.shares().items()}
-        told = (
+        message = (
             f"area {mean[0]:.4f}, objects {mean[1]:.4f}; best frontier chosen: area {row['area_predicted_best']:.3f}, "
             f"objects {row['objects_predicted_best']:.3f} (random {row['objects_random_best']:.3f}, "
             f"nearest {row['objects_nearest_best']:.3f})"
         )
-        return float(mean[0] + OBJECT_WEIGHT * mean[1]), row, told
+        return float(mean[0] + OBJECT_WEIGHT * mean[1]), row, message
 
     def about(self) -> dict[str, Any]:
         """See `TimedTraining.about`."""

@@ -28,6 +28,7 @@ from matplotlib.figure import Figure
 from sim import cli
 from sim.files import write_atomically
 from sim.interface import ConfigError
+from sim.invocation import command
 from sim.plans.plan import read_plan
 from sim.reading import Count, Number
 from sim.twin.semexp import SemExpEnv
@@ -42,12 +43,20 @@ except ImportError as error:
 
 from sim.commands.train.plan_split import HELD_BACK, split_plans
 from sim.commands.train.semexp_policy import SemExpPolicy
-from sim.commands.train.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
+from sim.commands.train.training_files import (
+    append_row,
+    cut_rows,
+    load_state,
+    options_of,
+    require_options,
+    save_state,
+    tell_next,
+)
 
 LAST_EPISODES = 300
-"""A row of the curve is a mean over so many episodes."""
+"""Number of episodes over which a row of the curve is a mean."""
 SMOOTHED = 12
-"""The thick line of a curve is a mean over one of so many parts of the training."""
+"""The thick line of a curve is a running mean over the training divided by this number."""
 PLANS_IN_MEMORY = 256
 MAY_CHANGE = ("out", "minutes", "goals", "beside", "print_s", "save_s")
 """Options in which a continued run may differ from its start."""
@@ -65,7 +74,7 @@ class Args:
     minutes: cli.Positive = 90.0
     """Time of the training; that of earlier runs of the same folder counts."""
     goals: cli.Count = 10_000_000
-    """Most long-term goals of the training, all environments together."""
+    """Largest number of long-term goals of the training, all environments together."""
     seed: cli.Seed = 0
     """Seed of the network, of its exploration and of the episodes."""
     out: cli.OutFolder = Path("runs/semexp")
@@ -108,7 +117,9 @@ def main(args: Args) -> int:
     torch.set_num_threads(1)  # the network is small
     run = Run(args, plans)
     run.train()
-    print(f"wrote {args.out / 'semexp.safetensors'}")
+    weights = args.out / "semexp.safetensors"
+    chosen = ("--agent", "semexp", "--semantics", "gt", "--config", f"agent.explorer.weights={weights}")
+    tell_next(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
     return 0
 
 
@@ -118,11 +129,11 @@ def _require_curve(file: Path) -> None:
         return
     with file.open(newline="", encoding="utf-8", errors="replace") as stream:
         if not set(_DRAWN) <= set(next(csv.reader(stream), [])):
-            raise ConfigError(f"--beside: '{file}' is no curve of this command.")
+            raise ConfigError(f"--beside: '{file}' is not a curve of this command.")
 
 
 class _Progress(msgspec.Struct):
-    """How far a run is, as `state.pt` holds it."""
+    """The progress of a run, as `state.pt` holds it."""
 
     goals: Count
     steps: Count
@@ -248,7 +259,7 @@ class _Watch(BaseCallback):
         return not self.run.is_over
 
     def _on_rollout_start(self) -> None:
-        """Saves now and not at the end of the rollout before, whose goals the network had not been trained on then."""
+        """Saves here: at the end of a rollout, the network has not yet been trained on its goals."""
         now_s = time.perf_counter()
         self.run.trained = self.run.goals, self.run.steps
         if now_s - self._saved_s >= self.run.args.save_s:

@@ -39,7 +39,7 @@ def cut_rows(file: Path, column: str, most: int) -> None:
     A process that is killed may leave an empty file, or a last line without its end.
 
     Args:
-        file: a CSV file of numbers; nothing is done where there is none.
+        file: a CSV file of numbers; nothing is done if it does not exist.
         column: name of a column of whole numbers.
         most: rows with a larger number in it are removed.
 
@@ -52,7 +52,7 @@ def cut_rows(file: Path, column: str, most: int) -> None:
     lines = [line.rstrip("\r") for line in text.split("\n")[:-1]]  # the last part is no whole line
     names = lines[0].split(",") if lines else [column]
     if column not in names:
-        raise ConfigError(f"'{file}' is no curve of this command: it has no column '{column}'. Take another folder.")
+        raise ConfigError(f"'{file}' is not a curve of this command: it has no column '{column}'. Take another folder.")
     number = names.index(column)
     rows = [(line, _numbers(line)) for line in lines[1:]]
     kept = [line for line, values in rows if len(values) == len(names) and values[number] <= most]
@@ -60,7 +60,7 @@ def cut_rows(file: Path, column: str, most: int) -> None:
 
 
 def _numbers(line: str) -> list[float]:
-    """Returns the numbers of a row, NaN for empty fields; nothing where a field is no number."""
+    """Returns the numbers of a row, NaN for empty fields; an empty list if a field is not a number."""
     try:
         return [float(field or "nan") for field in line.split(",")]
     except ValueError:
@@ -165,3 +165,8 @@ def load_state(
     except (KeyError, RuntimeError, ValueError, TypeError, AttributeError) as error:
         raise ConfigError(f"The state '{file}' of the run is of another network: {reason_of(error)}.") from None
     return done
+
+
+def tell_next(weights: Path, *commands: str) -> None:
+    """Prints the path of the trained weights, and the commands that use them."""
+    print(f"weights: {weights}\nnext:", *commands, sep="\n  ", flush=True)

@@ -151,7 +151,7 @@ def wanted(env: ObjectNavEnv, args: Args) -> list[Episode]:
     """
     unknown = sorted(set(args.traps) - set(env.split.houses))
     if unknown:
-        raise ConfigError(f"No trap '{unknown[0]}'. There is: {', '.join(env.split.houses)}.")
+        raise ConfigError(f"No trap '{unknown[0]}'. Available: {', '.join(env.split.houses)}.")
     of_trap: dict[str, list[Episode]] = {}
     for episode in env.split.episodes:
         if not args.traps or episode.house in args.traps:

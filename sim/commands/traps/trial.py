@@ -36,7 +36,7 @@ class Trial:
 
     @property
     def escaped(self) -> bool:
-        """Whether the goal was found: every trap is on the path to it."""
+        """Returns whether the goal was found; every trap is on the path to it."""
         return bool(self.metrics["success"])
 
     @property

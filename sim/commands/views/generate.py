@@ -91,7 +91,7 @@ class Args:
     shard: str = "1/1"
     """i/n, from 1/n to n/n: generate every n-th shard from the i-th on."""
     executor: str = "local"
-    """Where: local processes, or ray (extra `ray`) for a cluster whose machines all see --out."""
+    """Executor of the shards: local processes, or ray (extra `ray`) for a cluster whose machines all see --out."""
     address: str | None = None
     """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine is in."""
     profile: str = "good"
@@ -99,9 +99,9 @@ class Args:
     seed: cli.Seed = 0
     """Seed of houses and poses."""
     views_per_shard: cli.Count | None = None
-    """Number of views in a shard, all of one house; None: 250, or fewer, so that few views are of 20 houses."""
+    """Number of views in a shard, all of one house; None: 250, or fewer, so that few views still show 20 houses."""
     extras: tuple[str, ...] = ()
-    """More of each view: instances (ids, COCO boxes and masks), normals, poses (camera to world)."""
+    """Additional data of each view: instances (ids, COCO boxes and masks), normals, poses (camera to world)."""
     sequence: cli.Count | None = None
     """Views come as sequences of this many along paths of a robot; None: half along paths, half anywhere."""
     aim: str | None = None

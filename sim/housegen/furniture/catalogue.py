@@ -70,7 +70,7 @@ class Catalogue:
                 raise ConfigError(f"Style '{style.name}': no category '{style.category}' in mpcat40.")
             if style.pool not in get_args(Pool):
                 raise ConfigError(
-                    f"Style '{style.name}': no pool '{style.pool}'. There is: {', '.join(get_args(Pool))}."
+                    f"Style '{style.name}': no pool '{style.pool}'. Available: {', '.join(get_args(Pool))}."
                 )
             if fault := fault_of_uses(style.category, style.uses):
                 raise ConfigError(f"Style '{style.name}': {fault}")
@@ -94,7 +94,9 @@ class Catalogue:
             ConfigError: the catalogue has no such category.
         """
         if category not in self._by_category:
-            raise ConfigError(f"No furniture of category '{category}'. There is: {', '.join(sorted(self.categories))}.")
+            raise ConfigError(
+                f"No furniture of category '{category}'. Available: {', '.join(sorted(self.categories))}."
+            )
         shown = (style for style in self._by_category[category] if pool is None or style.shown_in(pool))
         return tuple(style for style in shown if use is None or use in style.uses)
 

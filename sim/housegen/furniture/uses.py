@@ -68,7 +68,7 @@ def fault_of_uses(category: str, uses: tuple[str, ...]) -> str:
     if unknown and not allowed:
         return f"category '{category}' has no uses, but `uses` has '{unknown[0]}'. Leave it empty."
     if unknown:
-        return f"category '{category}' has no use '{unknown[0]}'. There is: {', '.join(allowed)}."
+        return f"category '{category}' has no use '{unknown[0]}'. Available: {', '.join(allowed)}."
     if allowed and not uses and category not in USE_OPTIONAL:
-        return f"`uses` is empty, but rooms ask for a '{category}' by its use. There is: {', '.join(allowed)}."
+        return f"`uses` is empty, but rooms ask for a '{category}' by its use. Available: {', '.join(allowed)}."
     return ""

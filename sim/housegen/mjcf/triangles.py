@@ -44,7 +44,7 @@ def facets(geom: Geom) -> Facets:
         corners, faces = _revolve(_ball(float(size.max())), _segments_for(float(size.max())))
         return corners * size, faces
     raise ValueError(
-        f"No triangles for shape '{geom.shape}'. There is: box, cylinder, capsule, sphere, ellipsoid, mesh."
+        f"No triangles for shape '{geom.shape}'. Available: box, cylinder, capsule, sphere, ellipsoid, mesh."
     )
 
 

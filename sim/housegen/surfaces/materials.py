@@ -245,7 +245,7 @@ def look(material: str, rng: np.random.Generator, pool: Pool) -> Look:
         ConfigError: there is no such material.
     """
     if material not in MATERIALS:
-        raise ConfigError(f"No material '{material}'. There is: {', '.join(sorted(MATERIALS))}.")
+        raise ConfigError(f"No material '{material}'. Available: {', '.join(sorted(MATERIALS))}.")
     return _draw(MATERIALS[material], rng, pool)
 
 
@@ -278,7 +278,7 @@ def texture_file(name: str) -> str:
         ConfigError: there is no such texture.
     """
     if name not in TEXTURES:
-        raise ConfigError(f"No texture '{name}'. There is: {', '.join(sorted(TEXTURES))}.")
+        raise ConfigError(f"No texture '{name}'. Available: {', '.join(sorted(TEXTURES))}.")
     return f"{name}.png"
 
 

@@ -246,7 +246,7 @@ def test_a_run_with_noisy_semantics_is_reproducible_and_records_its_settings(hou
 
 
 def test_unknown_semantics_are_refused_with_the_names_that_exist(house: Path, tmp_path: Path):
-    with pytest.raises(ConfigError, match=r"Unknown --semantics 'dreams'\. There is: gt, noisy"):
+    with pytest.raises(ConfigError, match=r"Unknown --semantics 'dreams'\. Available: gt, noisy"):
         run.main(RunOptions(house=house, semantics="dreams", out=tmp_path))
 
 

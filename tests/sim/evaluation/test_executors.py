@@ -117,7 +117,7 @@ def test_a_shard_that_does_not_exist_is_refused(text: str) -> None:
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        ({"name": "cloud"}, "Unknown --executor 'cloud'. There is: local, ray."),
+        ({"name": "cloud"}, "Unknown --executor 'cloud'. Available: local, ray."),
         ({"name": "local", "address": "head:6379"}, "--address 'head:6379' needs --executor ray."),
         ({"name": "local", "workers": 0}, "--workers must be at least 1, got 0."),
     ],

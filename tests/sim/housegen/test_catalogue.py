@@ -67,9 +67,9 @@ def test_two_styles_of_one_name_in_a_category_are_refused():
         (
             "chair",
             ("dining", "diningg"),
-            "'block': category 'chair' has no use 'diningg'. There is: dining, office, arm.",
+            "'block': category 'chair' has no use 'diningg'. Available: dining, office, arm.",
         ),
-        ("chair", (), "rooms ask for a 'chair' by its use. There is: dining, office, arm."),
+        ("chair", (), "rooms ask for a 'chair' by its use. Available: dining, office, arm."),
         ("chair", "dining", r"must be a tuple of strings, such as \('dining',\)"),
         ("bed", ("double",), "category 'bed' has no uses, but `uses` has 'double'"),
     ],

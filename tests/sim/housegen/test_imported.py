@@ -261,7 +261,7 @@ def test_models_with_uses_by_which_no_room_asks_are_left_out_with_those_that_exi
     table.write_text(table.read_text().replace("chair0.obj,chair,dining", "chair0.obj,chair,diningg"))
     found = list(read_source(tmp_path))
     assert [each[1] for each in found if not isinstance(each, Entry)] == [
-        "category 'chair' has no use 'diningg'. There is: dining, office, arm"
+        "category 'chair' has no use 'diningg'. Available: dining, office, arm"
     ]
     assert len(entries_of(tmp_path)) == 2
 

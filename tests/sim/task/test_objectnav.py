@@ -157,7 +157,7 @@ def test_a_goal_that_was_pushed_counts_where_it_was_pushed_to():
 @pytest.mark.parametrize(
     ("goal", "message"),
     [
-        ("spaceship", "Unknown goal 'spaceship'. There is: chair, table"),
+        ("spaceship", "Unknown goal 'spaceship'. Available: chair, table"),
         ("sofa", "House 'room' has no 'sofa'. It has: bed."),
     ],
 )

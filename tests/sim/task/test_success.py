@@ -290,5 +290,5 @@ def test_a_place_has_the_category_of_the_nearest_object(place, goal, category):
     house = with_box(two_storeys(), "table_00", centre_m=(1.2, 0, 0.4), half_m=(0.5, 0.3, 0.4))
     house = with_box(house, "plant_00", centre_m=(1.3, 0, 0.9), half_m=(0.1, 0.1, 0.1))
     house = with_box(house, "lighting_00", centre_m=(0, 0, 4.0), half_m=(0.1, 0.1, 0.1))
-    truth = GroundTruth(World(house))
-    assert truth.category_at(*place, 0.0, goal=goal, within_m=0.3) == category
+    x_m, y_m = place
+    assert GroundTruth(World(house)).category_at(x_m, y_m, 0.0, goal=goal, within_m=0.3) == category

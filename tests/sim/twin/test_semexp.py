@@ -16,7 +16,7 @@ from sim.interface import GOAL_CATEGORIES
 from sim.plans.export import export_plans
 from sim.plans.plan import read_plan, write_plan
 from sim.plans.sight import PlanCamera
-from sim.twin.agent import TwinAgent, play, twin_config
+from sim.twin.agent import TwinAgent, run_episode, twin_config
 from sim.twin.env import TwinConfig, TwinEnv
 from sim.twin.semexp import FAST, RewardConfig, SemExpEnv
 from stubborn.agent import AgentConfig
@@ -82,7 +82,7 @@ def test_the_policy_gets_the_same_input_in_training_and_in_episodes(plans: Path)
     agent = TwinAgent(twin_config(AgentConfig()))
     agent.explorer = explorer
     start = Pose(-3.0, 1.0, 3.0)  # looks away from the bed
-    play(agent, PlanCamera(read_plan(plans / "flat.npz")), "bed", start, seed=0, until_sight=True)
+    run_episode(agent, PlanCamera(read_plan(plans / "flat.npz")), "bed", start, seed=0, until_sight=True)
     env = SemExpEnv(plans, exact)
     seen, _ = env.reset(seed=0, options={**START, "start": start})
     for number, expected in enumerate(given[:6], 1):

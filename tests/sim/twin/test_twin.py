@@ -19,7 +19,7 @@ from sim.plans.episode import PlanEpisode
 from sim.plans.export import export_plans
 from sim.plans.plan import read_plan, write_plan
 from sim.plans.sight import PlanCamera, SightConfig
-from sim.twin.agent import TwinAgent, play, twin_config
+from sim.twin.agent import TwinAgent, run_episode, twin_config
 from sim.twin.env import LAYERS, TwinConfig, TwinEnv
 from stubborn.agent import AgentConfig
 from stubborn.agents import SPECS
@@ -98,23 +98,23 @@ def test_the_same_seed_gives_the_same_episode_and_no_state_survives_a_reset(plan
 def test_the_agent_finds_the_bed_in_the_plan(plans):
     agent = TwinAgent(twin_config(SPECS["stubborn"].config))
     camera = PlanCamera(read_plan(plans / "flat.npz"))
-    found = play(agent, camera, "bed", START["start"], seed=0)
+    found = run_episode(agent, camera, "bed", START["start"], seed=0)
     assert found["success"] == 1.0
     assert found["num_steps"] < 120
-    sight = play(agent, camera, "bed", START["start"], seed=0, until_sight=True)
+    sight = run_episode(agent, camera, "bed", START["start"], seed=0, until_sight=True)
     assert sight["num_steps"] == sight["first_seen_step"] == found["first_seen_step"]
 
 
 def test_a_goal_that_the_last_frame_shows_first_ends_the_episode_at_sight(plans):
     agent = TwinAgent(twin_config(SPECS["stubborn"].config))
     camera = PlanCamera(read_plan(plans / "flat.npz"))
-    first = play(agent, camera, "bed", START["start"], seed=0, until_sight=True)
+    first = run_episode(agent, camera, "bed", START["start"], seed=0, until_sight=True)
     assert (first["end_reason"], first["gt_explored"]) == ("sight", True)
     seen_step = first["first_seen_step"]
     for most, end, seen in ((seen_step, "sight", True), (seen_step - 1, "max_steps", False)):
-        found = play(agent, camera, "bed", START["start"], seed=0, until_sight=True, max_steps=most)
+        found = run_episode(agent, camera, "bed", START["start"], seed=0, until_sight=True, max_steps=most)
         assert (found["end_reason"], found["gt_explored"], found["num_steps"]) == (end, seen, most)
-    whole = play(agent, camera, "bed", START["start"], seed=0, max_steps=seen_step)
+    whole = run_episode(agent, camera, "bed", START["start"], seed=0, max_steps=seen_step)
     assert (whole["end_reason"], whole["first_seen_step"]) == ("max_steps", seen_step)
 
 

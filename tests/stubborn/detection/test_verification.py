@@ -151,11 +151,11 @@ def test_a_verifier_is_judged_by_category(tmp_path: Path):
 
 
 def test_the_method_none_accepts_all_and_unknown_methods_are_refused(tmp_path: Path):
-    assert isinstance(verifier_for("noisy", IMPERFECT, method="none"), AcceptAll)
+    assert isinstance(verifier_for(IMPERFECT, method="none"), AcceptAll)
     with pytest.raises(ConfigError, match="Unknown verification 'hunch'"):
-        verifier_for("noisy", IMPERFECT, method="hunch")
+        verifier_for(IMPERFECT, method="hunch")
     with pytest.raises(ConfigError, match="cannot be read"):
-        verifier_for("noisy", IMPERFECT, tmp_path / "none.json")
+        verifier_for(IMPERFECT, tmp_path / "none.json")
     with pytest.raises(ConfigError, match="a coefficient for each of its inputs"):
         Logistic.from_dict({"inputs": ["maximum", "smell"], "coefficients": [1.0, 2.0], "intercept": 0.0})
 
@@ -223,12 +223,12 @@ def test_candidates_of_failed_episodes_are_neither_fitted_nor_judged(tmp_path: P
 
 def test_too_few_candidates_are_refused_with_the_numbers():
     features, truth = examples(30, 0.3, seed=5)
-    with pytest.raises(ConfigError, match=rf"{truth.sum()} true and {(~truth).sum()} false candidates; 20 of either"):
+    with pytest.raises(ConfigError, match=rf"{truth.sum()} true and {(~truth).sum()} false candidates; 20 of each"):
         fit(log_of({"bed": (features, truth)}), 20)
 
 
 def test_segmentation_that_needs_no_verification_gets_a_verifier_that_accepts_all():
-    verifier = verifier_for("gt", TRUE)
+    verifier = verifier_for(TRUE)
     assert isinstance(verifier, AcceptAll)
     assert not verifier.may_refuse
     assert verifier.accepts("chair", Features(0, 0.0, 0.0, 1.0))
@@ -236,7 +236,7 @@ def test_segmentation_that_needs_no_verification_gets_a_verifier_that_accepts_al
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_shipped_parameters_judge_clear_cases_for_every_category(method: str):
-    verifier = verifier_for("noisy", IMPERFECT, method=method)
+    verifier = verifier_for(SegmenterSpec(kind="noisy"), method=method)
     assert isinstance(verifier, FittedVerifier)
     for goal in GOAL_CATEGORIES:
         seldom = verifier.probability(goal, Features(20, 3.0, 0.62, 0.88))
@@ -244,9 +244,17 @@ def test_the_shipped_parameters_judge_clear_cases_for_every_category(method: str
         assert seldom < 0.5 < always, goal
 
 
-def test_an_unknown_kind_or_goal_and_a_broken_file_are_refused(tmp_path: Path):
-    with pytest.raises(ConfigError, match=r"No verifier for semantics 'dreams'\. There is: noisy, rednet"):
-        verifier_for("dreams", IMPERFECT)
+def test_a_kind_without_parameters_gets_those_of_the_shipped_network():
+    ours, other = (verifier_for(SegmenterSpec(kind=kind)) for kind in ("rednet", "dreams"))
+    assert isinstance(ours, FittedVerifier)
+    assert isinstance(other, FittedVerifier)
+    features = Features(12, 9.0, 0.9, 0.2)
+    assert ours.probability("chair", features) == other.probability("chair", features)
+    with pytest.raises(ConfigError, match="kind is a name of letters"):
+        SegmenterSpec(kind="../rednet")
+
+
+def test_an_unknown_goal_and_a_broken_file_are_refused(tmp_path: Path):
     with pytest.raises(ConfigError, match="Unknown goal 'unicorn'"):
         FittedVerifier({}, NaiveBayes(np.zeros(2), np.zeros((2, 4)), np.ones((2, 4)))).probability(
             "unicorn", Features(1, 1.0, 1.0, 0.0)
