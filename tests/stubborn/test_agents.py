@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from examples import my_agent
+from sim.bridges.habitat.agents import HabitatAgent
+from sim.bridges.habitat.conversions import Conversion
 from sim.interface import (
     MPCAT40_ID,
     Action,
@@ -34,6 +36,7 @@ from stubborn.mapping.object_layers import AllFrames, LatestFrame
 from stubborn.planning.untrap import UntrapConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, boxes_from_plan, run_episode
+from tests.helpers.habitat_agents import Wanderer
 
 PLAN = """
 ####################
@@ -61,6 +64,8 @@ def build(name: str, **options: Any) -> Agent:
             verifier=AcceptAll(),
             config=None,
         )
+    if name == "habitat":
+        return HabitatAgent(Wanderer(), Conversion(camera=SMALL_CAMERA))
     return agents.make(name, camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter(), **options)
 
 
@@ -68,7 +73,7 @@ def world() -> GridWorld:
     return GridWorld(BOXES, (0.75, 0.75, 0.7), camera=SMALL_CAMERA)
 
 
-every_agent = pytest.mark.parametrize("name", [*agents.NAMES, "example"])
+every_agent = pytest.mark.parametrize("name", [*agents.NAMES, "example", "habitat"])
 
 
 @every_agent

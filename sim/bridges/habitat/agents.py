@@ -137,9 +137,7 @@ def _wrapped(name: str, spec: AgentSpec) -> AgentSpec:
 
 def _conversion(camera: CameraModel, config: Any) -> Conversion:
     """Returns the conversion that an agent's configuration asks for."""
-    return Conversion(
-        camera=camera, **{field: getattr(config, field, default) for field, _, default in BRIDGE_FIELDS}
-    )
+    return Conversion(camera=camera, **{field: getattr(config, field, default) for field, _, default in BRIDGE_FIELDS})
 
 
 def _goals(config: Any) -> tuple[str, ...]:
@@ -246,4 +244,3 @@ def _called(value: Any) -> Any:
     module, function = found.groups()
     with own_command_line():
         return getattr(importlib.import_module(module), function)()
-

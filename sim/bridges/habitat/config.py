@@ -149,6 +149,7 @@ def get_config(
             _LOG.warning("There is no configuration file '%s': the task of this project is used.", path)
     for path, value in _assignments(list(overrides or ())):
         _merge(config, _nested(path, value))
+    _remove_other_actions(config)
     return config
 
 
@@ -169,6 +170,26 @@ def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
                     f"The configuration has {first}={found[name]!r} and {path}={value!r}; all images have one camera."
                 )
     return found
+
+
+def _remove_other_actions(config: Config) -> None:
+    """Removes actions that the robot does not have, such as LOOK_UP, from the lists that agents choose from."""
+    known = {action.name for action in Action}
+    removed = set[str]()
+    for tree, name in ((config.get("TASK"), "POSSIBLE_ACTIONS"), (_at(config, "habitat.task"), "actions")):
+        listed = tree.get(name) if isinstance(tree, Config) else None
+        if not isinstance(tree, Config) or not isinstance(listed, (list, Config)):
+            continue
+        others = {str(each) for each in listed} - known - {each.lower() for each in known}
+        kept = {each for each in map(str, listed) if each not in others}
+        tree[name] = (
+            Config({key: value for key, value in listed.items() if key in kept})
+            if isinstance(listed, Config)
+            else [each for each in listed if str(each) in kept]
+        )
+        removed |= others
+    if removed:
+        _LOG.warning("This robot has no action %s: removed from the configuration.", ", ".join(sorted(removed)))
 
 
 def _upper(tree: Mapping[str, Any]) -> dict[str, Any]:

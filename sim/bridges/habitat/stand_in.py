@@ -107,8 +107,10 @@ class _Finder(MetaPathFinder, Loader):
 
         vars(module).update(MODULES[module.__name__], __getattr__=missing)
         if module.__name__ == "habitat":
+            for name in MODULES:
+                importlib.import_module(name)
             for name, names in MODULES.items():
-                vars(importlib.import_module(name)).update(names)  # a function may have the name of a module
+                vars(sys.modules[name]).update(names)  # a function may have the name of a module
 
 
 _FINDER = _Finder()
