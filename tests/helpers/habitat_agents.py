@@ -30,7 +30,7 @@ class Wanderer(habitat.Agent):
             return {"action": HabitatSimActions.stop}
         depth = observations["depth"]
         height, width, _ = depth.shape
-        if depth[height // 2, width // 3 : -width // 3].min() < self.keep or np.random.uniform() < 0.1:
+        if depth[height // 2, width // 3 : -width // 3].min() < self.keep or np.random.rand() < 0.1:  # noqa: NPY002
             return {"action": random.choice(["TURN_LEFT", "TURN_RIGHT"])}
         return {"action": np.int64(HabitatSimActions.MOVE_FORWARD)}
 

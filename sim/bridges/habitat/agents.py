@@ -169,7 +169,7 @@ def _config_of(found: Callable[..., Any], arguments: list[inspect.Parameter]) ->
         if argument.kind is inspect.Parameter.VAR_KEYWORD:
             fields.append((argument.name, dict[str, Json] | None, None))
             continue
-        kind = hints.get(argument.name)
+        kind: Any = hints.get(argument.name)
         shown = _shown(argument)
         plain = kind in _PLAIN and isinstance(shown, (kind, type(None)))
         fields.append((argument.name, kind | None if plain else Json, shown))

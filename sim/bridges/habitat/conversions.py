@@ -121,9 +121,9 @@ class Conversion:
         found["objectgoal"] = np.array([number], np.int64)
         return found
 
-    def space(self, space: spaces.Dict) -> spaces.Dict:
-        """Returns the space of the observations in Habitat's form, for that of this project's observations."""
-        found = dict(space.spaces)
+    def space(self, own: Mapping[str, spaces.Space[Any]]) -> spaces.Dict:
+        """Returns the space of the observations in Habitat's form, for the spaces of this project's sensors."""
+        found = dict(own)
         height_px, width_px = self.camera.height_px, self.camera.width_px
         found["objectgoal"] = spaces.Box(0, len(self.goals) - 1, (1,), np.int64)
         if "depth" in found:
@@ -156,10 +156,7 @@ def to_action(given: Any) -> Action:
             inner = inner["action"]
     if isinstance(inner, (list, tuple)) and len(inner) == 1:
         inner = inner[0]
-    if isinstance(inner, str):
-        number = ACTION_IDS.get(inner.lower())
-    else:
-        number = _whole_number(inner)
+    number = ACTION_IDS.get(inner.lower()) if isinstance(inner, str) else _whole_number(inner)
     if number in (ACTION_IDS["look_up"], ACTION_IDS["look_down"]):
         raise AgentError(f"act() returned {reprlib.repr(given)}: the camera of this robot does not tilt.")
     if number is None or number not in tuple(Action):

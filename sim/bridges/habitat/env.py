@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -85,7 +84,7 @@ class Env:
         self.sim = Simulator(self._env)
         self.config = config if config is not None else self._own_config()
         self.action_space = spaces.Discrete(len(Action))
-        self.observation_space = self._conversion.space(self._env.observation_space)
+        self.observation_space = self._conversion.space({each.name: each.space(camera) for each in self._env.sensors})
 
     @property
     def episodes(self) -> list[ObjectGoalNavEpisode]:
@@ -116,7 +115,7 @@ class Env:
         self._over = False
         return self._conversion.observations(observation)
 
-    def step(self, action: Any, **_: Any) -> Observations:
+    def step(self, action: Any, **others: Any) -> Observations:
         """Carries out an action (a number, a name, or a dict with the key `action`) and returns the observations.
 
         Raises:

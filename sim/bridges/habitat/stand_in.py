@@ -22,6 +22,7 @@ from sim.bridges import habitat as ours
 NOTE = "Habitat is not installed: a stand-in of this project provides the names of it that are imported."
 """The sentence with which a run announces the stand-in."""
 _ADVICE = "is not part of the stand-in for Habitat, which is not installed here (docs/habitat.md)"
+_LOG = logging.getLogger("habitat")
 _CONFIG = {"get_config": ours.get_config, "read_write": ours.read_write, "Config": ours.Config}
 MODULES: Mapping[str, Mapping[str, Any]] = {
     "habitat": {
@@ -32,7 +33,7 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
         "Env": ours.Env,
         "get_config": ours.get_config,
         "read_write": ours.read_write,
-        "logger": logging.getLogger("habitat"),
+        "logger": _LOG,
     },
     "habitat.config": _CONFIG,
     "habitat.config.default": _CONFIG,
@@ -42,7 +43,7 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
     "habitat.core.benchmark": {"Benchmark": ours.Benchmark},
     "habitat.core.challenge": {"Challenge": ours.Challenge},
     "habitat.core.env": {"Env": ours.Env},
-    "habitat.core.logging": {"logger": logging.getLogger("habitat")},
+    "habitat.core.logging": {"logger": _LOG},
     "habitat.core.simulator": {"Observations": ours.Observations},
     "habitat.sims": {},
     "habitat.sims.habitat_simulator": {},
@@ -60,7 +61,8 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
 def install() -> bool:
     """Provides the stand-in in this process if Habitat is not installed; returns whether it does."""
     if not installed() and not _is_there():
-        logging.getLogger("habitat").setLevel(logging.INFO)
+        _LOG.addHandler(logging.StreamHandler())  # Habitat's logger prints
+        _LOG.setLevel(logging.INFO)
         sys.meta_path.insert(0, _FINDER)  # first: a folder of this name is a namespace package to the other finders
         importlib.import_module("habitat")
     return installed()
@@ -75,6 +77,8 @@ def remove() -> None:
     """Takes the stand-in out of this process."""
     if installed():
         sys.meta_path.remove(_FINDER)
+        _LOG.handlers.clear()
+        _LOG.setLevel(logging.NOTSET)
         for name in MODULES:
             sys.modules.pop(name, None)
 

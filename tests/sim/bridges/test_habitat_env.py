@@ -14,6 +14,9 @@ from sim.bridges.habitat import Benchmark, Challenge, Config, Env, get_config, s
 from sim.bridges.habitat.config import settings_of
 from sim.bridges.habitat.env import default_options
 from sim.commands.main import entry as stubborn
+from sim.composition.environments import episodes_of
+from sim.composition.options import RunOptions
+from sim.composition.setup import resolve
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.habitat import to_agent_state
 from sim.episodes.splits import Episode, write_split
@@ -26,6 +29,10 @@ from tests.helpers.runners import Script
 from tests.helpers.worlds import sofa_room, with_box
 
 SMALL = {"width_px": 64, "height_px": 48}
+BOMB = "a: &a [1, 1, 1, 1, 1, 1, 1, 1, 1]\n" + "".join(
+    f"{now}: &{now} [{', '.join([f'*{before}'] * 9)}]\n" for before, now in ("ab", "bc", "cd", "de")
+)
+"""YAML whose aliases stand for many values."""
 SCRIPT = """
 import argparse
 import habitat
@@ -53,6 +60,7 @@ observations = env.reset()
 agent.reset()
 while not env.episode_over:
     observations = env.step(agent.act(observations))
+habitat.logger.info("ends")
 print(env.current_episode.object_category, observations["rgb"].shape, env.get_metrics()["num_steps"])
 """
 
@@ -125,6 +133,18 @@ def test_episodes_have_habitats_fields_and_come_in_the_order_of_the_split(split:
         Env(split=split, episodes=4)
 
 
+def test_a_run_of_an_agent_with_six_categories_has_only_their_episodes(split: Path) -> None:
+    def planned(*config: str, only: tuple[str, ...] = ()) -> list[str]:
+        agent = f"habitat:{Wanderer.__module__}:Wanderer"
+        options = RunOptions(agent=agent, split=str(split), episodes=2, only=only, config=config)
+        return [episode.episode_id for episode in episodes_of(resolve(options))[0]]
+
+    assert planned() == ["mine_0", "mine_1"]
+    assert planned("agent.categories=hm3d") == ["mine_0", "mine_2"]
+    with pytest.raises(ConfigError, match="no such episode"):
+        planned("agent.categories=hm3d", only=("mine_1",))
+
+
 def test_observations_lie_in_the_space_and_the_episodes_repeat(env: Env) -> None:
     first = [env.reset(), env.current_episode.episode_id]
     assert env.observation_space.contains(dict(first[0]))
@@ -174,7 +194,7 @@ def test_a_configuration_file_of_either_layout_sets_split_steps_and_camera(tmp_p
     copy = config.clone()
     copy.habitat.dataset.split = "val"
     assert config.habitat.dataset.split == "test"
-    with pytest.raises(AttributeError, match="has no 'TASKS' here. It has: ENVIRONMENT, SIMULATOR, TASK"):
+    with pytest.raises(AttributeError, match=r"has no 'TASKS' here\. It has: ENVIRONMENT, SIMULATOR, TASK"):
         _ = config.TASKS
 
 
@@ -183,7 +203,7 @@ def test_a_configuration_file_of_either_layout_sets_split_steps_and_camera(tmp_p
     [
         ("- 1\n", "must be a mapping"),
         ("a: [", "is not valid YAML"),
-        ("a: &a [1,1,1,1,1,1,1,1,1]\n" + "".join(f"{b}: &{b} [{','.join(['*' + a] * 9)}]\n" for a, b in ("ab", "bc", "cd", "de")), "more than"),
+        (BOMB, "more than"),
         ("!!python/object/apply:os.system ['true']", "is not valid YAML"),
     ],
 )  # fmt: skip
@@ -219,6 +239,7 @@ def test_a_script_runs_with_its_arguments(house: Path, tmp_path: Path, capsys: p
     printed = capsys.readouterr()
     assert printed.out == "sofa (480, 64, 3) 3\n"
     assert stand_in.NOTE in printed.err
+    assert printed.err.endswith("ends\n")
 
 
 @pytest.mark.parametrize(
