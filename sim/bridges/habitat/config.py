@@ -253,7 +253,7 @@ def _read_yaml(file: Path) -> Mapping[str, Any]:
     try:
         import yaml
     except ImportError:
-        raise ConfigError(f"Configuration '{file}': reading YAML needs the package pyyaml.") from None
+        raise ConfigError(f"Configuration '{file}': reading YAML needs the package pyyaml (extra `habitat`).") from None
     content = read_bytes(file, what="Configuration", most=_MOST_BYTES)
     try:
         tree = yaml.safe_load(content)
