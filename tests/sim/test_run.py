@@ -138,7 +138,7 @@ def test_the_shipped_network_is_used_unless_another_segmentation_is_requested(
     from sim.run import entry
 
     assert entry(["--goal", "bed", "--episodes", "1", "--out", str(tmp_path)]) == 0
-    assert "stubborn with rednet segmentation" in capsys.readouterr().out
+    assert "stubborn with segmentation by rednet" in capsys.readouterr().out
     (line,) = lines_of(tmp_path)
     assert (line["agent"], line["semantics"]) == ("stubborn", "rednet")
     assert "weights" in json.loads((tmp_path / "config.json").read_text())["files_sha256"]
