@@ -73,10 +73,17 @@ class AgentProcess:
     def __init__(self, command: Sequence[str]) -> None:
         self._control, theirs = socket.socketpair()
         words = [sys.executable, "-I", "-S", process_guard.__file__, str(theirs.fileno()), *command]
-        pipes: dict[str, Any] = {name: subprocess.PIPE for name in ("stdin", "stdout", "stderr")}
-        pipes |= {"bufsize": 0, "start_new_session": True, "pass_fds": (theirs.fileno(),)}
+        pipe = subprocess.PIPE
         try:
-            self._guard: subprocess.Popen[bytes] = subprocess.Popen(words, **pipes)
+            self._guard = subprocess.Popen(
+                words,
+                bufsize=0,
+                stdin=pipe,
+                stdout=pipe,
+                stderr=pipe,
+                pass_fds=(theirs.fileno(),),
+                start_new_session=True,
+            )
         except OSError as error:
             self._control.close()
             raise AgentError(f"no process can be started: {error.strerror}") from None

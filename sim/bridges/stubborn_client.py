@@ -93,9 +93,8 @@ def sizes_of(prefix):
     if version != VERSION:
         raise ProtocolError(f"version {version} of the protocol, not {VERSION}: copy stubborn_client.py anew")
     if header_bytes > MOST_HEADER_BYTES or array_bytes > MOST_ARRAY_BYTES:
-        raise ProtocolError(
-            f"a message of {header_bytes} + {array_bytes} bytes is too large, at most {MOST_HEADER_BYTES} + {MOST_ARRAY_BYTES}"
-        )
+        most = f"{MOST_HEADER_BYTES} + {MOST_ARRAY_BYTES}"
+        raise ProtocolError(f"a message of {header_bytes} + {array_bytes} bytes is too large, at most {most}")
     return header_bytes, array_bytes
 
 
