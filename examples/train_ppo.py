@@ -5,11 +5,13 @@ python examples/train_ppo.py --minutes 30 --envs 2 --out runs/ppo
 The agent sees the direction of the goal, the depth in sixteen directions and whether it bumped into something; its
 reward is `sim.gym.ProgressReward`. Every 1,024 steps a row of `progress.csv` is written and printed: success and return
 of the last 100 episodes, and steps per second. At the end `curve.png` shows them, and `policy.zip` is tried in new
-episodes, without exploration.
+episodes, without exploration. The last line is the command that runs and films the policy.
 """
 
 import csv
 import io
+import json
+import shlex
 import sys
 import time
 from collections.abc import Callable
@@ -20,13 +22,13 @@ from typing import Any, cast
 import gymnasium
 import numpy as np
 import torch
-from gymnasium import spaces
 from gymnasium.wrappers import FilterObservation, FlattenObservation
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import sim.gym
-from sim import Action, CameraModel, ConfigError, Pose, SensorContext, cli
+from examples.ppo_agent import CAMERA, GOAL, SENSORS
+from sim import Action, ConfigError, Pose, cli
 from sim.files import write_atomically
 
 try:
@@ -38,9 +40,6 @@ except ImportError as error:
     raise SystemExit(f"error: {error}. Install it: pip install --constraint constraints.txt -e '.[train]'") from None
 
 HOUSE = Path(__file__).with_name("my_house.xml")
-GOAL, GOAL_XY_M = "sofa", (5.4, 2.5)
-CAMERA = CameraModel(width_px=64, height_px=48, min_depth_m=0.0)
-RAYS = 16
 STEPS_PER_UPDATE = 1024
 
 
@@ -64,60 +63,13 @@ class Args:
     """Folder of the curve and the policy."""
 
 
-class GoalVector:
-    """Distance to the goal in units of 5 m, and the sine and cosine of its direction, from the robot."""
-
-    name, images, noise = "goal_vector", (), None
-
-    def space(self, camera: CameraModel) -> spaces.Box:
-        """Returns the space of float32 vectors (3,)."""
-        return spaces.Box(-10.0, 10.0, (3,), np.float32)
-
-    def read(self, context: SensorContext) -> NDArray:
-        """Returns the vector to the middle of the sofa."""
-        x_m, y_m = GOAL_XY_M[0] - context.pose.x_m, GOAL_XY_M[1] - context.pose.y_m
-        direction_rad = np.arctan2(y_m, x_m) - context.pose.yaw_rad
-        return np.array([np.hypot(x_m, y_m) / 5.0, np.sin(direction_rad), np.cos(direction_rad)], np.float32)
-
-
-class Scan:
-    """Smallest depth in each of some columns of the image's middle rows, in units of its largest value."""
-
-    name, images, noise = "scan", ("depth",), None
-
-    def space(self, camera: CameraModel) -> spaces.Box:
-        """Returns the space of float32 scans (RAYS,)."""
-        return spaces.Box(0.0, 1.0, (RAYS,), np.float32)
-
-    def read(self, context: SensorContext) -> NDArray:
-        """Returns the scan from left to right."""
-        depth_m = context.images["depth"]
-        middle = depth_m[len(depth_m) // 4 : 3 * len(depth_m) // 4]
-        return np.stack([part.min() for part in np.array_split(middle, RAYS, axis=1)]) / np.float32(CAMERA.max_depth_m)
-
-
-class Bumper:
-    """1 after an action that a contact stopped, else 0."""
-
-    name, images, noise = "bumper", (), None
-
-    def space(self, camera: CameraModel) -> spaces.Box:
-        """Returns the space of one float32."""
-        return spaces.Box(0.0, 1.0, (1,), np.float32)
-
-    def read(self, context: SensorContext) -> NDArray:
-        """Returns the reading."""
-        return np.array([context.motion is not None and context.motion.collided], np.float32)
-
-
 def make_env(max_steps: int, start: Pose | None = None) -> gymnasium.Env[NDArray[np.float32], Any]:
     """Returns the room with a flat observation (20,) and the dense reward; starts are random unless one is given."""
-    sensors = (GoalVector(), Scan(), Bumper())
     env = gymnasium.make(
-        sim.gym.ENV_ID, house=HOUSE, goal=GOAL, sensors=sensors, camera=CAMERA, max_steps=max_steps, start=start
+        sim.gym.ENV_ID, house=HOUSE, goal=GOAL, sensors=SENSORS, camera=CAMERA, max_steps=max_steps, start=start
     )
     env = sim.gym.ProgressReward(env, per_step=0.01, per_collision=0.05)
-    return FlattenObservation(FilterObservation(env, [sensor.name for sensor in sensors]))
+    return FlattenObservation(FilterObservation(env, [sensor.name for sensor in SENSORS]))
 
 
 def make_vec(args: Args) -> VecEnv:
@@ -222,6 +174,17 @@ def main(args: Args) -> int:
     if args.trials:
         print(f"trying the policy in {args.trials} new episodes", flush=True)
         print(f"success without exploration: {success_of(policy, args.trials, args):.2f} of {args.trials} new episodes")
+    settings = args.out / "run.toml"
+    write_atomically(
+        settings,
+        f"agent.policy = {json.dumps(str(args.out / 'policy.zip'))}\n"
+        f"camera.min_depth_m = {CAMERA.min_depth_m}\ntask.max_steps = {args.max_steps}\n",
+    )
+    print(f"policy: {args.out / 'policy.zip'}")
+    print(
+        f"stubborn run --agent examples.ppo_agent:AGENT --config-file {shlex.quote(str(settings))} "
+        f"--house examples/my_house.xml --goal {GOAL} --video"
+    )
     return 0
 
 

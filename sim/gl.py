@@ -7,12 +7,24 @@ never `import mujoco`.
 from __future__ import annotations
 
 import ctypes
+import importlib
 import os
+import sys
+from typing import Any
 
 from sim.errors import RenderError
 
 INSTALL_HINT = "apt-get install -y libegl1 libegl-mesa0 libgl1-mesa-dri"
 """Command that installs offscreen rendering on Debian and Ubuntu."""
+
+
+_REMEDY = f"Unset MUJOCO_GL and PYOPENGL_PLATFORM, or install OpenGL: {INSTALL_HINT}"
+_LIBRARIES = {"egl": ("libEGL.so.1",), "osmesa": ("libOSMesa.so.8", "libOSMesa.so.6")}
+"""Libraries of a backend, of which one must be installed."""
+
+
+def _is_installed(backend: str) -> bool:
+    return any(_loads(library) for library in _LIBRARIES[backend])
 
 
 def _loads(library: str) -> bool:
@@ -23,22 +35,54 @@ def _loads(library: str) -> bool:
     return True
 
 
-def choose_backend() -> str:
-    """Returns the OpenGL backend: the user's `MUJOCO_GL` if set, else `egl`, else `osmesa`.
+_DEFAULT = ("", "enable", "enabled", "on", "true", "1")
+"""Values of `MUJOCO_GL` that leave the choice to MuJoCo, and here to this module."""
+_BACKENDS = {
+    "linux": {"egl": "egl", "osmesa": "osmesa", "glfw": "glfw", "glx": "glfw"},
+    "darwin": {"cgl": "cgl", "glfw": "glfw"},
+    "win32": {"wgl": "glfw", "glfw": "glfw"},
+}
+"""The backends of each system, and the package of `mujoco` that makes their contexts."""
 
-    Raises:
-        RenderError: neither library is installed.
+
+def choose_backend() -> str:
+    """Returns the OpenGL backend: the user's `MUJOCO_GL` if set, else one that is installed.
+
+    On Linux that is `egl`, else `osmesa`; on macOS `cgl`. `make_context` refuses a name that does not exist and a
+    library that is missing, so that commands without pictures run on every machine.
     """
     chosen = os.environ.get("MUJOCO_GL", "").strip().lower()
-    if chosen:
+    if chosen not in _DEFAULT:
         return chosen
-    if _loads("libEGL.so.1"):
-        return "egl"
-    if any(_loads(f"libOSMesa.so.{version}") for version in (8, 6)):
-        return "osmesa"
-    raise RenderError(
-        f"No OpenGL for offscreen rendering: neither libEGL nor libOSMesa is installed. Try: {INSTALL_HINT}"
-    )
+    if sys.platform == "darwin":
+        return "cgl"
+    if sys.platform != "linux":
+        return "glfw"
+    return "osmesa" if not _is_installed("egl") and _is_installed("osmesa") else "egl"
+
+
+def make_context(width_px: int, height_px: int) -> Any:
+    """Returns a new OpenGL context of the chosen backend, also if the user imported MuJoCo before.
+
+    Raises:
+        RenderError: there is no such backend, its library is missing, or this process was forked from one that had
+            rendered.
+    """
+    begin_rendering()
+    names = _BACKENDS.get(sys.platform, {"glfw": "glfw"})
+    if BACKEND not in names:
+        raise RenderError(f"MUJOCO_GL is '{BACKEND}', which cannot render here; it may be one of {', '.join(names)}.")
+    if BACKEND in _LIBRARIES and not _is_installed(BACKEND):
+        raise RenderError(f"MUJOCO_GL={BACKEND} needs {_LIBRARIES[BACKEND][0]}, which is not installed. {_REMEDY}")
+    try:
+        context = importlib.import_module(f"mujoco.{names[BACKEND]}").GLContext(width_px, height_px)
+        with context.as_current():
+            return context
+    except Exception as error:  # EGL, OSMesa and GLFW raise different classes
+        reason = " ".join(str(error).split())[:200]
+        raise RenderError(
+            f"OpenGL did not start with MUJOCO_GL={BACKEND} ({reason}). Import no other OpenGL before. {_REMEDY}"
+        ) from None
 
 
 _rendering_pid: int | None = None
@@ -66,9 +110,13 @@ def begin_rendering() -> None:
     _rendering_pid = os.getpid()
 
 
-os.environ["MUJOCO_GL"] = choose_backend()
-if os.environ["MUJOCO_GL"] in ("egl", "osmesa"):
-    os.environ.setdefault("PYOPENGL_PLATFORM", os.environ["MUJOCO_GL"])
+BACKEND = choose_backend()
+"""The chosen backend, or the user's name that is refused when something is rendered."""
+_IS_USABLE = BACKEND in _BACKENDS.get(sys.platform, {}) and (BACKEND not in _LIBRARIES or _is_installed(BACKEND))
+# MuJoCo does not import with a name that it does not know, or without the library of the backend.
+os.environ["MUJOCO_GL"] = BACKEND if _IS_USABLE else ""
+if _IS_USABLE and BACKEND in _LIBRARIES:
+    os.environ.setdefault("PYOPENGL_PLATFORM", BACKEND)
 # llvmpipe divides each small frame among all cores and loses more by waiting than it gains.
 os.environ.setdefault("LP_NUM_THREADS", "1")
 # PyTorch's threads spin for milliseconds while they wait for each other. With two other processes on two cores, a
@@ -87,4 +135,4 @@ def _disable_log_file() -> None:
 
 _disable_log_file()
 
-__all__ = ["INSTALL_HINT", "begin_rendering", "choose_backend", "is_forked", "mujoco"]
+__all__ = ["INSTALL_HINT", "begin_rendering", "choose_backend", "is_forked", "make_context", "mujoco"]

@@ -12,8 +12,9 @@ from __future__ import annotations
 import enum
 import inspect
 import math
+import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
 from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
@@ -25,9 +26,10 @@ from sim.geometry.numbers import require_numbers
 from sim.geometry.pose import wrap_angle
 
 __all__ = [
-    "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS", "SENSORS", "TURN_RAD",
-    "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation", "RobotModel", "Scores",
-    "Segmenter", "SegmenterSpec", "StatesConfidence", "StatesTarget", "SuccessRule", "wrap_angle",
+    "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS", "SENSORS",
+    "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation",
+    "Perceived", "RobotModel", "Scores", "SegmentationSpec", "Segmenter", "SegmenterFactory", "SegmenterSpec",
+    "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule", "wrap_angle",
 ]  # fmt: skip
 
 
@@ -171,6 +173,27 @@ SENSORS: tuple[str, ...] = ("rgb", "depth", "semantic")
 """Image sensors, which are rendered only when requested."""
 POSE_SENSORS: tuple[str, ...] = ("gps", "compass", "objectgoal")
 """Always present."""
+CONTEXT_FIELDS: tuple[str, ...] = ("goal", "collided", "pose", "start", "motion", "model", "data")
+"""Fields of `sim.sensors.sensor.SensorContext` that a sensor of the user's may declare in `reads`."""
+TRUE_FIELDS = frozenset({"pose", "start", "motion", "model", "data"})
+"""Those that hold ground truth: a robot cannot measure them."""
+TRUE_IMAGES = frozenset({"semantic", "geom"})
+"""Rendered images that hold ground truth."""
+
+
+def reads_truth(sensor: Any) -> bool:
+    """Returns whether a sensor declares that it reads ground truth.
+
+    Args:
+        sensor: name of a standard sensor, or an object with the interface `sim.sensors.sensor.Sensor`. `gps`, `compass`
+            and `objectgoal` are part of the task: they do not count, although they are computed from the true pose.
+    """
+    if isinstance(sensor, str):
+        return sensor == "semantic"
+    if getattr(sensor, "name", "") in POSE_SENSORS:
+        return False
+    declared = {*getattr(sensor, "images", ()), *getattr(sensor, "reads", ())}
+    return not declared.isdisjoint(TRUE_IMAGES | TRUE_FIELDS)
 
 
 class Scores(NamedTuple):
@@ -189,8 +212,9 @@ class Scores(NamedTuple):
 class SegmenterSpec:
     """The declaration of a segmenter: its inputs and how exact it is."""
 
-    sensors: tuple[str, ...] = ("rgb",)
-    """Image sensors that `scores` reads in the observation, in addition to `depth`."""
+    sensors: tuple[Any, ...] = ("rgb",)
+    """Sensors that it reads in the observation, in addition to `depth`: names of `SENSORS`, or objects of the user's
+    (`sim.sensors.sensor.Sensor`)."""
     truth: tuple[str, ...] = ()
     """Ground-truth images that it reads in the environment and that the agent does not get (`semantic`, `geom`)."""
     exact_outlines: bool = False
@@ -199,7 +223,23 @@ class SegmenterSpec:
     needs_verification: bool = True
     """False: its scores are the truth, so that an agent need not verify a candidate before it stops."""
     kind: str = "rednet"
-    """Name of the fitted parameters that describe its errors best (`stubborn/detection/fusions/<kind>.json`)."""
+    """Name of the fitted parameters that describe its errors best (`stubborn/detection/verifiers/<kind>.json`). A kind
+    without parameters of its own gets those of `rednet`, and the run says so."""
+
+    def __post_init__(self) -> None:
+        if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}", self.kind):
+            raise ConfigError(f"SegmenterSpec.kind is a name of letters, digits, '_', '-' and '.', got '{self.kind}'.")
+        for name in ("sensors", "truth"):
+            if isinstance(getattr(self, name), str):
+                raise ConfigError(f"SegmenterSpec.{name} must be a tuple of names, got '{getattr(self, name)}'.")
+        unknown = sorted(set(self.truth) - TRUE_IMAGES)
+        if unknown:
+            raise ConfigError(f"SegmenterSpec.truth names '{unknown[0]}'. Available: {', '.join(sorted(TRUE_IMAGES))}.")
+
+    @property
+    def uses_ground_truth(self) -> bool:
+        """True: it reads true images, or a sensor that declares the truth."""
+        return bool(self.truth) or any(reads_truth(each) for each in self.sensors)
 
 
 class Segmenter(Protocol):
@@ -233,6 +273,57 @@ class NamesCategories(Protocol):
 
         Called after `scores` of the same frame.
         """
+        ...
+
+
+SegmenterFactory = Callable[..., Any]
+"""Builds a segmenter of the user's from keyword arguments:
+
+| argument | type | meaning |
+|---|---|---|
+| camera | `CameraModel` | camera of the images |
+| config | type of `SegmentationSpec.config` | the segmentation's configuration |
+| truth | `sim.env.objectnav.ObjectNavEnv` | only where the specification's `truth` names images: the environment |
+
+Arguments for which the factory has no parameter are left out. The object needs a method `scores`; for agents that read
+them `posteriors`, and for videos `categories` (`NamesCategories`).
+"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SegmentationSpec:
+    """The declaration of a segmentation of the user's. `--semantics package.module:NAME` takes one."""
+
+    make: SegmenterFactory
+    spec: SegmenterSpec = SegmenterSpec(kind="own")
+    """What it reads, its kind, and whether its outlines are exact."""
+    description: str = ""
+    """One line for lists."""
+    config: Any = None
+    """Default configuration, a frozen dataclass whose fields `--config detector.FIELD=VALUE` sets; None: none."""
+
+    def __post_init__(self) -> None:
+        if not callable(self.make):
+            raise ConfigError(f"SegmentationSpec.make must be a factory, got {type(self.make).__name__}.")
+        if self.config is not None and (isinstance(self.config, type) or not is_dataclass(self.config)):
+            raise ConfigError(f"SegmentationSpec.config must be a dataclass object or None, got {self.config!r}.")
+
+
+class Perceived(NamedTuple):
+    """The segmentation of one frame as the agent used it."""
+
+    scores: Scores | None = None
+    """Scores of the goal; None: the agent did not ask for them."""
+    categories: NDArray[np.uint8] | None = None
+    """mpcat40 ids (h, w) at any size; None: it does not name them."""
+
+
+@runtime_checkable
+class StatesSegmentation(Protocol):
+    """An agent with a segmentation of its own that viewers may show (`AgentSpec.own_segmentation`)."""
+
+    def stated_segmentation(self) -> Perceived | None:
+        """Returns the segmentation of the frame that `act` got last; None: there is none. Called after `act`."""
         ...
 
 
@@ -318,15 +409,18 @@ class AgentSpec:
     segmenter are added."""
     uses_segmentation: bool = True
     """False: its results do not depend on `--semantics`."""
+    own_segmentation: str = ""
+    """Name of the segmentation that the agent brings itself, for reports and videos; `--semantics` is then not used.
+    Videos show it if the agent has the method of `StatesSegmentation`."""
     uses_ground_truth: bool = False
     """True: it may read the `semantic` sensor and gets the running environment as `truth`; its results say so."""
     painter: Callable[[Agent], Any] | None = None
     """Returns a `sim.viewers.viewer.MapPainter` that draws the agent's map; None: viewers draw the true floor plan."""
 
     def __post_init__(self) -> None:
-        true = [
-            each for each in self.sensors if each == "semantic" or (not isinstance(each, str) and _reads_truth(each))
-        ]
+        if self.own_segmentation:
+            object.__setattr__(self, "uses_segmentation", False)
+        true = [each for each in self.sensors if reads_truth(each)]
         if true and not self.uses_ground_truth:
             names = ", ".join(f"'{each if isinstance(each, str) else each.name}'" for each in true)
             raise ConfigError(
@@ -357,7 +451,3 @@ class AgentSpec:
                 "A parameter **options accepts those that it does not use."
             ) from None
         return self.make(**parts)
-
-
-def _reads_truth(sensor: Any) -> bool:
-    return sensor == "semantic" if isinstance(sensor, str) else not {"semantic", "geom"}.isdisjoint(sensor.images)

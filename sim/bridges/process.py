@@ -8,11 +8,8 @@ answer, the episode ends as an error with the last lines of its standard error, 
 from __future__ import annotations
 
 import functools
-import itertools
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
 import cv2
@@ -21,34 +18,19 @@ import numpy as np
 from msgspec import Meta
 from numpy.typing import NDArray
 
+from sim.bridges.process_command import PREFIX, ProcessConfig, command_of
 from sim.bridges.process_pipe import AgentProcess, Answer
 from sim.bridges.stubborn_client import MOST_HEADER_BYTES, ProtocolError, unpack_arrays
 from sim.configuration import as_json
 from sim.errors import AgentError, ConfigError
 from sim.evaluation.own_code import one_line
-from sim.geometry.numbers import require_numbers
 from sim.interface import GOAL_CATEGORIES, Action, Agent, AgentSpec, CameraModel, Observation, RobotModel, SuccessRule
 from sim.task.trajectory import FARTHEST_M
 from sim.viewers.viewer import Colour
 
 T = TypeVar("T")
-PREFIX = "process:"
-"""Beginning of the names of these agents."""
 _Metres = Annotated[float, Meta(ge=-FARTHEST_M, le=FARTHEST_M)]
 _Text = Annotated[str, Meta(max_length=MOST_HEADER_BYTES)]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ProcessConfig:
-    """The options of an agent in a process of its own. `--step-timeout` limits its calls."""
-
-    start_timeout_s: float = 120.0
-    """Longest time from the start of the command to its first answer."""
-
-    def __post_init__(self) -> None:
-        require_numbers(self)
-        if self.start_timeout_s <= 0.0:
-            raise ConfigError(f"ProcessConfig.start_timeout_s must be > 0 s, got {self.start_timeout_s}.")
 
 
 class _Ready(msgspec.Struct, tag_field="type", tag="ready"):
@@ -95,36 +77,6 @@ def process_spec(name: str) -> AgentSpec:
         uses_segmentation=False,
         painter=_painter_of,
     )
-
-
-def command_of(name: str) -> list[str]:
-    """Returns the words of the command in a name `process:COMMAND`, split as a shell does.
-
-    Raises:
-        ConfigError: the command is empty or cannot be split.
-    """
-    text = name.removeprefix(PREFIX)
-    try:
-        words = shlex.split(text)
-    except ValueError as fault:
-        raise ConfigError(f"--agent '{name}': the command cannot be split into words: {fault}.") from None
-    if not words or not words[0]:
-        raise ConfigError(f"--agent '{name}': a command must follow, for example {PREFIX}'python my_agent.py'.")
-    return words
-
-
-def is_process(name: str) -> bool:
-    """Returns whether a name of `--agent` is that of an agent in a process of its own."""
-    return name.startswith(PREFIX)
-
-
-def files_of(name: str) -> list[Path]:
-    """Returns the files that the command of an agent names, and the module after `-m`, where they are plain files."""
-    words = command_of(name)
-    modules = [word.replace(".", "/") for before, word in itertools.pairwise(words) if before == "-m"]
-    paths = [Path(word) for word in words]
-    paths += [Path(f"{module}{end}") for module in modules for end in (".py", "/__main__.py")]
-    return [path for path in paths if _is_file(path)]
 
 
 class ProcessAgent:
@@ -278,10 +230,3 @@ class ProcessPainter:
 
 def _painter_of(agent: Agent) -> ProcessPainter | None:
     return ProcessPainter(agent) if isinstance(agent, ProcessAgent) and agent.draws_map else None
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
-import importlib
 import inspect
-import os
-import sys
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
-from sim.bridges.process import is_process, process_spec
+from sim.bridges.process_command import is_process
+from sim.composition.imports import import_attribute
 from sim.errors import AgentError, ConfigError, ObjectNavError
 from sim.evaluation.own_code import place_of, text_of
 from sim.evaluation.watch import is_stop, marked
@@ -62,6 +60,8 @@ def find_agent(name: str) -> AgentSpec:
     if name in SPECS:
         return SPECS[name]
     if is_process(name):
+        from sim.bridges.process import process_spec
+
         return process_spec(name)
     module_name, separator, attribute = name.partition(":")
     if not separator or not attribute:
@@ -71,7 +71,7 @@ def find_agent(name: str) -> AgentSpec:
             f"Unknown agent '{name}'.{hint} Available: {', '.join(SPECS)}, or your own as package.module:NAME, "
             "or in a process of its own as process:COMMAND."
         )
-    found = _import_attribute(name, module_name, attribute)
+    found = import_attribute(name, module_name, attribute)
     if isinstance(found, AgentSpec):
         return found
     if not callable(found):
@@ -96,7 +96,7 @@ def find_explorer(name: str) -> ExplorerConfig:
             f"Unknown --explorer '{name}'. Available: {', '.join(agents.EXPLORERS)}, or your own as "
             "package.module:NAME."
         )
-    found = _import_attribute(name, module_name, attribute)
+    found = import_attribute(name, module_name, attribute)
     if not dataclasses.is_dataclass(found) or isinstance(found, type) or not isinstance(found, ExplorerConfig):
         raise ConfigError(f"--explorer '{name}' must be a dataclass object with a method make(camera).")
     return found
@@ -140,25 +140,3 @@ def build_agent(
             raise
         reason = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
         raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error
-
-
-def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
-    if "" not in sys.path:
-        sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
-    folder = os.getcwd()
-    try:
-        module = importlib.import_module(module_name)
-    except ModuleNotFoundError as error:
-        raise ConfigError(f"'{name}': no module '{error.name}' can be imported from here.") from None
-    except BaseException as error:  # the user's code
-        if is_stop(error):
-            raise
-        place = "" if isinstance(error, SyntaxError) else place_of(error, below=__file__)  # its text names the line
-        reason = f"{type(error).__name__}: {text_of(error)}{place}"
-        raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {reason}") from error
-    finally:
-        os.chdir(folder)  # the options' paths are relative to it
-    try:
-        return vars(module)[attribute]
-    except KeyError:
-        raise ConfigError(f"'{name}': module '{module_name}' has no '{attribute}'.") from None

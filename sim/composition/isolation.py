@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sim.bridges.process import is_process
+from sim.bridges.process_command import is_process
 from sim.composition.options import RunOptions
 from sim.evaluation.executors import Isolation
 

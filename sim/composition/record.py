@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from sim.bridges.process import files_of, is_process
+from sim.bridges.process_command import files_of, is_process
 from sim.composition.isolation import own_modules
 from sim.composition.options import RunOptions
 from sim.composition.segmenters import NetworkConfig, file_sha256
@@ -31,6 +31,7 @@ def record_of(setup: Setup, split: dict[str, Any]) -> dict[str, Any]:
     return flat | {
         "settings": as_json(setup.settings),
         "config": as_json(setup.config),
+        "segmentation": _segmentation_of(setup),
         "files_sha256": _checksums(setup),
         "split_identity": split,
         "versions": versions(setup.options),
@@ -46,8 +47,9 @@ def versions(options: RunOptions) -> dict[str, str]:
 def code_of(options: RunOptions) -> str:
     """Returns a hash of the code of a run, such as "3353e768d2c2".
 
-    With an agent or explorer of the user, whose modules are imported by now, "+" and a hash of these follow; with an
-    agent in a process of its own, that of the files which its command names and of what these import from their folder.
+    With an agent, explorer or segmentation of the user, whose modules are imported by now, "+" and a hash of these
+    follow; with an agent in a process of its own, that of the files which its command names and of what these import
+    from their folder.
     """
     own = hash_of_own(own_modules(options), files_of(options.agent) if is_process(options.agent) else ())
     return f"{code_hash()}+{own}" if own else code_hash()
@@ -58,11 +60,22 @@ def _checksums(setup: Setup) -> dict[str, str]:
     found, config = {}, setup.config
     if isinstance(config.detector, NetworkConfig):
         found["weights"] = file_sha256(config.detector.weights)
+    else:
+        found |= {name: file_sha256(file) for name, file in _files_in(config.detector, "detector")}
     if config.verification.parameters is not None:
         found["verifier"] = file_sha256(config.verification.parameters)
     if setup.options.robot is not None:
         found["robot"] = robot_sha256(setup.options.robot)
     return found | {name: file_sha256(file) for name, file in _files_in(config.agent, "agent")}
+
+
+def _segmentation_of(setup: Setup) -> dict[str, Any]:
+    """Returns what the agent acts on: the name, and for its segmentation what it declares."""
+    if not setup.spec.uses_segmentation:
+        return {"name": setup.segmentation_name or None}
+    spec, verified = setup.segmentation.spec, not setup.borrowed_parameters
+    declared = as_json(replace(spec, sensors=tuple(x if isinstance(x, str) else x.name for x in spec.sensors)))
+    return {"name": setup.segmentation_name, **declared, "has_fitted_parameters": verified}
 
 
 def _files_in(tree: Any, name: str) -> Iterator[tuple[str, Path]]:
@@ -91,7 +104,7 @@ def identity_of(setup: Setup, episode: Episode) -> dict[str, Any]:
         "house": episode.house,
         "goal": episode.goal,
         "agent": setup.options.agent,
-        "uses_ground_truth": setup.spec.uses_ground_truth,
+        "uses_ground_truth": setup.uses_ground_truth,
         "isolated": is_process(setup.options.agent),
         "semantics": setup.options.semantics,
         "seed": setup.options.seed,

@@ -10,6 +10,7 @@ from typing import Any
 from sim.composition.agents import build_agent
 from sim.composition.environments import make_env
 from sim.composition.isolation import step_limit_s
+from sim.composition.perception import AskedSegmenter, seen_by
 from sim.composition.record import error_line, identity_of, versions
 from sim.composition.segmenters import NoSegmentation
 from sim.composition.setup import Setup
@@ -21,9 +22,9 @@ from sim.evaluation.last_view import write_last_view
 from sim.evaluation.own_code import text_of
 from sim.evaluation.rollout import agent_seed, episode_seed, play_episode, record_episode
 from sim.evaluation.watch import is_stop
-from sim.interface import Agent, Closable, Segmenter
+from sim.interface import Agent, Closable
 from sim.viewers import selection
-from sim.viewers.viewer import VIEWER_IMAGES, MapPainter
+from sim.viewers.viewer import VIEWER_IMAGES, MapPainter, SeesFrames
 
 
 @dataclass(frozen=True)
@@ -32,8 +33,8 @@ class Parts:
 
     env: ObjectNavEnv
     agent: Agent
-    segmenter: Segmenter | None
-    """The agent's segmentation; None: it has none."""
+    seen: SeesFrames | None
+    """The segmentation that the agent acts on, if viewers need it; None: it has none."""
     painter: MapPainter | None
     """Draws the agent's map; None: it has none."""
 
@@ -48,6 +49,8 @@ def build_parts(setup: Setup, *, watched: bool) -> Parts:
     spec, config = setup.spec, setup.config
     env = make_env(setup, sensors=setup.sensors, truth=setup.truth + VIEWER_IMAGES * watched)
     segmenter = setup.segmentation.make(env, config.detector) if spec.uses_segmentation else None
+    if segmenter is not None and watched:
+        segmenter = AskedSegmenter(segmenter, setup.segmentation_name)
     agent = build_agent(
         setup.options.agent,
         spec,
@@ -57,7 +60,7 @@ def build_parts(setup: Setup, *, watched: bool) -> Parts:
         config=config.agent,
         step_timeout_s=step_limit_s(setup.options),
     )
-    return Parts(env, agent, segmenter, spec.painter(agent) if spec.painter else None)
+    return Parts(env, agent, seen_by(setup, agent, segmenter), spec.painter(agent) if spec.painter else None)
 
 
 class EpisodeRunner:
@@ -71,7 +74,7 @@ class EpisodeRunner:
         self._env, self._agent = parts.env, parts.agent
         setup.require_planned(self._env.split)
         self._house = ""
-        self._viewers = selection.make(options, parts.painter, parts.segmenter)
+        self._viewers = selection.make(options, parts.painter, parts.seen)
         self._about = {
             "profile": options.profile,
             "noise": options.noise,

@@ -59,11 +59,14 @@ def run_missing(
         if options.retry_errors:
             console.print(f"{len(again)} episodes that ended with an error are run again.")
         todo = [episode for episode in episodes if episode.episode_id not in done]
-        segmentation = f" with {options.semantics} segmentation" if setup.spec.uses_segmentation else ""
+        named = setup.segmentation_name
+        segmentation = f" with segmentation by {named}" if named else ""
         console.print(
             f"{options.agent}{segmentation}, {display.counted(len(episodes), 'episode')} of {split['name']} "
             f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
         )
+        if setup.borrowed_parameters:
+            console.print(setup.borrowed_parameters, highlight=False, markup=False, soft_wrap=True)
         _report_resumed(run, len(episodes), len(todo), code_of(options), console)
         if todo and must_compile():
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")

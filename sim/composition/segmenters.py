@@ -1,10 +1,11 @@
-"""Segmentation by name: `gt`, `noisy` and `rednet`, each with its specification and its configuration.
+"""Segmentation by name: `gt`, `noisy`, `rednet` and anybody's own as `package.module:NAME`.
 
 `rednet` imports PyTorch only on use: a process without a network stays small and starts fast.
 """
 
 from __future__ import annotations
 
+import difflib
 import functools
 import hashlib
 from collections.abc import Callable, Mapping
@@ -16,10 +17,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.composition.own_segmentation import load_specification, make_own
 from sim.configuration import as_json
 from sim.detectors.noisy import NoisyConfig, NoisySegmenter
 from sim.errors import ConfigError
-from sim.interface import Observation, Scores, Segmenter, SegmenterSpec
+from sim.interface import Observation, Scores, SegmentationSpec, Segmenter, SegmenterSpec
 from sim.invocation import command
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.segmentation.shipped import SHIPPED_REDNET
@@ -50,6 +52,8 @@ class SegmentationKind:
     """Default configuration; None: there is nothing to configure."""
     make: Callable[[ObjectNavEnv, Any], Segmenter]
     """Builds the segmenter for an environment that provides the images which `spec` names."""
+    own: SegmentationSpec | None = None
+    """The user's specification; None: the kind ships with the package."""
 
 
 class TrueSegmentation:
@@ -126,17 +130,30 @@ def find_segmentation(semantics: str, weights: Path | None) -> SegmentationKind:
     """Returns a kind of segmentation.
 
     Args:
-        semantics: one of `KINDS`.
+        semantics: one of `KINDS`, or `package.module:NAME`, where NAME is a `SegmentationSpec` or a factory.
         weights: the user's weights, whose file must exist; None: those that ship, where the kind needs some.
 
     Raises:
         ConfigError: there is no such kind, or no weights for it.
     """
-    if semantics not in KINDS:
-        raise ConfigError(f"Unknown --semantics '{semantics}'. Available: {', '.join(KINDS)}.")
-    kind = KINDS[semantics]
+    if semantics in KINDS:
+        kind = KINDS[semantics]
+    elif all(semantics.partition(":")):
+        own = load_specification(semantics)
+        make = functools.partial(make_own, semantics, own)
+        kind = SegmentationKind(
+            description=own.description or semantics, spec=own.spec, config=own.config, make=make, own=own
+        )
+    else:
+        near = difflib.get_close_matches(semantics, KINDS, n=1)
+        hint = f" Did you mean '{near[0]}'?" if near else ""
+        raise ConfigError(
+            f"Unknown --semantics '{semantics}'.{hint} Available: {', '.join(KINDS)}, or your own as "
+            "package.module:NAME."
+        )
     if weights is not None and not isinstance(kind.config, NetworkConfig):
-        raise ConfigError(f"--weights go with --semantics rednet, not with '{semantics}'.")
+        fields = "; options of your own are --config detector.FIELD=VALUE" if kind.own else ""
+        raise ConfigError(f"--weights go with --semantics rednet, not with '{semantics}'{fields}.")
     if isinstance(kind.config, NetworkConfig):
         weights_file(weights)
     return kind
@@ -151,7 +168,7 @@ def make_segmenter(semantics: str, env: ObjectNavEnv, weights: Path | None = Non
     """Returns the segmenter of a kind, with its default configuration, for tools that have no run.
 
     Args:
-        semantics: one of `KINDS`.
+        semantics: one of `KINDS`, or `package.module:NAME`.
         env: an environment with the sensors and the true images that the kind's specification names.
         weights: the user's weights; None: those that ship.
 

@@ -6,11 +6,11 @@ Environment, agent, viewers, results and workers are made from the setup (`sim.c
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-from sim.bridges.process import ProcessConfig
+from sim.bridges.process_command import ProcessConfig
 from sim.composition.agents import find_agent, find_explorer, takes_explorer
 from sim.composition.checks import check_options
 from sim.composition.options import RunOptions, start_pose
@@ -19,14 +19,22 @@ from sim.configuration import parse_assignments, read_settings, with_fields
 from sim.episodes.splits import Split
 from sim.errors import ConfigError
 from sim.geometry.pose import Pose
-from sim.interface import AgentSpec, CameraModel
+from sim.interface import TRUE_IMAGES, AgentSpec, CameraModel
+from sim.invocation import command
 from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot
 from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.profiles import RenderProfile, get_profile
 from sim.sensors.sensor import Sensor
 from sim.task.config import TaskConfig
-from stubborn.detection.verification import FittedVerifier, Verifier, verifier_for
+from stubborn.detection.verification import (
+    ACCEPT_ALL,
+    DEFAULT_KIND,
+    FittedVerifier,
+    Verifier,
+    has_parameters,
+    verifier_for,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +42,7 @@ class VerificationConfig:
     """Selects how the agent verifies a candidate before it stops."""
 
     method: str = "naive-bayes"
-    """`naive-bayes` (the paper's), `logistic`, `threshold` or `none`."""
+    """`naive-bayes` (the paper's) or `none`."""
     parameters: Path | None = None
     """File of fitted parameters; None takes those shipped for the kind of segmentation."""
     least_probability: float | None = None
@@ -106,13 +114,42 @@ class Setup:
     @property
     def sensors(self) -> tuple[str | Sensor, ...]:
         """The sensors of the observation: the agent's own objects, and names of standard sensors."""
-        own = {each.name: each for each in self.spec.sensors if not isinstance(each, str)}
+        own = {each.name: each for each in _own_sensors(self.spec, self.segmentation)}
         return tuple(own.get(name, name) for name in self.config.sensors)
 
     @property
     def truth(self) -> tuple[str, ...]:
         """The true images that the agent's segmentation reads in the environment."""
         return self.segmentation.spec.truth if self.spec.uses_segmentation else ()
+
+    @property
+    def uses_ground_truth(self) -> bool:
+        """True: the agent, one of its sensors or a segmentation of the user's declares ground truth.
+
+        The segmentations that ship do not count here: `semantics` names them.
+        """
+        own = self.segmentation.own if self.spec.uses_segmentation else None
+        return self.spec.uses_ground_truth or (own is not None and own.spec.uses_ground_truth)
+
+    @property
+    def segmentation_name(self) -> str:
+        """The segmentation that the agent acts on, for people; "": none."""
+        if not self.spec.uses_segmentation:
+            return self.spec.own_segmentation
+        return "ground truth" if self.options.semantics == "gt" else self.options.semantics
+
+    @property
+    def borrowed_parameters(self) -> str:
+        """The sentence that verifier and fusion have no parameters for this kind of segmentation; "": they have."""
+        spec, chosen = self.segmentation.spec, self.config.verification
+        if not self.spec.uses_segmentation or not spec.needs_verification or has_parameters(spec.kind):
+            return ""
+        if chosen.parameters is not None or chosen.method == ACCEPT_ALL:
+            return ""
+        return (
+            f"No parameters are fitted to segmentation of kind '{spec.kind}': verification and fusion use those of "
+            f"'{DEFAULT_KIND}' (`{command('train', 'verifier')}` and `{command('train', 'fusion')}` fit your own)."
+        )
 
 
 def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
@@ -179,9 +216,14 @@ def _agent_config(options: RunOptions, spec: AgentSpec) -> Any:
 
 def _sensor_names(spec: AgentSpec, segmentation: SegmentationKind) -> tuple[str, ...]:
     """Returns the names of the sensors that an agent and its segmentation declare."""
-    own = [each if isinstance(each, str) else each.name for each in spec.sensors]
-    read = (*own, *(("depth", *segmentation.spec.sensors) if spec.uses_segmentation else ()))
-    return tuple(dict.fromkeys(read))
+    read = (*spec.sensors, *(("depth", *segmentation.spec.sensors) if spec.uses_segmentation else ()))
+    return tuple(dict.fromkeys(each if isinstance(each, str) else each.name for each in read))
+
+
+def _own_sensors(spec: AgentSpec, segmentation: SegmentationKind) -> list[Sensor]:
+    """Returns the sensors that are objects of the agent's and of its segmentation."""
+    read = (*spec.sensors, *(segmentation.spec.sensors if spec.uses_segmentation else ()))
+    return [each for each in read if not isinstance(each, str)]
 
 
 def _check_sensors(
@@ -191,15 +233,39 @@ def _check_sensors(
     missing = [name for name in _sensor_names(spec, segmentation) if name not in sensors]
     if missing:
         raise ConfigError(f"sensors: agent '{options.agent}' with {options.semantics} needs {', '.join(missing)}.")
+    own = _own_sensors(spec, segmentation)
+    for each in own:
+        twins = [other for other in own if other.name == each.name and other is not each]
+        if twins and twins[0] != each:
+            raise ConfigError(f"Agent '{options.agent}' and {options.semantics} have two sensors named '{each.name}'.")
+        if not spec.uses_ground_truth and each in spec.sensors and _noise_reads_truth(each):
+            raise ConfigError(
+                f"sensors: the noise of '{each.name}' reads ground truth, and agent '{options.agent}' does not declare "
+                "uses_ground_truth."
+            )
+    if "semantic" in segmentation.spec.sensors and segmentation.own is not None and not spec.uses_ground_truth:
+        raise ConfigError(
+            f"--semantics '{options.semantics}': the sensor 'semantic' is ground truth; declare truth=('semantic',), "
+            "and read it in the environment that the factory gets as `truth`."
+        )
     if "semantic" in sensors and not spec.uses_ground_truth:
         raise ConfigError(
             f"sensors: 'semantic' is ground truth, and agent '{options.agent}' does not declare uses_ground_truth."
         )
 
 
+def _noise_reads_truth(sensor: Sensor) -> bool:
+    """Returns whether the noise of a sensor, of a class of the user's, declares true images."""
+    shipped = {type(getattr(NoiseConfig(), each.name)) for each in fields(NoiseConfig)}
+    if sensor.noise is None or type(sensor.noise) in shipped:
+        return False
+    model = sensor.noise.model(CameraModel())
+    return model is not None and not TRUE_IMAGES.isdisjoint(model.images)
+
+
 def _verifier(options: RunOptions, segmentation: SegmentationKind, config: VerificationConfig) -> Verifier:
     """Returns the verifier of a run; raises ConfigError where there are no such parameters, or no such method."""
-    verifier = verifier_for(options.semantics, segmentation.spec, config.parameters, config.method)
+    verifier = verifier_for(segmentation.spec, config.parameters, config.method)
     if isinstance(verifier, FittedVerifier) and config.least_probability is not None:
         return replace(verifier, least_probability=config.least_probability)
     return verifier

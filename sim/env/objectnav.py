@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -26,7 +25,7 @@ from sim.robot.config import RobotConfig
 from sim.robot.drive import Motion
 from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise, noise_from_dict
 from sim.sensors.profiles import RenderProfile, get_profile
-from sim.sensors.sensor import DeclaredImages, Sensor, SensorContext
+from sim.sensors.sensor import Sensor, SensorContext
 from sim.sensors.standard import STANDARD_SENSORS, resolve_sensors
 from sim.task.config import TaskConfig
 
@@ -283,16 +282,16 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         needed = {name for sensor in self.sensors for name in sensor.images}
         wanted = sorted({"semantic", *needed, *self._truth, *self._noise.images})
         images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, wanted)
-        context = functools.partial(
-            SensorContext,
-            pose=world.pose,
-            start=self.episode.start,
-            goal=self.episode.goal,
-            motion=self._motion,
-            model=world.model,
-            data=world.data,
-        )
-        readings = {each.name: each.read(context(images=DeclaredImages(each, images))) for each in self.sensors}
+        fields = {
+            "goal": self.episode.goal,
+            "collided": self._motion is not None and self._motion.collided,
+            "pose": world.pose,
+            "start": self.episode.start,
+            "motion": self._motion,
+            "model": world.model,
+            "data": world.data,
+        }
+        readings = {each.name: each.read(SensorContext(each, images, **fields)) for each in self.sensors}
         return self._noise.apply(readings, images), images["semantic"]
 
     def _info(self, collided: bool) -> dict[str, Any]:

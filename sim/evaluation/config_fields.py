@@ -39,8 +39,11 @@ def is_same_file(path: str, first: Mapping[str, Any], second: Mapping[str, Any])
         "config.verification.parameters": "verifier",
         "config.robot.file.path": "robot",
     }.get(path, path.removeprefix("config."))
-    sums = [record.get("files_sha256", {}).get(name) for record in (first, second)]
-    return sums[0] is not None and sums[0] == sums[1]
+    for each in (name, path.removeprefix("config.")):
+        sums = [record.get("files_sha256", {}).get(each) for record in (first, second)]
+        if sums[0] is not None and sums[0] == sums[1]:
+            return True
+    return False
 
 
 def field_text(value: Any) -> str:

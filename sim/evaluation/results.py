@@ -40,10 +40,11 @@ VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save")
 """Options that start viewers; they change no result."""
 WITHOUT_EFFECT = frozenset({"workers", "out", "record", "seed_key", *PLACEMENT_OPTIONS, *VIEWER_OPTIONS})
 """Entries of the config that change no result, or differ between all runs by chance (`seed_key`)."""
-NOT_COMPARED = WITHOUT_EFFECT | {"versions", "codes", "episodes", "only", "settings"}
+NOT_COMPARED = WITHOUT_EFFECT | {"versions", "codes", "episodes", "only", "settings", "segmentation"}
 """Entries of the config in which a resumed run may differ; with more episodes it runs the additional ones.
 
 `settings` are the assignments of the command line; only the tree that results from them, `config`, has to be equal.
+`segmentation` follows from `semantics` and the code.
 """
 
 

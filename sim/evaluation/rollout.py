@@ -173,6 +173,8 @@ def ask(where: str, call: Callable[[], Any]) -> Any:
     try:
         with marked(where):
             return call()
+    except AgentError as error:  # of a part of the agent, which names its own line
+        raise AgentError(f"{where}: {error}") from error
     except BaseException as error:  # also `SystemExit`, `CancelledError` and classes of the user
         if is_stop(error):
             raise

@@ -251,7 +251,7 @@ def _texture_bytes(spec: mujoco.MjSpec, texture: mujoco.MjsTexture, folder: Path
             continue  # MuJoCo names a missing file
         with file.open("rb") as stream:
             width, height = image_size_px(stream.read(1 << 16)) or (0, 0)
-        size += max(width * height * 4, file.stat().st_size)
+        size += max(width * height * (channels if texture.nchannel > 0 else 4), file.stat().st_size)
     return size
 
 

@@ -73,10 +73,10 @@ class Camera:
         self._color_buffer = np.zeros((*shape, 3), np.uint8)
         self._depth_buffer = np.zeros(shape, np.float32)
         self._gl = make_gl_context(self.camera)
-        self._gl.make_current()
         # Id colours must not be blended at edges and need no vertices inside a flat face: they get their own buffer.
         id_profile = replace(self.profile, samples=0, quads=1)
-        self._id_context = make_frame_buffer(model, self.camera, id_profile)
+        with self._gl.as_current():  # it is released after each use, so that any thread can render next
+            self._id_context = make_frame_buffer(model, self.camera, id_profile)
         self._color_context: mujoco.MjrContext | None = None  # made with the first colour image: it takes 10 to 30 MB
         self._contexts = {self._id_context}
         self._finalizer = weakref.finalize(self, free_contexts, self._gl, self._contexts)
@@ -106,11 +106,15 @@ class Camera:
         unknown = [name for name in sensors if name not in (*SENSORS, "geom")]
         if unknown:
             raise ConfigError(f"Unknown sensor '{unknown[0]}'. The sensors are: {', '.join(SENSORS)}, geom.")
-        images: dict[str, NDArray] = {}
         if not sensors:
-            return images
+            return {}
         begin_rendering()
-        self._gl.make_current()
+        with self._gl.as_current():
+            return self._render(data, pose, sensors)
+
+    def _render(self, data: mujoco.MjData, pose: Pose, sensors: Sequence[str]) -> dict[str, NDArray]:
+        """Returns the images of some sensors; the OpenGL context is current."""
+        images: dict[str, NDArray] = {}
         eye_m, axes = _camera_frame(pose, self.camera)
         visible = self._visibility.visible(data, eye_m, pose.yaw_rad) if self.cull else self._visual_ids
         lamps = self._lamps.choose(data, eye_m, axes[0]) if "rgb" in sensors else []

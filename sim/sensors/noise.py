@@ -195,5 +195,5 @@ class SensorNoise:
         noisy = dict(readings)
         for model, rng in zip(self._models, self._streams, strict=True):
             if model is not None:
-                noisy |= model.apply(noisy, images, rng)
+                noisy |= model.apply(noisy, {name: images[name] for name in model.images}, rng)
         return noisy

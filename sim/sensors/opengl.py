@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import RenderError
-from sim.gl import INSTALL_HINT, begin_rendering, is_forked, mujoco
+from sim.gl import is_forked, make_context, mujoco
 from sim.interface import CameraModel
 from sim.sensors.image_kernels import look_up_ids, to_metres
 from sim.sensors.profiles import RenderProfile
@@ -25,11 +25,7 @@ def make_gl_context(camera: CameraModel) -> mujoco.GLContext:
     Raises:
         RenderError: OpenGL does not start.
     """
-    begin_rendering()
-    try:
-        return mujoco.GLContext(camera.width_px, camera.height_px)
-    except Exception as error:  # EGL, OSMesa and GLFW raise different classes
-        raise RenderError(f"OpenGL did not start ({error}). Try: {INSTALL_HINT}") from error
+    return make_context(camera.width_px, camera.height_px)
 
 
 def make_frame_buffer(model: mujoco.MjModel, camera: CameraModel, profile: RenderProfile) -> mujoco.MjrContext:
@@ -65,9 +61,9 @@ def free_contexts(gl: mujoco.GLContext, frame_buffers: set[mujoco.MjrContext]) -
     """Frees frame buffers and their OpenGL context; a forked process leaves them to the one that made them."""
     if is_forked():
         return
-    gl.make_current()  # freeing deletes objects of the current context
-    for frame_buffer in frame_buffers:
-        frame_buffer.free()
+    with gl.as_current():  # freeing deletes objects of the current context
+        for frame_buffer in frame_buffers:
+            frame_buffer.free()
     gl.free()
 
 
@@ -78,10 +74,10 @@ def describe_gl() -> str:
         RenderError: OpenGL does not start.
     """
     context = make_gl_context(CameraModel())
-    context.make_current()
     from OpenGL import GL  # needs PYOPENGL_PLATFORM, which `sim.gl` has set
 
-    name = GL.glGetString(GL.GL_RENDERER)
+    with context.as_current():
+        name = GL.glGetString(GL.GL_RENDERER)
     context.free()
     return name.decode() if isinstance(name, bytes) else str(name)
 

@@ -1,13 +1,15 @@
 """The interfaces that a new sensor and a new noise model implement.
 
-A sensor is one object: its key in the observation, its Gymnasium space, the images it needs and how it is read.
+A sensor is one object: its key in the observation, its Gymnasium space, what it reads and how it is read.
 `ObjectNavEnv(sensors=("rgb", MySensor()))` takes such objects in addition to the names of `sim.sensors.standard`.
+
+A sensor declares the images (`images`) and the fields of `SensorContext` (`reads`) that it reads; it gets no others.
+The result lines of an agent whose sensor declares the truth (`sim.interface.reads_truth`) say so.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -16,39 +18,70 @@ from numpy.typing import NDArray
 
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
-from sim.interface import CameraModel, ConfigError
+from sim.interface import CONTEXT_FIELDS, CameraModel, ConfigError
 from sim.robot.drive import Motion
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
 class SensorContext:
-    """The true state that sensors are read from, after a reset or an action."""
+    """The state that one sensor is read from, after a reset or an action: only what the sensor declares.
+
+    | field | declared in | meaning |
+    |---|---|---|
+    | images | `images` | rendered images by name, without noise |
+    | goal | `reads` | category that the episode asks for |
+    | collided | `reads` | whether a contact stopped the last action |
+    | pose | `reads`, truth | pose of the robot in the world |
+    | start | `reads`, truth | pose of the robot in the world when the episode started |
+    | motion | `reads`, truth | the last action as it was carried out, with its contacts; None before the first one |
+    | model | `reads`, truth | the compiled world; read only |
+    | data | `reads`, truth | state of the world; read only |
+    """
 
     images: Mapping[str, NDArray]
-    """Rendered images by name, without noise; those that the sensor declares."""
-    pose: Pose
-    """Pose of the robot in the world."""
-    start: Pose
-    """Pose of the robot in the world when the episode started."""
     goal: str
-    """Category that the episode asks for."""
+    collided: bool
+    pose: Pose
+    start: Pose
     motion: Motion | None
-    """The last action as it was carried out, with its contacts; None at the first reading of an episode."""
     model: mujoco.MjModel
-    """The compiled world; read only."""
     data: mujoco.MjData
-    """State of the world; read only."""
+
+    def __init__(self, sensor: Sensor, images: Mapping[str, NDArray], **fields: Any) -> None:
+        """Keeps the declared part of the state.
+
+        Args:
+            sensor: the sensor that is read.
+            images: all images that were rendered.
+            fields: all fields but `images`.
+        """
+        self.images = DeclaredImages(sensor.name, sensor.images, images)
+        self._sensor, self._declared = sensor.name, declared_fields(sensor)
+        vars(self).update({name: fields[name] for name in self._declared})
+
+    def __getattr__(self, name: str) -> Any:
+        """Raises ConfigError for a field that the sensor does not declare; a declared one does not come here."""
+        if name in CONTEXT_FIELDS:
+            raise ConfigError(
+                f"Sensor '{self._sensor}' reads context.{name}, which it does not declare: "
+                f"reads = {(*self._declared, name)!r}."
+            )
+        raise AttributeError(f"SensorContext has no '{name}'. It has: images, {', '.join(CONTEXT_FIELDS)}.")
+
+
+def declared_fields(sensor: Sensor) -> tuple[str, ...]:
+    """Returns the fields of `SensorContext` that a sensor declares; a sensor without `reads` declares none."""
+    return getattr(sensor, "reads", ())
 
 
 class DeclaredImages(dict[str, NDArray]):
-    """The rendered images that a sensor declares; it must not read others, such as the truth."""
+    """The rendered images that a reader declares; it must not read others, such as the truth."""
 
-    def __init__(self, sensor: Sensor, images: Mapping[str, NDArray]) -> None:
-        super().__init__({name: images[name] for name in sensor.images})
-        self._sensor = sensor.name
+    def __init__(self, reader: str, declared: Sequence[str], images: Mapping[str, NDArray]) -> None:
+        super().__init__({name: images[name] for name in declared})
+        self._reader = reader
 
     def __missing__(self, name: str) -> NDArray:
-        raise ConfigError(f"Sensor '{self._sensor}' reads the image '{name}', which it does not declare in `images`.")
+        raise ConfigError(f"Sensor '{self._reader}' reads the image '{name}', which it does not declare in `images`.")
 
 
 class NoiseModel(Protocol):
@@ -75,7 +108,7 @@ class NoiseModel(Protocol):
 
         Args:
             readings: reading of each sensor by name.
-            images: rendered images by name, without noise.
+            images: the rendered images that it declares, by name, without noise.
             rng: this model's own stream of the episode.
         """
         ...
@@ -90,7 +123,11 @@ class NoiseSettings(Protocol):
 
 
 class Sensor(Protocol):
-    """One key of the observation. Reading it must not change the world."""
+    """One key of the observation. Reading it must not change the world.
+
+    A sensor that reads fields of `SensorContext` other than `images` names them in an attribute `reads`, a tuple of
+    names of `sim.interface.CONTEXT_FIELDS`.
+    """
 
     @property
     def name(self) -> str:

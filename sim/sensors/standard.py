@@ -11,8 +11,8 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from sim.errors import ConfigError
-from sim.interface import GOAL_CATEGORIES, MPCAT40, POSE_SENSORS, CameraModel
-from sim.sensors.sensor import NoiseSettings, Sensor, SensorContext
+from sim.interface import CONTEXT_FIELDS, GOAL_CATEGORIES, MPCAT40, POSE_SENSORS, CameraModel
+from sim.sensors.sensor import NoiseSettings, Sensor, SensorContext, declared_fields
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,6 +72,7 @@ class GpsSensor:
 
     name: str = "gps"
     images: tuple[str, ...] = ()
+    reads: tuple[str, ...] = ("pose", "start")
     noise: NoiseSettings | None = None
 
     def space(self, camera: CameraModel) -> spaces.Box:
@@ -91,6 +92,7 @@ class CompassSensor:
 
     name: str = "compass"
     images: tuple[str, ...] = ()
+    reads: tuple[str, ...] = ("pose", "start")
     noise: NoiseSettings | None = None
 
     def space(self, camera: CameraModel) -> spaces.Box:
@@ -108,6 +110,7 @@ class ObjectGoalSensor:
 
     name: str = "objectgoal"
     images: tuple[str, ...] = ()
+    reads: tuple[str, ...] = ("goal",)
     noise: NoiseSettings | None = None
 
     def space(self, camera: CameraModel) -> spaces.Box:
@@ -162,8 +165,15 @@ def _checked(sensor: Sensor) -> Sensor:
             f"Sensor {type(sensor).__name__} has no {', '.join(missing)}; see `sim.sensors.sensor.Sensor` "
             "(images = () and noise = None where there are none)."
         )
-    if isinstance(sensor.images, str):
-        raise ConfigError(f"Sensor '{sensor.name}': images must be a tuple of names, got '{sensor.images}'.")
+    for member, names in (("images", sensor.images), ("reads", declared_fields(sensor))):
+        if isinstance(names, str):
+            raise ConfigError(f"Sensor '{sensor.name}': {member} must be a tuple of names, got '{names}'.")
+    unknown = [name for name in declared_fields(sensor) if name not in CONTEXT_FIELDS]
+    if unknown:
+        raise ConfigError(
+            f"Sensor '{sensor.name}': reads names '{unknown[0]}'. Available: {', '.join(CONTEXT_FIELDS)}; images are "
+            "declared in `images`."
+        )
     if sensor.name in STANDARD_SENSORS and type(sensor) is not type(STANDARD_SENSORS[sensor.name]):
         raise ConfigError(f"Sensor {type(sensor).__name__} has the name of the standard sensor '{sensor.name}'.")
     return sensor

@@ -77,8 +77,8 @@ class ChaseView:
         self._depth = np.zeros((height_px, width_px), np.float32)
         profile = get_profile("fast")
         self._gl = make_gl_context(self._size)
-        self._gl.make_current()
-        self._context = make_frame_buffer(model, self._size, profile)
+        with self._gl.as_current():
+            self._context = make_frame_buffer(model, self._size, profile)
         self._finalizer = weakref.finalize(self, free_contexts, self._gl, {self._context})
         self._finalizer.atexit = False  # OpenGL may be unloaded before the process ends
         robot = np.flatnonzero(geoms_of(model, PREFIX))
@@ -93,11 +93,15 @@ class ChaseView:
 
     def render(self) -> NDArray[np.uint8]:
         """Returns the picture of the world's current state, uint8 RGB (height_px, width_px, 3)."""
+        with self._gl.as_current():
+            return self._render()
+
+    def _render(self) -> NDArray[np.uint8]:
+        """Returns the picture; the OpenGL context is current."""
         data, pose = self._world.data, self._world.pose
         eye_m, axes = eye_and_axes(pose)
         robot_m = np.array([pose.x_m, pose.y_m, pose.floor_z_m + 0.5 * self._world.robot.height_m])
         near_m = max(Z_NEAR_M, float((robot_m - eye_m) @ axes[0]) - CUT_M)
-        self._gl.make_current()
         shown, hidden = (self._in_range(geoms, eye_m, axes, near_m) for geoms in (self._geoms, self._hidden))
         lamps = self._lamps.choose(data, robot_m, axes[0] * np.array([1.0, 1.0, 0.0]))
         self._lamps.switch_on(lamps)

@@ -8,7 +8,7 @@
     |                                   +----------------+----+-----------+
     |                                   | the agent's    | the true       |
     +-----------+-----------+-----------+ map            | plan           |
-    | predicted | true      | colours   +----------------+----------------+
+    | agent's   | true      | colours   +----------------+----------------+
     | segments  | segments  | in sight  | legends, state of the agent     |
     +-----------+-----------+-----------+---------------------------------+
 
@@ -26,7 +26,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, Scores
+from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, Perceived
 from sim.task.explanations import ACTION_WORDS, Outcome, in_words, with_article
 from sim.viewers.palette import PALETTE, colour_segmentation
 from sim.viewers.text import BOLD, NORMAL, text_width, wrapped, write
@@ -76,15 +76,6 @@ class MapPanel:
     """Text that says what the agent is doing."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Perceived:
-    """The result of the agent's segmentation for one frame."""
-
-    scores: Scores
-    categories: NDArray[np.uint8] | None
-    """mpcat40 ids (h, w) at any size; None: it does not name them."""
-
-
 class FrameComposer:
     """Composes the frames of one episode; what does not change is drawn once.
 
@@ -96,6 +87,7 @@ class FrameComposer:
         scores: whether the agent has a segmentation, which scores the goal.
         names: whether that segmentation names categories.
         max_steps: number of actions that the episode allows.
+        segmentation: name of the agent's segmentation.
     """
 
     def __init__(
@@ -108,6 +100,7 @@ class FrameComposer:
         scores: bool = False,
         names: bool = False,
         max_steps: int = 500,
+        segmentation: str = "",
     ) -> None:
         self.goal, self._camera, self._max_steps = goal, camera, max_steps
         self._depth = _LOW_DEPTH if scores else _DEPTH
@@ -115,6 +108,9 @@ class FrameComposer:
         self._plan_left = _MAP_LEFT if map_legend is None else _PLAN_LEFT
         self.plan_px = WIDTH_PX - 8 - self._plan_left, MAP_PX
         """Width and height of the plan."""
+        module, own, last = segmentation.rpartition(":")
+        named = f"by {module.rpartition('.')[2]}:{last}" if own else f"segmentation ({segmentation})"
+        captions = {"predicted": named, "true": "segmentation (true)"}
         self._ground = np.full((HEIGHT_PX, WIDTH_PX, 3), PAPER, np.uint8)
         frame = self._ground
         frame[:_HEADER_PX] = HEADER
@@ -122,7 +118,7 @@ class FrameComposer:
         for box, title in (
             (_CAMERA, "camera of the robot"),
             (_CHASE, "third person"),
-            *((self._segment_box(name), f"segmentation ({name})") for name in self._segments),
+            *((self._segment_box(name), captions[name]) for name in self._segments),
             ((self._plan_left, _MAPS_TOP, *self.plan_px), "plan (true)"),
         ):
             self._caption(frame, title, box)
@@ -193,7 +189,10 @@ class FrameComposer:
         for name, segments in small.items():
             _put(frame, segmentation_picture(segments, self.goal), self._segment_box(name))
         self._names(frame, list(small.values()))
-        if perceived is not None:
+        if "predicted" in self._segments and "predicted" not in small:
+            left, top, width, height = self._segment_box("predicted")
+            write(frame, "not used in this step", (left + 12, top + height // 2), width - 24, 14, PALE)
+        if perceived is not None and perceived.scores is not None:
             target = perceived.scores.target
             self._caption(frame, f"score of the goal, at most {float(target.max()):.2f}", _SCORE)
             _put(frame, score_picture(_fitted(moment.seen("rgb"), _SCORE), target), _SCORE)

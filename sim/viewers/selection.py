@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from sim.errors import ConfigError
-from sim.interface import Segmenter
-from sim.viewers.viewer import MapPainter, Viewer
+from sim.viewers.viewer import MapPainter, SeesFrames, Viewer
 
 
 class ViewerOptions(Protocol):
@@ -49,13 +48,13 @@ def check(options: ViewerOptions) -> None:
         rerun_log.require_rerun(window=options.rerun)
 
 
-def make(options: ViewerOptions, painter: MapPainter | None, segmenter: Segmenter | None = None) -> list[Viewer]:
+def make(options: ViewerOptions, painter: MapPainter | None, seen: SeesFrames | None = None) -> list[Viewer]:
     """Returns the selected viewers.
 
     Args:
         options: of the run.
         painter: draws the agent's map; None where it has none.
-        segmenter: the agent's segmentation; None where it has none.
+        seen: gives the segmentation that the agent acts on; None where it has none.
 
     Raises:
         ConfigError: see `check`.
@@ -65,7 +64,7 @@ def make(options: ViewerOptions, painter: MapPainter | None, segmenter: Segmente
     if options.video and options.out is not None:
         from sim.viewers.video import VideoRecorder
 
-        viewers.append(VideoRecorder(options.out, painter, segmenter))
+        viewers.append(VideoRecorder(options.out, painter, seen))
     if options.view:
         from sim.viewers.live import LiveView
 

@@ -25,13 +25,12 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.env.scene import Scene
 from sim.errors import ConfigError
 from sim.files import part_file
-from sim.interface import NamesCategories, Segmenter
 from sim.reading import reason_of
 from sim.task.explanations import explain_end
 from sim.viewers import overlay
 from sim.viewers.chase import ChaseView
 from sim.viewers.topview import TopView
-from sim.viewers.viewer import MapPainter, Moment
+from sim.viewers.viewer import MapPainter, Moment, SeesFrames
 
 FOLDER = "videos"
 FRAMES_PER_S = 5.0
@@ -137,15 +136,15 @@ class VideoWriter:
 class VideoRecorder:
     """A viewer that records a video of each episode (`sim.viewers.viewer.Viewer`)."""
 
-    def __init__(self, run: Path, painter: MapPainter | None = None, segmenter: Segmenter | None = None) -> None:
+    def __init__(self, run: Path, painter: MapPainter | None = None, seen: SeesFrames | None = None) -> None:
         """Records episodes of a run.
 
         Args:
             run: folder of the run; files go to `videos/` in it.
             painter: draws the agent's map; None: it has none.
-            segmenter: the agent's segmentation; None: it has none.
+            seen: gives the segmentation that the agent acts on; None: it has none.
         """
-        self._run, self._painter, self._segmenter = run, painter, segmenter
+        self._run, self._painter, self._seen = run, painter, seen
         self._writer: VideoWriter | None = None
         self._chase: ChaseView | None = None
         self._scene: Scene | None = None
@@ -164,9 +163,10 @@ class VideoRecorder:
             env.camera_model,
             plan_legend=self._plan.legend,
             map_legend=None if self._painter is None else self._painter.legend,
-            scores=self._segmenter is not None,
-            names=isinstance(self._segmenter, NamesCategories),
+            scores=self._seen is not None,
+            names=self._seen is not None and self._seen.names,
             max_steps=env.task_config.max_steps,
+            segmentation=self._seen.name if self._seen is not None else "",
         )
         file = video_file(self._run, env.episode.episode_id)
         self._writer = VideoWriter(file, size_px=(overlay.WIDTH_PX, overlay.HEIGHT_PX))
@@ -174,12 +174,13 @@ class VideoRecorder:
     def decided(self, moment: Moment) -> None:
         """Draws the frame now, while the agent's map and the world are those of its decision."""
         assert self._chase is not None
+        goal = self._env.episode.goal
         self._frame = self._composer.compose(
             moment,
             plan=self._plan.draw(*self._composer.plan_px),
             map_panel=self._agent_map(),
             chase=self._chase.render(),
-            perceived=perceive(self._segmenter, moment, self._env.episode.goal),
+            perceived=self._seen.perceived(moment.observation, goal) if self._seen is not None else None,
         )
 
     def moved(self, info: Mapping[str, Any]) -> None:
@@ -198,7 +199,7 @@ class VideoRecorder:
             return
         last = self._frame.copy()
         nearest_m = self._env.scene.task.trajectory().nearest_instance_m
-        rule, detects = self._env.success_rule, self._segmenter is not None
+        rule, detects = self._env.success_rule, self._seen is not None
         self._composer.add_end(last, explain_end(line, self._env.episode.goal, rule, nearest_m, detects=detects))
         for _ in range(END_FRAMES):
             writer.write(last)
@@ -227,16 +228,3 @@ class VideoRecorder:
         if self._chase is not None:
             self._chase.close()
         self._chase = self._scene = None
-
-
-def perceive(segmenter: Segmenter | None, moment: Moment, goal: str) -> overlay.Perceived | None:
-    """Returns what a segmenter says about the frame of a moment, None without one.
-
-    It must be called before the environment moves on. The scores of a frame do not change when they are asked for
-    again, so that the agent's results stay the same.
-    """
-    if segmenter is None:
-        return None
-    scores = segmenter.scores(moment.observation, goal)
-    named = segmenter.categories(moment.observation) if isinstance(segmenter, NamesCategories) else None
-    return overlay.Perceived(scores=scores, categories=named)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import Action, Observation
+from sim.interface import Action, Observation, Perceived
 
 if TYPE_CHECKING:  # only for the annotation
     from sim.env.objectnav import ObjectNavEnv
@@ -62,6 +62,24 @@ class Viewer(Protocol):
 
     def close(self) -> None:
         """Called after the last episode, or when a run is interrupted; an unfinished episode is discarded."""
+        ...
+
+
+class SeesFrames(Protocol):
+    """The segmentation that an agent acts on, for viewers; asking for it changes nothing."""
+
+    @property
+    def name(self) -> str:
+        """Returns its name, such as "rednet" or "ground truth"."""
+        ...
+
+    @property
+    def names(self) -> bool:
+        """Returns whether it names the category of each pixel."""
+        ...
+
+    def perceived(self, observation: Observation, goal: str) -> Perceived | None:
+        """Returns the segmentation of a frame before the environment moves on; None: the agent did not use it."""
         ...
 
 

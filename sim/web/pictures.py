@@ -17,7 +17,6 @@ from sim.viewers import overlay
 from sim.viewers.chase import ChaseView
 from sim.viewers.palette import PALETTE
 from sim.viewers.topview import TopView
-from sim.viewers.video import perceive
 from sim.viewers.viewer import Colour, Moment
 
 NAMES = ("camera", "chase", "predicted", "score", "map", "plan", "semantic", "depth")
@@ -40,7 +39,9 @@ class Pictures:
     def draw(self, names: Collection[str], moment: Moment) -> dict[str, bytes]:
         """Returns the pictures of these names as JPEG; those that the agent does not have are left out."""
         env, goal, drawn = self._parts.env, self._parts.env.episode.goal, {}
-        perceived = perceive(self._parts.segmenter, moment, goal) if {"predicted", "score"} & set(names) else None
+        seen, perceived = self._parts.seen, None
+        if seen is not None and {"predicted", "score"} & set(names):
+            perceived = seen.perceived(moment.observation, goal)
         painter = self._parts.painter
         semantic = moment.images["semantic"]
         make: dict[str, Callable[[], NDArray[np.uint8]]] = {
@@ -53,7 +54,9 @@ class Pictures:
         if painter is not None:
             make["map"] = lambda: painter.paint(MAP_PX)
         if perceived is not None:
-            make["score"] = lambda: overlay.score_picture(_small(moment.seen("rgb")), perceived.scores.target)
+            if perceived.scores is not None:
+                target = perceived.scores.target
+                make["score"] = lambda: overlay.score_picture(_small(moment.seen("rgb")), target)
             if perceived.categories is not None:
                 categories = perceived.categories
                 make["predicted"] = lambda: overlay.segmentation_picture(_small(categories), goal)

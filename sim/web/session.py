@@ -119,6 +119,7 @@ class Session:
 
         def begun(env: ObjectNavEnv) -> None:
             about.update(episode_id=episode.episode_id, max_steps=env.task_config.max_steps, legends=pictures.legends())
+            about.update(segmentation=parts.seen.name if parts.seen is not None else "")
             self._tell(wish, "playing", f"Looking for {with_article(wish.goal)}.", **about)
 
         watcher = _Watcher(begun, shared)
@@ -134,7 +135,7 @@ class Session:
         )
         shared.show_end()
         nearest_m = parts.env.scene.task.trajectory().nearest_instance_m
-        detects = parts.segmenter is not None and not shared.stopped_by_person
+        detects = parts.seen is not None and not shared.stopped_by_person
         outcome = explain_end(line, wish.goal, parts.env.success_rule, nearest_m, detects=detects)
         recorded = self._record(made, episode, line, shared)
         self._tell(wish, "ended", outcome.headline, outcome=asdict(outcome) | {"recorded": recorded}, **about)

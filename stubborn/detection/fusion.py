@@ -25,6 +25,8 @@ from sim.reading import Number, read_json
 
 FOLDER = Path(__file__).parent / "fusions"
 """Folder of the shipped parameters."""
+DEFAULT_KIND = "rednet"
+"""The kind whose parameters another kind gets that has none."""
 SURFACES = ("wall", "floor", "ceiling")
 """Categories of the surfaces behind, below and above every object."""
 IS_SURFACE = np.array([name in SURFACES for name in MPCAT40[1:]])
@@ -128,4 +130,7 @@ def fusion_for(spec: SegmenterSpec, file: Path | None = None) -> Fusion:
     """
     if file is not None:
         return read_fusion(file)
-    return read_fusion(FOLDER / f"{spec.kind}.json") if spec.needs_verification else Fusion()
+    if not spec.needs_verification:
+        return Fusion()
+    own = FOLDER / f"{spec.kind}.json"
+    return read_fusion(own if own.is_file() else FOLDER / f"{DEFAULT_KIND}.json")

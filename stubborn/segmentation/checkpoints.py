@@ -7,6 +7,7 @@ run: PyTorch files are read with `torch.load(weights_only=True)`.
 from __future__ import annotations
 
 import pickle
+import re
 import struct
 import zipfile
 from collections.abc import Iterator, Mapping
@@ -15,7 +16,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import msgspec
+import numpy as np
 import torch
+from numpy._core import multiarray
 from torch import Tensor
 
 from sim.interface import ConfigError
@@ -32,6 +35,9 @@ _BROKEN_PICKLE = (
     AssertionError, ArithmeticError, MemoryError, struct.error,
 )  # fmt: skip
 """The exceptions that `torch.load` raises for files that are not checkpoints."""
+_NUMPY_NUMBERS = [multiarray.scalar, np.dtype, *{type(np.dtype(code)) for code in "?bBhHiIlLqQefd"}]
+"""What pickles call to make NumPy's numbers; they run no other code. Trainers store metrics as such numbers."""
+_TERMINAL_CODE = re.compile(r"\x1b\[[0-9;]*m")
 MAX_CHECKPOINT_BYTES = 2 << 30
 MAX_SIZE = 4096
 """Largest number of channels, blocks or classes that a header may give."""
@@ -109,9 +115,11 @@ def read_checkpoint(file: Path, *, device: torch.device | str = "cpu") -> Mappin
     if _is_zip(file):
         require_small_zip(file, what="Weights", most=MAX_CHECKPOINT_BYTES)
     try:
-        content = torch.load(file, map_location=device, weights_only=True)
+        with torch.serialization.safe_globals(_NUMPY_NUMBERS):
+            content = torch.load(file, map_location=device, weights_only=True)
     except _BROKEN_PICKLE as error:
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        reason = _TERMINAL_CODE.sub("", str(error)).partition("WeightsUnpickler error: ")
+        reason = " ".join((reason[2] or reason[0]).split("\n")[0].split()) or type(error).__name__
         raise ConfigError(f"Weights '{file}' cannot be read as a PyTorch checkpoint of tensors: {reason}") from None
     if not isinstance(content, Mapping):
         raise ConfigError(f"Weights '{file}' hold a {type(content).__name__}, not a table of tensors.")

@@ -16,6 +16,7 @@ from sim.interface import MPCAT40_ID, ConfigError
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
+from stubborn.segmentation.shipped import SHIPPED_REDNET
 from tests.commands.test_train_segmentation import write_views
 
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
@@ -127,3 +128,9 @@ def test_mirror_images_slivers_and_the_calibration_change_what_is_measured(tmp_p
     shifted = evaluate_rednet.measure(args, model, metadata)
     assert (shifted.matrix == plain.matrix).all()
     assert shifted.calibrated.accuracy == pytest.approx(plain.matrix[MPCAT40_ID["sofa"] - 1].sum() / plain.matrix.sum())
+
+
+def test_the_calibration_of_the_shipped_weights_is_replaced_only_when_the_options_say_so(tmp_path: Path) -> None:
+    for given in (None, SHIPPED_REDNET):
+        with pytest.raises(ConfigError, match="Give --weights FILE, a copy of them for example, or --shipped"):
+            evaluate_rednet.main(Args(views=(tmp_path,), weights=given, calibrate=True))

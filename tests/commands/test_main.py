@@ -149,4 +149,4 @@ def test_no_file_changes_where_modules_are_looked_for() -> None:
         for file in (ROOT / folder).rglob("*.py")
         if "sys.path." + "insert" in file.read_text(encoding="utf-8")
     ]
-    assert found == ["sim/composition/agents.py"]  # the current folder, where `--agent package.module:NAME` looks
+    assert found == ["sim/composition/imports.py"]  # the current folder, where `--agent package.module:NAME` looks

@@ -29,7 +29,9 @@ def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def log_after(split: Path, log: Path, episodes: int) -> list[dict]:
     """Returns the log after this number of episodes; it holds too few tracks for a fit."""
-    args = train_tracks.Args(split=str(split), semantics="noisy", episodes=episodes, max_steps=30, log=log)
+    args = train_tracks.Args(
+        split=str(split), semantics="noisy", episodes=episodes, max_steps=30, log=log, out=log / "x.json"
+    )
     with pytest.raises(ConfigError, match="100 are needed"):
         train_tracks.main(args)
     return [json.loads(line) for line in (log / "results.jsonl").read_text().splitlines()]
@@ -65,7 +67,9 @@ def test_a_file_holds_the_tracks_only(split: Path, tmp_path: Path, monkeypatch: 
 
 
 def test_a_log_of_another_seed_and_a_broken_file_are_refused(split: Path, tmp_path: Path):
-    args = train_tracks.Args(split=str(split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path)
+    args = train_tracks.Args(
+        split=str(split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
+    )
     with pytest.raises(ConfigError, match="100 are needed"):
         train_tracks.main(args)
     with pytest.raises(ConfigError, match="holds a run with seed"):

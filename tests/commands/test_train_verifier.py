@@ -38,7 +38,9 @@ def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def log_after(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> list[dict]:
     """Returns the log after this number of episodes; it holds too few candidates for a fit."""
-    args = train_verifier.Args(split=str(split), episodes=episodes, max_steps=max_steps, least_of_either=500, log=log)
+    args = train_verifier.Args(
+        split=str(split), episodes=episodes, max_steps=max_steps, least_of_either=500, log=log, out=log / "x.json"
+    )
     with pytest.raises(ConfigError, match="500 of each are needed"):
         train_verifier.main(args)
     return [json.loads(line) for line in (log / "results.jsonl").read_text().splitlines()]
@@ -79,7 +81,7 @@ def test_the_recorded_command_names_all_options_that_change_the_fit_and_the_epis
     args = train_verifier.Args(split="runs/my houses", semantics="rednet", weights=Path("a b.safetensors"), minutes=3.0)
     assert train_verifier.command(replace(args, least_of_either=7, seed=2), 71) == (
         "stubborn train verifier --semantics rednet --weights 'a b.safetensors' --split 'runs/my houses' "
-        "--episodes 71 --max-steps 200 --least-of-either 7 --seed 2"
+        "--episodes 71 --max-steps 200 --least-of-either 7 --seed 2 --shipped"
     )
 
 
@@ -87,7 +89,9 @@ def test_the_recorded_command_names_all_options_that_change_the_fit_and_the_epis
 def test_a_log_of_another_split_code_or_detector_is_refused_with_the_difference(
     split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: str
 ):
-    args = train_verifier.Args(split=str(split), episodes=1, max_steps=3, least_of_either=500, log=tmp_path / "log")
+    args = train_verifier.Args(
+        split=str(split), episodes=1, max_steps=3, least_of_either=500, log=tmp_path / "log", out=tmp_path / "x.json"
+    )
     with pytest.raises(ConfigError, match="500 of each are needed"):
         train_verifier.main(args)
     if change == "split_identity":  # the same name and version, another house
@@ -133,7 +137,7 @@ def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
     monkeypatch.setattr(TargetSeeker, "judge", lambda *args: judged.append(args) or judge(*args))
     monkeypatch.setattr(train_verifier.RecordingVerifier, "accepts", spy)
     exact = replace(KINDS["gt"], spec=replace(GroundTruthSegmenter.spec, needs_verification=True))
-    monkeypatch.setattr(train_verifier, "KINDS", {"noisy": exact})
+    monkeypatch.setattr(train_verifier, "find_segmentation", lambda *_: exact)
     monkeypatch.setattr(train_verifier, "make_segmenter", lambda *_, **__: GroundTruthSegmenter())
     log_after(folder, tmp_path / "log", 3, max_steps=120)
     assert set(asked) == {(True, 1), (False, 0)}
@@ -143,7 +147,13 @@ def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
 def test_two_workers_log_the_same_as_one(split: Path, tmp_path: Path):
     one = log_after(split, tmp_path / "one", 3)
     args = train_verifier.Args(
-        split=str(split), episodes=3, max_steps=30, least_of_either=500, log=tmp_path / "two", workers=2
+        split=str(split),
+        episodes=3,
+        max_steps=30,
+        least_of_either=500,
+        log=tmp_path / "two",
+        workers=2,
+        out=tmp_path / "x",
     )
     with pytest.raises(ConfigError, match="500 of each are needed"):
         train_verifier.main(args)
@@ -152,7 +162,9 @@ def test_two_workers_log_the_same_as_one(split: Path, tmp_path: Path):
 
 
 def test_a_time_limit_leaves_whole_lines_and_zero_runs_nothing(split: Path, tmp_path: Path):
-    args = train_verifier.Args(split=str(split), episodes=3, max_steps=30, minutes=1e-6, log=tmp_path / "log")
+    args = train_verifier.Args(
+        split=str(split), episodes=3, max_steps=30, minutes=1e-6, log=tmp_path / "log", out=tmp_path / "x.json"
+    )
     there = load_split(str(split))
     assert len(train_verifier.candidates_of(args, there)) == 1
     assert len(train_verifier.candidates_of(replace(args, minutes=0.0, seed=9), there)) == 1
@@ -182,3 +194,12 @@ def test_a_judgement_has_the_truth_and_the_probability_of_the_verifier():
     rows = train_verifier.judgement(lines, file).splitlines()
     assert f"| naive-bayes | bed | 1 | 1 | {0.5 * sum(p):.2f} | {brier:.2f} | 0.50 | 1.00 | 1.00 | 1.00 |" in rows
     assert f"| naive-bayes | 0.8 | 1.0 | 1 | {p[0]:.2f} | 1.00 |" in rows
+
+
+def test_the_shipped_parameters_are_replaced_only_when_the_options_say_so():
+    before = (train_verifier.FOLDER / "noisy.json").read_bytes()
+    with pytest.raises(ConfigError, match="Give --out FILE for the parameters, or --shipped"):
+        train_verifier.main(train_verifier.Args(episodes=1))
+    with pytest.raises(ConfigError, match="is your own: give --out FILE"):
+        train_verifier.main(train_verifier.Args(semantics="tests.helpers.segmentations:FLAT", shipped=True))
+    assert (train_verifier.FOLDER / "noisy.json").read_bytes() == before

@@ -269,6 +269,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} examples/train_ppo.py --minutes 30 --envs 2 --out runs/ppo": (
         f"{PYTHON} examples/train_ppo.py --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
     ),
+    f"{_RUN} --agent examples.ppo_agent:AGENT --config-file runs/ppo/run.toml {_SMALL} --video": (
+        f"{PYTHON} examples/train_ppo.py --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
+        f"{_RUN} --agent examples.ppo_agent:AGENT --config-file {{tmp}}/ppo/run.toml {_SMALL} --episodes 1 --video"
+        " --out {tmp}/filmed",
+    ),
     "stubborn houses plans --split val --out runs/plans/val --workers 2": (
         "stubborn houses plans --split val --houses 1 --workers 1 --out {tmp}/plans",
     ),
@@ -368,6 +373,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _VIEWS,
         "stubborn train segmentation --views {tmp}/views --val-views {tmp}/views --out {tmp}/rednet"
         " --hours 0.01 --steps 2 --batch 2 --val-count 2",
+    ),
+    f"{_RUN} --semantics examples.my_segmentation:SEGMENTATION --config detector.weights=my_network.pt": (
+        f"{PYTHON} -c 'import torch; from examples.my_segmentation import MyNetwork; "
+        'torch.save(MyNetwork().state_dict(), "{tmp}/my_network.pt")\'',
+        f"{_RUN} --semantics examples.my_segmentation:SEGMENTATION --config detector.weights={{tmp}}/my_network.pt"
+        f" task.max_steps=5 {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
     f"{_RUN} --semantics rednet --weights runs/rednet/rednet.safetensors": (
         f"{_RUN} --semantics rednet --weights {_SHIPPED} {_SMALL} --episodes 1 --out {{tmp}}/run",

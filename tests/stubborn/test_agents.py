@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from examples import my_agent
-from sim.bridges.process import ProcessAgent, ProcessConfig
+from sim.bridges.process import ProcessAgent
+from sim.bridges.process_command import ProcessConfig
 from sim.interface import (
     MPCAT40_ID,
     Action,

@@ -80,7 +80,7 @@ def free_poses(world: World, count: int, rng: np.random.Generator) -> list[Pose]
 def stubborn_agent(env: ObjectNavEnv, *, semantics: str = "gt", **options: Any) -> Agent:
     """Returns the agent of the paper with this kind of segmentation and its verifier."""
     segmenter = make_segmenter(semantics, env)
-    options.setdefault("verifier", verifier_for(semantics, segmenter.spec))
+    options.setdefault("verifier", verifier_for(segmenter.spec))
     return agents.make("stubborn", camera=env.camera_model, robot=env.robot_model, segmenter=segmenter, **options)
 
 

@@ -39,6 +39,7 @@ from stubborn.segmentation.networks import Network
 from stubborn.segmentation.preprocess import padding, shrink
 from stubborn.segmentation.rednet import CLASSES
 from stubborn.segmentation.samples import NONE, Sampler, Samples
+from stubborn.segmentation.shipped import SHIPPED_REDNET
 from stubborn.segmentation.slivers import without_slivers
 
 TIMED_FRAMES = 30
@@ -56,7 +57,9 @@ class Args:
     count: cli.Amount = 0
     """Number of views of each folder, spread over its shards; 0: all."""
     calibrate: bool = False
-    """Fit the calibration and write it to the file of the weights."""
+    """Fit the calibration and write it to the file of the weights, --weights."""
+    shipped: bool = False
+    """With --calibrate: allow that the file is that of the weights that ship."""
     card: cli.OutFile | None = None
     """File of the model card to write."""
     curves: tuple[Path, ...] = ()
@@ -95,6 +98,11 @@ def main(args: Args) -> int:
             raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {value}.")
     torch.set_num_threads(args.threads)
     file = weights_file(args.weights)
+    if args.calibrate and not args.shipped and file.resolve() == SHIPPED_REDNET.resolve():
+        raise ConfigError(
+            "--calibrate writes into the file of the weights, and these are those that ship. Give --weights FILE, a "
+            "copy of them for example, or --shipped to change the shipped file."
+        )
     if args.calibrate and file.suffix != ".safetensors":
         raise ConfigError(
             f"--calibrate writes into the file of the weights, and '{file}' is not of this project; train with --init "

@@ -24,9 +24,10 @@ from torch.nn import functional
 
 from sim import cli
 from sim.commands.train.timed_training import PRINT_EVERY_S, TimedTraining, stride
-from sim.commands.train.training_files import read_columns
+from sim.commands.train.training_files import read_columns, tell_next
 from sim.datasets.demonstrations import Demonstration, list_demonstrations, read_demonstration
 from sim.interface import GOAL_CATEGORIES, Action, ConfigError
+from sim.invocation import command
 from stubborn.baselines.cloned_data import LabelledSteps, Piece, Streams
 from stubborn.baselines.cloned_input import HEIGHT_PX, NO_ACTION, WIDTH_PX, Steps, depth_levels, motions
 from stubborn.baselines.cloned_net import FILES, ClonedNet
@@ -68,6 +69,9 @@ def main(args: Args) -> int:
     train, val = read_all(files)
     Trainer(args, train, val, files).run()
     draw_curve(args.out)
+    weights = args.out / "cloned.safetensors"
+    chosen = ("--agent", "cloned", "--semantics", "gt", "--config", f"agent.weights={weights}")
+    tell_next(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
     return 0
 
 

@@ -6,6 +6,7 @@ split, code and detector are the same.
 
 from __future__ import annotations
 
+import shlex
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ from sim.composition.segmenters import KINDS, detector_config, detector_record, 
 from sim.episodes.splits import Episode, Split
 from sim.evaluation.config_fields import differing_fields, field_text
 from sim.evaluation.executors import make_executor
+from sim.evaluation.own_code import hash_of_own
 from sim.evaluation.results import RunDirectory, read_result_lines
 from sim.evaluation.workers import RunnerSpec
 from sim.interface import ConfigError
@@ -37,7 +39,7 @@ class LogOptions:
     split: str
     """A shipped split, or a folder with the same layout (`stubborn episodes`)."""
     semantics: str = "rednet"
-    """The kind of segmentation whose errors are learned; one of `stubborn run` that needs verification."""
+    """The segmentation whose errors are learned: one of `stubborn run`, also your own, that needs verification."""
     weights: Path | None = None
     """With --semantics rednet: weights in place of the shipped ones."""
     episodes: cli.Count = 100
@@ -52,18 +54,46 @@ class LogOptions:
     """Fit nothing; judge the existing parameters (--out) on these episodes."""
     seed: cli.Seed = 0
     """Seed of the episodes."""
+    shipped: bool = False
+    """Without --out: write the parameters that ship for this kind of segmentation, or judge them."""
     log: cli.OutFolder | None = None
     """Folder of the log; None: a folder in runs, named after the command, --semantics and the split."""
 
 
 def check(args: LogOptions) -> None:
     """Raises ConfigError for an exact kind of segmentation, and for a fit on val or test."""
-    find_segmentation(args.semantics, args.weights)
-    if not KINDS[args.semantics].spec.needs_verification:
+    if not find_segmentation(args.semantics, args.weights).spec.needs_verification:
         kinds = [name for name, kind in KINDS.items() if kind.spec.needs_verification]
         raise ConfigError(f"--semantics '{args.semantics}' makes no errors to learn. Available: {', '.join(kinds)}.")
     if args.split in ("val", "test") and not args.judge:
         raise ConfigError(f"Nothing is fitted on '{args.split}'; use --judge there.")
+
+
+def parameters_file(args: LogOptions, out: Path | None, folder: Path) -> Path:
+    """Returns the file of the parameters: --out, or with --shipped that of the kind in the folder of shipped ones.
+
+    Raises:
+        ConfigError: neither option is given, or nothing ships for this segmentation.
+    """
+    if out is not None and args.shipped:
+        raise ConfigError("--out and --shipped exclude each other.")
+    if out is not None:
+        return out
+    if args.semantics not in KINDS:
+        raise ConfigError(f"--semantics '{args.semantics}' is your own: give --out FILE.")
+    if not args.shipped and not args.judge:
+        raise ConfigError("Give --out FILE for the parameters, or --shipped to replace those that ship.")
+    return folder / f"{args.semantics}.json"
+
+
+def where_to(args: LogOptions, out: Path | None) -> str:
+    """Returns the option that says where the parameters go, for the command that a file of parameters records."""
+    return "--shipped" if out is None else f"--out {shlex.quote(str(out))}"
+
+
+def default_log(command: str, args: LogOptions, split: Split) -> Path:
+    """Returns the folder of a log without --log."""
+    return Path("runs") / f"{command}-{args.semantics.replace(':', '.')}-{split.name}"
 
 
 def lines_of(
@@ -116,12 +146,18 @@ def log_config(args: LogOptions, split: Split) -> dict[str, Any]:
     """
     return {
         "semantics": args.semantics,
-        "detector": detector_record(detector_config(KINDS[args.semantics], args.weights)),
+        "detector": detector_record(detector_config(find_segmentation(args.semantics, args.weights), args.weights)),
         "seed": args.seed,
         "max_steps": args.max_steps,
         "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
-        "code": code_hash(parameters=False),
+        "code": code_hash(parameters=False) + _own_code(args.semantics),
     }
+
+
+def _own_code(semantics: str) -> str:
+    """Returns "+" and a hash of the code of a segmentation of the user's; "" for those that ship."""
+    module, separator, _ = semantics.partition(":")
+    return f"+{hash_of_own((module,))}" if separator else ""
 
 
 def line_of(episode: Episode, steps: int, **found: Any) -> dict[str, Any]:

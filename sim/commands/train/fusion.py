@@ -1,6 +1,6 @@
 """Fits how `stubborn-plus` fuses the views of an object to tracks whose true category is known.
 
-    stubborn train fusion --split runs/unseen --episodes 100
+    stubborn train fusion --split runs/unseen --episodes 100 --out runs/fusion.json
     stubborn train fusion --split val --episodes 15 --judge
 
 The agent explores without stopping and looks at whatever may be the goal. At the end of an episode all of its tracks
@@ -30,8 +30,8 @@ import numpy as np
 from jaxtyping import Int
 
 from sim import cli
-from sim.commands.train.episode_logs import LogOptions, check, line_of, lines_of
-from sim.composition.segmenters import KINDS, make_segmenter
+from sim.commands.train.episode_logs import LogOptions, check, default_log, line_of, lines_of, parameters_file, where_to
+from sim.composition.segmenters import find_segmentation, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import EpisodeError, PhysicsError
@@ -65,7 +65,7 @@ class Args(LogOptions):
     """Log the tracks of episodes, then fit the fusion of views to them."""
 
     out: cli.OutFile | None = None
-    """File of the parameters; None: stubborn/detection/fusions/<semantics>.json."""
+    """File of the parameters (JSON)."""
 
 
 class TrackLine(msgspec.Struct):
@@ -81,12 +81,12 @@ class TrackLine(msgspec.Struct):
 def main(args: Args) -> int:
     """Runs the episodes, then fits and writes, or judges; returns the exit status."""
     check(args)
+    file = parameters_file(args, args.out, FOLDER)
     split = load_split(args.split)
     episodes = tracks_of(args, split)
     samples = samples_of(episodes, seed=args.seed)
     if not samples:
         raise ConfigError("The log holds no tracks: run episodes, with --minutes above 0 or without this option.")
-    file = args.out or FOLDER / f"{args.semantics}.json"
     about = {"episodes": len(episodes), "houses": len({str(each["house"]) for each in episodes})}
     about["tracks"] = sum(len(each["counts"]) for each in episodes)
     print(", ".join(f"{value} {name}" for name, value in about.items()))
@@ -120,7 +120,7 @@ def compared(samples: Sequence[Sample]) -> dict[str, Any]:
 
 def tracks_of(args: Args, split: Split) -> list[dict[str, Any]]:
     """Returns the tracks of the first `args.episodes` episodes; those that are not in the log yet are run now."""
-    log = args.log or Path("runs") / f"tracks-{args.semantics}-{split.name}"
+    log = args.log or default_log("tracks", args, split)
     runner = RunnerSpec(f"{__name__}:{TrackRunner.__name__}", (args, log))
     lines = lines_of(args, split, log, TrackLine, runner, {"tracks": 0})
     return [
@@ -139,7 +139,7 @@ class TrackRunner:
     def __init__(self, options: tuple[Args, Path]) -> None:
         args, self._log = options
         self._seed = args.seed
-        spec = KINDS[args.semantics].spec
+        spec = find_segmentation(args.semantics, args.weights).spec
         self._env = ObjectNavEnv(
             split=args.split,
             sensors=("depth", *spec.sensors),
@@ -232,7 +232,7 @@ def command(args: Args) -> str:
     """Returns the command that gives the same parameters."""
     weights = "" if args.weights is None else f" --weights {shlex.quote(str(args.weights))}"
     options = f"--split {shlex.quote(args.split)} --semantics {args.semantics}{weights} --episodes {args.episodes}"
-    return f"stubborn train fusion {options} --max-steps {args.max_steps} --seed {args.seed}"
+    return f"stubborn train fusion {options} --max-steps {args.max_steps} --seed {args.seed} {where_to(args, args.out)}"
 
 
 def _print(quality: Mapping[str, Any]) -> None:

@@ -25,11 +25,20 @@ import numpy as np
 import torch
 from torch import Tensor
 from torch.optim.swa_utils import AveragedModel
-from torch.utils.data import DataLoader
+from torch.utils.data import DataLoader, Subset
 
 from sim import cli
-from sim.commands.train.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
+from sim.commands.train.training_files import (
+    append_row,
+    cut_rows,
+    load_state,
+    options_of,
+    require_options,
+    save_state,
+    tell_next,
+)
 from sim.interface import CameraModel, ConfigError
+from sim.invocation import command
 from sim.reading import Count as ReadCount
 from sim.reading import Number
 from stubborn.segmentation.balanced import BalancedViews, ViewIndex
@@ -59,6 +68,8 @@ from stubborn.segmentation.training import (
 from stubborn.segmentation.unet import MobileEncoder, UNet
 
 LOG_EVERY_STEPS = 20
+EVALUATION_SHARE = 0.1
+"""With --hours, an evaluation takes at most about this share of the time: fewer views are evaluated."""
 PRINT_EVERY_S = 10.0
 """Shortest time between two lines that print the loss."""
 NORMALISATION_VIEWS = 320
@@ -122,7 +133,7 @@ class Args:
     steps: cli.Count = 20_000
     """Number of steps of the learning-rate schedule."""
     hours: cli.Positive | None = None
-    """Time limit, to which the schedule is fitted by the measured speed; None: --steps."""
+    """Time limit of the command, loading and evaluations included; the schedule is fitted to it. None: --steps."""
     stop_after_hours: cli.Positive | None = None
     """Stop earlier than --hours, without a change of the schedule; the same command with a larger value continues."""
     batch: cli.Count = 16
@@ -153,6 +164,14 @@ def main(args: Args) -> int:
     """Trains; returns the exit status."""
     trainer = Trainer(args)
     trainer.run()
+    weights = args.out / "rednet.safetensors"
+    if trainer.start_miou is not None:
+        print(f"mIoU of goals, calibrated: {trainer.start_miou:.3f} at the start, {trainer.best:.3f} now")
+    tell_next(
+        weights,
+        command("evaluate", "--views", *map(str, args.val_views), "--weights", str(weights)),
+        command("run", "--semantics", "rednet", "--weights", str(weights)),
+    )
     return 0
 
 
@@ -177,6 +196,7 @@ class Trainer:
     """The network, the optimiser, the data and the progress of one run."""
 
     def __init__(self, args: Args) -> None:
+        self._began_s = time.perf_counter()
         _check(args)
         self.args = args
         self.device = _device(args.device)
@@ -209,10 +229,14 @@ class Trainer:
         )
         self.data = _data(args, shards, sampler)
         self.stored_block_px = stored_block_px([*shards, *val_shards])
-        self.val = Samples(
+        self.val: Samples | Subset = Samples(
             spread_views(val_shards, args.val_count),
             Sampler(camera, self.val_block_px, second=second),
         )
+        self.start_miou: float | None = None
+        """Calibrated mIoU over the goal categories before the first step; None: not measured by this process."""
+        self._evaluation_s = 0.0
+        """Duration of the last evaluation."""
         self.whole: Samples | None = None
         """With windows: whole views of the training, augmented, for the statistics of the normalisation."""
         if args.window_px is not None:
@@ -230,18 +254,22 @@ class Trainer:
 
     def run(self) -> None:
         """Trains until the steps are done or the time is up."""
-        start_s, last_saved_s = time.perf_counter() - self.spent_s, time.perf_counter()
+        start_s, last_saved_s = self._began_s - self.spent_s, time.perf_counter()
         losses: list[float] = []
         self.first_step = self.step
-        self._printed_s = time.perf_counter()
+        if self.step == 0:
+            self._evaluate_start()
+        self._printed_s = train_s = time.perf_counter()
         for batch in self._timed(self._batches()):
             if self.step >= self.total or self._time_is_up():
                 break
             losses.append(self._train_on(*batch))
             self.step += 1
             self.spent_s = time.perf_counter() - start_s
-            if self.args.hours is not None and self.step % LOG_EVERY_STEPS == 0:
-                self.total = max(self.step, int(self.step * 3600 * self.args.hours / self.spent_s))
+            made = self.step - self.first_step
+            if self.args.hours is not None and (made < LOG_EVERY_STEPS or self.step % LOG_EVERY_STEPS == 0):
+                per_step_s = (time.perf_counter() - train_s) / made
+                self.total = self.step + max(0, int(self._left_s() / per_step_s))
             if time.perf_counter() - self._printed_s >= PRINT_EVERY_S:
                 self._print_loss(float(np.mean(losses)))
             if self.step % LOG_EVERY_STEPS == 0:
@@ -262,6 +290,29 @@ class Trainer:
     def _time_is_up(self) -> bool:
         limit = self.args.stop_after_hours
         return limit is not None and self.spent_s >= 3600 * limit
+
+    def _left_s(self) -> float:
+        """Returns the time for further steps, without the evaluation at the end; without --hours an estimate."""
+        if self.args.hours is None:
+            return (self.total - self.step) * self.spent_s / max(1, self.step)
+        return 3600 * self.args.hours - self.spent_s - 1.1 * self._evaluation_s
+
+    def _evaluate_start(self) -> None:
+        """Prints the quality of the network before the first step; with --hours chooses how many views are used."""
+        if self.args.hours is not None:
+            few = Subset(self.val, range(min(8, len(self.val))))
+            began_s = time.perf_counter()
+            evaluate(self.model, DataLoader(few, batch_size=8), device=self.device)
+            most = int(EVALUATION_SHARE * 3600 * self.args.hours * len(few) / (time.perf_counter() - began_s))
+            if most < len(self.val):
+                count = len(self.val)
+                self.val = Subset(self.val, range(0, count, -(-count // max(most, 8))))
+                print(f"evaluations use {len(self.val)} of {count} views to keep to the time", flush=True)
+        began_s = time.perf_counter()
+        iou, _, calibrated = evaluate(self.model, DataLoader(self.val, batch_size=8), device=self.device)
+        self._evaluation_s, self.start_miou = time.perf_counter() - began_s, calibrated.goals
+        name = "random weights" if self.args.init is None else f"weights of {self.args.init}"
+        print(f"start, {name}: mIoU of goals {iou.goals:.3f}, calibrated {calibrated.goals:.3f}", flush=True)
 
     def _timed(self, batches: Iterator[Sequence[Tensor]]) -> Iterator[Sequence[Tensor]]:
         """Yields the same batches and measures how long each takes to come."""
@@ -312,6 +363,7 @@ class Trainer:
 
     def _evaluate(self) -> None:
         """Evaluates, writes a row, and saves the network, then the state, if it is the best so far."""
+        began_s = time.perf_counter()
         self.evaluated_step = self.step
         print(f"step {self.step} of {self.total}: evaluating on {len(self.val)} views", flush=True)
         averaged = self._usable()
@@ -326,6 +378,7 @@ class Trainer:
             self.best = calibrated.goals
             save_network(self.args.out / "rednet.safetensors", averaged, self._card(iou, calibrated))
             self._save_state()  # so that a continued run knows the best
+        self._evaluation_s = time.perf_counter() - began_s
 
     def _usable(self) -> Network:
         """Returns the averaged network; after training on windows, normalised for whole views."""
@@ -362,7 +415,9 @@ class Trainer:
 
     def _print_loss(self, loss: float) -> None:
         self._printed_s = time.perf_counter()
-        print(f"step {self.step} of {self.total}: loss {loss:.3f}, {self._views_per_s():.1f} views/s", flush=True)
+        left = f"{max(0.0, self._left_s()) / 60:.1f} min left"
+        told = f"loss {loss:.3f}, {self._views_per_s():.1f} views/s, {left}"
+        print(f"step {self.step} of {self.total}: {told}", flush=True)
 
     def _views_per_s(self) -> float:
         return self.args.batch * self.step / max(self.spent_s, 1e-9)

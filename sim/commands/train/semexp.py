@@ -28,6 +28,7 @@ from matplotlib.figure import Figure
 from sim import cli
 from sim.files import write_atomically
 from sim.interface import ConfigError
+from sim.invocation import command
 from sim.plans.plan import read_plan
 from sim.reading import Count, Number
 from sim.twin.semexp import SemExpEnv
@@ -42,7 +43,15 @@ except ImportError as error:
 
 from sim.commands.train.plan_split import HELD_BACK, split_plans
 from sim.commands.train.semexp_policy import SemExpPolicy
-from sim.commands.train.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
+from sim.commands.train.training_files import (
+    append_row,
+    cut_rows,
+    load_state,
+    options_of,
+    require_options,
+    save_state,
+    tell_next,
+)
 
 LAST_EPISODES = 300
 """Number of episodes over which a row of the curve is a mean."""
@@ -108,7 +117,9 @@ def main(args: Args) -> int:
     torch.set_num_threads(1)  # the network is small
     run = Run(args, plans)
     run.train()
-    print(f"wrote {args.out / 'semexp.safetensors'}")
+    weights = args.out / "semexp.safetensors"
+    chosen = ("--agent", "semexp", "--semantics", "gt", "--config", f"agent.explorer.weights={weights}")
+    tell_next(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
     return 0
 
 

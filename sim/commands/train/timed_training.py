@@ -51,7 +51,7 @@ class Progress(msgspec.Struct):
 
 
 class TimedTraining(ABC):
-    """Trains a network by AdamW with a cosine schedule until its minutes are over; a killed run is continued.
+    """Trains a network by AdamW with a cosine schedule for some minutes, evaluations included; a killed run continues.
 
     A subclass makes the losses of a step and evaluates the averaged network. `train.csv` and `val.csv` in the folder of
     the run hold the curves, `<family>.safetensors` the averaged network of the best evaluation.
@@ -88,6 +88,8 @@ class TimedTraining(ABC):
         self.bf16 = bool(torch.cpu.get_capabilities().get("avx512_bf16"))
         options = options_of(args, may_change=self.may_change, files=files)
         self.progress = Progress(0, 0.0, math.inf, 0.0, options)
+        self._evaluation_s = 0.0
+        """Duration of the last evaluation, which is part of the time."""
         self._max_gradient_norm, self._samples_per_step = max_gradient_norm, samples_per_step
         self.out: Path = args.out
         self.out.mkdir(parents=True, exist_ok=True)
@@ -114,7 +116,8 @@ class TimedTraining(ABC):
         start_s, saved_s = time.perf_counter() - progress.spent_s, time.perf_counter()
         printed_s = saved_s
         parts: list[dict[str, float]] = []
-        while progress.spent_s < limit_s:
+        first_step = progress.step
+        while progress.step == first_step or progress.spent_s + self._evaluation_s < limit_s:
             parts.append(self.train_once())
             progress.spent_s = time.perf_counter() - start_s
             if len(parts) == LOG_EVERY_STEPS:
@@ -122,15 +125,15 @@ class TimedTraining(ABC):
                 parts = []
                 if time.perf_counter() - printed_s >= PRINT_EVERY_S:
                     printed_s = time.perf_counter()
-                    minutes = f"{progress.spent_s / 60:.1f} of {self.args.minutes:g} min"
-                    print(f"step {progress.step}, {minutes}: {message}", flush=True)
-            if progress.spent_s - progress.evaluated_s > EVALUATE_EVERY * limit_s:
+                    left = f"{max(0.0, limit_s - progress.spent_s) / 60:.1f} of {self.args.minutes:g} min left"
+                    print(f"step {progress.step}, {left}: {message}", flush=True)
+            if progress.spent_s - progress.evaluated_s > max(EVALUATE_EVERY * limit_s, 10.0 * self._evaluation_s):
                 self._evaluate()
-                start_s = time.perf_counter() - progress.spent_s  # an evaluation is not training
             if time.perf_counter() - saved_s > SAVE_EVERY_S:
                 self._save_state()
                 saved_s = time.perf_counter()
         self._evaluate()
+        progress.spent_s = max(progress.spent_s, limit_s)
         self._save_state()
 
     def train_once(self) -> dict[str, float]:
@@ -153,7 +156,7 @@ class TimedTraining(ABC):
     @torch.no_grad()
     def _evaluate(self) -> None:
         """Evaluates the averaged network, writes a row, and saves it if it is the best so far."""
-        progress = self.progress
+        progress, began_s = self.progress, time.perf_counter()
         progress.evaluated_s = progress.spent_s
         model: Any = self.average.module.eval()
         loss, found, message = self.evaluate(model)
@@ -167,6 +170,7 @@ class TimedTraining(ABC):
             card = {"val": row, "options": options, "torch": torch.__version__, **self.about()}
             self.family.save(self.out / f"{self.family.name}.safetensors", model, card)
             self._save_state()  # so that a continued run knows the best
+        self._evaluation_s = time.perf_counter() - began_s
 
     def _log(self, parts: list[dict[str, float]]) -> str:
         """Writes a row of the training curve; returns its losses in words."""

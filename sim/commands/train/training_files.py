@@ -165,3 +165,8 @@ def load_state(
     except (KeyError, RuntimeError, ValueError, TypeError, AttributeError) as error:
         raise ConfigError(f"The state '{file}' of the run is of another network: {reason_of(error)}.") from None
     return done
+
+
+def tell_next(weights: Path, *commands: str) -> None:
+    """Prints the path of the trained weights, and the commands that use them."""
+    print(f"weights: {weights}\nnext:", *commands, sep="\n  ", flush=True)

@@ -1,6 +1,6 @@
 """Fits the verifier of a kind of segmentation to candidates that the agent finds in houses of the train split.
 
-    stubborn train verifier --semantics noisy --split train --episodes 2000 --workers 2
+    stubborn train verifier --semantics noisy --split train --episodes 2000 --workers 2 --out runs/verifier.json
     stubborn train verifier --semantics noisy --split val --episodes 200 --judge
 
 The agent runs without stopping. Each candidate that it would verify is logged with its four features, the truth
@@ -12,7 +12,7 @@ and detector are the same. --minutes 0 runs no episode and fits the existing log
 such a rejection, the agent finds the rest of the object again. Therefore, of the true candidates of an episode that the
 robot judged from places within 2 m of each other, only the first counts; the same holds for false candidates.
 
-Then each method of verification is fitted and written as JSON with the counts and its quality on houses left out
+Then the verifier is fitted and written as JSON with the counts and its quality on houses left out
 (`stubborn.detection.verifier_fit`).
 Houses of val and test are for --judge only.
 """
@@ -29,8 +29,8 @@ from typing import Any
 import msgspec
 
 from sim import cli
-from sim.commands.train.episode_logs import LogOptions, check, line_of, lines_of
-from sim.composition.segmenters import KINDS, make_segmenter
+from sim.commands.train.episode_logs import LogOptions, check, default_log, line_of, lines_of, parameters_file, where_to
+from sim.composition.segmenters import find_segmentation, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import EpisodeError, PhysicsError
@@ -57,7 +57,7 @@ class Args(LogOptions):
     split: str = "train"
     """A shipped split, or a folder with the same layout (`stubborn episodes`)."""
     semantics: str = "noisy"
-    """The kind of segmentation whose errors are learned; one of `stubborn run` that needs verification."""
+    """The segmentation whose errors are learned: one of `stubborn run`, also your own, that needs verification."""
     episodes: cli.Count = 400
     """Number of episodes, the first of the split."""
     max_steps: cli.Count = 200
@@ -65,7 +65,7 @@ class Args(LogOptions):
     least_of_either: cli.Count = 20
     """A category with fewer true or fewer false candidates uses the pooled naive Bayes."""
     out: cli.OutFile | None = None
-    """File of the parameters; None: stubborn/detection/verifiers/<semantics>.json."""
+    """File of the parameters (JSON)."""
 
 
 class CandidateLine(msgspec.Struct):
@@ -114,8 +114,8 @@ def main(args: Args) -> int:
     """Runs the episodes, then fits and writes, or judges; returns the exit status."""
     _check(args)
     split = load_split(args.split)
+    file = parameters_file(args, args.out, FOLDER)
     lines = candidates_of(args, split)
-    file = args.out or FOLDER / f"{args.semantics}.json"
     if args.judge:
         print(judgement(lines, file))
         return 0
@@ -130,7 +130,7 @@ def main(args: Args) -> int:
 
 def candidates_of(args: Args, split: Split) -> list[dict[str, Any]]:
     """Returns the lines of the first `args.episodes` episodes; those that are not in the log yet are run now."""
-    log = args.log or Path("runs") / f"verifier-{args.semantics}-{split.name}"
+    log = args.log or default_log("verifier", args, split)
     runner = RunnerSpec(f"{__name__}:{CandidateRunner.__name__}", args)  # a script is `__main__` in its workers too
     return lines_of(args, split, log, CandidateLine, runner, {"candidates": []})
 
@@ -140,7 +140,7 @@ class CandidateRunner:
 
     def __init__(self, args: Args) -> None:
         self._seed = args.seed
-        spec = KINDS[args.semantics].spec
+        spec = find_segmentation(args.semantics, args.weights).spec
         self._env = ObjectNavEnv(
             split=args.split, sensors=("depth", *spec.sensors), truth=spec.truth, max_steps=args.max_steps
         )
@@ -190,7 +190,7 @@ def command(args: Args, episodes: int) -> str:
     weights = "" if args.weights is None else f" --weights {shlex.quote(str(args.weights))}"
     options = f"--semantics {args.semantics}{weights} --split {shlex.quote(args.split)} --episodes {episodes}"
     options += f" --max-steps {args.max_steps} --least-of-either {args.least_of_either} --seed {args.seed}"
-    return f"stubborn train verifier {options}"
+    return f"stubborn train verifier {options} {where_to(args, args.out)}"
 
 
 def report(content: Mapping[str, Any]) -> None:
@@ -203,11 +203,7 @@ def report(content: Mapping[str, Any]) -> None:
     for method, fitted in content["methods"].items():
         left_out = dict(fitted["left_out"])
         rows = left_out.pop("by_probability")
-        bar = fitted.get("least_probability", 0.5)
-        print(
-            f"{method}, accepted above {bar}, on houses left out: "
-            + ", ".join(f"{key} {value}" for key, value in left_out.items())
-        )
+        print(f"{method}, on houses left out: " + ", ".join(f"{key} {value}" for key, value in left_out.items()))
         for row in rows:
             print("  " + ", ".join(f"{key} {value}" for key, value in row.items()))
 

@@ -111,6 +111,7 @@ function told(news) {
     if (closed) $("doing").textContent = outcome.sentence;
   }
   if (news.legends) {
+    $("segmentation-name").textContent = news.segmentation ? `Segmentation (${news.segmentation})` : "Segmentation";
     fill($("map-legend"), news.legends.map.map(([name, colour]) => legendItem(name, colour)));
     fill($("plan-legend"), news.legends.plan.map(([name, colour]) => legendItem(name, colour)));
   }

@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 from sim.bridges import process_pipe
-from sim.bridges.process import ProcessAgent, ProcessConfig, ProcessPainter, command_of, files_of
+from sim.bridges.process import ProcessAgent, ProcessPainter
+from sim.bridges.process_command import ProcessConfig, command_of, files_of
 from sim.errors import AgentError, ConfigError
 from sim.interface import Action, CameraModel, RobotModel, SuccessRule
 from tests.helpers.sampling import sample
@@ -217,7 +218,8 @@ class Agent:
         assert all(each.flags.writeable for each in last.values())
         for each in last.values():
             print(each.dtype.str, each.shape, file=sys.stderr)
-        return np.concatenate([np.frombuffer(each.tobytes(), np.uint8) for each in last.values()])[:, None, None].repeat(3, 2)
+        sent = np.concatenate([np.frombuffer(each.tobytes(), np.uint8) for each in last.values()])
+        return sent[:, None, None].repeat(3, 2)
     def state(self):
         return " ".join(last for last in self.seen[0]) + " " + self.goal
 serve(lambda setup: Agent() if setup.camera.width_px == 640 and setup.goals[0] == "chair" else None)

@@ -1,4 +1,4 @@
-"""Runs with `--agent process:COMMAND`: nothing is lost when an agent breaks, changed code is seen, videos show its map."""
+"""Runs with `--agent process:COMMAND`: no episode is lost, changed code is seen, videos show the agent's map."""
 
 from __future__ import annotations
 
@@ -36,9 +36,8 @@ def test_an_episode_in_which_the_agent_breaks_is_an_error_and_all_others_run(hou
     assert run(house, tmp_path / "run", agent, "--video", episodes=2) == 1
     broken, other = lines_of(tmp_path / "run")
     assert broken["end_reason"] == "error"
-    assert broken["error"].endswith(
-        "step 4: its process ended with status 1 before it answered; the last lines of its standard error: The agent broke"
-    )
+    reason = "its process ended with status 1 before it answered; the last lines of its standard error: The agent broke"
+    assert broken["error"].endswith(f"step 4: {reason}")
     assert broken["num_steps"] == 3
     assert other["end_reason"] == "max_steps"
     assert all(line["isolated"] and not line["uses_ground_truth"] for line in (broken, other))
@@ -95,7 +94,7 @@ serve(Agent())
         return line["error"].partition("KeyError: ")[2].split("'")[1], line["uses_ground_truth"]
 
     assert keys("plain") == ("compass depth gps objectgoal rgb", False)
-    assert keys("truth", "sensors=rgb,depth,semantic") == ("compass depth gps objectgoal rgb semantic", True)
+    assert keys("truth", 'sensors=["rgb", "depth", "semantic"]') == ("compass depth gps objectgoal rgb semantic", True)
 
 
 @pytest.mark.slow

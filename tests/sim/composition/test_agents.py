@@ -147,3 +147,13 @@ def test_an_agent_that_cannot_be_built_is_one_line_and_leaves_no_run_behind(
     assert expected in message
     assert message.count("\n") == 1
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize("field", ["pose", "start", "motion", "model", "data"])
+def test_a_sensor_that_declares_true_fields_needs_an_agent_that_declares_them(field: str) -> None:
+    class Bearing(agents.Ahead):
+        name, reads = "bearing", (field,)
+
+    with pytest.raises(ConfigError, match="sensor 'bearing' reads ground truth: declare uses_ground_truth=True"):
+        AgentSpec(make=agents.make_spy, sensors=(Bearing(),))
+    assert AgentSpec(make=agents.make_spy, sensors=(Bearing(),), uses_ground_truth=True).uses_ground_truth

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sim.env.objectnav import ObjectNavEnv
 from sim.geometry.pose import Pose
-from sim.interface import POSE_SENSORS, SENSORS, Action, CameraModel, ConfigError
+from sim.interface import POSE_SENSORS, SENSORS, Action, CameraModel, ConfigError, reads_truth
 from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.sensor import NoiseSettings, SensorContext
 from sim.sensors.standard import STANDARD_SENSORS, DepthSensor, resolve_sensors
@@ -59,6 +59,7 @@ class Bumper:
 
     name: str = "bumper"
     images: tuple[str, ...] = ()
+    reads: tuple[str, ...] = ("motion", "pose")
     noise: NoiseSettings | None = None
 
     def space(self, camera: CameraModel) -> spaces.MultiBinary:
@@ -253,3 +254,29 @@ class Gps(Constant):
 def test_an_object_that_is_no_sensor_is_refused_in_one_sentence(sensor: object, message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         resolve_sensors((sensor,))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("field", ["goal", "collided", "pose", "start", "motion", "model", "data"])
+def test_a_sensor_gets_the_fields_that_it_declares_and_no_others(field: str, house: Path) -> None:
+    class Reader(Constant):
+        name = "reader"
+
+        def read(self, context: SensorContext) -> NDArray:
+            getattr(context, field)
+            return np.zeros(1, np.float32)
+
+    with pytest.raises(ConfigError, match=rf"Sensor 'reader' reads context.{field}, which it does not declare"):
+        observations(house, [], sensors=(Reader(0.0),))
+    declared = Reader(0.0)
+    declared.reads = (field,)  # type: ignore[attr-defined]
+    assert observations(house, [], sensors=(declared,))[0]["reader"] == 0.0
+    assert reads_truth(declared) == (field not in ("goal", "collided"))
+
+
+def test_the_noise_of_a_sensor_gets_the_images_that_it_declares_and_no_others(house: Path) -> None:
+    class Peeking(Fog):
+        def apply(self, readings: Mapping, images: Mapping, rng: np.random.Generator) -> dict:
+            return {"depth": images["semantic"]}
+
+    with pytest.raises(KeyError, match="semantic"):
+        observations(house, [], sensors=(replace(DepthSensor(), noise=Peeking(2.0)),))

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sim.composition.perception import AskedSegmenter
 from sim.composition.segmenters import make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
@@ -40,7 +41,7 @@ from sim.viewers.topview import (
     shortest_path_m,
     whole_storey_m,
 )
-from sim.viewers.video import FRAMES_PER_S, VideoRecorder, VideoWriter, perceive, video_file
+from sim.viewers.video import FRAMES_PER_S, VideoRecorder, VideoWriter, video_file
 from sim.viewers.viewer import VIEWER_IMAGES, Moment
 from sim.world.world import World
 from stubborn.drawing.map_painter import AgentMapPainter
@@ -492,11 +493,13 @@ def test_reading_the_agents_perception_twice_changes_nothing(house: Path, semant
     env = ObjectNavEnv(house=house, sensors=(), truth=truth, camera=CameraModel(width_px=64, height_px=48))
     segmenter = make_segmenter(semantics, env)
     observation, _ = env.reset(seed=3, options={"episode": EPISODE})
-    first = segmenter.scores(observation, "sofa")
-    moment = Moment(step=1, observation=observation, images=env.truth_images, action=Action.STOP)
-    seen = perceive(segmenter, moment, "sofa")
+    asked = AskedSegmenter(segmenter, semantics)
+    assert asked.perceived(observation, "sofa") is None  # the agent has not asked
+    first = asked.scores(observation, "sofa")
+    seen = asked.perceived(observation, "sofa")
     assert seen is not None
     assert seen.categories is not None
+    assert seen.scores is not None
     np.testing.assert_array_equal(seen.scores.target, first.target)
     assert seen.categories.shape == first.target.shape
     stride = 48 // len(first.target)

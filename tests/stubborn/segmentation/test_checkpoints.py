@@ -6,13 +6,14 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 import safetensors.torch
 import torch
 
 from sim.interface import ConfigError
 from stubborn.network_files import read_weights
-from stubborn.segmentation.checkpoints import load_network, save_network
+from stubborn.segmentation.checkpoints import load_network, read_checkpoint, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
 
 TINY = RedNetConfig(width=4, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
@@ -150,3 +151,9 @@ def test_a_header_that_is_wrong_or_asks_for_too_much_is_refused(
     )
     with pytest.raises(ConfigError, match=re.escape(message)):
         load_network(tmp_path / "net.safetensors")
+
+
+def test_a_checkpoint_may_hold_numpy_numbers_next_to_its_tensors(tmp_path):
+    metrics = {"best": np.float64(0.41), "epoch": np.int64(3), "half": np.float16(0.5), "done": np.bool_(True)}
+    torch.save(metrics | {"model": {"w": torch.zeros(2)}}, tmp_path / "w.pth")
+    assert read_checkpoint(tmp_path / "w.pth")["best"] == 0.41

@@ -1,0 +1,44 @@
+"""Imports objects of users that options name as `package.module:NAME`."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from typing import Any
+
+from sim.errors import ConfigError
+from sim.evaluation.own_code import place_of, text_of
+from sim.evaluation.watch import is_stop
+
+
+def import_attribute(name: str, module_name: str, attribute: str) -> Any:
+    """Returns an object of a module that is in the current folder or on the path.
+
+    Args:
+        name: as the user gave it, for messages.
+        module_name: dotted name of the module.
+        attribute: name of the object.
+
+    Raises:
+        ConfigError: the module cannot be imported, or has no such name.
+    """
+    if "" not in sys.path:
+        sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
+    folder = os.getcwd()
+    try:
+        module = importlib.import_module(module_name)
+    except ModuleNotFoundError as error:
+        raise ConfigError(f"'{name}': no module '{error.name}' can be imported from here.") from None
+    except BaseException as error:  # the user's code
+        if is_stop(error):
+            raise
+        place = "" if isinstance(error, SyntaxError) else place_of(error, below=__file__)  # its text names the line
+        reason = f"{type(error).__name__}: {text_of(error)}{place}"
+        raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {reason}") from error
+    finally:
+        os.chdir(folder)  # the options' paths are relative to it
+    try:
+        return vars(module)[attribute]
+    except KeyError:
+        raise ConfigError(f"'{name}': module '{module_name}' has no '{attribute}'.") from None

@@ -1,0 +1,122 @@
+"""The segmentation that an agent acts on, as viewers show it: what the agent asked for, never more than that."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.composition.own_segmentation import OwnSegmenter
+from sim.composition.setup import Setup
+from sim.evaluation.rollout import ask
+from sim.interface import (
+    MPCAT40,
+    Agent,
+    NamesCategories,
+    Observation,
+    Perceived,
+    Scores,
+    Segmenter,
+    SegmenterSpec,
+    StatesSegmentation,
+)
+from sim.viewers.viewer import SeesFrames
+
+
+class AskedSegmenter:
+    """A segmenter that remembers which frame the agent asked for; its results are those of the segmenter inside.
+
+    Scores of a frame do not change when they are asked for again, so that viewers change no result.
+    """
+
+    def __init__(self, inner: Segmenter, name: str) -> None:
+        self.name = name
+        self._inner = inner
+        self._arrays: tuple[NDArray, ...] = ()
+        """The arrays of the frame that the agent asked for last."""
+
+    @property
+    def names(self) -> bool:
+        """True: the segmenter names the category of each pixel."""
+        inner = self._inner
+        return inner.names if isinstance(inner, OwnSegmenter) else isinstance(inner, NamesCategories)
+
+    @property
+    def spec(self) -> SegmenterSpec:
+        """Returns the declaration of the segmenter."""
+        return self._inner.spec
+
+    def scores(self, observation: Observation, goal: str) -> Scores:
+        """Returns the segmenter's scores."""
+        self._remember(observation)
+        return self._inner.scores(observation, goal)
+
+    def posteriors(self, observation: Observation) -> NDArray[np.float32]:
+        """Returns the segmenter's posteriors."""
+        self._remember(observation)
+        return self._inner.posteriors(observation)
+
+    def perceived(self, observation: Observation, goal: str) -> Perceived | None:
+        """Returns scores and categories of a frame; None where the agent did not ask for it."""
+        if not any(array is other for array in _arrays_of(observation) for other in self._arrays):
+            return None
+        inner = self._inner
+        scores = inner.scores(observation, goal)
+        return Perceived(scores, inner.categories(observation) if isinstance(inner, NamesCategories) else None)
+
+    def _remember(self, observation: Observation) -> None:
+        self._arrays = _arrays_of(observation)
+
+
+class StatedByAgent:
+    """The segmentation that an agent brings itself and states (`StatesSegmentation`)."""
+
+    def __init__(self, agent: StatesSegmentation, name: str, agent_name: str) -> None:
+        self.name = name
+        self.names = True
+        self._agent, self._agent_name = agent, agent_name
+
+    def perceived(self, observation: Observation, goal: str) -> Perceived | None:
+        """Returns what the agent states of the frame.
+
+        Raises:
+            AgentError: `stated_segmentation` failed, or returned something else.
+        """
+        del observation, goal
+        where = f"Agent '{self._agent_name}', stated_segmentation"
+        given = ask(where, self._agent.stated_segmentation)
+        return None if given is None else ask(where, lambda: _checked(given))
+
+
+def seen_by(setup: Setup, agent: Agent, segmenter: Segmenter | None) -> SeesFrames | None:
+    """Returns the segmentation that viewers show; None: the agent has none, or does not state its own.
+
+    Args:
+        setup: of the run.
+        agent: the agent.
+        segmenter: the segmenter that it got; None: it got none.
+    """
+    if isinstance(segmenter, AskedSegmenter):
+        return segmenter
+    if setup.spec.own_segmentation and isinstance(agent, StatesSegmentation):
+        return StatedByAgent(agent, setup.spec.own_segmentation, setup.options.agent)
+    return None
+
+
+def _arrays_of(observation: Observation) -> tuple[NDArray, ...]:
+    return tuple(observation.values())
+
+
+def _checked(given: Perceived) -> Perceived:
+    """Returns what an agent states, as arrays; raises ValueError where it is something else."""
+    scores, categories = given
+    if scores is not None:
+        target, best_other = (np.asarray(each, np.float32) for each in scores)
+        if target.ndim != 2 or not (0.0 <= target.min() <= target.max() <= 1.0):
+            raise ValueError("scores must be Scores(target, best_other), both (h, w) in [0, 1]")
+        scores = Scores(target, best_other)
+    if categories is not None:
+        categories = np.asarray(categories)
+        if categories.ndim != 2 or categories.dtype.kind not in "iu" or not 0 <= categories.max() < len(MPCAT40):
+            raise ValueError("categories must be mpcat40 ids 0 to 40, (h, w)")
+        categories = categories.astype(np.uint8)
+    return Perceived(scores, categories)

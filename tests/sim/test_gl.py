@@ -1,0 +1,54 @@
+"""Rendering works whenever MuJoCo was imported and in any thread; a backend that cannot render is one line."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+RENDER = "from sim.gl import make_context, mujoco; make_context(8, 8); print(mujoco.__version__)"
+
+
+def _run(code: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    env = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "MUJOCO_GL")}
+    env.pop("PYOPENGL_PLATFORM", None)
+    return subprocess.run([sys.executable, "-c", code], env=env | variables, capture_output=True, text=True)
+
+
+def test_a_context_starts_without_a_display_after_the_user_imported_mujoco() -> None:
+    done = _run(f"import mujoco; {RENDER}")
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("name", ["foo", "disable", "cgl"])
+def test_a_backend_that_cannot_render_is_refused_only_when_something_is_rendered(name: str) -> None:
+    assert _run("import sim.gl", MUJOCO_GL=name).returncode == 0
+    done = _run(RENDER, MUJOCO_GL=name)
+    assert done.stderr.splitlines()[-1].startswith(f"sim.errors.RenderError: MUJOCO_GL is '{name}'")
+
+
+def test_a_missing_library_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    from sim import gl
+
+    monkeypatch.setattr(gl, "BACKEND", "osmesa")
+    monkeypatch.setattr(gl, "_loads", lambda library: False)
+    with pytest.raises(gl.RenderError, match=r"MUJOCO_GL=osmesa needs libOSMesa\.so\.8, which is not installed"):
+        gl.make_context(8, 8)
+
+
+def test_a_context_is_current_in_any_thread_after_another_one_used_it() -> None:
+    from sim.gl import make_context
+
+    context = make_context(8, 8)
+
+    def use() -> bool:
+        with context.as_current():
+            return True
+
+    assert use()
+    with ThreadPoolExecutor(1) as pool:
+        assert pool.submit(use).result()
+    assert use()
