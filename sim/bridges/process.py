@@ -150,6 +150,11 @@ class ProcessAgent:
         except ProtocolError as fault:
             raise self._failure(AgentError(f"its map is not valid: {fault}")) from None
 
+    def share_no_memory(self) -> None:
+        """Sends observations through the pipe from now on, as to an agent on another machine or in a container."""
+        if self._process is not None:
+            self._process.share_no_memory()
+
     def close(self) -> None:
         """Ends the process."""
         process, self._process = self._process, None

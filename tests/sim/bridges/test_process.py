@@ -235,15 +235,15 @@ serve(lambda setup: Agent() if setup.camera.width_px == 640 and setup.goals[0] =
     expected = np.concatenate([np.frombuffer(each.tobytes(), np.uint8) for each in observation.values()])
     for shared in (True, False):
         agent.reset("chair", 0)
-        assert agent._process is not None
         if not shared:
-            agent._process.share_no_memory()
+            agent.share_no_memory()
+        assert agent._process is not None
+        assert (agent._process.memory is not None) == shared
         agent.act(observation)
         agent.act({name: np.zeros_like(each) for name, each in observation.items()})
         image, words = agent.map_image()
         np.testing.assert_array_equal(image[:, 0, 1], expected)
         assert words == "rgb depth gps objectgoal chair"
-    assert (agent._process._memory is None) == (not shared)
     agent.close()
 
 
