@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import signal
 import subprocess
@@ -13,9 +14,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.bridges import process_pipe
+from sim.bridges import process_pipe, stubborn_client
 from sim.bridges.process import ProcessAgent, ProcessPainter
 from sim.bridges.process_command import ProcessConfig, command_of, files_of
+from sim.commands.main import entry as main
 from sim.errors import AgentError, ConfigError
 from sim.interface import Action, CameraModel, RobotModel, SuccessRule
 from tests.helpers.sampling import sample
@@ -277,3 +279,37 @@ def test_the_files_of_a_command_are_those_that_it_names(tmp_path: Path, monkeypa
     found = files_of("process:python agent.py --weights weights.pt --out package")
     assert found == [Path("agent.py"), Path("weights.pt")]
     assert files_of("process:conda run -n old python -m package.run") == [Path("package/run.py")]
+
+
+def test_the_client_file_is_printed_as_it_is_and_python_3_6_reads_it(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["agent-client"]) == 0
+    printed = capsys.readouterr().out
+    assert printed == Path(stubborn_client.__file__).read_text()
+    ast.parse(printed, feature_version=(3, 6))
+    imports = [node for node in ast.walk(ast.parse(printed)) if isinstance(node, ast.Import)]
+    modules = {alias.name for node in imports for alias in node.names}
+    assert modules - set(sys.stdlib_module_names) == {"numpy"}
+
+
+def test_a_client_without_a_guard_ends_when_its_pipe_is_closed_even_if_the_agent_hangs(tmp_path: Path) -> None:
+    code = """
+import time
+from sim.bridges import stubborn_client
+stubborn_client.LAST_WORDS_S = 0.1
+class Agent:
+    def reset(self, goal, seed):
+        print("hangs", flush=True)
+        time.sleep(60)
+    def act(self, observation): return 1
+stubborn_client.serve(Agent())
+"""
+    pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, **pipes) as client:
+        assert client.stdin is not None
+        assert client.stderr is not None
+        for part in stubborn_client.pack({"type": "reset", "id": 1, "goal": "bed", "seed": 0}):
+            client.stdin.write(part)
+        client.stdin.flush()
+        assert client.stderr.readline() == b"hangs\n"
+        client.stdin.close()
+        assert client.wait(20.0) == 1

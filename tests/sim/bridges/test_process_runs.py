@@ -75,15 +75,17 @@ def test_a_command_that_fails_is_one_line_and_leaves_no_run(
     assert not (tmp_path / "run").exists()
 
 
-def test_an_agent_gets_the_true_images_only_when_the_command_line_says_so(house: Path, tmp_path: Path) -> None:
+def test_an_agent_gets_step_timeout_and_true_images_when_the_command_line_says_so(house: Path, tmp_path: Path) -> None:
     own = tmp_path / "agent.py"
     own.write_text(f"""
-import sys
+import sys, time
 sys.path.insert(0, {str(ROOT / "sim" / "bridges")!r})
 from stubborn_client import serve
 class Agent:
     def reset(self, goal, seed): pass
     def act(self, observation):
+        if len(sys.argv) > 1:
+            time.sleep(60)
         raise KeyError(" ".join(sorted(observation)))
 serve(Agent())
 """)
@@ -93,6 +95,8 @@ serve(Agent())
         (line,) = lines_of(tmp_path / out)
         return line["error"].partition("KeyError: ")[2].split("'")[1], line["uses_ground_truth"]
 
+    assert run(house, tmp_path / "slow", command(own, "slow"), "--step-timeout", "0.5", episodes=1) == 1
+    assert lines_of(tmp_path / "slow")[0]["error"].endswith("step 1: no answer within 0.5 s")
     assert keys("plain") == ("compass depth gps objectgoal rgb", False)
     assert keys("truth", 'sensors=["rgb", "depth", "semantic"]') == ("compass depth gps objectgoal rgb semantic", True)
 
