@@ -1,1 +1,1 @@
-"""Connects the simulator to programs that are written for other interfaces: agents and evaluation loops of Habitat."""
+"""Connects agents and scripts of other interfaces: those of Habitat, and agents in a process of their own."""

@@ -16,8 +16,8 @@ class RunOptions:
     """Let an agent look for objects in apartments, and write the results to a folder."""
 
     agent: str = "stubborn"
-    """The agent: a name of --list-agents, or your own as package.module:NAME (an AgentSpec or a factory), or
-    habitat:package.module:CLASS for one with Habitat's interface (docs/habitat.md)."""
+    """The agent: a name of --list-agents, or your own as package.module:NAME (an AgentSpec or a factory),
+    habitat:package.module:CLASS (with Habitat's interface), or in another process as process:COMMAND."""
     explorer: str | None = None
     """The explorer of agents that take one: a name of --list-agents, or your own as package.module:NAME."""
     semantics: str = "rednet"
@@ -25,7 +25,7 @@ class RunOptions:
     weights: Path | None = None
     """With --semantics rednet: your network in place of the shipped one."""
     verification: str = "naive-bayes"
-    """Method that verifies candidates: naive-bayes (the paper's), logistic, threshold or none."""
+    """Method that verifies candidates: naive-bayes (the paper's) or none."""
     verifier: Path | None = None
     """Parameters of verification (`stubborn train verifier`) in place of those shipped for this segmentation."""
     split: str = "val"

@@ -1,4 +1,4 @@
-"""Properties of every agent that `stubborn.agents.make` knows, and of the example."""
+"""Properties of every agent that `stubborn.agents.make` knows, of the example, and of an agent in another process."""
 
 import dataclasses
 import subprocess
@@ -11,6 +11,8 @@ import pytest
 from examples import my_agent
 from sim.bridges.habitat.agents import HabitatAgent
 from sim.bridges.habitat.conversions import Conversion
+from sim.bridges.process import ProcessAgent
+from sim.bridges.process_command import ProcessConfig
 from sim.interface import (
     MPCAT40_ID,
     Action,
@@ -66,6 +68,10 @@ def build(name: str, **options: Any) -> Agent:
         )
     if name == "habitat":
         return HabitatAgent(Wanderer(), Conversion(camera=SMALL_CAMERA))
+    if name == "process":
+        client = [sys.executable, "tests/helpers/client_agent.py"]
+        parts: dict[str, Any] = {"camera": SMALL_CAMERA, "robot": RobotModel(), "success": SuccessRule()}
+        return ProcessAgent(client, **parts, config=ProcessConfig(), max_steps=500)
     return agents.make(name, camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter(), **options)
 
 
@@ -73,7 +79,7 @@ def world() -> GridWorld:
     return GridWorld(BOXES, (0.75, 0.75, 0.7), camera=SMALL_CAMERA)
 
 
-every_agent = pytest.mark.parametrize("name", [*agents.NAMES, "example", "habitat"])
+every_agent = pytest.mark.parametrize("name", [*agents.NAMES, "example", "habitat", "process"])
 
 
 @every_agent
