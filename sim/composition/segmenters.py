@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import difflib
 import functools
-import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,6 +22,7 @@ from sim.detectors.noisy import NoisyConfig, NoisySegmenter
 from sim.errors import ConfigError
 from sim.interface import Observation, Scores, SegmentationSpec, Segmenter, SegmenterSpec
 from sim.invocation import command
+from sim.reading import sha256_of
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 
@@ -207,4 +207,4 @@ def detector_record(config: Any) -> Any:
 @functools.cache
 def file_sha256(file: Path) -> str:
     """Returns the SHA-256 of a file, hexadecimal."""
-    return hashlib.sha256(file.read_bytes()).hexdigest()
+    return sha256_of(file, what="File")
