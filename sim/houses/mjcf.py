@@ -35,6 +35,10 @@ MAX_ASSET_BYTES = 512 << 20
 """Files of meshes and other assets together."""
 MAX_ARRAY = 1_000_000
 """Largest custom array, buffer or count of a file."""
+MAX_PHYSICS_BYTES = 1 << 30
+"""Memory for contacts and constraints: about 700 free bodies; the largest house that ships needs 20 MB."""
+MAX_CONTACTS = 5000
+"""Contacts of a house at the start; with more, MuJoCo runs out of the memory that it reserves."""
 LARGEST = 1e15
 """Largest magnitude of a number in a file."""
 FARTHEST_M = 10_000.0
@@ -135,6 +139,28 @@ def require_sizes(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseE
             raise error(f"{kind} '{name}': {field} is {found}; at most {FARTHEST_M:g} m are allowed.")
     if not bool((np.abs(model.mesh_vert) <= FARTHEST_M).all()):
         raise error(f"a mesh has a vertex that is not finite or beyond {FARTHEST_M:g} m.")
+
+
+def require_few_contacts(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseError) -> None:
+    """Raises an error where a compiled model has so many moving bodies, or contacts, that its physics needs all memory.
+
+    The memory of MuJoCo grows with the square of the number of moving bodies.
+    """
+    if model.narena > MAX_PHYSICS_BYTES:
+        raise error(
+            f"its {model.njnt} joints need {model.narena >> 20} MB, at most {MAX_PHYSICS_BYTES >> 20} MB are "
+            "allowed; let fewer bodies move."
+        )
+    if model.nv == 0:
+        return
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mujoco.mj_collision(model, data)
+    if data.ncon > MAX_CONTACTS:
+        raise error(
+            f"its moving bodies overlap in {data.ncon} contacts at the start; at most {MAX_CONTACTS} are allowed."
+        )
 
 
 class _Scan:

@@ -23,11 +23,12 @@ from jaxtyping import Float32, Float64, Shaped, UInt8, UInt16
 from torch.utils.data import IterableDataset, get_worker_info
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, ConfigError
-from sim.reading import MAX_BYTES, Count, PlainMember, open_plain, parse_json, read_json, require_small_image
+from sim.reading import MAX_BYTES, Count, PlainMember, convert, open_plain, parse_json, read_json, require_small_image
 
 GOAL_IDS = np.array([MPCAT40_ID[name] for name in GOAL_CATEGORIES])
 """mpcat40 ids of the goal categories."""
 _PARTS = ("rgb", "depth", "semantic", "json")
+_Pixel = Annotated[float, msgspec.Meta(ge=-100_000.0, le=100_000.0)]
 _BROKEN_TAR = (tarfile.TarError, OSError, EOFError, ValueError, RecursionError)
 """The exceptions that `tarfile` raises for files that are not tar files."""
 
@@ -42,6 +43,24 @@ class _Note(msgspec.Struct):
     """The JSON note next to a shard: the part that states how its views were stored."""
 
     config: _NoteConfig = msgspec.field(default_factory=_NoteConfig)
+
+
+class _Runs(msgspec.Struct):
+    """The run-length encoded mask of an object."""
+
+    size: tuple[Count, Count]
+    counts: list[Count]
+
+
+class _Object(msgspec.Struct):
+    """An object of a view, as COCO describes it."""
+
+    id: Annotated[int, msgspec.Meta(ge=0, le=65535)]
+    name: str
+    category_id: Annotated[int, msgspec.Meta(ge=0, lt=len(MPCAT40))]
+    area: Count
+    bbox: tuple[_Pixel, _Pixel, _Pixel, _Pixel]
+    segmentation: _Runs
 
 
 class _PixelNote(msgspec.Struct):
@@ -438,7 +457,9 @@ def _with_extras(file: Path, view: LabelledView, parts: dict[str, bytes]) -> Lab
             raise ConfigError(f"{where} has instances of {instances.dtype} {instances.shape}; it needs uint16 (h, w).")
         view = replace(view, instances=instances)
     if "coco" in parts:
-        view = replace(view, annotations=parse_json(parts["coco"], list[dict[str, Any]], where=f"{where}: its objects"))
+        objects = parse_json(parts["coco"], list[dict[str, Any]], where=f"{where}: its objects")
+        convert(objects, list[_Object], where=f"{where}: its objects")
+        view = replace(view, annotations=objects)
     if "normals" in parts:
         levels = cv2.cvtColor(_image(file, view.key, "normals", parts, cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
         if levels.shape[:2] != view.semantic.shape:

@@ -131,3 +131,28 @@ def test_an_invalid_or_too_long_label_rule_is_refused(rule: str, message: str, t
     (tmp_path / "rules.json").write_text(f'{{"{rule}": "wall"}}')
     with pytest.raises(HouseError, match=message):
         load_house(tmp_path / "house.xml", labels_path=tmp_path / "rules.json")
+
+
+CHAIR = '<body name="chair_{:03}" pos="{} 0 1"><freejoint/><geom type="box" size="0.1 0.1 0.1"/></body>'
+
+
+@pytest.mark.parametrize(
+    ("count", "apart_m", "message"), [(60, 0.0, r"overlap in .* contacts"), (800, 0.3, r"joints need .* MB")]
+)
+def test_free_bodies_that_need_all_memory_are_refused(count: int, apart_m: float, message: str, tmp_path: Path) -> None:
+    (tmp_path / "house.xml").write_text(house("".join(CHAIR.format(i, i * apart_m) for i in range(count))))
+    with pytest.raises(HouseError, match=message):
+        load_house(tmp_path / "house.xml")
+
+
+def test_a_hexadecimal_number_is_a_number(tmp_path: Path) -> None:
+    (tmp_path / "house.xml").write_text(house(box(pos="0 0 0x1p500")))
+    with pytest.raises(HouseError, match=r"pos = '0 0 0x1p500' is too large"):
+        load_house(tmp_path / "house.xml")
+
+
+def test_a_height_field_of_many_pixels_is_not_decoded(tmp_path: Path) -> None:
+    (tmp_path / "bomb.png").write_bytes(png(60_000, 60_000))
+    (tmp_path / "house.xml").write_text(house(assets='<hfield name="h" size="1 1 1 1" file="bomb.png"/>'))
+    with pytest.raises(HouseError, match=r"meshes have .* MB"):
+        load_house(tmp_path / "house.xml")
