@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -50,8 +51,13 @@ EXCEPTIONS = {
 }
 
 
-def opened() -> Iterator[tuple[str, str]]:
-    """Yields the calls that open a file by its name: file of the call and function, as `OPENERS` and `METHODS` say."""
+@functools.cache
+def opened() -> frozenset[tuple[str, str]]:
+    """Returns the calls that open a file by its name: file of the call and function, as `OPENERS` and `METHODS` say."""
+    return frozenset(_opened())
+
+
+def _opened() -> Iterator[tuple[str, str]]:
     for folder in ("sim", "stubborn", "tools"):
         for file in sorted((ROOT / folder).rglob("*.py")):
             for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
@@ -67,11 +73,11 @@ def opened() -> Iterator[tuple[str, str]]:
 
 
 def test_named_files_are_opened_in_one_place() -> None:
-    assert sorted(set(opened()) - set(EXCEPTIONS)) == []
+    assert sorted(opened() - set(EXCEPTIONS)) == []
 
 
 def test_each_exception_is_still_needed() -> None:
-    assert sorted(set(EXCEPTIONS) - set(opened())) == []
+    assert sorted(set(EXCEPTIONS) - opened()) == []
 
 
 @pytest.mark.parametrize("name", [".lock", "results.jsonl", "config.json"])
