@@ -31,6 +31,8 @@ MAX_DEPTH = 200
 """Depth of nested elements; MuJoCo reads 500."""
 MAX_TEXTURE_BYTES = 512 << 20
 """All textures of a file together; those that ship have 10 MB."""
+TEXTURE_VARIABLE = "STUBBORN_TEXTURE_MB"
+"""Environment variable with another limit for textures, MB."""
 MAX_ASSET_BYTES = 512 << 20
 """Files of meshes and other assets together."""
 MAX_ARRAY = 1_000_000
@@ -313,8 +315,12 @@ class _Scan:
 def _require_small_assets(spec: mujoco.MjSpec, folder: Path, error: type[ObjectNavError]) -> None:
     """Raises an error where the textures or the files of meshes of a specification are too large."""
     size = sum(_texture_bytes(spec, texture, folder) for texture in spec.textures)
-    if size > MAX_TEXTURE_BYTES:
-        raise error(f"its textures have {size >> 20} MB; at most {MAX_TEXTURE_BYTES >> 20} MB are allowed.")
+    most = _most_texture_bytes(error)
+    if size > most:
+        raise error(
+            f"its textures have {size >> 20} MB; at most {most >> 20} MB are allowed. To allow more, set the "
+            f"environment variable {TEXTURE_VARIABLE} to their number."
+        )
     assets = (*spec.meshes, *spec.hfields, *spec.skins)
     size = sum(_bytes_of_asset(asset_path(spec, folder, each.file), 4) for each in assets if each.file)
     if size > MAX_ASSET_BYTES:
@@ -328,6 +334,13 @@ def _texture_bytes(spec: mujoco.MjSpec, texture: mujoco.MjsTexture, folder: Path
     for name in filter(None, (texture.file, *texture.cubefiles)):
         size += _bytes_of_asset(asset_path(spec, folder, name, texture=True), channels if texture.nchannel > 0 else 4)
     return size
+
+
+def _most_texture_bytes(error: type[ObjectNavError]) -> int:
+    given = os.environ.get(TEXTURE_VARIABLE, "")
+    if given and not (given.isascii() and given.isdigit() and len(given) < 9):
+        raise error(f"{TEXTURE_VARIABLE} must be a number of MB, got '{printable(given)}'.")
+    return int(given) << 20 if given else MAX_TEXTURE_BYTES
 
 
 def _bytes_of_asset(file: Path, bytes_per_pixel: int) -> int:

@@ -156,3 +156,16 @@ def test_a_height_field_of_many_pixels_is_not_decoded(tmp_path: Path) -> None:
     (tmp_path / "house.xml").write_text(house(assets='<hfield name="h" size="1 1 1 1" file="bomb.png"/>'))
     with pytest.raises(HouseError, match=r"meshes have .* MB"):
         load_house(tmp_path / "house.xml")
+
+
+def test_the_limit_of_textures_is_a_variable_of_the_environment(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn = '<texture name="t" type="2d" builtin="flat" width="1000" height="1000"/>'
+    (tmp_path / "house.xml").write_text(house(assets=drawn))
+    for limit, message in (("1", "at most 1 MB are allowed.*STUBBORN_TEXTURE_MB"), ("many", "must be a number of MB")):
+        monkeypatch.setenv("STUBBORN_TEXTURE_MB", limit)
+        with pytest.raises(HouseError, match=message):
+            load_house(tmp_path / "house.xml")
+    monkeypatch.setenv("STUBBORN_TEXTURE_MB", "3")
+    assert load_house(tmp_path / "house.xml").name == "house"
