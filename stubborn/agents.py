@@ -75,7 +75,7 @@ PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(
             for name, row in ABLATION.items()
         },
         "stubborn-plus": (
-            "ours: tracks objects, looks at doubtful ones first, explores by a tour of unseen areas (informed-tour)",
+            "ours: tracks objects, verifies doubtful ones first, tours unseen areas (informed-tour)",
             PLUS,
         ),
         "single-frame": (

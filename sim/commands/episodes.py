@@ -83,8 +83,8 @@ class Args:
     """Version of the split."""
     workers: cli.Count = 1
     """Number of processes."""
-    pictures: bool = True
-    """Write a map of the starts and goals of each house to pictures/ in the split's folder."""
+    pictures: cli.OnUnlessNo = True
+    """Write no map of the starts and goals of each house (pictures/ in the split's folder)."""
     success: SuccessRule = field(default_factory=SuccessRule)
     """Conditions under which a STOP succeeds; distances, view points and unreachable goals depend on them."""
 

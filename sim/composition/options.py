@@ -24,7 +24,7 @@ class RunOptions:
     weights: Path | None = None
     """With --semantics rednet: your network in place of the shipped one."""
     verification: str = "naive-bayes"
-    """Method that verifies candidates: naive-bayes (the paper's), logistic, threshold or none."""
+    """Method that verifies candidates: naive-bayes (the paper's) or none."""
     verifier: Path | None = None
     """Parameters of verification (`stubborn train verifier`) in place of those shipped for this segmentation."""
     split: str = "val"

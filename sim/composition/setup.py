@@ -41,7 +41,7 @@ class VerificationConfig:
     """Selects how the agent verifies a candidate before it stops."""
 
     method: str = "naive-bayes"
-    """`naive-bayes` (the paper's), `logistic`, `threshold` or `none`."""
+    """`naive-bayes` (the paper's) or `none`."""
     parameters: Path | None = None
     """File of fitted parameters; None takes those shipped for the kind of segmentation."""
     least_probability: float | None = None

@@ -6,9 +6,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -71,45 +70,6 @@ class NaiveBayes:
         offset = np.asarray(features, np.float64) - self.mean
         score = self.log_prior - 0.5 * (np.log(self.variance) + offset * offset / self.variance).sum(axis=1)
         return _logistic(float(score[1] - score[0]))
-
-
-INPUTS: Mapping[str, Callable[[Features], float]] = MappingProxyType(
-    {
-        "log_views": lambda f: math.log1p(f.total_view),
-        "mean_score": lambda f: f.cumulative / max(f.total_view, 1),
-        "maximum": lambda f: f.maximum,
-        "maximum_other": lambda f: f.maximum_other,
-    }
-)
-"""The inputs that a logistic regression may use, by name."""
-
-
-@dataclass(frozen=True, eq=False)
-class Logistic:
-    """A logistic regression over some of `INPUTS`; with the mean score as its only input it is a threshold."""
-
-    inputs: tuple[str, ...]
-    coefficients: Float64[np.ndarray, " inputs"]
-    intercept: float
-
-    @classmethod
-    def from_dict(cls, content: Mapping[str, Any]) -> Logistic:
-        """Returns the classifier with `inputs`, `coefficients` and `intercept`.
-
-        Raises:
-            ConfigError: an input is unknown, or there is not one coefficient for each input.
-        """
-        inputs, coefficients = tuple(content["inputs"]), np.array(content["coefficients"], np.float64)
-        if not set(inputs) <= set(INPUTS) or coefficients.shape != (len(inputs),):
-            raise ConfigError(
-                f"A logistic regression needs a coefficient for each of its inputs, out of {', '.join(INPUTS)}; "
-                f"got {coefficients.shape} for {list(inputs)}."
-            )
-        return cls(inputs, coefficients, float(content["intercept"]))
-
-    def probability(self, features: Features) -> float:
-        """Returns the probability that the candidate is true, in [0, 1]."""
-        return _logistic(self.intercept + float(self.coefficients @ [INPUTS[name](features) for name in self.inputs]))
 
 
 def _logistic(x: float) -> float:

@@ -1,9 +1,8 @@
 """Verification of a candidate before a STOP, from four features of its cell (paper: Verification).
 
-The paper's classifier is Gaussian naive Bayes; `METHODS` holds others over the same features. Parameters belong to a
-kind of segmentation. They are shipped as `stubborn/detection/verifiers/<kind>.json`, which also holds the command that
-fitted them (`stubborn train verifier`) and the quality of each method on held-out houses. A category that is not in the
-file uses the pooled classifier.
+The classifier is the paper's Gaussian naive Bayes. Parameters belong to a kind of segmentation. They are shipped as
+`stubborn/detection/verifiers/<kind>.json`, which also holds the command that fitted them (`stubborn train verifier`)
+and their quality on held-out houses. A category that is not in the file uses the pooled classifier.
 """
 
 from __future__ import annotations
@@ -18,16 +17,16 @@ import msgspec
 
 from sim.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
 from sim.reading import Number, convert, read_json
-from stubborn.detection.classifiers import Classifier, Features, Logistic, NaiveBayes
+from stubborn.detection.classifiers import Classifier, Features, NaiveBayes
 
 FOLDER = Path(__file__).parent / "verifiers"
 """Folder of the shipped parameters."""
 DEFAULT_KIND = "rednet"
 """The kind whose parameters another kind gets that has none: those of a network are nearer to it than none."""
 METHODS: Mapping[str, Callable[[Mapping[str, Any]], Classifier]] = MappingProxyType(
-    {"naive-bayes": NaiveBayes.from_dict, "logistic": Logistic.from_dict, "threshold": Logistic.from_dict}
+    {"naive-bayes": NaiveBayes.from_dict}
 )
-"""Classifiers by name, the paper's first; `threshold` uses the mean score over all frames only."""
+"""Classifiers by name."""
 ACCEPT_ALL = "none"
 """The method that accepts every candidate."""
 _Variance = Annotated[float, msgspec.Meta(gt=0.0, le=1e12)]
@@ -45,20 +44,11 @@ class _NaiveBayes(msgspec.Struct):
     variance: tuple[_Variances, _Variances]
 
 
-class _Logistic(msgspec.Struct):
-    """Parameters of `Logistic`."""
-
-    inputs: list[str]
-    coefficients: list[Number]
-    intercept: Number
-
-
 class _Method(msgspec.Struct):
     """Parameters of one method."""
 
     pooled: dict[str, Any]
     categories: dict[str, dict[str, Any]]
-    least_probability: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.5
 
 
 class _File(msgspec.Struct):
@@ -114,7 +104,7 @@ class FittedVerifier:
     pooled: Classifier
     """Classifier of all other goal categories."""
     least_probability: float = 0.5
-    """The fit chooses it for `logistic` and `threshold` by the cost of a wrong STOP; the paper uses one half."""
+    """The paper's is one half."""
     may_refuse = True
 
     @classmethod
@@ -130,14 +120,13 @@ class FittedVerifier:
         methods = read_json(file, _File, what="Verifier file").methods
         if method not in methods:
             raise ConfigError(f"{where} has no method '{method}'. It has: {', '.join(methods) or 'none'}.")
-        kind = _NaiveBayes if make == NaiveBayes.from_dict else _Logistic
         content = convert(methods[method], _Method, where=f"{where}, method '{method}'")
         checked = {"pooled": content.pooled, **content.categories}
         for name, each in checked.items():
-            convert(each, kind, where=f"{where}, method '{method}', '{name}'")
+            convert(each, _NaiveBayes, where=f"{where}, method '{method}', '{name}'")
         try:
             own = {name: make(each) for name, each in content.categories.items()}
-            return cls(own, make(content.pooled), content.least_probability)
+            return cls(own, make(content.pooled))
         except ConfigError as error:
             raise ConfigError(f"{where} is not what `stubborn train verifier` writes: {error}") from None
 

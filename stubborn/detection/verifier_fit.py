@@ -1,11 +1,8 @@
 """Fits verifiers to a log of candidates with scikit-learn, and evaluates them.
 
 The paper's naive Bayes is fitted for each goal category with enough true and enough false candidates, and pooled for
-the others. The logistic regressions are one model of all candidates in which each category shifts the intercept; a
-normal prior pulls the shifts towards zero, so that a category with few candidates is judged like the others. Their
-threshold is chosen so that as many episodes as possible would end at a true candidate: a wrong STOP costs the chance to
-succeed later, in the rest of the log and after it. All methods are evaluated by cross-validation on the same folds; the
-candidates of a house are never in both parts of a fold. The results are plain numbers that JSON can hold.
+the others. It is evaluated by cross-validation; the candidates of a house are never in both parts of a fold. The
+results are plain numbers that JSON can hold.
 """
 
 from __future__ import annotations
@@ -16,24 +13,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float, Float64, Int, Shaped
-from sklearn.linear_model import LogisticRegression
 from sklearn.model_selection import GroupKFold
 from sklearn.naive_bayes import GaussianNB
-from sklearn.preprocessing import StandardScaler
 
 from sim.interface import GOAL_CATEGORIES, ConfigError
-from stubborn.detection.classifiers import INPUTS, Features
+from stubborn.detection.classifiers import Features
 from stubborn.detection.verification import METHODS, FittedVerifier
 
 FOLDS = 5
 SAME_PLACE_M = 2.0
 """Candidates of one episode with the same truth count once if the robot judged them from places within this
 distance."""
-SHIFT_DEVIATION = 1.0
-"""Standard deviation of the prior of a category's shift, in logits."""
-OPEN_SHARE = 0.8
-"""Success rate of an episode that continues after the log (which ends at step 200 of 500), relative to that of an
-episode from its start (`stubborn-plus` on val: 64 % against 80 %, docs/segmentation.md)."""
 _BINS = 5
 
 
@@ -84,10 +74,8 @@ def fit(lines: Sequence[Mapping[str, Any]], least_of_either: int) -> dict[str, A
 def _fitted(method: str, table: Candidates, separate: Sequence[str], episodes: int) -> dict[str, Any]:
     """Returns the quality and the parameters of one method, in a log of `episodes` episodes."""
     probability = _left_out(method, table, separate)
-    bar = {} if method == "naive-bayes" else {"least_probability": best_bar(probability, table, episodes)}
-    success = expected_success(probability, table, bar.get("least_probability", 0.5), episodes)
-    quality = judge(probability, table.truth, **bar) | {"expected_success": round(success, 4)}
-    return bar | {"left_out": quality} | _classifiers(method, table.goals, table.features, table.truth, separate)
+    quality = judge(probability, table.truth)
+    return {"left_out": quality} | _classifiers(method, table.goals, table.features, table.truth, separate)
 
 
 def _classifiers(
@@ -106,32 +94,10 @@ def _classifiers(
         truth: True for each true candidate; both values must occur.
         separate: goals that get a naive Bayes of their own.
     """
-    if method == "naive-bayes":
-        parts = {goal: goals == goal for goal in separate}
-        both = {goal: part for goal, part in parts.items() if 0 < truth[part].sum() < part.sum()}
-        own = {goal: _naive_bayes(features[part], truth[part]) for goal, part in both.items()}
-        return {"pooled": _naive_bayes(features, truth), "categories": own}
-    inputs = ("mean_score",) if method == "threshold" else tuple(INPUTS)
-    values = np.array([[INPUTS[name](Features(*row)) for name in inputs] for row in features.tolist()])
-    scaler = StandardScaler().fit(values)
-    met = [goal for goal in GOAL_CATEGORIES if (goals == goal).any()]
-    of_goal = SHIFT_DEVIATION * (goals[:, None] == np.array(met))
-    # With C = 1 the prior of each coefficient is a normal distribution with a standard deviation of 1.
-    model = LogisticRegression(C=1.0, max_iter=1000).fit(np.hstack([scaler.transform(values), of_goal]), truth)
-    weights, shifts = np.split(model.coef_[0], [len(inputs)])
-    middle, spread = np.asarray(scaler.mean_), np.asarray(scaler.scale_)
-    coefficients = weights / spread
-    intercept = float(model.intercept_[0] - coefficients @ middle)
-
-    def shifted(shift: float) -> dict[str, Any]:
-        return {
-            "inputs": list(inputs),
-            "coefficients": [float(f"{value:.6g}") for value in coefficients],
-            "intercept": float(f"{intercept + shift:.6g}"),
-        }
-
-    own = {goal: shifted(SHIFT_DEVIATION * shift) for goal, shift in zip(met, shifts.tolist(), strict=True)}
-    return {"pooled": shifted(0.0), "categories": own}
+    parts = {goal: goals == goal for goal in separate}
+    both = {goal: part for goal, part in parts.items() if 0 < truth[part].sum() < part.sum()}
+    own = {goal: _naive_bayes(features[part], truth[part]) for goal, part in both.items()}
+    return {"pooled": _naive_bayes(features, truth), "categories": own}
 
 
 def _naive_bayes(features: Float64[np.ndarray, "n 4"], truth: Bool[np.ndarray, " n"]) -> dict[str, Any]:
@@ -161,35 +127,6 @@ def _left_out(method: str, table: Candidates, separate: Sequence[str]) -> Float6
         for i in test:
             probability[i] = own.get(str(goals[i]), pooled).probability(Features(*features[i]))
     return probability
-
-
-def expected_success(probability: Float64[np.ndarray, " n"], table: Candidates, bar: float, episodes: int) -> float:
-    """Returns the share of episodes that end at a true candidate if the agent stops at the first one above the bar.
-
-    Args:
-        probability: probability of each candidate; NaN is never above the bar.
-        table: the candidates, in the order in which each episode met them.
-        bar: from 0 to 1.
-        episodes: number of episodes of the log, also those without a candidate.
-    """
-    accepted = np.flatnonzero(probability > bar)
-    _, first = np.unique(table.episodes[accepted], return_index=True)
-    ended_well = table.truth[accepted[first]].sum() / episodes
-    still_open = 1.0 - len(first) / episodes
-    return float(ended_well / (1.0 - OPEN_SHARE * still_open))  # the share s solves s = ended_well + OPEN_SHARE open s
-
-
-def best_bar(probability: Float64[np.ndarray, " n"], table: Candidates, episodes: int) -> float:
-    """Returns the bar from 0.05 to 0.95 with the highest `expected_success`, the lowest of equally good ones.
-
-    Neighbouring bars are averaged, so that a single lucky one is not chosen. Without probabilities the bar is one half.
-    """
-    if not np.isfinite(probability).any():
-        return 0.5
-    bars = np.arange(5, 100, 5) / 100.0
-    success = np.array([expected_success(probability, table, bar, episodes) for bar in bars.tolist()])
-    smooth = np.convolve(np.pad(success, 1, mode="edge"), np.full(3, 1.0 / 3.0), mode="valid")
-    return float(bars[int(np.argmax(np.round(smooth, 6)))])
 
 
 def judge(

@@ -162,7 +162,7 @@ def test_a_setup_of_another_form_is_refused(name: str, message: str) -> None:
 
 def test_the_table_of_verification_has_all_methods() -> None:
     methods = [each.verification for each in TABLES["verification"].setups()[:-1]]
-    assert methods == ["naive-bayes", "none", "logistic", "threshold"]
+    assert methods == ["naive-bayes", "none"]
 
 
 def test_an_unknown_table_is_refused_with_the_tables_that_exist() -> None:

@@ -255,9 +255,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     # docs/index.md
     f"{_RUN} --episodes 20 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
     f"{_RUN} --list-agents": (f"{_RUN} --list-agents",),
-    f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90'": (
-        f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 2 --out {{tmp}}/run",
-    ),
     # docs/agents.md
     "stubborn compare runs/before runs/after": (
         f"{_RUN} --agent oracle {_SMALL} --episodes 1 --out {{tmp}}/before",
@@ -558,6 +555,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
 """
 
 STAND_INS = (
+    "my_traps",
     "my_models",
     "/usr/share/sweethome3d/furniture",
     "my_house.xml",

@@ -167,15 +167,14 @@ def test_the_run_with_more_episodes_is_shown_for_a_row(tmp_path: Path) -> None:
 def test_a_row_has_the_command_that_repeats_it(tmp_path: Path) -> None:
     config = CONFIG | {
         "explorer": "tour",
-        "verification": "logistic",
+        "verification": "none",
         "settings": {"agent.seeker.look.bar": [[0, 0.05], [500, 0.7]]},
-        "config": {"verification": {"method": "logistic", "least_probability": 0.5}},
     }
     files = {"a/config.json": json.dumps(config), "a/results.jsonl": json.dumps(LINE) + "\n"}
     (run,) = read_archive(archive_of(tmp_path, files), tmp_path / "runs", lambda text: None).values()
     assert run.command(1) == (
-        "stubborn run --agent stubborn --explorer tour --verification logistic --config "
-        "'agent.seeker.look.bar=[[0,0.05],[500,0.7]]' verification.least_probability=0.5 "
+        "stubborn run --agent stubborn --explorer tour --verification none --config "
+        "'agent.seeker.look.bar=[[0,0.05],[500,0.7]]' "
         "--semantics gt --split val --episodes 1"
     )
 

@@ -30,19 +30,8 @@ RUN_FILES = ("config.json", "results.jsonl")
 MAX_FILE_BYTES = 50_000_000
 GROUND_TRUTH_KINDS = ("gt", "noisy")
 """Kinds of segmentation that are made from ground truth."""
-OWN_THRESHOLD = ("logistic", "threshold")
-"""Methods of verification whose fit stores a threshold, which a run may replace."""
 CHECKSUM_DIGITS = 8
 Say = Callable[[str], None]
-
-
-class _Verification(msgspec.Struct):
-    method: str = ""
-    least_probability: float | None = None
-
-
-class _Tree(msgspec.Struct):
-    verification: _Verification = msgspec.field(default_factory=_Verification)
 
 
 class _Setup(msgspec.Struct):
@@ -53,7 +42,6 @@ class _Setup(msgspec.Struct):
     noise: str | None = None
     seed: int | None = None
     settings: dict[str, Any] = msgspec.field(default_factory=dict)
-    config: _Tree = msgspec.field(default_factory=_Tree)
 
 
 @dataclass(frozen=True, order=True)
@@ -186,9 +174,6 @@ def _options(run: Run) -> Iterator[str]:
         if value is not None and value != getattr(defaults, name):
             yield from (f"--{name}", str(value))
     settings = {path: _setting_text(value) for path, value in setup.settings.items()}
-    verification = setup.config.verification
-    if verification.method in OWN_THRESHOLD and verification.least_probability is not None:
-        settings.setdefault("verification.least_probability", str(verification.least_probability))
     if settings:
         yield from ("--config", *(f"{path}={value}" for path, value in sorted(settings.items())))
 

@@ -92,11 +92,8 @@ CONTROLS = tuple(
     f"semexp --config agent.explorer.{control}" for control in ("goal=wrong", "semantics=shuffled", "semantics=none")
 )
 """Runs that show whether `semexp` uses the goal and the semantics; each is compared with it."""
-BAR = "--config verification.least_probability=0.5"
 NETWORK = (
     ("val", "stubborn", "naive Bayes", "stubborn", "rednet", 200),
-    ("val", "stubborn", "threshold", f"stubborn --verification threshold {BAR}", "rednet", 200),
-    ("val", "stubborn", "logistic", f"stubborn --verification logistic {BAR}", "rednet", 200),
     ("val", "stubborn", "none", "stubborn --verification none", "rednet", 200),
     ("val", "stubborn-plus", "tracks", "stubborn-plus", "rednet", 200),
     ("val, `noisy`", "stubborn", "naive Bayes", "stubborn", "noisy", 200),

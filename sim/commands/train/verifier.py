@@ -12,7 +12,7 @@ and detector are the same. --minutes 0 runs no episode and fits the existing log
 such a rejection, the agent finds the rest of the object again. Therefore, of the true candidates of an episode that the
 robot judged from places within 2 m of each other, only the first counts; the same holds for false candidates.
 
-Then each method of verification is fitted and written as JSON with the counts and its quality on houses left out
+Then the verifier is fitted and written as JSON with the counts and its quality on houses left out
 (`stubborn.detection.verifier_fit`).
 Houses of val and test are for --judge only.
 """
@@ -203,11 +203,7 @@ def report(content: Mapping[str, Any]) -> None:
     for method, fitted in content["methods"].items():
         left_out = dict(fitted["left_out"])
         rows = left_out.pop("by_probability")
-        bar = fitted.get("least_probability", 0.5)
-        print(
-            f"{method}, accepted above {bar}, on houses left out: "
-            + ", ".join(f"{key} {value}" for key, value in left_out.items())
-        )
+        print(f"{method}, on houses left out: " + ", ".join(f"{key} {value}" for key, value in left_out.items()))
         for row in rows:
             print("  " + ", ".join(f"{key} {value}" for key, value in row.items()))
 

@@ -5,14 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sklearn.linear_model import LogisticRegression
 from sklearn.naive_bayes import GaussianNB
-from sklearn.preprocessing import StandardScaler
 
 from sim.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
-from stubborn.detection.classifiers import Features, Logistic, NaiveBayes
+from stubborn.detection.classifiers import Features, NaiveBayes
 from stubborn.detection.verification import METHODS, AcceptAll, FittedVerifier, verifier_for
-from stubborn.detection.verifier_fit import OPEN_SHARE, _candidates, expected_success, fit, judge_by_category
+from stubborn.detection.verifier_fit import fit, judge_by_category
 
 IMPERFECT = SegmenterSpec()
 TRUE = SegmenterSpec(needs_verification=False)
@@ -56,79 +54,7 @@ def test_probabilities_are_those_of_scikit_learn(tmp_path: Path):
     np.testing.assert_array_equal(np.array(accepted)[sure], (expected > 0.5)[sure])
 
 
-def test_the_other_methods_are_logistic_regressions_and_threshold_uses_the_mean_score_only(tmp_path: Path):
-    features, truth = examples(400, 0.4, seed=6)
-    content = fit(log_of({"chair": (features, truth)}), 20)
-    file = tmp_path / "kind.json"
-    file.write_text(json.dumps(content))
-    threshold, logistic = FittedVerifier.read(file, "threshold"), FittedVerifier.read(file, "logistic")
-    share = features[:, 1] / features[:, 0]
-    probability = np.array([threshold.probability("chair", Features(*row)) for row in features])
-    order = np.argsort(share)
-    assert (np.diff(probability[order]) >= 0).all()
-    accepted = [logistic.accepts("chair", Features(*row)) for row in features]
-    assert np.mean(np.array(accepted) == truth) > 0.9
-    x = np.column_stack([np.log1p(features[:, 0]), share, features[:, 2], features[:, 3]])
-    scaler = StandardScaler().fit(x)
-    expected = LogisticRegression().fit(scaler.transform(x), truth).predict_proba(scaler.transform(x))[:, 1]
-    ours = [logistic.probability("chair", Features(*row)) for row in features]
-    np.testing.assert_allclose(ours, expected, atol=1e-3)
-
-
-def test_a_category_shifts_the_logistic_regression_as_its_candidates_warrant(tmp_path: Path):
-    chairs, (features, truth) = examples(400, 0.5, seed=11), examples(200, 0.5, seed=12)
-    false = features[~truth]
-    few, many = false[:4], false[:80]
-    content = fit(log_of({"chair": chairs, "sofa": (few, np.zeros(4, bool)), "bed": (many, np.zeros(80, bool))}), 20)
-    file = tmp_path / "kind.json"
-    file.write_text(json.dumps(content))
-    verifier = FittedVerifier.read(file, "logistic")
-    row = Features(20, 11.0, 0.7, 0.5)
-    pooled, sofa, bed = (verifier.probability(goal, row) for goal in ("toilet", "sofa", "bed"))
-    assert bed < sofa < pooled  # only false ones were met: of four sofas, and of eighty beds
-    assert verifier.probability("chair", row) > pooled
-
-
-def episode(number: int, *candidates: tuple[float, bool]) -> dict:
-    """Returns a line with candidates of a mean score, far from each other."""
-    met = [[10.0, 10.0 * score, score, 0.3, float(true), 5.0 * i, 0.0] for i, (score, true) in enumerate(candidates)]
-    return {"goal": "bed", "house": f"house_{number}", "steps": 200, "candidates": met}
-
-
-def test_the_expected_success_is_that_of_stops_at_the_first_candidate_above_the_bar():
-    lines = [episode(0, (0.6, False), (0.9, True)), episode(1, (0.7, True)), episode(2)]
-    table = _candidates(lines)
-    probability = table.features[:, 2]
-    assert expected_success(probability, table, 0.5, 3) == pytest.approx((1 / 3) / (1 - OPEN_SHARE / 3))
-    assert expected_success(probability, table, 0.65, 3) == pytest.approx((2 / 3) / (1 - OPEN_SHARE / 3))
-    assert expected_success(probability, table, 0.95, 3) == 0.0
-
-
-@pytest.mark.parametrize(("next_one_is_true", "low"), [(0.95, False), (0.0, True)])
-def test_the_bar_is_higher_where_waiting_pays(tmp_path: Path, next_one_is_true: float, low: bool):
-    """45 % of the first, doubtful candidates are true. A sure one follows in most episodes or in no episode."""
-    rng = np.random.default_rng(0)
-    lines = []
-    for number in range(300):
-        doubtful = (float(rng.uniform(0.45, 0.55)), bool(rng.random() < 0.45))
-        sure = [(float(rng.uniform(0.9, 0.99)), True)] * bool(rng.random() < next_one_is_true)
-        lines.append(episode(number, doubtful, *sure))
-    if low:  # so that there are both true and false ones
-        lines += [episode(300 + number, (0.1, False)) for number in range(100)]
-    content = fit(lines, 20)
-    bar = content["methods"]["threshold"]["least_probability"]
-    assert (bar < 0.45) == low, bar
-    file = tmp_path / "kind.json"
-    file.write_text(json.dumps(content))
-    assert FittedVerifier.read(file, "threshold").least_probability == bar
-    assert FittedVerifier.read(file, "naive-bayes").least_probability == 0.5
-    content["methods"]["threshold"]["least_probability"] = 1.5
-    file.write_text(json.dumps(content))
-    with pytest.raises(ConfigError, match="least_probability"):
-        FittedVerifier.read(file, "threshold")
-
-
-def test_all_methods_are_judged_on_the_same_candidates_left_out():
+def test_methods_are_judged_on_candidates_of_houses_left_out():
     features, truth = examples(300, 0.5, seed=7)
     methods = fit(log_of({"bed": (features, truth)}), 20)["methods"]
     assert set(methods) == set(METHODS)
@@ -156,8 +82,6 @@ def test_the_method_none_accepts_all_and_unknown_methods_are_refused(tmp_path: P
         verifier_for(IMPERFECT, method="hunch")
     with pytest.raises(ConfigError, match="cannot be read"):
         verifier_for(IMPERFECT, tmp_path / "none.json")
-    with pytest.raises(ConfigError, match="a coefficient for each of its inputs"):
-        Logistic.from_dict({"inputs": ["maximum", "smell"], "coefficients": [1.0, 2.0], "intercept": 0.0})
 
 
 def test_extreme_features_give_a_probability_and_no_overflow():
@@ -206,9 +130,7 @@ def test_a_candidate_near_an_earlier_one_of_the_same_truth_does_not_count_again(
     content = fit([line, line], 2)
     assert content["candidates"]["bed"] == {"false": 2, "true": 4}
     np.testing.assert_allclose(content["methods"]["naive-bayes"]["pooled"]["mean"], [weak, strong])
-    assert (
-        content["methods"]["threshold"]["least_probability"] == 0.5
-    )  # one house: no house is held out for the evaluation
+    assert content["methods"]["naive-bayes"]["left_out"]["candidates"] == 0  # one house: none is held out
 
 
 def test_candidates_of_failed_episodes_are_neither_fitted_nor_judged(tmp_path: Path):
