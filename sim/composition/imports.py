@@ -6,11 +6,24 @@ import importlib
 import os
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from sim.errors import ConfigError
 from sim.evaluation.own_code import place_of, text_of
 from sim.evaluation.watch import is_stop
+
+
+def _require_unhidden() -> None:
+    """Raises ConfigError where the current folder has modules that would hide this project's in spawned workers."""
+    ours = Path(__file__).resolve().parents[2]
+    for name in ("sim", "stubborn"):
+        for file in (Path(f"{name}.py"), Path(name) / "__init__.py"):
+            if file.is_file() and file.resolve() != ours / file:
+                raise ConfigError(
+                    f"Your '{file}' in the current folder would hide the package '{name}' of this project; rename it, "
+                    "or run the command in another folder."
+                )
 
 
 def import_attribute(
@@ -28,6 +41,7 @@ def import_attribute(
         ConfigError: the module cannot be imported, or has no such name.
     """
     if "" not in sys.path:
+        _require_unhidden()
         sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
     folder = os.getcwd()
     try:

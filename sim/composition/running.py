@@ -20,7 +20,7 @@ from sim.episodes.splits import Episode, load_split
 from sim.evaluation.executors import make_executor
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.workers import RunnerSpec
-from sim.geometry.compiling import must_compile
+from sim.geometry.compiling import choose_cache, must_compile
 from sim.houses.load import load_house
 
 
@@ -73,6 +73,8 @@ def run_missing(
         _report_resumed(run, len(episodes), len(todo), code_of(options), console)
         if todo and must_compile():
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
+            if (cache := choose_cache()) is not None:
+                console.print(f"Neither the installation nor a home folder can be written: it is kept in {cache}.")
         spec = RunnerSpec("sim.composition.runner:EpisodeRunner", setup)
         progress = display.ProgressReport(console, total=len(todo))
 
