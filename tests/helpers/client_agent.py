@@ -3,14 +3,21 @@
 With an argument, the path of a file that does not exist, its first process writes it and exits at its fourth step.
 """
 
+import importlib.util
 import os
 import sys
 
 import numpy as np
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "sim", "bridges"))
-
-from stubborn_client import MOVE_FORWARD, STOP, TURN_LEFT, serve
+if os.path.exists(os.path.join(os.path.dirname(os.path.abspath(__file__)), "stubborn_client.py")):
+    import stubborn_client as client  # pyright: ignore[reportMissingImports]
+else:  # in the repository
+    ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+    FILE = os.path.join(ROOT, "sim", "bridges", "stubborn_client.py")
+    SPEC = importlib.util.spec_from_file_location("stubborn_client", FILE)
+    assert SPEC is not None and SPEC.loader is not None  # noqa: PT018
+    client = importlib.util.module_from_spec(SPEC)
+    SPEC.loader.exec_module(client)
 
 
 class Wanderer:
@@ -25,11 +32,11 @@ class Wanderer:
             open(sys.argv[1], "w").close()
             sys.exit("The agent broke")
         if self.steps > 60:
-            return STOP
+            return client.STOP
         depth = observation["depth"]
         near_m = depth[len(depth) // 2].min()
         depth[:] = 0.0  # it is the agent's own
-        return MOVE_FORWARD if near_m > 0.8 and self.rng.rand() < 0.8 else TURN_LEFT
+        return client.MOVE_FORWARD if near_m > 0.8 and self.rng.rand() < 0.8 else client.TURN_LEFT
 
     def stop_confidence(self):
         return np.float32(0.5)
@@ -45,4 +52,4 @@ class Wanderer:
 
 
 if __name__ == "__main__":
-    serve(lambda setup: Wanderer())
+    client.serve(lambda setup: Wanderer())

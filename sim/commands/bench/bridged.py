@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 
-from sim.bridges import stubborn_client
 from sim.bridges.process import ProcessAgent
 from sim.bridges.process_command import ProcessConfig
 from sim.commands.bench.figures import Figure, Goal, timed
@@ -20,9 +18,7 @@ MOST_MS = 2.0
 PAUSE_S = 0.005
 """Time between two steps, in which the simulator renders."""
 _AGENT = """
-import sys
-sys.path.insert(0, {folder!r})
-from stubborn_client import TURN_LEFT, serve
+from sim.bridges.stubborn_client import TURN_LEFT, serve
 class Turner(object):
     def reset(self, goal, seed): pass
     def act(self, observation): return TURN_LEFT
@@ -40,9 +36,8 @@ def agent_in_a_process(setting: Setting) -> list[Figure]:
         "compass": np.zeros(1, np.float32),
         "objectgoal": np.zeros(1, np.int64),
     }
-    code = _AGENT.format(folder=str(Path(stubborn_client.__file__).parent))
     parts = {"camera": camera, "robot": RobotModel(), "success": SuccessRule(), "max_steps": 500}
-    agent = ProcessAgent([sys.executable, "-c", code], **parts, config=ProcessConfig())
+    agent = ProcessAgent([sys.executable, "-c", _AGENT], **parts, config=ProcessConfig())
     copies = [timed(lambda: {name: each.copy() for name, each in observation.items()}) for _ in range(20)]
     steps = min(500, setting.amount.steps)
     figures = []

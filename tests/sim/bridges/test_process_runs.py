@@ -77,9 +77,9 @@ def test_a_command_that_fails_is_one_line_and_leaves_no_run(
 
 def test_an_agent_gets_step_timeout_and_true_images_when_the_command_line_says_so(house: Path, tmp_path: Path) -> None:
     own = tmp_path / "agent.py"
-    own.write_text(f"""
+    shutil.copy(ROOT / "sim" / "bridges" / "stubborn_client.py", tmp_path)
+    own.write_text("""
 import sys, time
-sys.path.insert(0, {str(ROOT / "sim" / "bridges")!r})
 from stubborn_client import serve
 class Agent:
     def reset(self, goal, seed): pass
