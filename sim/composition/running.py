@@ -10,6 +10,7 @@ from typing import Any
 from rich.console import Console
 
 from sim.analysis import display
+from sim.analysis.progress import ProgressReport
 from sim.composition.isolation import isolation_of
 from sim.composition.options import RunOptions
 from sim.composition.record import code_of, error_line, record_of
@@ -71,7 +72,7 @@ def run_missing(
         if todo and must_compile():
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
         spec = RunnerSpec("sim.composition.runner:EpisodeRunner", setup)
-        progress = display.ProgressReport(console, total=len(todo))
+        progress = ProgressReport(console, total=len(todo), max_steps=setup.config.task.max_steps)
 
         def lost(episode: Episode, reason: str) -> dict[str, Any]:
             return error_line(setup, episode, reason)

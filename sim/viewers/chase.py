@@ -84,7 +84,7 @@ class ChaseView:
         robot = np.flatnonzero(geoms_of(model, PREFIX))
         visual = rendered_geoms(model)
         self._geoms = np.union1d(np.flatnonzero(visual), robot)
-        self._hidden = np.setdiff1d(np.flatnonzero(_hidden_obstacles(scene.world)), robot)
+        self._hidden = np.setdiff1d(np.flatnonzero(hidden_obstacles(scene.world)), robot)
         self._scene = GeomScene(model, unhidden=[*robot.tolist(), *self._hidden.tolist()])
         self._lamps = Lamps(model, Visibility(model, visual, self._size, Z_NEAR_M), np.flatnonzero(visual))
         self._shading = make_shading(model, self._size, profile)
@@ -194,7 +194,7 @@ class ChaseView:
         return geom
 
 
-def _hidden_obstacles(world: World) -> NDArray[np.bool_]:
+def hidden_obstacles(world: World) -> NDArray[np.bool_]:
     """Returns (ngeom,) True for obstacles that no camera renders; floors and ceilings are none."""
     model, labels = world.model, world.labels
     flat = np.isin(labels.geom_category, [MPCAT40_ID["floor"], MPCAT40_ID["ceiling"]])

@@ -29,7 +29,7 @@ from sim.run import entry
 from sim.task.explanations import Outcome, explain_end
 from sim.task.ground_truth import GroundTruth
 from sim.viewers import overlay, video
-from sim.viewers.chase import ChaseView
+from sim.viewers.chase import ChaseView, hidden_obstacles
 from sim.viewers.topview import (
     BLOCKED,
     FREE,
@@ -506,3 +506,15 @@ def test_reading_the_agents_perception_twice_changes_nothing(house: Path, semant
     true = env.truth_images["semantic"][stride // 2 :: stride, stride // 2 :: stride]
     assert (seen.categories == true).mean() > 0.3
     env.close()
+
+
+def test_only_obstacles_that_nothing_visible_covers_are_tinted() -> None:
+    house = with_box(room(6, 6), "window_00", centre_m=(1.5, 0, 1.0), half_m=(0.01, 1.0, 1.0), group=3)  # a pane
+    house = with_box(house, "table_00", centre_m=(-1, 1, 0.7), half_m=(0.5, 0.4, 0.02))
+    house = with_box(
+        house, "table_01", centre_m=(-1, 1, 0.7), half_m=(0.48, 0.38, 0.02), group=3
+    )  # what collides of it
+    house = with_box(house, "floor_02", centre_m=(0, 0, -0.05), half_m=(3, 3, 0.02), group=3)
+    world = World(house)
+    hidden = {world.model.geom(geom).name for geom in np.flatnonzero(hidden_obstacles(world))}
+    assert {name for name in hidden if not name.startswith(PREFIX)} == {"window_00"}
