@@ -47,8 +47,9 @@ _TINT, _IN_FRONT_M = 0.4, 0.06
 _COVER_M = 0.12
 """A point of an invisible geom with a visible surface within this distance is no invisible obstacle: it is a part of
 visible furniture that only collides."""
-_AROUND = 0.3
-"""Share of the box around the visible parts of an object from which a geom in it is their outline."""
+_INSIDE, _PANE_M = 0.8, 0.08
+"""A geom with this share of its volume inside of the box around the visible parts of its object is a part of them, but
+not a pane, which is thinner than the second number: that of a glass door lies in the box around its frame."""
 _AXES = np.vstack([np.eye(3), -np.eye(3)])
 _SPECK_PX = 12
 """Outlines around less than this area are not drawn."""
@@ -205,22 +206,22 @@ def hidden_obstacles(world: World) -> NDArray[np.bool_]:
     flat = np.isin(labels.geom_category, [MPCAT40_ID["floor"], MPCAT40_ID["ceiling"]])
     hidden = collidable_geoms(model) & ~rendered_geoms(model) & (opacity(model) > 0.0) & ~flat
     for geom in np.flatnonzero(hidden).tolist():
-        hidden[geom] = _covered_share(world, geom) < 0.5 and not _is_around_visible(world, geom)
+        hidden[geom] = _covered_share(world, geom) < 0.5 and not _is_inside_visible(world, geom)
     return hidden
 
 
-def _is_around_visible(world: World, geom: int) -> bool:
-    """Returns whether a geom is a box around the visible parts of its own object, as under a table with four legs."""
+def _is_inside_visible(world: World, geom: int) -> bool:
+    """Returns whether a geom lies between visible parts of its own object, as a box under a table with four legs."""
     model, data, number = world.model, world.data, int(world.labels.geom_instance[geom])
     own = world.labels.instances[number].geom_ids if number >= 0 else ()
     visible = np.intersect1d(np.array(own, np.int64), np.flatnonzero(rendered_geoms(model)))
-    if not visible.size:
+    if not visible.size or 2.0 * model.geom_aabb[geom, 3:].min() < _PANE_M:
         return False
     boxes = np.array([geom_box(model, data, each) for each in visible.tolist()])
     low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
     other_low, other_high = geom_box(model, data, geom)
     both = np.prod(np.maximum(np.minimum(high, other_high) - np.maximum(low, other_low), 0.0))
-    return bool(both >= _AROUND * np.prod(high - low))
+    return bool(both >= _INSIDE * np.prod(other_high - other_low))
 
 
 def _covered_share(world: World, geom: int) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import resource
 from collections.abc import Iterator
@@ -22,6 +23,7 @@ from sim.episodes.splits import Episode
 from sim.evaluation.results import VIEWER_OPTIONS
 from sim.evaluation.rollout import play_episode
 from sim.geometry.pose import Pose
+from sim.gl import mujoco
 from sim.houses.labels import geoms_of
 from sim.interface import MPCAT40, Action, CameraModel, ConfigError, Scores, SuccessRule
 from sim.robot.body import PREFIX
@@ -515,6 +517,11 @@ def test_only_obstacles_that_nothing_visible_covers_are_tinted() -> None:
         house, "table_01", centre_m=(-1, 1, 0.7), half_m=(0.48, 0.38, 0.02), group=3
     )  # what collides of it
     house = with_box(house, "floor_02", centre_m=(0, 0, -0.05), half_m=(3, 3, 0.02), group=3)
+    table = house.spec.worldbody.add_body(name="table_02", pos=(-1.8, -1.7, 0.4))
+    for x_m, y_m in itertools.product((-0.6, 0.6), repeat=2):
+        table.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, pos=(x_m, y_m, 0), size=(0.02, 0.02, 0.4))
+    table.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, name="hull", size=(0.6, 0.6, 0.4), group=3)
+    table.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, name="glass", pos=(0, 0, 0.4), size=(0.6, 0.6, 0.005), group=3)
     world = World(house)
     hidden = {world.model.geom(geom).name for geom in np.flatnonzero(hidden_obstacles(world))}
-    assert {name for name in hidden if not name.startswith(PREFIX)} == {"window_00"}
+    assert {name for name in hidden if not name.startswith(PREFIX)} == {"window_00", "glass"}
