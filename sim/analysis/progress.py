@@ -59,7 +59,9 @@ class ProgressReport:
         self._running: dict[str, _Running] = {}
         self._lock = threading.Lock()
         self._over = threading.Event()
-        self._began_s = self._printed_s = time.monotonic()
+        self._printed_s = time.monotonic()
+        self._first: tuple[float, int] | None = None
+        """Time and number of steps when steps were seen for the first time, after house and kernels were loaded."""
         self._done = self._steps_done = 0
         self._bar = _bar(console) if console.is_terminal else None
 
@@ -111,7 +113,7 @@ class ProgressReport:
         ]
         others = f" and {len(steps) - MOST_NAMED} more" if len(steps) > MOST_NAMED else ""
         counts = [0 if count is None else count for count in steps.values()]
-        pace = self._pace(counts, now_s - self._began_s) if None not in steps.values() else ""
+        pace = self._pace(counts, now_s) if None not in steps.values() else ""
         if self._bar is None:
             self._print(f"[{self._done}/{self._total}] running: {'; '.join(named)}{others}{pace}")
         else:
@@ -119,18 +121,20 @@ class ProgressReport:
             self._bar.update(self._task, completed=min(shown, self._total - 0.01))
             self._print(f"{'; '.join(named)}{others}{pace}")
 
-    def _pace(self, counts: list[int], passed_s: float) -> str:
-        """Returns the steps per second since the beginning and the time left; "" before the first step.
+    def _pace(self, counts: list[int], now_s: float) -> str:
+        """Returns the steps per second since the first steps and the time left; "" before them.
 
         An episode has as many steps as those that ended have on average. Before the first end it has the most steps.
         """
         made = self._steps_done + sum(counts)
-        if made == 0 or passed_s <= 0.0:
+        if self._first is None and made > 0:
+            self._first = now_s, made
+        if self._first is None or made <= self._first[1]:
             return ""
         expected = self._steps_done / self._done if self._done else float(self._max_steps)
         waiting = self._total - self._done - len(counts)
         left = waiting * expected + sum(max(0.0, expected - count) for count in counts)
-        rate, bound = made / passed_s, "about" if self._done else "at most"
+        rate, bound = (made - self._first[1]) / (now_s - self._first[0]), "about" if self._done else "at most"
         return f"; {rate:.1f} steps/s, {bound} {_duration(left / rate)} left"
 
     def _print(self, words: str) -> None:

@@ -88,7 +88,7 @@ class ChaseView:
         robot = np.flatnonzero(geoms_of(model, PREFIX))
         visual = rendered_geoms(model)
         self._geoms = np.union1d(np.flatnonzero(visual), robot)
-        self._hidden = np.setdiff1d(np.flatnonzero(hidden_obstacles(scene.world)), robot)
+        self._hidden = np.flatnonzero(hidden_obstacles(scene.world))
         self._scene = GeomScene(model, unhidden=[*robot.tolist(), *self._hidden.tolist()])
         self._lamps = Lamps(model, Visibility(model, visual, self._size, Z_NEAR_M), np.flatnonzero(visual))
         self._shading = make_shading(model, self._size, profile)
@@ -201,10 +201,11 @@ class ChaseView:
 
 
 def hidden_obstacles(world: World) -> NDArray[np.bool_]:
-    """Returns (ngeom,) True for obstacles that no camera renders; floors and ceilings are none."""
+    """Returns (ngeom,) True for obstacles that no camera renders; floors, ceilings and the robot are none."""
     model, labels = world.model, world.labels
     flat = np.isin(labels.geom_category, [MPCAT40_ID["floor"], MPCAT40_ID["ceiling"]])
     hidden = collidable_geoms(model) & ~rendered_geoms(model) & (opacity(model) > 0.0) & ~flat
+    hidden &= ~geoms_of(model, PREFIX)
     for geom in np.flatnonzero(hidden).tolist():
         hidden[geom] = _covered_share(world, geom) < 0.5 and not _is_inside_visible(world, geom)
     return hidden

@@ -183,9 +183,11 @@ def few_note(count: int) -> str:
 
 def interval_note(runs: Runs) -> str:
     """Returns the sentence that says how the bootstrap intervals of a report are made."""
+    few = len(runs[0]) < FEW
+    kind = "95 % intervals of shares by Wilson, of other means by bootstrap" if few else "95 % bootstrap intervals"
     if len(set(houses_of(runs[0]))) == 1:
         return (
-            "95 % bootstrap intervals. There is one house: its episodes are resampled, and the intervals (*) say "
+            f"{kind}. There is one house: its episodes are resampled, and the intervals (*) say "
             "nothing about other houses."
         )
-    return "95 % bootstrap intervals: houses are resampled, then the episodes of each house."
+    return f"{kind}: houses are resampled, then the episodes of each house."

@@ -48,12 +48,12 @@ def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Pictu
     """Returns the top view and, if there is a map, the map next to it, uint8 (h, w, 3), between title and legend."""
     world = env.scene.world
     top = TopView(world.house, env.scene.task.truth.space(env.episode.start.floor_z_m).frame)
+    top.invisible(world)
     top.path(trial.positions_m)
     for _, contact in trial.stops:
         top.dot(contact.position_m[:2], STOPPED, 4)
     top.dot(trial.positions_m[0], START, 7)
     top.dot(trial.positions_m[-1], END, 7)
-    top.invisible(world)
     picture = top.image
     if belief is not None:
         width = round(belief.shape[1] * HEIGHT_PX / belief.shape[0])
