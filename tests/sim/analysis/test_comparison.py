@@ -264,10 +264,11 @@ def test_the_verdict_names_success_and_spl_and_whether_they_differ(
 ) -> None:
     ids = [chr(ord("A") + i) for i in range(episodes)]
     first, second = (read_run(run_folder(tmp_path / name, "".join(ids), success=0.0, spl=0.0)) for name in "ab")
-    for number, episode_id in enumerate(ids):
-        better = {"success": float(number < gained), "spl": 0.5 * (number < gained), "house": f"h{number}"}
-        second.lines[episode_id].update(better)
-        first.lines[episode_id]["house"] = f"h{number}"
+    changes: dict[str, dict[str, object]] = {
+        name: {"house": f"h{i}", "success": float(i < gained), "spl": 0.5 * (i < gained)} for i, name in enumerate(ids)
+    }
+    first = replace(first, lines={name: {**first.lines[name], "house": of["house"]} for name, of in changes.items()})
+    second = replace(second, lines={name: {**second.lines[name], **of} for name, of in changes.items()})
     said = verdict(first, second)
     assert said.startswith(f"Verdict over {episodes} episodes. {words}")
     assert "SPL: " in said
