@@ -349,6 +349,15 @@ class Overridable(Protocol):
 
 
 @runtime_checkable
+class Closable(Protocol):
+    """An agent that holds something that must be freed, such as a process."""
+
+    def close(self) -> None:
+        """Called after the last episode."""
+        ...
+
+
+@runtime_checkable
 class StatesConfidence(Protocol):
     """An agent that states how sure it is that the object for which it stops is the goal; the report compares it."""
 
@@ -382,6 +391,7 @@ AgentFactory = Callable[..., Agent]
 | config | type of `AgentSpec.config` | the agent's configuration |
 | truth | `sim.env.objectnav.ObjectNavEnv` | only with `uses_ground_truth`: the running environment |
 | max_steps | int | only where the factory has a parameter of this name: actions of an episode |
+| step_timeout_s | float | only where the factory has a parameter of this name: longest time of a call; 0: no limit |
 """
 
 
@@ -418,12 +428,13 @@ class AgentSpec:
                 "uses_ground_truth=True."
             )
 
-    def build(self, name: str, *, max_steps: int, **parts: Any) -> Agent:
+    def build(self, name: str, *, max_steps: int, step_timeout_s: float = 0.0, **parts: Any) -> Agent:
         """Returns a new agent.
 
         Args:
             name: the agent's name, for the error message.
             max_steps: actions of an episode; given only to a factory that has a parameter of this name.
+            step_timeout_s: longest time of a call of the agent, as `max_steps`.
             parts: the other arguments of `AgentFactory`.
 
         Raises:
@@ -431,8 +442,8 @@ class AgentSpec:
         """
         try:
             signature = inspect.signature(self.make)
-            if "max_steps" in signature.parameters:
-                parts["max_steps"] = max_steps
+            optional = {"max_steps": max_steps, "step_timeout_s": step_timeout_s}
+            parts |= {key: value for key, value in optional.items() if key in signature.parameters}
             signature.bind(**parts)
         except TypeError as error:
             raise ConfigError(

@@ -29,6 +29,7 @@ ROOMS = (
     ("sim.viewers",),
     ("sim.evaluation",),
     ("sim.analysis",),
+    ("sim.bridges",),
     ("sim.composition", "sim.twin"),
     ("sim.web",),
     ("sim.gym", "sim.run", "sim.report", "sim.teleop"),

@@ -56,6 +56,7 @@ COMMANDS: Mapping[str, Command] = {
         "Run and write the tables of the paper",
         stopped="Stopped. The same command resumes; with --minutes 0 it only writes the table.",
     ),
+    "agent-client": Command("sim.commands.agent_client", "Write the client file for agents in a process of their own"),
     "bench": Command("sim.commands.bench.bench", "Measure the speed of all parts"),
 }
 """Every sub-command, by the words that the user types. A group such as `views` may be a command itself."""

@@ -1,4 +1,4 @@
-"""Finds agents by name: those of `stubborn`, the oracle of `sim`, and your own as `package.module:NAME`."""
+"""Finds agents by name: those of `stubborn`, the oracle of `sim`, and your own as a module or in another process."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
+from sim.bridges.process_command import is_process
 from sim.composition.imports import import_attribute
 from sim.errors import AgentError, ConfigError, ObjectNavError
 from sim.evaluation.own_code import place_of, text_of
@@ -51,19 +52,24 @@ def find_agent(name: str) -> AgentSpec:
 
     Args:
         name: one of `SPECS`, or `package.module:NAME`, where NAME is an `AgentSpec` or a factory. A plain factory
-            declares nothing, so its agent gets RGB and depth and no ground truth.
+            declares nothing, so its agent gets RGB and depth and no ground truth; neither does `process:COMMAND`.
 
     Raises:
         ConfigError: the name is unknown.
     """
     if name in SPECS:
         return SPECS[name]
+    if is_process(name):
+        from sim.bridges.process import process_spec
+
+        return process_spec(name)
     module_name, separator, attribute = name.partition(":")
     if not separator or not attribute:
         near = difflib.get_close_matches(name, SPECS, n=1)
         hint = f" Did you mean '{near[0]}'?" if near else ""
         raise ConfigError(
-            f"Unknown agent '{name}'.{hint} Available: {', '.join(SPECS)}, or your own as package.module:NAME."
+            f"Unknown agent '{name}'.{hint} Available: {', '.join(SPECS)}, or your own as package.module:NAME, "
+            "or in a process of its own as process:COMMAND."
         )
     found = import_attribute(name, module_name, attribute)
     if isinstance(found, AgentSpec):
@@ -102,9 +108,16 @@ def takes_explorer(spec: AgentSpec) -> bool:
 
 
 def build_agent(
-    name: str, spec: AgentSpec, env: ObjectNavEnv, *, segmenter: Segmenter, verifier: Verifier, config: Any
+    name: str,
+    spec: AgentSpec,
+    env: ObjectNavEnv,
+    *,
+    segmenter: Segmenter,
+    verifier: Verifier,
+    config: Any,
+    step_timeout_s: float = 0.0,
 ) -> Agent:
-    """Returns the agent of a specification, for an environment.
+    """Returns the agent of a specification, for an environment; `step_timeout_s` limits its calls, 0: no limit.
 
     Raises:
         ConfigError: the factory does not take the arguments of `sim.interface.AgentFactory`.
@@ -121,7 +134,7 @@ def build_agent(
         parts["truth"] = env
     try:
         with marked(f"Agent '{name}', its factory"):
-            return spec.build(name, max_steps=env.task_config.max_steps, **parts)
+            return spec.build(name, max_steps=env.task_config.max_steps, step_timeout_s=step_timeout_s, **parts)
     except BaseException as error:
         if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
             raise

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sim.bridges.process_command import is_process
 from sim.composition.options import RunOptions
 from sim.evaluation.executors import Isolation
 
@@ -14,14 +15,22 @@ RUNNER = "sim.composition.runner"
 def own_modules(options: RunOptions) -> list[str]:
     """Returns the modules of the user that the options name as `package.module:NAME`."""
     names = (options.agent, options.explorer, options.semantics)
-    return [name.partition(":")[0] for name in names if name is not None and ":" in name]
+    return [name.partition(":")[0] for name in names if name is not None and ":" in name and not is_process(name)]
+
+
+def step_limit_s(options: RunOptions) -> float:
+    """Returns the longest time of a call of the agent; 0: no limit."""
+    return STEP_TIMEOUT_S if options.step_timeout is None else options.step_timeout
 
 
 def isolation_of(options: RunOptions) -> Isolation:
     """Returns whether the episodes of a run need a process of their own, and how long a call of the agent may take.
 
-    Code of a user does: it may hang, crash, or change the state of its process.
+    Code of a user does: it may hang, crash, or change the state of its process. An agent `process:COMMAND` has one
+    already, and `ProcessAgent` ends a call that takes too long without the loss of the loaded house.
     """
-    limit_s = STEP_TIMEOUT_S if options.step_timeout is None else options.step_timeout
+    if is_process(options.agent):
+        return Isolation()
+    limit_s = step_limit_s(options)
     own_process = bool(own_modules(options)) or options.step_timeout is not None
     return Isolation(needed=own_process and limit_s > 0.0, limit_s=limit_s)

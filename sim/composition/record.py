@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from sim.bridges.process_command import files_of, is_process
 from sim.composition.isolation import own_modules
 from sim.composition.options import RunOptions
 from sim.composition.segmenters import NetworkConfig, file_sha256
@@ -47,9 +48,10 @@ def code_of(options: RunOptions) -> str:
     """Returns a hash of the code of a run, such as "3353e768d2c2".
 
     With an agent, explorer or segmentation of the user, whose modules are imported by now, "+" and a hash of these
-    follow.
+    follow; with an agent in a process of its own, that of the files which its command names and of what these import
+    from their folder.
     """
-    own = hash_of_own(own_modules(options))
+    own = hash_of_own(own_modules(options), files_of(options.agent) if is_process(options.agent) else ())
     return f"{code_hash()}+{own}" if own else code_hash()
 
 
@@ -103,6 +105,7 @@ def identity_of(setup: Setup, episode: Episode) -> dict[str, Any]:
         "goal": episode.goal,
         "agent": setup.options.agent,
         "uses_ground_truth": setup.uses_ground_truth,
+        "isolated": is_process(setup.options.agent),
         "semantics": setup.options.semantics,
         "seed": setup.options.seed,
     }

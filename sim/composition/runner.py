@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import traceback
 from dataclasses import dataclass
 from typing import Any
 
 from sim.composition.agents import build_agent
 from sim.composition.environments import make_env
+from sim.composition.isolation import step_limit_s
 from sim.composition.perception import AskedSegmenter, seen_by
 from sim.composition.record import error_line, identity_of, versions
 from sim.composition.segmenters import NoSegmentation
@@ -20,7 +22,7 @@ from sim.evaluation.last_view import write_last_view
 from sim.evaluation.own_code import text_of
 from sim.evaluation.rollout import agent_seed, episode_seed, play_episode, record_episode
 from sim.evaluation.watch import is_stop
-from sim.interface import Agent
+from sim.interface import Agent, Closable
 from sim.viewers import selection
 from sim.viewers.viewer import VIEWER_IMAGES, MapPainter, SeesFrames
 
@@ -56,6 +58,7 @@ def build_parts(setup: Setup, *, watched: bool) -> Parts:
         segmenter=segmenter or NoSegmentation(),
         verifier=setup.verifier,
         config=config.agent,
+        step_timeout_s=step_limit_s(setup.options),
     )
     return Parts(env, agent, seen_by(setup, agent, segmenter), spec.painter(agent) if spec.painter else None)
 
@@ -129,7 +132,10 @@ class EpisodeRunner:
         return error_line(self._setup, episode, reason)
 
     def close(self) -> None:
-        """Frees the renderers; viewers discard an unfinished recording."""
+        """Frees the renderers and the agent; viewers discard an unfinished recording."""
         for viewer in self._viewers:
             viewer.close()
+        if isinstance(self._agent, Closable):
+            with contextlib.suppress(Exception):  # of the user's code
+                self._agent.close()
         self._env.close()

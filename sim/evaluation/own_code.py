@@ -54,13 +54,14 @@ def one_line(text: str, most: int = MOST_LETTERS) -> str:
     return printable(" ".join(text[:most].split())) + cut
 
 
-def hash_of_own(modules: Iterable[str]) -> str:
+def hash_of_own(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
     """Returns 12 hex digits, a hash of modules of a user and of all that they import from the same source folder.
 
     Imports are read from the source, so that those inside of functions count too, whether they have run or not.
 
     Args:
         modules: names of imported modules; those of this project and of libraries do not count.
+        files: further files, each with what it imports from its folder where it is a Python file.
 
     Returns:
         The hash; "" where no module is the user's.
@@ -71,10 +72,16 @@ def hash_of_own(modules: Iterable[str]) -> str:
         if file.suffix == ".py" and file.is_file() and _is_users(file):
             root = file.parents[name.count(".") + (file.name == "__init__.py")]
             _read_with_imports(file, root, contents)
-    digest = hashlib.sha256()
+    digest, others = hashlib.sha256(), sorted({file.resolve() for file in files})
+    for file in others:
+        if file.suffix == ".py":
+            _read_with_imports(file, file.parent, contents)
     for place in sorted(contents):
         digest.update(place.encode() + contents[place])
-    return digest.hexdigest()[:12] if contents else ""
+    for file in (each for each in others if each.suffix != ".py"):
+        with file.open("rb") as stream:
+            digest.update(file.name.encode() + hashlib.file_digest(stream, "sha256").digest())
+    return digest.hexdigest()[:12] if contents or others else ""
 
 
 def _read_with_imports(file: Path, root: Path, contents: dict[str, bytes]) -> None:

@@ -142,7 +142,10 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--out OUT --withheld only", "--withheld must be without or only, and needs --pool"),
     ],
     "sim.commands.importing.furniture": [("--source nowhere --out OUT", "nowhere")],
-    "sim.commands.episodes": [("--split nowhere", "0 houses"), ("--split nowhere --recipe cake", "0 houses|cake")],
+    "sim.commands.episodes": [
+        ("--split nowhere", "There is no house"),
+        ("--split nowhere --recipe cake", "no house|cake"),
+    ],
     "sim.commands.merge": [("nowhere", "Give one folder"), ("nowhere nowhere --out OUT", "is not a run")],
     "tools.maintenance.readme_picture": [
         ("nowhere.mp4 --out OUT", "'nowhere.mp4' cannot be read as a video"),

@@ -156,7 +156,7 @@ def run_quickly(parts: str, tmp_path: Path) -> dict[str, Any]:
 
 
 def test_a_quick_run_writes_figures_machine_and_calibration(tmp_path: Path) -> None:
-    written = run_quickly("c,d", tmp_path)
+    written = run_quickly("c,d,l", tmp_path)
     shares = {"c": 0.0, "gt": 0.0, "rednet": 0.0}
     for figure in written["figures"]:
         if figure["what"].startswith("of it"):

@@ -118,7 +118,7 @@ def test_episodes_of_removed_houses_are_removed(folder):
 
 
 def test_a_folder_without_houses_is_refused(tmp_path):
-    with pytest.raises(ConfigError, match="0 houses"):
+    with pytest.raises(ConfigError, match="There is no house"):
         main(Args(split=tmp_path))
 
 

@@ -113,7 +113,7 @@ def test_a_calibration_is_not_written_into_a_file_of_another_project(tmp_path: P
 def test_mirror_images_slivers_and_the_calibration_change_what_is_measured(tmp_path: Path, weights: Path) -> None:
     for name in ("one", "two"):
         write_views(tmp_path / name, 4)
-    args = Args(views=(tmp_path / "one", tmp_path / "two"), weights=weights, threads=1)
+    args = Args(views=(tmp_path / "one", tmp_path / "two"), weights=weights, block_px=2, threads=1)
     model, metadata = load_network(weights)
     plain = evaluate_rednet.measure(args, model, metadata)
     assert (plain.calibrated.goals, plain.calibrated.accuracy) == (plain.iou.goals, plain.iou.accuracy)

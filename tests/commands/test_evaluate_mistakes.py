@@ -28,7 +28,12 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     house = with_box(room(9, 4), "sofa_00", centre_m=(4.0, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     (folder / "lounge.xml").write_text(house.spec.to_xml())
     options = ["--agent", "tests.helpers.runners:make_quitter", "--house", str(folder / "lounge.xml"), "--record"]
-    assert run.entry([*options, "--episodes", "2", "--start-deg", "-3 0 0", "--out", str(folder / "run")]) == 0
+    assert (
+        run.entry(
+            [*options, "--episodes", "2", "--start-deg", "-3 0 0", "--noise", "realsense", "--out", str(folder / "run")]
+        )
+        == 0
+    )
     return folder
 
 

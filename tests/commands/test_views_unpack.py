@@ -103,4 +103,4 @@ def test_a_member_that_is_no_plain_file_is_refused(
         entry.type, entry.linkname = kind, "v.rgb.png"
         archive.addfile(entry)
     assert unpacked(tmp_path / "views", tmp_path / "out") == 2
-    assert "no plain file" in capsys.readouterr().err
+    assert "not a plain file" in capsys.readouterr().err

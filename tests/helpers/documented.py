@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import shlex
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -255,10 +256,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     # docs/index.md
     f"{_RUN} --episodes 20 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
     f"{_RUN} --list-agents": (f"{_RUN} --list-agents",),
-    f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90'": (
-        f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 2 --out {{tmp}}/run",
-    ),
     # docs/agents.md
+    "stubborn agent-client --out stubborn_client.py": ("stubborn agent-client --out {tmp}/stubborn_client.py",),
+    f"{_RUN} --agent 'process:old/bin/python my_agent.py'": (
+        f"{_RUN} --agent 'process:{sys.executable} tests/helpers/client_agent.py' {_SMALL} --episodes 1 "
+        "--config task.max_steps=5 --out {tmp}/run",
+    ),
     "stubborn compare runs/before runs/after": (
         f"{_RUN} --agent oracle {_SMALL} --episodes 1 --out {{tmp}}/before",
         f"{_RUN} --agent random {_SMALL} --episodes 1 --out {{tmp}}/after",
@@ -558,6 +561,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
 """
 
 STAND_INS = (
+    "my_traps",
     "my_models",
     "/usr/share/sweethome3d/furniture",
     "my_house.xml",

@@ -39,7 +39,8 @@ def run(*options: object) -> subprocess.CompletedProcess[str]:
 
 def test_results_are_the_same_twice_and_with_two_workers(house: Path, tmp_path: Path) -> None:
     for name, workers in (("once", 1), ("twice", 1), ("shared", 2)):
-        done = run("--house", house, "--episodes", 3, "--workers", workers, "--out", tmp_path / name)
+        options = ("--house", house, "--episodes", 3, "--workers", workers, "--config", "task.max_steps=40")
+        done = run(*options, "--out", tmp_path / name)
         assert done.returncode == 0, done.stderr
         assert "95 % interval" in done.stdout
     assert len(lines_of(tmp_path / "once")) == 3
@@ -91,7 +92,7 @@ def test_a_killed_run_resumes_without_lost_or_doubled_lines(house: Path, tmp_pat
 
 
 def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path, tmp_path: Path) -> None:
-    options = ("--agent", "random", "--house", house, "--seed-key", "k")
+    options = ("--agent", "random", "--house", house, "--seed-key", "k", "--config", "task.max_steps=60")
     run(*options, "--episodes", 2, "--out", tmp_path / "plain")
     assert not any((tmp_path / "plain" / name).exists() for name in ("trajectories", "pictures"))
     run(*options, "--episodes", 1, "--out", tmp_path / "recorded", "--record")
@@ -137,7 +138,7 @@ def test_the_shipped_network_is_used_unless_another_segmentation_is_requested(
     from sim.run import entry
 
     assert entry(["--goal", "bed", "--episodes", "1", "--out", str(tmp_path)]) == 0
-    assert "stubborn with rednet segmentation" in capsys.readouterr().out
+    assert "stubborn with segmentation by rednet" in capsys.readouterr().out
     (line,) = lines_of(tmp_path)
     assert (line["agent"], line["semantics"]) == ("stubborn", "rednet")
     assert "weights" in json.loads((tmp_path / "config.json").read_text())["files_sha256"]

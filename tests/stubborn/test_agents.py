@@ -1,4 +1,4 @@
-"""Properties of every agent that `stubborn.agents.make` knows, and of the example."""
+"""Properties of every agent that `stubborn.agents.make` knows, of the example, and of an agent in another process."""
 
 import dataclasses
 import subprocess
@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from examples import my_agent
+from sim.bridges.process import ProcessAgent
+from sim.bridges.process_command import ProcessConfig
 from sim.interface import (
     MPCAT40_ID,
     Action,
@@ -61,6 +63,10 @@ def build(name: str, **options: Any) -> Agent:
             verifier=AcceptAll(),
             config=None,
         )
+    if name == "process":
+        client = [sys.executable, "tests/helpers/client_agent.py"]
+        parts: dict[str, Any] = {"camera": SMALL_CAMERA, "robot": RobotModel(), "success": SuccessRule()}
+        return ProcessAgent(client, **parts, config=ProcessConfig(), max_steps=500)
     return agents.make(name, camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter(), **options)
 
 
@@ -68,7 +74,7 @@ def world() -> GridWorld:
     return GridWorld(BOXES, (0.75, 0.75, 0.7), camera=SMALL_CAMERA)
 
 
-every_agent = pytest.mark.parametrize("name", [*agents.NAMES, "example"])
+every_agent = pytest.mark.parametrize("name", [*agents.NAMES, "example", "process"])
 
 
 @every_agent

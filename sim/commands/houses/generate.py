@@ -170,8 +170,8 @@ def _write_seeds(args: Args) -> Iterator[Made]:
         clutter=args.clutter,
         movable=args.movable,
     )
-    copy_textures(args.out / SHARED_TEXTURES)
     furniture = None if args.furniture is None else _imported(args)
+    copy_textures(args.out / SHARED_TEXTURES)
     make = functools.partial(_make_seed, config, furniture)
     seeds = range(args.first_seed, args.first_seed + (args.houses or 1))
     yield from _written(args, ordered_map(make, seeds, workers=args.workers))
@@ -185,8 +185,8 @@ def _imported(args: Args) -> ImportedFurniture:
 def _write_transfer_test(args: Args) -> Iterator[Made]:
     """Writes the houses of the transfer test, with the textures in a folder next to them."""
     assert args.furniture is not None
-    copy_textures(args.out / SHARED_TEXTURES)
     make = functools.partial(_make_imported, ImportedFurniture(args.furniture, "transfer"))
+    copy_textures(args.out / SHARED_TEXTURES)
     yield from _written(args, ordered_map(make, TRANSFER_TEST[: args.houses], workers=args.workers))
 
 

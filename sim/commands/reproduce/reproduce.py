@@ -68,6 +68,8 @@ class Args:
     """The first N episodes of each split."""
     workers: cli.Count = 1
     """Number of processes."""
+    step_timeout: cli.NotNegative | None = None
+    """Seconds that one call of an agent may take, as in `stubborn run`; 0 runs your own code in this process."""
     executor: str = "local"
     """Executor: local processes, or ray (extra `ray`) for a cluster whose machines can all access --out."""
     address: str | None = None
@@ -299,6 +301,7 @@ def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
         workers=args.workers,
         executor=args.executor,
         address=args.address,
+        step_timeout=args.step_timeout,
         noise=args.noise,
         out=_folder(args, setup),
         record=True,

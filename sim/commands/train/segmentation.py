@@ -416,8 +416,8 @@ class Trainer:
     def _print_loss(self, loss: float) -> None:
         self._printed_s = time.perf_counter()
         left = f"{max(0.0, self._left_s()) / 60:.1f} min left"
-        told = f"loss {loss:.3f}, {self._views_per_s():.1f} views/s, {left}"
-        print(f"step {self.step} of {self.total}: {told}", flush=True)
+        line = f"loss {loss:.3f}, {self._views_per_s():.1f} views/s, {left}"
+        print(f"step {self.step} of {self.total}: {line}", flush=True)
 
     def _views_per_s(self) -> float:
         return self.args.batch * self.step / max(self.spent_s, 1e-9)

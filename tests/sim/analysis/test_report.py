@@ -45,8 +45,8 @@ def recorded_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     house = with_box(house, "wall_10", centre_m=(0.5, 0.6, 1.25), half_m=(0.05, 1.4, 1.25))
     (folder / "lounge.xml").write_text(house.spec.to_xml())
-    options = ["--agent", "oracle", "--house", str(folder / "lounge.xml"), "--start-deg", "-2 1 90"]
-    options += ["--noise", "realsense", "--record"]  # without noise its episodes would be the same
+    options = ["--agent", "oracle", "--house", str(folder / "lounge.xml"), "--start-deg", "-2 1 90", "--record"]
+    options += ["--noise", "realsense"]  # without noise one start and goal are one episode
     assert run.entry([*options, "--episodes", "4", "--out", str(folder / "found")]) == 0
     return folder
 

@@ -232,10 +232,17 @@ def test_the_trajectory_has_a_line_for_each_moment_and_action():
 
 
 def test_the_place_for_which_the_agent_stops_is_measured_to_the_footprint_and_decides_the_cause():
-    for xy_m, off_m, cause in (((1.0, 0.5), 1.0, "false_detection"), ((2.2, 0.0), 0.0, "stopped_short")):
+    for xy_m, off_m, cause, category in (
+        ((1.0, 0.5), 1.0, "false_detection", None),
+        ((2.2, 0.0), 0.0, "stopped_short", "bed"),
+    ):
         world = bed_room()
         task = begin(world, "bed", Pose(-3.0, 0.0, math.pi))
-        assert task.stop_target() == {"stop_target_xy_m": None, "stop_target_to_goal_m": None}
+        assert task.stop_target() == {
+            "stop_target_xy_m": None,
+            "stop_target_to_goal_m": None,
+            "stop_target_category": None,
+        }
         task.stops_for(*xy_m)
         assert act(world, task, STOP)["failure"] == cause
         walked = task.trajectory()
@@ -244,6 +251,7 @@ def test_the_place_for_which_the_agent_stops_is_measured_to_the_footprint_and_de
         assert task.stop_target() == {
             "stop_target_xy_m": list(xy_m),
             "stop_target_to_goal_m": walked.stop_target_to_goal_m,
+            "stop_target_category": category,
         }
         task.begin("bed", Pose(-3.0, 0.0, math.pi))
         assert task.trajectory().stop_target_xy_m is None
@@ -254,7 +262,11 @@ def test_a_place_on_a_storey_without_the_goal_has_no_distance_to_it():
     task = begin(world, "bed", UPSTAIRS)
     task.stops_for(0.0, 0.0)
     assert act(world, task, STOP)["failure"] == "false_detection"
-    assert task.stop_target() == {"stop_target_xy_m": [0.0, 0.0], "stop_target_to_goal_m": None}
+    assert task.stop_target() == {
+        "stop_target_xy_m": [0.0, 0.0],
+        "stop_target_to_goal_m": None,
+        "stop_target_category": None,
+    }
 
 
 def test_nothing_counts_before_an_episode_has_begun():

@@ -102,7 +102,7 @@ def test_shrinking_takes_the_middle_label_of_a_block() -> None:
 
 
 def test_unknown_goals_and_wrong_block_sizes_are_refused(model: RedNet, frame: dict[str, np.ndarray]) -> None:
-    with pytest.raises(ConfigError, match="No category 'unicorn'"):
+    with pytest.raises(ConfigError, match="no category 'unicorn'"):
         NetworkSegmenter(model).scores(frame, "unicorn")
     with pytest.raises(ConfigError, match="multiple of the block of one logit, 3 pixels"):
         NetworkSegmenter(model, block_px=3, score_block_px=4)

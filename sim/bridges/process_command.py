@@ -1,0 +1,64 @@
+"""Names of agents in a process of their own, `process:COMMAND`: the words and the files of the command, the options."""
+
+from __future__ import annotations
+
+import itertools
+import shlex
+from dataclasses import dataclass
+from pathlib import Path
+
+from sim.errors import ConfigError
+from sim.geometry.numbers import require_numbers
+
+PREFIX = "process:"
+"""Beginning of the names of these agents."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProcessConfig:
+    """The options of an agent in a process of its own. `--step-timeout` limits its calls."""
+
+    start_timeout_s: float = 120.0
+    """Longest time from the start of the command to its first answer."""
+
+    def __post_init__(self) -> None:
+        require_numbers(self)
+        if self.start_timeout_s <= 0.0:
+            raise ConfigError(f"ProcessConfig.start_timeout_s must be > 0 s, got {self.start_timeout_s}.")
+
+
+def command_of(name: str) -> list[str]:
+    """Returns the words of the command in a name `process:COMMAND`, split as a shell does.
+
+    Raises:
+        ConfigError: the command is empty or cannot be split.
+    """
+    text = name.removeprefix(PREFIX)
+    try:
+        words = shlex.split(text)
+    except ValueError as fault:
+        raise ConfigError(f"--agent '{name}': the command cannot be split into words: {fault}.") from None
+    if not words or not words[0]:
+        raise ConfigError(f"--agent '{name}': a command must follow, for example {PREFIX}'python my_agent.py'.")
+    return words
+
+
+def is_process(name: str) -> bool:
+    """Returns whether a name of `--agent` is that of an agent in a process of its own."""
+    return name.startswith(PREFIX)
+
+
+def files_of(name: str) -> list[Path]:
+    """Returns the files that the command of an agent names, and the module after `-m`, where they are plain files."""
+    words = command_of(name)
+    modules = [word.replace(".", "/") for before, word in itertools.pairwise(words) if before == "-m"]
+    paths = [Path(word) for word in words]
+    paths += [Path(f"{module}{end}") for module in modules for end in (".py", "/__main__.py")]
+    return [path for path in paths if _is_file(path)]
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False

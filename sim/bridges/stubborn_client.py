@@ -1,0 +1,310 @@
+"""Runs your agent in its own Python, container or virtual environment, for `stubborn run --agent process:COMMAND`.
+
+Copy this file next to your agent; it needs Python 3.6 or newer, and NumPy. The program that COMMAND starts ends with
+
+    from stubborn_client import serve
+
+    serve(MyAgent())
+
+An agent has two methods. `reset(goal, seed)` starts an episode; `goal` is a category such as "chair". The other one,
+`act(observation)`, returns 0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT or 3 TURN_RIGHT. The observation is a dict of arrays:
+`rgb` uint8 (h, w, 3), `depth` float32 (h, w) in metres, `gps` float32 (2,), `compass` float32 (1,) and `objectgoal`
+int64 (1,).
+
+Further methods are optional. `stop_confidence()` and `stop_target_xy_m()` are asked after STOP. `map_image()` returns
+the agent's map for videos, uint8 RGB (h, w, 3), and `state()` a few words about what it does.
+
+`serve` also takes a class or a function that gets the description of the task and returns the agent:
+`make(setup)` with `setup.camera.width_px`, `height_px`, `hfov_rad`, `height_m`, `min_depth_m`, `max_depth_m`,
+`setup.robot.radius_m`, `height_m`, `setup.success.distance_m`, `setup.max_steps` and `setup.goals`, the categories in
+the order of `objectgoal`.
+
+Protocol: messages pass through standard input and output, so that any program which forwards these can stand between
+the two (ssh, docker run -i). What the agent prints goes to standard error. A message is `PREFIX` (mark, version, bytes
+of the header, bytes of the arrays), a header in JSON, then the arrays, little-endian in C order, one after the other.
+Arrays of observations pass through shared memory where both sides can open it. Each request has a number, which its
+answer repeats.
+"""
+
+import json
+import mmap
+import operator
+import os
+import select
+import struct
+import sys
+import threading
+import time
+import traceback
+from types import SimpleNamespace
+
+import numpy as np
+
+VERSION = 1
+"""Version of the protocol; both sides must have the same."""
+MARK = b"\x89STUBB\r\n"
+"""The first bytes of each message."""
+PREFIX = struct.Struct("<8sIIQ")
+"""Mark, version, bytes of the header, bytes of the arrays."""
+MOST_HEADER_BYTES = 1 << 16
+MOST_ARRAY_BYTES = 1 << 29
+"""Largest size of the arrays of a message."""
+SHARED_START = 4096
+"""Place of the arrays in shared memory; before it is the key."""
+DTYPES = ("|b1", "|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f2", "<f4", "<f8")
+"""Types of the elements of arrays, as NumPy writes them."""
+LAST_WORDS_S = 5.0
+"""Time that the agent has to end after the simulator has."""
+STOP, MOVE_FORWARD, TURN_LEFT, TURN_RIGHT = range(4)
+ACTIONS = "0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT, 3 TURN_RIGHT"
+
+
+class ProtocolError(Exception):
+    """The other side sent something else than a message."""
+
+
+def pack(header, arrays=None, shared=False):
+    """Returns a message as a list of buffers to be written one after the other.
+
+    Args:
+        header: JSON types; has `type` and `id`.
+        arrays: NumPy arrays by name, of `DTYPES`.
+        shared: whether the arrays are in shared memory; the message then has only their description.
+    """
+    described, buffers, size = [], [], 0
+    for name, array in (arrays or {}).items():
+        array = np.ascontiguousarray(array).reshape(np.shape(array))
+        array = array.astype(array.dtype.newbyteorder("<"), copy=False)
+        described.append({"name": name, "dtype": array.dtype.str, "shape": list(array.shape)})
+        if not shared:
+            buffers.append(array.reshape(-1).view(np.uint8).data)
+            size += array.nbytes
+    head = json.dumps(dict(header, arrays=described, shared=shared)).encode()
+    if len(head) > MOST_HEADER_BYTES or size > MOST_ARRAY_BYTES:
+        raise ProtocolError(f"a message of {len(head)} + {size} bytes is too large")
+    return [PREFIX.pack(MARK, VERSION, len(head), size) + head] + [each for each in buffers if len(each)]
+
+
+def sizes_of(prefix):
+    """Returns the bytes of header and arrays that a prefix announces; raises ProtocolError where it is not valid."""
+    mark, version, header_bytes, array_bytes = PREFIX.unpack(prefix)
+    if mark != MARK:
+        raise ProtocolError(f"no message begins with {prefix!r}")
+    if version != VERSION:
+        raise ProtocolError(f"version {version} of the protocol, not {VERSION}: copy stubborn_client.py anew")
+    if header_bytes > MOST_HEADER_BYTES or array_bytes > MOST_ARRAY_BYTES:
+        most = f"{MOST_HEADER_BYTES} + {MOST_ARRAY_BYTES}"
+        raise ProtocolError(f"a message of {header_bytes} + {array_bytes} bytes is too large, at most {most}")
+    return header_bytes, array_bytes
+
+
+def unpack_arrays(described, content):
+    """Returns the arrays of a message by name, as views of its content.
+
+    Args:
+        described: a dict with `name`, `dtype` and `shape` of each array.
+        content: the bytes of the arrays.
+
+    Raises:
+        ProtocolError: the description does not fit the content.
+    """
+    found, begin = {}, 0
+    for each in described:
+        if each["dtype"] not in DTYPES:
+            raise ProtocolError("array '{}' has the type {!r}".format(each["name"], each["dtype"]))
+        dtype, count = np.dtype(each["dtype"]), 1
+        for side in each["shape"]:
+            count *= int(side)
+        if min(each["shape"], default=0) < 0 or begin + count * dtype.itemsize > len(content):
+            raise ProtocolError("array '{}' of shape {} is truncated".format(each["name"], each["shape"]))
+        found[each["name"]] = np.frombuffer(content, dtype, count, begin).reshape(each["shape"])
+        begin += count * dtype.itemsize
+    if begin != len(content):
+        raise ProtocolError(f"{len(content) - begin} bytes follow the last array")
+    return found
+
+
+def serve(agent):
+    """Runs episodes with an agent until the simulator ends.
+
+    Args:
+        agent: an object with `reset` and `act`, or a class or function that gets the setup and returns one.
+    """
+    if os.isatty(0):
+        sys.exit("This agent is started by a simulator: stubborn run --agent 'process:COMMAND'.")
+    source, sink = _take_pipes()
+    threading.Thread(target=_end_with_simulator, args=(source,), daemon=True, name="simulator").start()
+    client = _Client(agent)
+    while True:
+        request, content = _receive(source)
+        if request is None or request["type"] == "end":
+            return
+        try:
+            answer, arrays = client.answer(request, content)
+        except Exception as error:  # of the agent; the simulator ends the episode
+            traceback.print_exc()
+            answer, arrays = {"type": "error", "error": _text_of(error)}, {}
+        for buffer in pack(dict(answer, id=request["id"]), arrays):
+            _write(sink, buffer)
+
+
+class _Client:
+    """Answers the requests of the simulator."""
+
+    def __init__(self, agent):
+        self.agent = agent
+        self.shared = _SharedMemory()
+
+    def answer(self, request, content):
+        """Returns the header of the answer to a request, and its arrays."""
+        kind = request["type"]
+        if kind == "start":
+            return self.start(request), {}
+        if kind == "reset":
+            self.agent.reset(request["goal"], request["seed"])
+            return {"type": "done"}, {}
+        if kind == "act":
+            described = request["arrays"]
+            content = self.shared.read(described) if request["shared"] else content
+            return self.act(unpack_arrays(described, content)), {}
+        if kind == "map":
+            state = str(self.agent.state()) if hasattr(self.agent, "state") else ""
+            return {"type": "map", "state": state[:1000]}, {"map": _map_of(self.agent)}
+        raise ProtocolError(f"there is no request {kind!r}")
+
+    def start(self, request):
+        shared = self.shared.open(request["memory"])
+        if isinstance(self.agent, type) or not hasattr(self.agent, "act"):
+            self.agent = self.agent(_as_namespace(request["setup"]))
+        for method in ("reset", "act"):
+            if not callable(getattr(self.agent, method, None)):
+                raise TypeError(f"the agent {self.agent!r} has no method '{method}'")
+        python = ".".join(str(part) for part in sys.version_info[:3])
+        draws_map = hasattr(self.agent, "map_image")
+        return {"type": "ready", "python": python, "shares_memory": shared, "draws_map": draws_map}
+
+    def act(self, observation):
+        given = self.agent.act(observation)
+        try:
+            action = operator.index(given)
+        except TypeError:
+            raise TypeError(f"act() returned {given!r:.100}; an action is one of {ACTIONS}") from None
+        answer = {"type": "action", "action": action}
+        if action == STOP and hasattr(self.agent, "stop_confidence"):
+            answer["stop_confidence"] = _number(self.agent.stop_confidence())
+        if action == STOP and hasattr(self.agent, "stop_target_xy_m"):
+            place = self.agent.stop_target_xy_m()
+            answer["stop_target_xy_m"] = None if place is None else [_number(each) for each in place]
+        return answer
+
+
+class _SharedMemory:
+    """The memory in which the simulator writes observations, if this process can open it."""
+
+    def __init__(self):
+        self._file, self._view = -1, None
+
+    def open(self, memory):
+        """Returns whether the file of the description can be opened and has its key."""
+        if memory is None:
+            return False
+        try:
+            self._file = os.open(memory["path"], os.O_RDONLY)
+            return os.read(self._file, len(memory["key"])).decode("latin-1") == memory["key"]
+        except OSError:  # another machine or container
+            return False
+
+    def read(self, described):
+        """Returns a copy of the bytes of the arrays."""
+        size = 0
+        for each in described:
+            count = np.dtype(each["dtype"]).itemsize
+            for side in each["shape"]:
+                count *= side
+            size += count
+        if self._view is None or len(self._view) < SHARED_START + size:
+            self._view = mmap.mmap(self._file, 0, prot=mmap.PROT_READ)
+        if len(self._view) < SHARED_START + size:
+            raise ProtocolError(f"the shared memory is too small for {size} bytes")
+        content = np.empty(size, np.uint8)
+        content[:] = np.frombuffer(self._view, np.uint8, size, SHARED_START)
+        return content
+
+
+def _take_pipes():
+    """Returns copies of standard input and output for the protocol; what the agent prints goes to standard error."""
+    sys.stdout.flush()
+    source, sink = os.dup(0), os.dup(1)
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)
+    os.dup2(2, 1)
+    return source, sink
+
+
+def _end_with_simulator(source):
+    """Ends this process soon after the simulator has closed its pipe, also in the middle of a call."""
+    watch = select.poll()
+    watch.register(source, 0)  # reports only that the other side is gone
+    while not any(event & (select.POLLHUP | select.POLLERR | select.POLLNVAL) for _, event in watch.poll()):
+        pass
+    time.sleep(LAST_WORDS_S)
+    os._exit(1)
+
+
+def _receive(source):
+    """Returns header and arrays of the next message; None and None at the end of the pipe."""
+    prefix = _read(source, PREFIX.size)
+    if prefix is None:
+        return None, None
+    header_bytes, array_bytes = sizes_of(prefix)
+    header, content = _read(source, header_bytes), _read(source, array_bytes)
+    if header is None or content is None:
+        return None, None
+    return json.loads(bytes(header).decode()), content
+
+
+def _read(source, count):
+    """Returns this number of bytes; None where the pipe ends before."""
+    content, done = np.empty(count, np.uint8), 0
+    view = content.data
+    while done < count:
+        got = os.readv(source, [view[done:]])
+        if not got:
+            return None
+        done += got
+    return content
+
+
+def _write(sink, buffer):
+    view = memoryview(buffer).cast("B")
+    while len(view):
+        view = view[os.write(sink, view) :]
+
+
+def _map_of(agent):
+    """Returns the agent's map, uint8 RGB (h, w, 3)."""
+    image = np.asarray(agent.map_image())
+    if image.dtype != np.uint8 or image.ndim != 3 or image.shape[2] != 3 or 0 in image.shape:
+        raise TypeError(f"map_image() returned {image.dtype} {image.shape}; a map is uint8 of shape (h, w, 3)")
+    return image
+
+
+def _number(value):
+    """Returns a number of the agent as a float that JSON has, or None."""
+    return None if value is None else float(value)
+
+
+def _as_namespace(value):
+    """Returns JSON objects as objects with attributes."""
+    if isinstance(value, dict):
+        return SimpleNamespace(**{name: _as_namespace(each) for name, each in value.items()})
+    return value
+
+
+def _text_of(error):
+    """Returns an error in one line, with the place in the agent's code."""
+    text = " ".join(f"{type(error).__name__}: {error}".split())[:2000]
+    frames = traceback.extract_tb(error.__traceback__)
+    frame = next((each for each in reversed(frames) if each[0] != __file__), None)
+    return text if frame is None else f"{text} ({os.path.basename(frame[0])}, line {frame[1]})"

@@ -1,0 +1,70 @@
+"""Part (l): time that a step of an agent takes more in a process of its own (`--agent process:COMMAND`)."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from sim.bridges import stubborn_client
+from sim.bridges.process import ProcessAgent
+from sim.bridges.process_command import ProcessConfig
+from sim.commands.bench.figures import Figure, Goal, timed
+from sim.commands.bench.stages import Setting
+from sim.interface import CameraModel, Observation, RobotModel, SuccessRule
+
+MOST_MS = 2.0
+"""Goal for the median of a step at 640 x 480 with RGB and depth."""
+PAUSE_S = 0.005
+"""Time between two steps, in which the simulator renders."""
+_AGENT = """
+import sys
+sys.path.insert(0, {folder!r})
+from stubborn_client import TURN_LEFT, serve
+class Turner(object):
+    def reset(self, goal, seed): pass
+    def act(self, observation): return TURN_LEFT
+serve(Turner())
+"""
+
+
+def agent_in_a_process(setting: Setting) -> list[Figure]:
+    """(l) Measures a step of an agent that does nothing in another process, with shared memory and through pipes."""
+    rng, camera = np.random.default_rng(0), CameraModel()
+    observation = {
+        "rgb": rng.integers(0, 256, (camera.height_px, camera.width_px, 3), np.uint8),
+        "depth": rng.random((camera.height_px, camera.width_px), np.float32),
+        "gps": np.zeros(2, np.float32),
+        "compass": np.zeros(1, np.float32),
+        "objectgoal": np.zeros(1, np.int64),
+    }
+    code = _AGENT.format(folder=str(Path(stubborn_client.__file__).parent))
+    parts = {"camera": camera, "robot": RobotModel(), "success": SuccessRule(), "max_steps": 500}
+    agent = ProcessAgent([sys.executable, "-c", code], **parts, config=ProcessConfig())
+    copies = [timed(lambda: {name: each.copy() for name, each in observation.items()}) for _ in range(20)]
+    steps = min(500, setting.amount.steps)
+    figures = []
+    for way, goal in (("shared memory", Goal(of="value", sign="<=", bound=MOST_MS)), ("pipes", None)):
+        ms = _steps_ms(agent, observation, steps)
+        value, baseline = float(np.median(ms)), float(np.median(copies))
+        figures.append(
+            Figure(
+                part="l", what=f"a step in a process of its own, {way}", value=value, unit="ms",
+                against="a copy of the observation", baseline=baseline, ratio=value / baseline, goal=goal, count=steps,
+            )
+        )  # fmt: skip
+        agent.share_no_memory()
+    agent.close()
+    return figures
+
+
+def _steps_ms(agent: ProcessAgent, observation: Observation, steps: int) -> list[float]:
+    """Returns the milliseconds of each step, after a few that are not measured."""
+    agent.reset("chair", 0)
+    taken = []
+    for _ in range(steps + 3):
+        taken.append(timed(lambda: agent.act(observation)))
+        time.sleep(PAUSE_S)
+    return taken[3:]
