@@ -6,11 +6,14 @@ Every file of this project is written by this module, except for those that grow
 from __future__ import annotations
 
 import contextlib
+import errno
 import glob
 import os
+import stat
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -151,6 +154,28 @@ def write_picture(file: Path, picture: NDArray[np.uint8]) -> None:
     except cv2.error:
         raise ConfigError(f"'{file}' has no suffix of a picture format; .png and .jpg are allowed.") from None
     write_atomically(file, content.tobytes())
+
+
+def open_to_grow(file: Path, mode: str = "ab") -> IO[Any]:
+    """Returns a file that grows line by line, or that is cut, open in a mode of `open`; text is UTF-8.
+
+    Args:
+        file: it is created unless the mode begins with "r".
+        mode: of `open`.
+
+    Raises:
+        OSError: the file cannot be opened, or is no plain file; a pipe is refused without waiting for its reader.
+    """
+    return open(file, mode, encoding=None if "b" in mode else "utf-8", opener=_plain)
+
+
+def _plain(path: str, flags: int) -> int:
+    """Opens a plain file, for `open`."""
+    handle = os.open(path, flags | os.O_NONBLOCK | os.O_CLOEXEC, 0o666)
+    if not stat.S_ISREG(os.fstat(handle).st_mode):
+        os.close(handle)
+        raise OSError(errno.EINVAL, "it is not a plain file", path)
+    return handle
 
 
 def part_file(file: Path, *, what: str) -> Path:

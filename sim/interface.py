@@ -414,6 +414,8 @@ class AgentSpec:
     Videos show it if the agent has the method of `StatesSegmentation`."""
     uses_ground_truth: bool = False
     """True: it may read the `semantic` sensor and gets the running environment as `truth`; its results say so."""
+    goals: Callable[[Any], tuple[str, ...]] | None = None
+    """Returns the goal categories that the agent knows, from its configuration; None: all. Runs skip other episodes."""
     painter: Callable[[Agent], Any] | None = None
     """Returns a `sim.viewers.viewer.MapPainter` that draws the agent's map; None: viewers draw the true floor plan."""
 

@@ -7,12 +7,16 @@ message names the file, the line, the field, what was found and what is wanted.
 
 from __future__ import annotations
 
+import codecs
+import csv
 import gzip
+import hashlib
 import json
 import os
 import re
 import stat
 import struct
+import tarfile
 import unicodedata
 import zipfile
 import zlib
@@ -34,6 +38,18 @@ MAX_LINES_BYTES = 512 << 20
 """Largest file of lines (`results.jsonl`): about 700,000 episodes."""
 MAX_PIXELS = 64_000_000
 """Pixels of the largest image that is decoded."""
+MAX_TAR_HEADER_BYTES = 2048
+"""Largest extended header of a member of a tar file; `tarfile` takes a time that grows with the square of its size."""
+_TAR_EXTENSIONS = (
+    tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE, tarfile.GNUTYPE_LONGNAME, tarfile.GNUTYPE_LONGLINK
+)  # fmt: skip
+_MARKS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF32_LE, "utf-32-le"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+"""The byte order marks that Windows programs write, with the encoding that follows."""
 
 Metres = Annotated[float, Meta(ge=-10_000.0, le=10_000.0)]
 """A coordinate or a length."""
@@ -106,6 +122,78 @@ def read_bytes(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErr
     return content
 
 
+def read_text(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError, most: int = MAX_BYTES) -> str:
+    """Returns the text of a file in UTF-8, or in the encoding of its byte order mark, as lines that end with "\\n".
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read, is too large or is no such text.
+    """
+    content = read_bytes(file, what=what, error=error, most=most)
+    try:
+        text = without_mark(content).decode("utf-8")
+    except UnicodeError as fault:
+        raise error(f"{what} '{file}' is not text in UTF-8: {reason_of(fault)}.") from None
+    return text.replace("\r\n", "\n")
+
+
+def read_csv(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> list[dict[str, str]]:
+    """Returns the rows of a CSV file by the names of its columns; a row that is too short has "" there.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read or is not a table.
+    """
+    try:
+        table = csv.DictReader(read_text(file, what=what, error=error).splitlines(), restval="", restkey="")
+        return [{key: value for key, value in row.items() if key} for row in table]
+    except csv.Error as fault:
+        raise error(f"{what} '{file}' is not a table: {reason_of(fault)}.") from None
+
+
+def sha256_of(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> str:
+    """Returns the SHA-256 of a file of any size, hexadecimal.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read.
+    """
+    digest = hashlib.sha256()
+    with open_plain(file, what=what, error=error) as stream:
+        try:
+            while block := stream.read(1 << 20):
+                digest.update(block)
+        except OSError as fault:
+            raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+    return digest.hexdigest()
+
+
+def without_mark(content: bytes) -> bytes:
+    """Returns a text as UTF-8 without a byte order mark; text with the mark of UTF-16 is converted.
+
+    Raises:
+        UnicodeError: it is not what its mark says.
+    """
+    for mark, encoding in _MARKS:
+        if content.startswith(mark):
+            rest = content[len(mark) :]
+            return rest if encoding == "utf-8" else rest.decode(encoding).encode("utf-8")
+    return content
+
+
+class PlainMember(tarfile.TarInfo):
+    """A member of a tar file: `tarfile.open(..., tarinfo=PlainMember)` refuses large extended headers unread."""
+
+    @classmethod
+    def frombuf(cls, buf: bytes | bytearray, encoding: str, errors: str) -> PlainMember:
+        """Returns the member of a header of 512 bytes.
+
+        Raises:
+            tarfile.TarError: it is no header, or it announces an extended header of more than `MAX_TAR_HEADER_BYTES`.
+        """
+        member = super().frombuf(buf, encoding, errors)
+        if member.type in _TAR_EXTENSIONS and member.size > MAX_TAR_HEADER_BYTES:
+            raise tarfile.ReadError(f"it has an extended header of {member.size} bytes")
+        return member
+
+
 def read_json(file: Path, kind: type[T] | Any, *, what: str, error: type[ObjectNavError] = ConfigError) -> T:
     """Returns the content of a JSON file as the declared type.
 
@@ -171,7 +259,7 @@ def parse_json(
         ObjectNavError: of class `error`; the text is not JSON, nested too deeply, or of another type.
     """
     try:
-        return msgspec.json.decode(content, type=kind)
+        return msgspec.json.decode(without_mark(content) if isinstance(content, bytes) else content, type=kind)
     except msgspec.ValidationError as fault:
         raise error(f"{where}{_fault(fault)}") from None
     except RecursionError:
@@ -261,6 +349,9 @@ def image_size_px(content: bytes) -> tuple[int, int] | None:
         while position + 10 <= len(content) and content[position + 1] == 0xFF:
             position += 1  # a marker may follow any number of fill bytes
         marker, length = content[position + 1], int.from_bytes(content[position + 2 : position + 4], "big")
+        if marker == 0x01 or 0xD0 <= marker <= 0xD7:  # these stand alone
+            position += 2
+            continue
         if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
             height, width = struct.unpack(">HH", content[position + 5 : position + 9])
             return width, height

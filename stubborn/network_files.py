@@ -167,8 +167,9 @@ def _require_fit(file: Path, given: Mapping[str, Tensor], wanted: Mapping[str, T
     for name, tensor in given.items():
         if name not in wanted:
             raise ConfigError(f"Weights '{file}' are of another network: '{name}' is not in it.")
-        if tensor.is_complex():
-            raise ConfigError(f"Weights '{file}': '{name}' holds complex numbers.")
+        if tensor.is_complex() or (wanted[name].is_floating_point() and not tensor.is_floating_point()):
+            kind = str(tensor.dtype).removeprefix("torch.")
+            raise ConfigError(f"Weights '{file}': '{name}' holds {kind} numbers; it needs floating-point ones.")
         # In 32 bits, since the bound itself is infinity in 16 bits; NaN is not within it.
         if tensor.is_floating_point() and not bool((tensor.float().abs() <= MAX_WEIGHT).all()):
             raise ConfigError(f"Weights '{file}': '{name}' holds NaN, infinity or a number beyond {MAX_WEIGHT:g}.")

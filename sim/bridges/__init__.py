@@ -1,1 +1,1 @@
-"""Agents of other programs: in a process of their own (`process`), behind one client file that needs only NumPy."""
+"""Connects agents and scripts of other interfaces: those of Habitat, and agents in a process of their own."""

@@ -28,6 +28,7 @@ COMMANDS: Mapping[str, Command] = {
     "report": Command("sim.report", "Write the report of one or several runs as an HTML page"),
     "compare": Command("sim.commands.compare", "Compare two runs of the same episodes in a table"),
     "merge": Command("sim.commands.merge", "Merge the shards of a run into one run"),
+    "habitat": Command("sim.commands.habitat", "Run an evaluation script that is written for Habitat"),
     "web": Command("sim.web.__main__", "Watch an agent, or drive the robot, in the browser"),
     "teleop": Command("sim.teleop", "Drive the robot yourself in a terminal"),
     "gallery": Command("sim.commands.gallery", "Render pictures of houses and sheets of furniture"),

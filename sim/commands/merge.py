@@ -26,8 +26,11 @@ from sim.evaluation.results import NOT_COMPARED, RunDirectory, read_record
 from sim.evaluation.rollout import TIMES
 from sim.files import write_atomically
 from sim.interface import ConfigError
+from sim.reading import read_bytes
 
 SHARDS = "shard_*_of_*"
+MAX_FILE_BYTES = 4 << 30
+"""Largest file of an episode, a video, that is copied."""
 COPIED = ("trajectories", "pictures", "videos", "rerun")
 """Folders of a run with files of single episodes."""
 
@@ -147,7 +150,7 @@ def copy_files(folder: Path, out: Path) -> None:
         for file in sorted((folder / name).glob("*")):
             target = out / name / file.name
             if file.is_file() and not target.exists():
-                write_atomically(target, file.read_bytes())
+                write_atomically(target, read_bytes(file, what="File of a run", most=MAX_FILE_BYTES))
 
 
 def _conflict(episode_id: str, path: Path, line: Line) -> ConfigError:

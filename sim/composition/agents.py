@@ -1,4 +1,8 @@
-"""Finds agents by name: those of `stubborn`, the oracle of `sim`, and your own as a module or in another process."""
+"""Finds agents by name: those of `stubborn`, the oracle of `sim`, and your own.
+
+Your own are named `package.module:NAME`, `habitat:package.module:CLASS` if they have Habitat's interface, or
+`process:COMMAND` if they run in another process.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from sim.bridges.process_command import is_process
 from sim.composition.imports import import_attribute
+from sim.composition.isolation import HABITAT
 from sim.errors import AgentError, ConfigError, ObjectNavError
 from sim.evaluation.own_code import place_of, text_of
 from sim.evaluation.watch import is_stop, marked
@@ -52,13 +57,17 @@ def find_agent(name: str) -> AgentSpec:
 
     Args:
         name: one of `SPECS`, or `package.module:NAME`, where NAME is an `AgentSpec` or a factory. A plain factory
-            declares nothing, so its agent gets RGB and depth and no ground truth; neither does `process:COMMAND`.
+            declares nothing, so its agent gets RGB and depth and no ground truth; neither does `process:COMMAND`. After
+            `habitat:`, a class, factory or `AgentSpec` of agents with Habitat's interface
+            (`sim.bridges.habitat.agents`).
 
     Raises:
         ConfigError: the name is unknown.
     """
     if name in SPECS:
         return SPECS[name]
+    if name.startswith(HABITAT):
+        return _find_habitat_agent(name)
     if is_process(name):
         from sim.bridges.process import process_spec
 
@@ -69,7 +78,7 @@ def find_agent(name: str) -> AgentSpec:
         hint = f" Did you mean '{near[0]}'?" if near else ""
         raise ConfigError(
             f"Unknown agent '{name}'.{hint} Available: {', '.join(SPECS)}, or your own as package.module:NAME, "
-            "or in a process of its own as process:COMMAND."
+            "habitat:package.module:CLASS, or in a process of its own as process:COMMAND."
         )
     found = import_attribute(name, module_name, attribute)
     if isinstance(found, AgentSpec):
@@ -77,6 +86,29 @@ def find_agent(name: str) -> AgentSpec:
     if not callable(found):
         raise ConfigError(f"Agent '{name}' must be an AgentSpec or a factory, got {type(found).__name__}.")
     return AgentSpec(make=cast(AgentFactory, found), description=(inspect.getdoc(found) or "").partition("\n")[0])
+
+
+def _find_habitat_agent(name: str) -> AgentSpec:
+    """Returns the specification of an agent with Habitat's interface; see `find_agent`."""
+    from sim.bridges.habitat import agents as bridge
+    from sim.bridges.habitat import stand_in
+
+    module_name, _, attribute = name.removeprefix(HABITAT).partition(":")
+    if not module_name or not attribute:
+        raise ConfigError(f"--agent '{name}' must have the form habitat:package.module:CLASS.")
+    stand_in.install()
+    with bridge.own_command_line():
+        found = import_attribute(name, module_name, attribute, explain=stand_in.lacking)
+    return bridge.spec_of(name, found)
+
+
+def notes_on(name: str) -> tuple[str, ...]:
+    """Returns sentences about an agent that has been found, which the header of a run prints."""
+    if not name.startswith(HABITAT):
+        return ()
+    from sim.bridges.habitat import stand_in
+
+    return (stand_in.NOTE,) if stand_in.installed() else ()
 
 
 def find_explorer(name: str) -> ExplorerConfig:

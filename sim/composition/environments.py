@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -55,12 +56,19 @@ def episodes_of(setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
     try:
         split = env.split
         if options.house is None:
-            episodes = _named_episodes(split, options) if options.only else _first_episodes(split, options)
+            split_of_agent = replace(split, episodes=tuple(e for e in split.episodes if e.goal in known_goals(setup)))
+            choose = _named_episodes if options.only else _first_episodes
+            episodes = choose(split_of_agent, options)
         else:
             episodes = _drawn_episodes(env, setup)
     finally:
         env.close()
     return episodes, {"name": split.name, "version": split.version, "sha256": split.sha256}
+
+
+def known_goals(setup: Setup) -> tuple[str, ...]:
+    """Returns the goal categories that the agent of a run knows; it gets no other episodes."""
+    return GOAL_CATEGORIES if setup.spec.goals is None else setup.spec.goals(setup.config.agent)
 
 
 MAX_REPEATS = 60
@@ -74,6 +82,7 @@ def _drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
         ConfigError: start and goal are fixed, or the start reaches too few goals, so that there are fewer episodes.
     """
     options, (house,) = setup.options, env.split.houses
+    known = known_goals(setup)
     repeats = setup.config.noise != get_noise("none") or bool(env.split.sidecar(house).noise)
     found: dict[tuple[str, Pose] | int, Episode] = {}
     i = last = 0
@@ -81,7 +90,7 @@ def _drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
         episode = env.draw_episode(np.random.default_rng([options.seed, i]), episode_id=f"{house}_{len(found):04d}")
         key = i if repeats else (episode.goal, episode.start)
         i += 1
-        if key not in found:
+        if episode.goal in known and key not in found:
             found[key], last = episode, i
     if len(found) < options.episodes:
         raise ConfigError(

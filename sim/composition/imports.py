@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from sim.errors import ConfigError
@@ -12,29 +14,46 @@ from sim.evaluation.own_code import place_of, text_of
 from sim.evaluation.watch import is_stop
 
 
-def import_attribute(name: str, module_name: str, attribute: str) -> Any:
+def _require_unhidden() -> None:
+    """Raises ConfigError where the current folder has modules that would hide this project's in spawned workers."""
+    ours = Path(__file__).resolve().parents[2]
+    for name in ("sim", "stubborn"):
+        for file in (Path(f"{name}.py"), Path(name) / "__init__.py"):
+            if file.is_file() and file.resolve() != ours / file:
+                raise ConfigError(
+                    f"Your '{file}' in the current folder would hide the package '{name}' of this project; rename it, "
+                    "or run the command in another folder."
+                )
+
+
+def import_attribute(
+    name: str, module_name: str, attribute: str, explain: Callable[[BaseException], str | None] = lambda error: None
+) -> Any:
     """Returns an object of a module that is in the current folder or on the path.
 
     Args:
         name: as the user gave it, for messages.
         module_name: dotted name of the module.
         attribute: name of the object.
+        explain: returns a sentence about an error of the import, if it knows the cause.
 
     Raises:
         ConfigError: the module cannot be imported, or has no such name.
     """
     if "" not in sys.path:
+        _require_unhidden()
         sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
     folder = os.getcwd()
     try:
         module = importlib.import_module(module_name)
     except ModuleNotFoundError as error:
-        raise ConfigError(f"'{name}': no module '{error.name}' can be imported from here.") from None
+        reason = explain(error) or f"no module '{error.name}' can be imported from here."
+        raise ConfigError(f"'{name}': {reason}") from None
     except BaseException as error:  # the user's code
         if is_stop(error):
             raise
         place = "" if isinstance(error, SyntaxError) else place_of(error, below=__file__)  # its text names the line
-        reason = f"{type(error).__name__}: {text_of(error)}{place}"
+        reason = explain(error) or f"{type(error).__name__}: {text_of(error)}{place}"
         raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {reason}") from error
     finally:
         os.chdir(folder)  # the options' paths are relative to it

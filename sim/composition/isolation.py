@@ -6,6 +6,8 @@ from sim.bridges.process_command import is_process
 from sim.composition.options import RunOptions
 from sim.evaluation.executors import Isolation
 
+HABITAT = "habitat:"
+"""Prefix of the name of an agent with Habitat's interface."""
 STEP_TIMEOUT_S = 600.0
 """Longest time of a call of the agent where `--step-timeout` is not given."""
 RUNNER = "sim.composition.runner"
@@ -15,7 +17,8 @@ RUNNER = "sim.composition.runner"
 def own_modules(options: RunOptions) -> list[str]:
     """Returns the modules of the user that the options name as `package.module:NAME`."""
     names = (options.agent, options.explorer, options.semantics)
-    return [name.partition(":")[0] for name in names if name is not None and ":" in name and not is_process(name)]
+    named = [name for name in names if name is not None and ":" in name and not is_process(name)]
+    return [name.removeprefix(HABITAT).partition(":")[0] for name in named]
 
 
 def step_limit_s(options: RunOptions) -> float:

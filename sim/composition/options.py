@@ -16,8 +16,8 @@ class RunOptions:
     """Let an agent look for objects in apartments, and write the results to a folder."""
 
     agent: str = "stubborn"
-    """The agent: a name of --list-agents, or your own as package.module:NAME (an AgentSpec or a factory), or in another
-    process as process:COMMAND."""
+    """The agent: a name of --list-agents, or your own as package.module:NAME (an AgentSpec or a factory),
+    habitat:package.module:CLASS (with Habitat's interface), or in another process as process:COMMAND."""
     explorer: str | None = None
     """The explorer of agents that take one: a name of --list-agents, or your own as package.module:NAME."""
     semantics: str = "rednet"

@@ -11,6 +11,7 @@ from rich.console import Console
 
 from sim.analysis import display
 from sim.analysis.progress import ProgressReport
+from sim.composition.agents import notes_on
 from sim.composition.isolation import isolation_of
 from sim.composition.options import RunOptions
 from sim.composition.record import code_of, error_line, record_of
@@ -20,7 +21,7 @@ from sim.episodes.splits import Episode, load_split
 from sim.evaluation.executors import make_executor
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.workers import RunnerSpec
-from sim.geometry.compiling import must_compile
+from sim.geometry.compiling import choose_cache, must_compile
 from sim.houses.load import load_house
 
 
@@ -66,11 +67,15 @@ def run_missing(
             f"{options.agent}{segmentation}, {display.counted(len(episodes), 'episode')} of {split['name']} "
             f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
         )
+        for note in notes_on(options.agent):
+            console.print(note, highlight=False, soft_wrap=True)
         if setup.borrowed_parameters:
             console.print(setup.borrowed_parameters, highlight=False, markup=False, soft_wrap=True)
         _report_resumed(run, len(episodes), len(todo), code_of(options), console)
         if todo and must_compile():
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
+            if (cache := choose_cache()) is not None:
+                console.print(f"Neither the installation nor a home folder can be written: it is kept in {cache}.")
         spec = RunnerSpec("sim.composition.runner:EpisodeRunner", setup)
         progress = ProgressReport(console, total=len(todo), max_steps=setup.config.task.max_steps)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from sim.composition.options import RunOptions
 from sim.errors import ConfigError
 from sim.evaluation.results import read_record
+from sim.files import open_to_grow
 from sim.reading import read_bytes
 
 KEY_FILE = "seed_key"
@@ -46,7 +47,7 @@ def _shared_key(file: Path, *, make: bool) -> str | None:
     """
     if make:
         file.parent.mkdir(parents=True, exist_ok=True)
-        with file.open("a+", encoding="utf-8") as stream:
+        with open_to_grow(file, "a+") as stream:
             fcntl.flock(stream, fcntl.LOCK_EX)  # shards begin at the same time
             if stream.tell() == 0:
                 stream.write(secrets.token_hex(8))

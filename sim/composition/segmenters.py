@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import difflib
 import functools
-import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,8 +20,9 @@ from sim.composition.own_segmentation import load_specification, make_own
 from sim.configuration import as_json
 from sim.detectors.noisy import NoisyConfig, NoisySegmenter
 from sim.errors import ConfigError
-from sim.interface import Observation, Scores, SegmentationSpec, Segmenter, SegmenterSpec
+from sim.interface import CameraModel, Observation, Scores, SegmentationSpec, Segmenter, SegmenterSpec
 from sim.invocation import command
+from sim.reading import reason_of, sha256_of
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 
@@ -96,9 +96,25 @@ class NoSegmentation:
 def _make_network(env: ObjectNavEnv, config: NetworkConfig) -> Segmenter:
     from stubborn.segmentation.network import NetworkSegmenter
 
-    return NetworkSegmenter.from_file(
-        weights_file(config.weights), camera=env.camera_model, threads=config.threads, temperature=config.temperature
+    camera = env.camera_model
+    segmenter = NetworkSegmenter.from_file(
+        weights_file(config.weights), camera=camera, threads=config.threads, temperature=config.temperature
     )
+    require_size(segmenter, camera)
+    return segmenter
+
+
+def require_size(segmenter: Segmenter, camera: CameraModel) -> None:
+    """Raises ConfigError where a network cannot take the images of a camera; it is given one black image."""
+    height, width = camera.height_px, camera.width_px
+    black = {"rgb": np.zeros((height, width, 3), np.uint8), "depth": np.zeros((height, width), np.float32)}
+    try:
+        segmenter.posteriors(black)
+    except (ConfigError, RuntimeError, ValueError, IndexError) as error:
+        raise ConfigError(
+            f"The network cannot take the camera's images, {width} pixels wide and {height} high "
+            f"(camera.width_px, camera.height_px): {reason_of(error)}."
+        ) from None
 
 
 KINDS: Mapping[str, SegmentationKind] = MappingProxyType(
@@ -207,4 +223,4 @@ def detector_record(config: Any) -> Any:
 @functools.cache
 def file_sha256(file: Path) -> str:
     """Returns the SHA-256 of a file, hexadecimal."""
-    return hashlib.sha256(file.read_bytes()).hexdigest()
+    return sha256_of(file, what="File")

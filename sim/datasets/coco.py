@@ -8,11 +8,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.houses.labels import Instance
-from sim.interface import MPCAT40, MPCAT40_ID
+from sim.interface import MPCAT40, MPCAT40_ID, ConfigError
+from sim.reading import MAX_PIXELS, Count, convert
 
 STUFF: tuple[str, ...] = ("void", "wall", "floor", "ceiling")
 """Categories that are surfaces and not objects: they have pixels in the image of instances, but no annotation."""
@@ -20,6 +22,13 @@ CATEGORIES: tuple[dict[str, Any], ...] = tuple(
     {"id": i, "name": name} for i, name in enumerate(MPCAT40) if name not in STUFF
 )
 """The categories of COCO files; their ids are those of mpcat40."""
+
+
+class _Runs(msgspec.Struct):
+    """A run-length encoded mask."""
+
+    size: tuple[Count, Count]
+    counts: list[Count]
 
 
 def annotate(
@@ -73,8 +82,17 @@ def encode_mask(mask: NDArray[np.bool_]) -> dict[str, list[int]]:
 
 
 def decode_mask(segmentation: Mapping[str, Sequence[int]]) -> NDArray[np.bool_]:
-    """Returns the mask (h, w) of the runs that `encode_mask` gives."""
-    counts = np.asarray(segmentation["counts"], np.int64)
-    inside = np.arange(len(counts)) % 2 == 1
-    height, width = segmentation["size"]
-    return np.repeat(inside, counts).reshape((height, width), order="F")
+    """Returns the mask (h, w) of the runs that `encode_mask` gives.
+
+    Raises:
+        ConfigError: `size` or `counts` are missing, are no whole numbers from 0, or do not belong together.
+    """
+    runs = convert(dict(segmentation), _Runs, where="The mask of an object")
+    (height, width), total = runs.size, sum(runs.counts)
+    if total != height * width or total > MAX_PIXELS:
+        raise ConfigError(
+            f"The mask of an object has runs of {total} pixels for an image of {width} x {height}; at most "
+            f"{MAX_PIXELS // 1_000_000} million pixels are allowed."
+        )
+    inside = np.arange(len(runs.counts)) % 2 == 1
+    return np.repeat(inside, np.array(runs.counts, np.int64)).reshape((height, width), order="F")

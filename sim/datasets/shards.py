@@ -9,7 +9,6 @@ and its checksum; a shard without a note, or with another checksum, is broken an
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import io
 import json
 import os
@@ -28,7 +27,7 @@ from numpy.typing import NDArray
 from sim.datasets.views import View
 from sim.files import write_atomically
 from sim.interface import MPCAT40, ConfigError
-from sim.reading import read_json
+from sim.reading import read_json, sha256_of
 
 JPEG_QUALITY = 92
 PNG_OPTIONS = (
@@ -92,7 +91,7 @@ def write_shard(
                 for suffix, content in view.members:
                     archive.addfile(_entry(f"{view.key}.{suffix}", len(content)), io.BytesIO(content))
                 began = _lap(seconds, "write", began)
-        digest, size = _sha256(part), part.stat().st_size
+        digest, size = sha256_of(part, what="Shard"), part.stat().st_size
         os.replace(part, tar)
         note = ShardNote(
             name, house, count, digest, size, _by_name(pixels), _by_name(views_with), dict(config), _rounded(seconds)
@@ -120,7 +119,7 @@ def read_note(folder: Path, name: str, *, verify: bool) -> ShardNote | None:
     tar = folder / f"{name}.tar"
     try:
         note = read_json(folder / f"{name}.json", ShardNote, what="Note")
-        if tar.stat().st_size != note.size_bytes or (verify and _sha256(tar) != note.sha256):
+        if tar.stat().st_size != note.size_bytes or (verify and sha256_of(tar, what="Shard") != note.sha256):
             return None
     except (OSError, ConfigError):
         return None
@@ -235,8 +234,3 @@ def _rounded(seconds: Mapping[str, float]) -> dict[str, float]:
 
 def _by_name(counts: NDArray[np.int64]) -> dict[str, int]:
     return dict(zip(MPCAT40, counts.tolist(), strict=True))
-
-
-def _sha256(file: Path) -> str:
-    with file.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()

@@ -33,7 +33,7 @@ from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, sidecar_pat
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from sim.invocation import command
 from sim.paths import assets_dir
-from sim.reading import Name, first_unprintable, open_plain, printable, read_bytes, read_json
+from sim.reading import Name, first_unprintable, printable, read_bytes, read_json, sha256_of
 
 UNREACHABLE_FILE = "unreachable.json"
 LABELS_FILE = "labels.json"
@@ -228,16 +228,9 @@ def house_sum(path: Path, *, with_also: bytes = b"") -> str:
     digest.update(with_also)
     for file in files_of(path):  # none for a file that stands alone, whose checksum is that of version 0.1
         name = os.path.relpath(file, path.resolve().parent)
-        digest.update(name.encode(errors="replace") + _sum_of_file(file))
+        digest.update(name.encode(errors="replace"))
+        digest.update(bytes.fromhex(sha256_of(file, what="File of a house", error=HouseError)))
     return digest.hexdigest()
-
-
-def _sum_of_file(file: Path) -> bytes:
-    digest = hashlib.sha256()
-    with open_plain(file, what="File of a house", error=HouseError) as stream:
-        while block := stream.read(1 << 20):
-            digest.update(block)
-    return digest.digest()
 
 
 def write_split(
@@ -339,7 +332,7 @@ def _read_split(folder: Path) -> Split:
     sums = dict(house_list.sha256 if house_list else house_sums)
     labels = labels_of(folder)
     if labels is not None:
-        sums[LABELS_FILE] = hashlib.sha256(labels.read_bytes()).hexdigest()
+        sums[LABELS_FILE] = sha256_of(labels, what="Label rules")
     digest = _sha256(sums, ordered)
     return Split(folder.name, version, digest, houses, ordered, labels, house_list=house_list, house_sums=house_sums)
 

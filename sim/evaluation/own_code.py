@@ -10,7 +10,7 @@ import traceback
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from sim.reading import printable
+from sim.reading import printable, read_bytes
 
 MOST_LETTERS = 2000
 """Longest text of an error in results and messages."""
@@ -89,7 +89,7 @@ def _read_with_imports(file: Path, root: Path, contents: dict[str, bytes]) -> No
     place = str(file.relative_to(root))
     if place in contents:
         return
-    contents[place] = file.read_bytes()
+    contents[place] = read_bytes(file, what="Module")
     for module in _imported(contents[place], file, root):
         path = root.joinpath(*module.split("."))
         for each in (path.with_name(f"{path.name}.py"), path / "__init__.py"):

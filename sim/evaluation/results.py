@@ -22,8 +22,21 @@ import msgspec
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import estimate
 from sim.evaluation.config_fields import ABSENT, differing_fields, field_text, is_same_file
-from sim.files import write_atomically
-from sim.reading import Count, Lines, Name, Number, Seed, convert, read_json, read_lines
+from sim.files import open_to_grow, write_atomically
+from sim.reading import (
+    MAX_LINES_BYTES,
+    Count,
+    Lines,
+    Name,
+    Number,
+    Seed,
+    convert,
+    read_bytes,
+    read_json,
+    read_lines,
+    reason_of,
+    sha256_of,
+)  # fmt: skip
 
 SUMMARY_METRICS = (
     "success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "never_seen", "steps_to_first_sight",
@@ -141,9 +154,9 @@ class RunDirectory:
         existed = self.path.exists()
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            self._lock: IO[str] = (self.path / ".lock").open("w")
+            self._lock: IO[bytes] = open_to_grow(self.path / ".lock", "ab")
         except OSError as error:
-            raise ConfigError(f"Cannot write to --out '{self.path}': {error.strerror}.") from None
+            raise ConfigError(f"Cannot write to --out '{self.path}': {reason_of(error)}.") from None
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
@@ -155,7 +168,7 @@ class RunDirectory:
             self._write_or_compare_config()
             self.lines: list[dict[str, Any]] = self._read_and_heal()
             self._places = {line["episode_id"]: place for place, line in enumerate(self.lines)}
-            self._open(self._file.read_bytes() if self._file.exists() else b"")
+            self._open(self._content())
         except BaseException:
             self._lock.close()
             raise
@@ -225,7 +238,7 @@ class RunDirectory:
                     )
         if found.torn:
             self.healed = found.torn
-            with file.open("r+b") as stream:
+            with open_to_grow(file, "r+b") as stream:
                 stream.truncate(found.whole_bytes)
         return found.values
 
@@ -249,9 +262,13 @@ class RunDirectory:
             self._open(content)
         self._require_untouched(new="")
 
+    def _content(self) -> bytes:
+        """Returns what the file of the results holds."""
+        return read_bytes(self._file, what="Results", most=MAX_LINES_BYTES) if self._file.exists() else b""
+
     def _open(self, content: bytes) -> None:
         """Opens the results for more lines; `content` is what they hold."""
-        self._results = self._file.open("ab")
+        self._results = open_to_grow(self._file)
         self._bytes, self._digest = len(content), hashlib.sha256(content)
 
     def _write(self, content: bytes) -> None:
@@ -272,9 +289,9 @@ class RunDirectory:
             size = self._file.stat().st_size
             same = size == self._bytes
             if same and content:
-                same = hashlib.sha256(self._file.read_bytes()).digest() == self._digest.digest()
+                same = sha256_of(self._file, what="Results") == self._digest.hexdigest()
             found = f"was changed by another program: it has {size} bytes, and this run wrote {self._bytes}"
-        except OSError:
+        except (OSError, ConfigError):
             same, found = False, "was removed by another program"
         if not same:
             ids = [line["episode_id"] for line in self.lines] + [new] * bool(new)

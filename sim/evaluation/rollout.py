@@ -182,7 +182,7 @@ def ask(where: str, call: Callable[[], Any]) -> Any:
             raise
         if debug():
             traceback.print_exc()
-        if isinstance(error, AgentError):  # of an agent in another process; the message has it all
+        if isinstance(error, AgentError):  # of a bridge to another interface or process; the message has it all
             raise AgentError(f"{where}: {text_of(error)}") from None
         reason = f"{type(error).__name__}: {text_of(error)}"
         raise AgentError(f"{where}: {reason}{place_of(error, below=__file__)}") from error

@@ -6,9 +6,14 @@
 from __future__ import annotations
 
 import os
+import stat
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+
+_VARIABLE = "NUMBA_CACHE_DIR"
+_TEMPORARY = "stubborn-numba-"
 
 
 class Kernel:
@@ -31,8 +36,11 @@ class Kernel:
         numba compiles calls of other kernels only where it finds its own functions.
         """
         if self._compiled is None:
+            folder = choose_cache()
             import numba
 
+            if folder is not None:
+                numba.config.CACHE_DIR = str(folder)
             self._compiled = numba.njit(**self._options)(self._function)
             names = self._function.__globals__
             names |= {name: value.compiled() for name, value in names.items() if isinstance(value, Kernel)}
@@ -42,8 +50,44 @@ class Kernel:
 
 def must_compile() -> bool:
     """Returns True if numba's cache is empty: compiling all kernels, at their first calls, takes up to a minute."""
-    folder = Path(os.environ.get("NUMBA_CACHE_DIR") or Path(__file__).with_name("__pycache__"))
+    choose_cache()
+    folder = Path(os.environ.get(_VARIABLE) or Path(__file__).with_name("__pycache__"))
     return not any(folder.rglob("*.nbi"))
+
+
+def choose_cache() -> Path | None:
+    """Returns the temporary folder in which numba keeps compiled code where nothing else can be written; else None.
+
+    numba uses `NUMBA_CACHE_DIR`, the folder of the code or the user's folder of caches, and fails if it can write to
+    none of them. The choice is noted in `NUMBA_CACHE_DIR`, so that workers share it.
+    """
+    given = os.environ.get(_VARIABLE)
+    if given:
+        return Path(given) if Path(given) == _temporary() else None
+    caches = Path(os.environ.get("XDG_CACHE_HOME") or Path(os.path.expanduser("~")) / ".cache")
+    if any(_can_write(folder) for folder in (Path(__file__).with_name("__pycache__"), caches)):
+        return None
+    folder = _temporary()
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        about = folder.lstat()
+        own = stat.S_ISDIR(about.st_mode) and about.st_uid == os.getuid() and not about.st_mode & 0o077
+    except OSError:
+        own = False
+    if not own:  # another user made it, whose code would be run
+        folder = Path(tempfile.mkdtemp(prefix=_TEMPORARY))
+    os.environ[_VARIABLE] = str(folder)
+    return folder
+
+
+def _temporary() -> Path:
+    return Path(tempfile.gettempdir()) / f"{_TEMPORARY}{os.getuid()}"
+
+
+def _can_write(folder: Path) -> bool:
+    """Returns whether a folder can be written, or made."""
+    there = next(each for each in (folder, *folder.parents) if each.exists())
+    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:

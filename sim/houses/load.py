@@ -13,7 +13,7 @@ from sim.houses.foreign import make_walls_solid, remove_unsupported, void_notes
 from sim.houses.house import House
 from sim.houses.labels import Labels, collidable_geoms, describe_geom, read_labels
 from sim.houses.light import add_light
-from sim.houses.mjcf import read_spec, require_sizes
+from sim.houses.mjcf import read_spec, require_few_contacts, require_sizes
 from sim.houses.references import require_root
 from sim.interface import MPCAT40_ID
 from sim.invocation import command
@@ -51,6 +51,7 @@ def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None
         notes = () if rules is None else remove_unsupported(spec)
         model = _compiled(spec)
         require_sizes(model)
+        require_few_contacts(model)
         house = House(path.stem, spec, rules, path)
         labels = _validated(house, model)
         notes += add_light(spec)

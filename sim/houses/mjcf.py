@@ -19,24 +19,33 @@ import numpy as np
 
 from sim.errors import HouseError, ObjectNavError
 from sim.gl import mujoco
+from sim.houses.mjcf_text import Composition, as_utf8
 from sim.houses.references import Allowed, Reference, asset_path, asset_references, path_as_read
-from sim.reading import image_size_px, printable, read_bytes, reason_of
+from sim.reading import MAX_BYTES, image_size_px, open_plain, printable, read_bytes, reason_of
 
 MAX_ELEMENTS = 100_000
 """Elements of a file after `replicate`; the largest house that ships has 6,000."""
 MAX_FILES = 100
 """Files that a file may include."""
+MAX_DEPTH = 200
+"""Depth of nested elements; MuJoCo reads 500."""
 MAX_TEXTURE_BYTES = 512 << 20
 """All textures of a file together; those that ship have 10 MB."""
+TEXTURE_VARIABLE = "STUBBORN_TEXTURE_MB"
+"""Environment variable with another limit for textures, MB."""
 MAX_ASSET_BYTES = 512 << 20
 """Files of meshes and other assets together."""
 MAX_ARRAY = 1_000_000
 """Largest custom array, buffer or count of a file."""
+MAX_PHYSICS_BYTES = 1 << 30
+"""Memory for contacts and constraints: about 700 free bodies; the largest house that ships needs 20 MB."""
+MAX_CONTACTS = 5000
+"""Contacts of a house at the start; with more, MuJoCo runs out of the memory that it reserves."""
 LARGEST = 1e15
 """Largest magnitude of a number in a file."""
 FARTHEST_M = 10_000.0
 """Largest coordinate or size of a geom, a body, a site or a vertex."""
-_SUSPECT = re.compile(r"(?=\s*[-+.\dnNiI])[^nNeE]*?(?:[nN]|[eE]\+?\d{2}|\d{16})", re.DOTALL)
+_SUSPECT = re.compile(r"(?=\s*[-+.\dnNiI])[^nNeExX]*?(?:[nNxX]|[eE]\+?\d{2}|\d{16})", re.DOTALL)
 """Matches numbers of which one may be nan, inf or beyond `LARGEST`; a quick test, names fail at their first letter."""
 _LENGTHS: Mapping[str, tuple[str, ...]] = {
     "hfield": ("nrow", "ncol"),
@@ -61,6 +70,8 @@ _NAMES = frozenset((
 """Attributes whose value is a name."""
 _NOT_FINITE = re.compile(r"[-+]?(?:nan(?:\(\w*\))?|inf(?:inity)?)", re.IGNORECASE)
 """A word that C reads as a number that is not finite; `nan(1)` is one."""
+_READ_AT_ONCE = ("include", "model", "flexcomp")
+"""Elements whose file MuJoCo opens while it reads the text; `model` and `flexcomp` first in the current folder."""
 _FILE_NAME = re.compile(rb"""\bfile\s*=\s*(?:"[^"]*"|'[^']*')""")
 """The attribute `file` of an element, in the bytes of a file."""
 _CONTROL = re.compile(rb"[\x00-\x1f\x7f]")
@@ -81,11 +92,12 @@ def read_spec(path: Path, *, root: Path | None = None, error: type[ObjectNavErro
     """
     path = path.resolve()
     allowed = Allowed(path, root, error)
-    _Scan(allowed).count(path)
+    text = _Scan(allowed).text_of(path)
     try:
-        spec = mujoco.MjSpec.from_file(str(path))
+        spec = mujoco.MjSpec.from_string(text.decode("utf-8"))
     except (ValueError, OSError, RecursionError) as fault:
         raise error(f"it is not an MJCF file that MuJoCo can read: {reason_of(fault)}") from None
+    spec.modelfiledir = f"{path.parent}{os.sep}"  # assets are relative to it
     spec.memory = spec.nconmax = spec.njmax = spec.nstack = -1  # as much as the model needs
     orient_by_quaternions(spec)
     for reference in asset_references(spec, path.parent):
@@ -131,40 +143,92 @@ def require_sizes(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseE
         raise error(f"a mesh has a vertex that is not finite or beyond {FARTHEST_M:g} m.")
 
 
+def require_few_contacts(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseError) -> None:
+    """Raises an error where a compiled model has so many moving bodies, or contacts, that its physics needs all memory.
+
+    The memory of MuJoCo grows with the square of the number of moving bodies.
+    """
+    if model.narena > MAX_PHYSICS_BYTES:
+        raise error(
+            f"its {model.njnt} joints need {model.narena >> 20} MB, at most {MAX_PHYSICS_BYTES >> 20} MB are "
+            "allowed; let fewer bodies move."
+        )
+    if model.nv == 0:
+        return
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mujoco.mj_collision(model, data)
+    if data.ncon > MAX_CONTACTS:
+        raise error(
+            f"its moving bodies overlap in {data.ncon} contacts at the start; at most {MAX_CONTACTS} are allowed."
+        )
+
+
 class _Scan:
-    """Counts what the elements of a file and of the files that it includes ask for."""
+    """Counts what the elements of a file and of the files that it includes ask for, and joins them to one text."""
 
     def __init__(self, allowed: Allowed) -> None:
         self._allowed = allowed
         self._error = allowed.error
-        self._files = 0
+        self._files = dict[Path, None]()
+        self._bytes = 0
         self._elements = 0.0
         self._factors = [1.0]
         self._tags: list[str] = []
         self._copies = self._loose_sensors = 0.0
 
-    def count(self, path: Path) -> None:
-        """Counts a file; raises an error where that is too much."""
-        self._files += 1
-        if self._files > MAX_FILES:
+    def text_of(self, path: Path, *, inner: bool = False) -> bytes:
+        """Returns a file with the files that it includes as one text, UTF-8; raises an error where that is too much.
+
+        Args:
+            path: the file.
+            inner: whether the text is what is inside of the root element, as for an included file.
+        """
+        if path in self._files:
+            self._refuse(f"'{path.name}' is included more than once, which MuJoCo does not allow.")
+        self._files[path] = None
+        if len(self._files) > MAX_FILES:
             self._refuse(f"it includes more than {MAX_FILES} files.")
-        content = read_bytes(path, what="its file", error=self._error)
-        parser = expat.ParserCreate()
-        parser.StartElementHandler = lambda tag, values: self._start(path, tag, values, content, parser)
-        parser.EndElementHandler = lambda tag: (self._factors.pop(), self._tags.pop())
-        parser.StartDoctypeDeclHandler = lambda *_: self._refuse("a document type is not allowed in MJCF.")
+        content = read_bytes(path, what="its file", error=self._error, most=MAX_BYTES - self._bytes)
+        self._bytes += len(content)
+        depth = len(self._tags)
+        parser = expat.ParserCreate("utf-8")
         try:
-            parser.Parse(content, True)
+            text = Composition(as_utf8(content))
+        except UnicodeDecodeError as fault:
+            line = fault.object.count(b"\n", 0, fault.start) + 1
+            self._refuse(f"'{path.name}', line {line}, is not text in {fault.encoding}; save it as UTF-8.")
+        except ValueError as fault:
+            self._refuse(f"'{path.name}' cannot be read: {reason_of(fault)}.")
+        try:
+            parser.StartElementHandler = lambda tag, values: self._start(path, tag, values, text, parser, depth)
+            parser.EndElementHandler = lambda tag: self._end(text, parser, depth)
+            parser.StartDoctypeDeclHandler = lambda *_: self._refuse("a document type is not allowed in MJCF.")
+            parser.Parse(text.content, True)
         except expat.ExpatError as fault:
-            self._refuse(f"it is not an MJCF file that MuJoCo can read: {fault} of '{path.name}'.")
+            self._refuse(f"it is not an MJCF file that MuJoCo can read: {reason_of(fault)} ('{path.name}').")
+        return text.text(inner=inner)
+
+    def _end(self, text: Composition, parser: expat.XMLParserType, depth: int) -> None:
+        self._factors.pop()
+        self._tags.pop()
+        if len(self._tags) == depth:
+            text.close_root(parser.CurrentByteIndex)
 
     def _start(
-        self, path: Path, tag: str, values: Mapping[str, str], content: bytes, parser: expat.XMLParserType
-    ) -> None:
+        self, path: Path, tag: str, values: Mapping[str, str], text: Composition, parser: expat.XMLParserType,
+        depth: int,
+    ) -> None:  # fmt: skip
+        self._require_tag(tag, is_root=len(self._tags) == depth, included=depth > 0)
+        if len(self._tags) == depth:
+            text.open_root(parser.CurrentByteIndex)
+        if len(self._tags) > MAX_DEPTH:
+            self._refuse(f"its elements are nested more than {MAX_DEPTH} deep.")
         where = f"{tag} '{values['name']}'" if "name" in values else tag
-        for key, text in values.items():
-            if key not in _NAMES and _SUSPECT.match(text):
-                self._require_finite(f"{printable(where)}: {key}", text)
+        for key, value in values.items():
+            if key not in _NAMES and _SUSPECT.match(value):
+                self._require_finite(f"{printable(where)}: {key}", value)
         self._require_small_arrays(where, tag, values)
         factor = self._factors[-1]
         self._elements += factor
@@ -180,13 +244,28 @@ class _Scan:
         # With each copy that `replicate` makes, MuJoCo doubles the sensors that belong to no element.
         if self._elements + self._loose_sensors * 2.0 ** min(self._copies, 60.0) > MAX_ELEMENTS:
             self._refuse(f"{printable(where)}: the file has more than {MAX_ELEMENTS} elements with all copies.")
-        if tag in ("include", "model", "flexcomp") and values.get("file"):
-            self._require_name(values["file"], content, parser.CurrentByteIndex)
-            self._follow(path, values["file"], count=tag != "flexcomp")
-        if tag == "robot" and len(self._factors) == 2:
-            self._refuse("it is not an MJCF file that MuJoCo can read here but URDF: MuJoCo's `compile` converts it.")
+        if tag in _READ_AT_ONCE and values.get("file"):
+            self._require_name(values["file"], text.content, parser.CurrentByteIndex)
+            file = self._found(path, values["file"])
+            if tag != "include":
+                self._refuse(f"{printable(where)} reads another file; only include, meshes and textures may do that.")
+            end, is_whole = text.end_of_tag(parser.CurrentByteIndex)
+            if not is_whole:
+                self._refuse(f"include '{printable(values['file'])}' has content; it must end with '/>'.")
+            text.replace(parser.CurrentByteIndex, end, self.text_of(file, inner=True))
+        elif tag == "include":
+            self._refuse("an include names no file.")
         if tag == "attach":
             self._refuse("attach: a house is one file; other files are put into it by include.")
+
+    def _require_tag(self, tag: str, *, is_root: bool, included: bool) -> None:
+        """Refuses a root element of another kind, and a tag that MuJoCo reads in capital letters too."""
+        if is_root and not included and tag == "robot":
+            self._refuse("it is not an MJCF file that MuJoCo can read here but URDF: MuJoCo's `compile` converts it.")
+        if is_root and (tag in _READ_AT_ONCE or (not included and tag != "mujoco")):
+            self._refuse(f"it is not an MJCF file that MuJoCo can read: its root element is '{printable(tag)}'.")
+        if tag.lower() in _READ_AT_ONCE and tag not in _READ_AT_ONCE:
+            self._refuse(f"it is not an MJCF file that MuJoCo can read: '{tag}' is written '{tag.lower()}'.")
 
     def _require_name(self, name: str, content: bytes, start: int) -> None:
         """Refuses a control character in the name of a file: expat reads a line break as a space, MuJoCo does not.
@@ -200,14 +279,18 @@ class _Scan:
         if printable(name) != name or "\n" in name or "\t" in name or (written and _CONTROL.search(written[0])):
             self._refuse(f"it uses '{printable(name)}', whose name holds a control character.")
 
-    def _follow(self, path: Path, name: str, *, count: bool) -> None:
-        """Checks a file that a file names; MuJoCo looks next to the first file, then next to the one that names it."""
+    def _found(self, path: Path, name: str) -> Path:
+        """Returns a file that a file names: next to the first file, as for MuJoCo, else next to the one that names it.
+
+        Raises an error where it does not exist or must not be read.
+        """
         for folder in dict.fromkeys((self._allowed.file.parent, path.parent)):
             file = path_as_read(folder, name)
             if os.path.lexists(file) or folder == path.parent:
                 self._allowed.require(Reference(name, file))
-                if count:
-                    self.count(file)
+                if file.is_file():
+                    return file.resolve()
+        return self._refuse(f"it includes '{printable(name)}': there is no such file.")
 
     def _require_small_arrays(self, where: str, tag: str, values: Mapping[str, str]) -> None:
         """Refuses an element whose array MuJoCo would allocate while it reads the file."""
@@ -232,11 +315,14 @@ class _Scan:
 def _require_small_assets(spec: mujoco.MjSpec, folder: Path, error: type[ObjectNavError]) -> None:
     """Raises an error where the textures or the files of meshes of a specification are too large."""
     size = sum(_texture_bytes(spec, texture, folder) for texture in spec.textures)
-    if size > MAX_TEXTURE_BYTES:
-        raise error(f"its textures have {size >> 20} MB; at most {MAX_TEXTURE_BYTES >> 20} MB are allowed.")
+    most = _most_texture_bytes(error)
+    if size > most:
+        raise error(
+            f"its textures have {size >> 20} MB; at most {most >> 20} MB are allowed. To allow more, set the "
+            f"environment variable {TEXTURE_VARIABLE} to their number."
+        )
     assets = (*spec.meshes, *spec.hfields, *spec.skins)
-    files = [asset_path(spec, folder, each.file) for each in assets if each.file]
-    size = sum(file.stat().st_size for file in files if file.is_file())
+    size = sum(_bytes_of_asset(asset_path(spec, folder, each.file), 4) for each in assets if each.file)
     if size > MAX_ASSET_BYTES:
         raise error(f"its meshes have {size >> 20} MB; at most {MAX_ASSET_BYTES >> 20} MB are allowed.")
 
@@ -245,20 +331,33 @@ def _texture_bytes(spec: mujoco.MjSpec, texture: mujoco.MjsTexture, folder: Path
     """Returns the bytes of a texture in memory."""
     channels = max(1, int(texture.nchannel))
     size = max(0, texture.width) * max(0, texture.height) * channels * (6 if texture.type else 1)
-    for name in (texture.file, *texture.cubefiles):
-        file = asset_path(spec, folder, name, texture=True)
-        if not name or not file.is_file():
-            continue  # MuJoCo names a missing file
-        with file.open("rb") as stream:
-            width, height = image_size_px(stream.read(1 << 16)) or (0, 0)
-        size += max(width * height * (channels if texture.nchannel > 0 else 4), file.stat().st_size)
+    for name in filter(None, (texture.file, *texture.cubefiles)):
+        size += _bytes_of_asset(asset_path(spec, folder, name, texture=True), channels if texture.nchannel > 0 else 4)
     return size
 
 
+def _most_texture_bytes(error: type[ObjectNavError]) -> int:
+    given = os.environ.get(TEXTURE_VARIABLE, "")
+    if given and not (given.isascii() and given.isdigit() and len(given) < 9):
+        raise error(f"{TEXTURE_VARIABLE} must be a number of MB, got '{printable(given)}'.")
+    return int(given) << 20 if given else MAX_TEXTURE_BYTES
+
+
+def _bytes_of_asset(file: Path, bytes_per_pixel: int) -> int:
+    """Returns the bytes of an image in memory, of another file its size; 0 where there is none, which MuJoCo names."""
+    if not file.is_file():
+        return 0
+    with open_plain(file, what="Asset") as stream:
+        width, height = image_size_px(stream.read(1 << 16)) or (0, 0)
+    return max(width * height * bytes_per_pixel, file.stat().st_size)
+
+
 def _numbers(text: str) -> list[float]:
-    """Returns the numbers of a list of numbers; none where a word is not a number."""
+    """Returns the numbers of a list of numbers, decimal or hexadecimal as in C; none where a word is not a number."""
     try:
-        return [float(word) for word in text.split()]
+        return [float.fromhex(word) if "x" in word.lower() else float(word) for word in text.split()]
+    except OverflowError:
+        return [math.inf]
     except ValueError:
         return []
 

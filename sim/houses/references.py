@@ -8,6 +8,7 @@ user allows more with `--root FOLDER`, for packages whose files lie in folders n
 
 from __future__ import annotations
 
+import html
 import os
 import re
 import stat
@@ -17,6 +18,7 @@ from pathlib import Path
 
 from sim.errors import HouseError, ObjectNavError
 from sim.gl import mujoco
+from sim.houses.mjcf_text import as_utf8
 from sim.paths import assets_dir
 from sim.reading import printable, read_bytes
 
@@ -31,6 +33,8 @@ _FILE = re.compile(rb"\bfile\w*" + _VALUE)
 _FOLDER = re.compile(rb"\b(?:mesh|texture|asset)dir" + _VALUE)
 _ASSETS = frozenset((".png", ".jpg", ".jpeg", ".obj", ".stl", ".msh", ".ktx", ".bin", ".skn"))
 """Suffixes of files that include no other."""
+_ELSEWHERE = re.compile(r":[/\\]|^\\|\.(?:zip|mjz)(?:[/\\]|$)", re.IGNORECASE)
+"""Names that MuJoCo reads as absolute but the system as relative to the current folder, and names of its archives."""
 MOST_LEVELS_UP = 3
 """A folder that a refusal proposes for `--root` is at most this many levels above the file."""
 
@@ -43,6 +47,8 @@ class Reference:
     """The path as the file writes it."""
     path: Path
     """The path at which MuJoCo looks for it."""
+    folder: str = ""
+    """The folder that the file names for it, by `meshdir` for example."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +72,12 @@ class Allowed:
             ObjectNavError: of class `error`; the path leads out of the allowed folders or is not a regular file.
         """
         name = printable(reference.name)
+        joined = f"{reference.folder}/{reference.name}" if reference.folder else reference.name
+        if _ELSEWHERE.search(joined) or reference.name.startswith("\\"):
+            raise self.error(
+                f"it uses '{printable(joined)}': a drive, an address or a file in an archive is not read; unpack the "
+                "archive, and name files by paths relative to this one."
+            )
         try:
             target = reference.path.resolve()
             is_special = target.exists() and not target.is_file()
@@ -100,11 +112,11 @@ def asset_references(spec: mujoco.MjSpec, folder: Path) -> Iterator[Reference]:
     """
     for asset in (*spec.meshes, *spec.hfields, *spec.skins):
         if asset.file:
-            yield Reference(asset.file, asset_path(spec, folder, asset.file))
+            yield Reference(asset.file, asset_path(spec, folder, asset.file), spec.meshdir or "")
     for texture in spec.textures:
         for name in (texture.file, *texture.cubefiles):
             if name:
-                yield Reference(name, asset_path(spec, folder, name, texture=True))
+                yield Reference(name, asset_path(spec, folder, name, texture=True), spec.texturedir or "")
 
 
 def asset_path(spec: mujoco.MjSpec, folder: Path, name: str, *, texture: bool = False) -> Path:
@@ -160,13 +172,13 @@ def files_of(house_file: Path) -> list[Path]:
 
 def _content(file: Path) -> bytes:
     try:
-        return read_bytes(file, what="File", most=_MOST_BYTES)
-    except ObjectNavError:
+        return as_utf8(read_bytes(file, what="File", most=_MOST_BYTES))
+    except (ObjectNavError, ValueError):
         return b""  # `read_spec` refuses it
 
 
 def _values(attribute: re.Pattern[bytes], text: bytes) -> list[str]:
-    return [match["value"][1:-1].decode(errors="replace") for match in attribute.finditer(text)]
+    return [html.unescape(match["value"][1:-1].decode(errors="replace")) for match in attribute.finditer(text)]
 
 
 def _is_plain(path: Path) -> bool:

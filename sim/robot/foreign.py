@@ -27,7 +27,7 @@ from pathlib import Path
 from typing import Any
 
 from sim.interface import CameraModel, ConfigError
-from sim.reading import read_json
+from sim.reading import read_bytes, read_json
 from sim.robot.config import BodyConfig, RobotConfig, RobotFile, WheelConfig
 from sim.robot.measurement import RobotMeasurements, measure
 
@@ -63,7 +63,8 @@ def load_robot(path: Path) -> tuple[RobotConfig, CameraModel]:
 
 def robot_sha256(path: Path) -> str:
     """Returns the checksum of the robot's file and its sidecar, which identifies the robot in results."""
-    return hashlib.sha256(path.read_bytes() + path.with_suffix(".json").read_bytes()).hexdigest()
+    files = (path, "robot"), (path.with_suffix(".json"), "sidecar of the robot")
+    return hashlib.sha256(b"".join(read_bytes(file, what=f"--robot: the {what}") for file, what in files)).hexdigest()
 
 
 def _robot_config(path: Path, sidecar: dict[str, Any]) -> RobotConfig:

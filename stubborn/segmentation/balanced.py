@@ -10,13 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import msgspec
 import numpy as np
 from torch.utils.data import IterableDataset, get_worker_info
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, ConfigError
+from sim.reading import Count, open_plain
 from stubborn.segmentation.dataset import LabelledView, decode_view, read_members
 
 SMALLEST_PX = 40
@@ -37,7 +38,7 @@ class StoredView(NamedTuple):
             ConfigError: the view is incomplete or broken.
         """
         parts: dict[str, bytes] = {}
-        with self.file.open("rb") as stream:
+        with open_plain(self.file, what="Shard") as stream:
             for name, offset, size in self.members:
                 if name != "coco":  # the instance image holds the same masks
                     stream.seek(offset)
@@ -57,9 +58,9 @@ class ShownObject(NamedTuple):
 class _Annotation(msgspec.Struct):
     """The part of an annotation that holds the category and the size of an object."""
 
-    id: int
-    category_id: int
-    area: int
+    id: Annotated[int, msgspec.Meta(ge=0, le=65535)]
+    category_id: Annotated[int, msgspec.Meta(ge=0, lt=len(MPCAT40))]
+    area: Count
     style: str = ""
 
 
@@ -82,7 +83,7 @@ class ViewIndex:
         objects: dict[str, dict[str, list[ShownObject]]] = {}
         decoder = msgspec.json.Decoder(list[_Annotation])
         for shard in shards:
-            with shard.open("rb") as stream:
+            with open_plain(shard, what="Shard") as stream:
                 for key, members in read_members(shard):
                     for each in _annotations(decoder, shard, key, members, stream):
                         category = MPCAT40[each.category_id]

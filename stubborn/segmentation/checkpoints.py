@@ -9,11 +9,12 @@ from __future__ import annotations
 import pickle
 import re
 import struct
+import tarfile
 import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, BinaryIO
 
 import msgspec
 import numpy as np
@@ -22,7 +23,7 @@ from numpy._core import multiarray
 from torch import Tensor
 
 from sim.interface import ConfigError
-from sim.reading import Number, convert, require_small_zip
+from sim.reading import Number, convert, open_plain, require_small_zip
 from stubborn.network_files import read_weights, with_weights, write_weights
 from stubborn.segmentation.networks import FAMILIES, Architecture, Network, build_network, family
 from stubborn.segmentation.rednet import PUBLISHED
@@ -112,23 +113,41 @@ def read_checkpoint(file: Path, *, device: torch.device | str = "cpu") -> Mappin
     Raises:
         ConfigError: the file is broken, expands to more than `MAX_CHECKPOINT_BYTES`, or holds no table.
     """
-    if _is_zip(file):
-        require_small_zip(file, what="Weights", most=MAX_CHECKPOINT_BYTES)
-    try:
-        with torch.serialization.safe_globals(_NUMPY_NUMBERS):
-            content = torch.load(file, map_location=device, weights_only=True)
-    except _BROKEN_PICKLE as error:
-        reason = _TERMINAL_CODE.sub("", str(error)).partition("WeightsUnpickler error: ")
-        reason = " ".join((reason[2] or reason[0]).split("\n")[0].split()) or type(error).__name__
-        raise ConfigError(f"Weights '{file}' cannot be read as a PyTorch checkpoint of tensors: {reason}") from None
+    with open_plain(file, what="Weights") as stream:
+        content = _load(file, stream, device)
     if not isinstance(content, Mapping):
         raise ConfigError(f"Weights '{file}' hold a {type(content).__name__}, not a table of tensors.")
     return content
 
 
-def _is_zip(file: Path) -> bool:
+def _load(file: Path, stream: BinaryIO, device: torch.device | str) -> Any:
+    """Returns the content of an open PyTorch file; raises ConfigError like `read_checkpoint`."""
+    if _is_tar(stream):
+        raise ConfigError(f"Weights '{file}' are a tar file, which PyTorch wrote before version 0.4; save them again.")
+    if _is_zip(stream):
+        require_small_zip(file, what="Weights", most=MAX_CHECKPOINT_BYTES)
+    stream.seek(0)
     try:
-        return zipfile.is_zipfile(file)
+        with torch.serialization.safe_globals(_NUMPY_NUMBERS):
+            return torch.load(stream, map_location=device, weights_only=True)
+    except _BROKEN_PICKLE as error:
+        reason = _TERMINAL_CODE.sub("", str(error)).partition("WeightsUnpickler error: ")
+        reason = " ".join((reason[2] or reason[0]).split("\n")[0].split()) or type(error).__name__
+        raise ConfigError(f"Weights '{file}' cannot be read as a PyTorch checkpoint of tensors: {reason}") from None
+
+
+def _is_tar(stream: BinaryIO) -> bool:
+    """Returns whether a file begins with the header of a tar file, which `torch.load` would give to `tarfile`."""
+    try:
+        tarfile.TarInfo.frombuf(stream.read(tarfile.BLOCKSIZE), "utf-8", "surrogateescape")
+    except tarfile.TarError:
+        return False
+    return True
+
+
+def _is_zip(stream: BinaryIO) -> bool:
+    try:
+        return zipfile.is_zipfile(stream)
     except zipfile.BadZipFile:  # it is a zip file, in several parts
         return True
 

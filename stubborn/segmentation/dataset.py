@@ -13,7 +13,7 @@ import tarfile
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, BinaryIO
 
 import cv2
 import msgspec
@@ -23,11 +23,14 @@ from jaxtyping import Float32, Float64, Shaped, UInt8, UInt16
 from torch.utils.data import IterableDataset, get_worker_info
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, ConfigError
-from sim.reading import MAX_BYTES, Count, open_plain, parse_json, read_json, require_small_image
+from sim.reading import MAX_BYTES, Count, PlainMember, convert, open_plain, parse_json, read_json, require_small_image
 
 GOAL_IDS = np.array([MPCAT40_ID[name] for name in GOAL_CATEGORIES])
 """mpcat40 ids of the goal categories."""
 _PARTS = ("rgb", "depth", "semantic", "json")
+_Pixel = Annotated[float, msgspec.Meta(ge=-100_000.0, le=100_000.0)]
+_BROKEN_TAR = (tarfile.TarError, OSError, EOFError, ValueError, RecursionError)
+"""The exceptions that `tarfile` raises for files that are not tar files."""
 
 
 class _NoteConfig(msgspec.Struct):
@@ -40,6 +43,24 @@ class _Note(msgspec.Struct):
     """The JSON note next to a shard: the part that states how its views were stored."""
 
     config: _NoteConfig = msgspec.field(default_factory=_NoteConfig)
+
+
+class _Runs(msgspec.Struct):
+    """The run-length encoded mask of an object."""
+
+    size: tuple[Count, Count]
+    counts: list[Count]
+
+
+class _Object(msgspec.Struct):
+    """An object of a view, as COCO describes it."""
+
+    id: Annotated[int, msgspec.Meta(ge=0, le=65535)]
+    name: str
+    category_id: Annotated[int, msgspec.Meta(ge=0, lt=len(MPCAT40))]
+    area: Count
+    bbox: tuple[_Pixel, _Pixel, _Pixel, _Pixel]
+    segmentation: _Runs
 
 
 class _PixelNote(msgspec.Struct):
@@ -137,7 +158,7 @@ def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tupl
     try:
         with (
             open_plain(file, what="Shard") as stream,
-            tarfile.open(fileobj=stream, mode="r:") as archive,  # a compressed file could expand without end
+            _archive(stream) as archive,
         ):
             for member in archive:
                 _require_small_file(file, member)
@@ -152,7 +173,7 @@ def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tupl
                     parts[suffix.split(".")[0]] = b"" if content is None else content.read()
             if number >= 0:
                 yield key, parts
-    except (tarfile.TarError, OSError, EOFError, ValueError) as error:
+    except _BROKEN_TAR as error:
         if isinstance(error, ConfigError):
             raise
         raise ConfigError(f"Shard '{file}' is broken: {error}. `stubborn views` makes it again.") from None
@@ -167,7 +188,7 @@ def read_members(file: Path) -> Iterator[tuple[str, dict[str, tuple[int, int]]]]
     key, places = "", {}
     once = _Once(file)
     try:
-        with tarfile.open(file, mode="r:") as archive:
+        with open_plain(file, what="Shard") as stream, _archive(stream) as archive:
             for member in archive:
                 _require_small_file(file, member)
                 name, _, suffix = member.name.partition(".")
@@ -179,10 +200,15 @@ def read_members(file: Path) -> Iterator[tuple[str, dict[str, tuple[int, int]]]]
                 places[suffix.split(".")[0]] = member.offset_data, member.size
             if places:
                 yield key, places
-    except (tarfile.TarError, OSError, EOFError, ValueError) as error:
+    except _BROKEN_TAR as error:
         if isinstance(error, ConfigError):
             raise
         raise ConfigError(f"Shard '{file}' is broken: {error}. `stubborn views` makes it again.") from None
+
+
+def _archive(stream: BinaryIO) -> tarfile.TarFile:
+    """Returns an open shard as a tar file; a compressed one is refused, because it could expand without end."""
+    return tarfile.open(fileobj=stream, mode="r:", tarinfo=PlainMember)
 
 
 class _Once:
@@ -431,7 +457,9 @@ def _with_extras(file: Path, view: LabelledView, parts: dict[str, bytes]) -> Lab
             raise ConfigError(f"{where} has instances of {instances.dtype} {instances.shape}; it needs uint16 (h, w).")
         view = replace(view, instances=instances)
     if "coco" in parts:
-        view = replace(view, annotations=parse_json(parts["coco"], list[dict[str, Any]], where=f"{where}: its objects"))
+        objects = parse_json(parts["coco"], list[dict[str, Any]], where=f"{where}: its objects")
+        convert(objects, list[_Object], where=f"{where}: its objects")
+        view = replace(view, annotations=objects)
     if "normals" in parts:
         levels = cv2.cvtColor(_image(file, view.key, "normals", parts, cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
         if levels.shape[:2] != view.semantic.shape:

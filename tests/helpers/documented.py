@@ -241,6 +241,7 @@ _UNSEEN = (
 )
 _SHARDS = tuple(f"{_RUN} {_SMALL} --agent oracle --episodes 2 --shard {i}/2 --out {{tmp}}/big" for i in (1, 2))
 
+_PUBLISHED = "needs a repository of others, which is not part of this project"
 TRIALS: dict[str, tuple[str, ...] | Only] = {
     "make run": _NEEDS_SETUP,
     "make test": _NEEDS_SETUP,
@@ -548,6 +549,17 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn views --split val --views 500 --extras instances normals poses --out views_objects": (
         "stubborn views --split val --views 4 --views-per-shard 4 --extras instances normals poses --out {tmp}/views",
     ),
+    f"{_RUN} --agent habitat:my_agent:MyAgent --config agent.checkpoint=policy.pth": Only(
+        "needs an agent of the reader's; tests/sim/bridges/test_habitat_agents.py writes one"
+    ),
+    "stubborn habitat 'evaluate.py --runs 1' --split val --episodes 5": Only(
+        "needs a script of the reader's; tests/sim/bridges/test_habitat_env.py writes one"
+    ),
+    f"{_RUN} --agent habitat:simple_agents:RandomForwardAgent --config agent.success_distance=-1"
+    " agent.goal_sensor_uuid=objectgoal": Only(_PUBLISHED),
+    "stubborn habitat examples/benchmark.py --episodes 10": Only(_PUBLISHED),
+    "stubborn habitat 'agent.py --evaluation local' --split val --episodes 5": Only(_PUBLISHED),
+    f"{_RUN} --agent habitat:agent:RandomAgent": Only(_PUBLISHED),
     "stubborn bench --parts a,b,d --out runs/bench.json": Only(
         "takes minutes; tests/commands/test_bench.py runs its parts"
     ),

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from examples import my_agent
+from sim.bridges.habitat.agents import HabitatAgent
+from sim.bridges.habitat.conversions import Conversion
 from sim.bridges.process import ProcessAgent
 from sim.bridges.process_command import ProcessConfig
 from sim.interface import (
@@ -36,6 +38,7 @@ from stubborn.mapping.object_layers import AllFrames, LatestFrame
 from stubborn.planning.untrap import UntrapConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, boxes_from_plan, run_episode
+from tests.helpers.habitat_agents import Wanderer
 
 PLAN = """
 ####################
@@ -63,6 +66,8 @@ def build(name: str, **options: Any) -> Agent:
             verifier=AcceptAll(),
             config=None,
         )
+    if name == "habitat":
+        return HabitatAgent(Wanderer(), Conversion(camera=SMALL_CAMERA))
     if name == "process":
         client = [sys.executable, "tests/helpers/client_agent.py"]
         parts: dict[str, Any] = {"camera": SMALL_CAMERA, "robot": RobotModel(), "success": SuccessRule()}
@@ -74,7 +79,7 @@ def world() -> GridWorld:
     return GridWorld(BOXES, (0.75, 0.75, 0.7), camera=SMALL_CAMERA)
 
 
-every_agent = pytest.mark.parametrize("name", [*agents.NAMES, "example", "process"])
+every_agent = pytest.mark.parametrize("name", [*agents.NAMES, "example", "habitat", "process"])
 
 
 @every_agent

@@ -29,6 +29,7 @@ from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels, rendered_geoms
 from sim.interface import GOAL_CATEGORIES, ConfigError, SuccessRule
 from sim.paths import assets_dir
+from sim.reading import read_bytes
 from sim.world.storeys import floor_levels
 
 SPLITS = ("val", "test", "large", "hazards", "train")
@@ -178,7 +179,7 @@ def describe(split: Split, name: str) -> HouseFacts:
     model = split.load_house(name).spec.copy().compile()
     labels = read_labels(model)
     rooms = read_rooms(model)
-    content = split.house_file(name).read_bytes()
+    content = read_bytes(split.house_file(name), what="House")
     listed = split.house_list.recipes.values() if split.house_list else RECIPES.get(split.name, ())
     return HouseFacts(
         name=name,

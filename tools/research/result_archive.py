@@ -20,7 +20,7 @@ from sim.analysis.comparison import Line, Run, read_run
 from sim.composition.agents import find_agent
 from sim.composition.options import RunOptions
 from sim.errors import ConfigError
-from sim.reading import convert
+from sim.reading import PlainMember, convert, open_plain
 
 ROOT = Path(__file__).resolve().parents[2]
 ARCHIVE = ROOT / "docs" / "tables" / "splits-2.0.0.tar.gz"
@@ -116,9 +116,9 @@ def read_archive(archive: Path, folder: Path, say: Say) -> dict[RunKey, Archived
         ConfigError: the archive cannot be read, or holds no run.
     """
     try:
-        with tarfile.open(archive) as opened:
+        with open_plain(archive, what="Archive") as stream, tarfile.open(fileobj=stream, tarinfo=PlainMember) as opened:
             names = sorted(set(_extract(opened, folder, say)))
-    except (OSError, tarfile.TarError, EOFError) as error:
+    except (OSError, tarfile.TarError, EOFError, ValueError, RecursionError) as error:
         raise ConfigError(f"Archive '{archive}' cannot be read: {error}.") from None
     found: list[ArchivedRun] = []
     for name in names:

@@ -29,6 +29,8 @@ from sim.analysis.metrics import FIRST_SIGHT, Metric, houses_of
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import Estimate
 from sim.files import write_together
+from sim.reading import read_bytes, read_text
+from sim.reading import read_csv as read_table
 from sim.task.failures import CAUSES
 from tools.research.result_archive import ARCHIVE, ROOT, ArchivedRun, RunKey, read_archive
 from tools.research.result_definitions import (
@@ -77,7 +79,7 @@ def main(args: Args) -> int:
         runs = read_archive(args.archive, Path(folder), say)
         results = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
         compared = [comparison_record(each, runs) for each in comparisons()]
-    page = fill_page(args.page.read_text(encoding="utf-8"), results)
+    page = fill_page(read_text(args.page, what="--page"), results)
     wanted = {
         args.tables / RESULTS: to_csv(results),
         args.tables / COMPARISONS: to_csv(compared),
@@ -225,8 +227,7 @@ def to_csv(records: Sequence[Record]) -> str:
 
 def read_csv(file: Path) -> list[Record]:
     """Returns the rows of a CSV file."""
-    with file.open(encoding="utf-8", newline="") as stream:
-        return [dict(record) for record in csv.DictReader(stream)]
+    return [dict(record) for record in read_table(file, what="Table")]
 
 
 def _identity(key: RunKey) -> Record:
@@ -247,8 +248,7 @@ def _estimate_columns(metric: Metric, found: Estimate) -> Record:
 
 
 def _text(file: Path) -> str:
-    with file.open(encoding="utf-8", newline="") as stream:
-        return stream.read()
+    return read_bytes(file, what="Table").decode("utf-8", errors="replace")
 
 
 def _yes(value: bool) -> str:

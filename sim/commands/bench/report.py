@@ -19,7 +19,7 @@ from sim.commands.bench.figures import Figure
 from sim.files import write_atomically
 from sim.interface import ConfigError
 from sim.paths import code_hash
-from sim.reading import reason_of
+from sim.reading import read_text
 from sim.sensors.opengl import describe_gl
 
 BEGIN, END = "<!-- bench: begin -->", "<!-- bench: end -->"
@@ -114,10 +114,7 @@ def around_marks(page: Path) -> tuple[str, str]:
     Raises:
         ConfigError: there is no such page, or it has no marks.
     """
-    try:
-        old = page.read_text(encoding="utf-8")
-    except (OSError, UnicodeError) as error:
-        raise ConfigError(f"--markdown '{page}' cannot be read: {reason_of(error)}.") from None
+    old = read_text(page, what="--markdown")
     begin = _BEGIN.search(old)
     _, end, after = old[begin.end() :].partition(END) if begin else ("", "", "")
     if begin is None or not end:

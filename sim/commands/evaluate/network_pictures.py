@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Int64
 
+from sim.commands.train.training_files import read_columns
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, ConfigError
 from stubborn.segmentation.evaluation import GOAL_CHANNELS
 
@@ -104,8 +104,7 @@ def _column(file: Path, name: str) -> np.ndarray:
     """
     if not file.is_file():
         raise ConfigError(f"'{file.parent}' holds no training: {file.name} is missing.")
-    with file.open(newline="") as stream:
-        rows = [(float(row["hours"]), float(row[name])) for row in csv.DictReader(stream)]
-    if not rows:
-        raise ConfigError(f"'{file}' has no rows.")
-    return np.array(rows)
+    columns = read_columns(file)
+    if not {"hours", name} <= set(columns):
+        raise ConfigError(f"'{file}' has no rows with 'hours' and '{name}'.")
+    return np.array([columns["hours"], columns[name]]).T

@@ -10,7 +10,6 @@ Plans are written by `stubborn houses plans`. Every tenth house, by a hash of it
 
 from __future__ import annotations
 
-import csv
 import functools
 import io
 import time
@@ -48,6 +47,7 @@ from sim.commands.train.training_files import (
     cut_rows,
     load_state,
     options_of,
+    read_columns,
     require_options,
     save_state,
     tell_next,
@@ -127,9 +127,8 @@ def _require_curve(file: Path) -> None:
     """Raises ConfigError where a file of curves lacks a column that is drawn; one that does not exist is not drawn."""
     if not file.is_file():
         return
-    with file.open(newline="", encoding="utf-8", errors="replace") as stream:
-        if not set(_DRAWN) <= set(next(csv.reader(stream), [])):
-            raise ConfigError(f"--beside: '{file}' is not a curve of this command.")
+    if not set(_DRAWN) <= set(read_columns(file)):
+        raise ConfigError(f"--beside: '{file}' is not a curve of this command.")
 
 
 class _Progress(msgspec.Struct):
@@ -289,12 +288,11 @@ def curves(files: Sequence[Path]) -> bytes:
     for file in files:
         if not file.is_file():
             continue
-        with file.open(newline="", encoding="utf-8") as stream:
-            rows = [row for row in csv.DictReader(stream) if int(row["episodes"]) >= LAST_EPISODES // 3]
-        steps = [int(row["steps"]) / 1e6 for row in rows]
-        sights = np.array([float(row["steps_to_first_sight"]) for row in rows])
+        table = {name: np.array(column) for name, column in read_columns(file).items()}
+        kept = table["episodes"] >= LAST_EPISODES // 3
+        steps, sights = table["steps"][kept] / 1e6, table["steps_to_first_sight"][kept]
         (line,) = axes.plot(steps, sights, linewidth=0.5, alpha=0.4)
-        width = max(len(rows) // SMOOTHED, 1)
+        width = max(len(sights) // SMOOTHED, 1)
         smooth = [sights[max(0, i - width + 1) : i + 1].mean() for i in range(len(sights))]
         axes.plot(steps, smooth, color=line.get_color(), label=file.parent.name)
     axes.set(xlabel="primitive steps of the training, millions", ylabel="mean steps to first sight")

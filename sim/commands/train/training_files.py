@@ -12,9 +12,9 @@ from typing import Any, TypeVar
 
 import torch
 
-from sim.files import write_atomically
+from sim.files import open_to_grow, write_atomically
 from sim.interface import ConfigError
-from sim.reading import convert, reason_of
+from sim.reading import convert, read_bytes, read_csv, reason_of
 from stubborn.segmentation.checkpoints import read_checkpoint
 
 ProgressT = TypeVar("ProgressT")
@@ -24,10 +24,9 @@ def append_row(file: Path, row: Mapping[str, Any]) -> None:
     """Appends a row to a CSV file; the keys of the first row are its heading, and other keys are left out."""
     heading: list[str] = []
     if file.exists():
-        with file.open(newline="", encoding="utf-8", errors="replace") as stream:
-            heading = next(csv.reader(stream), [])
-    with file.open("a" if heading else "w", newline="", encoding="utf-8") as stream:
-        table = csv.DictWriter(stream, heading or list(row), extrasaction="ignore")
+        heading = next(csv.reader(_text_of(file).splitlines()), [])
+    with open_to_grow(file, "a" if heading else "w") as stream:
+        table = csv.DictWriter(stream, heading or list(row), extrasaction="ignore", lineterminator="\n")
         if not heading:
             table.writeheader()
         table.writerow(row)
@@ -48,8 +47,7 @@ def cut_rows(file: Path, column: str, most: int) -> None:
     """
     if not file.is_file():
         return
-    text = file.read_bytes().decode(encoding="utf-8", errors="replace")
-    lines = [line.rstrip("\r") for line in text.split("\n")[:-1]]  # the last part is no whole line
+    lines = [line.rstrip("\r") for line in _text_of(file).split("\n")[:-1]]  # the last part is no whole line
     names = lines[0].split(",") if lines else [column]
     if column not in names:
         raise ConfigError(f"'{file}' is not a curve of this command: it has no column '{column}'. Take another folder.")
@@ -106,12 +104,23 @@ def require_options(out: Path, before: Mapping[str, str], now: Mapping[str, str]
 
 
 def read_columns(file: Path) -> dict[str, list[float]]:
-    """Returns the columns of a CSV file of numbers, NaN for empty fields; nothing where there is no file."""
+    """Returns the columns of a CSV file of numbers, NaN for empty fields; nothing where there is no file.
+
+    Raises:
+        ConfigError: a field is no number.
+    """
     if not file.exists():
         return {}
-    with file.open(newline="", encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
-    return {key: [float(row[key] or "nan") for row in rows] for key in (rows[0] if rows else ())}
+    rows = read_csv(file, what="Curve")
+    try:
+        return {key: [float(row[key] or "nan") for row in rows] for key in (rows[0] if rows else ())}
+    except ValueError as error:
+        raise ConfigError(f"Curve '{file}' is not a table of numbers: {reason_of(error)}.") from None
+
+
+def _text_of(file: Path) -> str:
+    """Returns the text of a curve; what is no UTF-8 is replaced."""
+    return read_bytes(file, what="Curve").decode("utf-8", errors="replace")
 
 
 def save_state(file: Path, parts: Mapping[str, Any], progress: Mapping[str, Any]) -> None:

@@ -28,8 +28,8 @@ from sim.commands.traps.trial import Trial, run_trial
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.oracle import Oracle
 from sim.episodes.splits import Episode
+from sim.files import open_to_grow, write_together
 from sim.files import write_picture as save_picture
-from sim.files import write_together
 from sim.interface import Agent, ConfigError
 from sim.reading import Count as ReadCount
 from sim.reading import Name, Number, read_lines
@@ -81,7 +81,7 @@ def main(args: Args) -> int:
         for trial in run_trials(args, name, done):
             rows.append(row_of(trial))
             results.parent.mkdir(parents=True, exist_ok=True)
-            with results.open("a", encoding="utf-8") as file:
+            with open_to_grow(results, "a") as file:
                 file.write(json.dumps(rows[-1]) + "\n")
             outcome = "escaped" if trial.escaped else "stuck"
             console.print(f"{name} {trial.episode_id}: {outcome} after {len(trial.motions)} steps")

@@ -25,7 +25,7 @@ from sim.housegen.imported.solids import collision_boxes, top_of
 from sim.housegen.imported.sources import Entry, Skipped
 from sim.invocation import command
 from sim.paths import assets_dir
-from sim.reading import MAX_BYTES, read_json, read_npz
+from sim.reading import MAX_BYTES, read_json, read_npz, sha256_of
 
 ModelSplit = Literal["train", "transfer"]
 INDEX, MESHES = "models.json", "meshes"
@@ -226,7 +226,7 @@ def sha256_of_models(folder: Path) -> str:
         ConfigError: there is no such folder.
     """
     read_index(folder)
-    return hashlib.sha256((folder / INDEX).read_bytes()).hexdigest()
+    return sha256_of(folder / INDEX, what="Index of models")
 
 
 class _Index(msgspec.Struct):

@@ -24,7 +24,7 @@ from sim.errors import ConfigError
 from sim.housegen.furniture.item import Mount
 from sim.housegen.furniture.uses import fault_of_uses
 from sim.housegen.imported.labels import Label, Size, label_of, label_of_category
-from sim.reading import convert, read_bytes, reason_of
+from sim.reading import convert, open_plain, read_bytes, read_text, reason_of
 
 MAX_NUMBER = 1000.0
 """Largest number of an entry besides its size."""
@@ -91,9 +91,9 @@ def read_source(folder: Path) -> Iterator[Found]:
 
 def _sweet_home(file: Path) -> Iterator[Found]:
     try:
-        archive = zipfile.ZipFile(file)
+        archive = zipfile.ZipFile(open_plain(file, what="Catalogue"))
         text = _read_zip(archive, "PluginFurnitureCatalog.properties").decode("latin-1")
-    except (zipfile.BadZipFile, OSError, Skipped) as error:
+    except (zipfile.BadZipFile, OSError, ValueError, ConfigError, Skipped) as error:
         yield file.name, f"the file cannot be read ({error})"
         return
     header = {found[1]: found[2] for line in text.splitlines() if (found := _HEADER.fullmatch(line))}
@@ -169,7 +169,7 @@ class _Table(msgspec.Struct):
 
 
 def _rows(table: Path) -> list[dict[str, Any]]:
-    text = read_bytes(table, what="The table").decode("utf-8")
+    text = read_text(table, what="The table")
     if table.suffix == ".toml":
         return convert(tomllib.loads(text), _Table, where=f"'{table.name}'").model
     return list(csv.DictReader(text.splitlines()))
@@ -211,11 +211,9 @@ def _read_file(folder: Path, path: str) -> bytes:
     if not file.is_relative_to(folder.resolve()):
         raise Skipped(f"'{path}' leads out of the folder")
     try:
-        if file.stat().st_size > MAX_FILE_BYTES:
-            raise Skipped(f"'{path}' is larger than {MAX_FILE_BYTES // 1_000_000} MB")
-        return file.read_bytes()
-    except OSError:
-        raise Skipped(f"the folder has no '{path}'") from None
+        return read_bytes(file, what="Model", most=MAX_FILE_BYTES)
+    except ConfigError as error:
+        raise Skipped(str(error).rstrip(".")) from None
 
 
 def _finite(*numbers: float) -> None:

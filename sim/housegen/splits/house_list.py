@@ -25,7 +25,7 @@ from sim.files import inside, write_atomically
 from sim.housegen.floor_plan.rooms import PlanKind
 from sim.housegen.splits.recipes import Recipe
 from sim.paths import assets_dir
-from sim.reading import Count, Name, read_json
+from sim.reading import Count, Name, read_bytes, read_json, sha256_of
 
 LIST_FILE = "houses.json"
 CACHE_VARIABLE = "STUBBORN_CACHE_DIR"
@@ -191,13 +191,13 @@ def copy_textures(folder: Path) -> None:
     """
     for source in sorted((assets_dir() / "textures").iterdir()):
         content, there = source.read_bytes(), folder / source.name
-        if not there.is_file() or there.read_bytes() != content:
+        if not there.is_file() or read_bytes(there, what="Texture") != content:
             write_atomically(there, content)
 
 
 def _sha256_of(path: Path) -> str | None:
     """Returns the checksum of a file; None where it cannot be read."""
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError:
+        return sha256_of(path, what="House")
+    except ConfigError:
         return None

@@ -62,7 +62,7 @@ TOO_MUCH = {
     "a custom array": (house(more='<custom><numeric name="n" size="2000000000"/></custom>'), "numeric 'n' asks for"),
     "user data": (house(more='<size nuserdata="2000000000"/>'), "size asks for 2e.09"),
     "a document type": ("<!DOCTYPE a [<!ENTITY b 'c'>]>" + house(), "a document type is not allowed"),
-    "itself": (house(more='<include file="house.xml"/>'), "more than 100 files"),
+    "itself": (house(more='<include file="house.xml"/>'), "'house.xml' is included more than once"),
 }
 NO_NUMBERS = {
     "a nan with a payload": (house(box(pos="0 nan(1) 0")), r"geom 'wall_00': pos = '0 nan\(1\) 0' is not finite"),
@@ -131,3 +131,41 @@ def test_an_invalid_or_too_long_label_rule_is_refused(rule: str, message: str, t
     (tmp_path / "rules.json").write_text(f'{{"{rule}": "wall"}}')
     with pytest.raises(HouseError, match=message):
         load_house(tmp_path / "house.xml", labels_path=tmp_path / "rules.json")
+
+
+CHAIR = '<body name="chair_{:03}" pos="{} 0 1"><freejoint/><geom type="box" size="0.1 0.1 0.1"/></body>'
+
+
+@pytest.mark.parametrize(
+    ("count", "apart_m", "message"), [(60, 0.0, r"overlap in .* contacts"), (800, 0.3, r"joints need .* MB")]
+)
+def test_free_bodies_that_need_all_memory_are_refused(count: int, apart_m: float, message: str, tmp_path: Path) -> None:
+    (tmp_path / "house.xml").write_text(house("".join(CHAIR.format(i, i * apart_m) for i in range(count))))
+    with pytest.raises(HouseError, match=message):
+        load_house(tmp_path / "house.xml")
+
+
+def test_a_hexadecimal_number_is_a_number(tmp_path: Path) -> None:
+    (tmp_path / "house.xml").write_text(house(box(pos="0 0 0x1p500")))
+    with pytest.raises(HouseError, match=r"pos = '0 0 0x1p500' is too large"):
+        load_house(tmp_path / "house.xml")
+
+
+def test_a_height_field_of_many_pixels_is_not_decoded(tmp_path: Path) -> None:
+    (tmp_path / "bomb.png").write_bytes(png(60_000, 60_000))
+    (tmp_path / "house.xml").write_text(house(assets='<hfield name="h" size="1 1 1 1" file="bomb.png"/>'))
+    with pytest.raises(HouseError, match=r"meshes have .* MB"):
+        load_house(tmp_path / "house.xml")
+
+
+def test_the_limit_of_textures_is_a_variable_of_the_environment(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn = '<texture name="t" type="2d" builtin="flat" width="1000" height="1000"/>'
+    (tmp_path / "house.xml").write_text(house(assets=drawn))
+    for limit, message in (("1", "at most 1 MB are allowed.*STUBBORN_TEXTURE_MB"), ("many", "must be a number of MB")):
+        monkeypatch.setenv("STUBBORN_TEXTURE_MB", limit)
+        with pytest.raises(HouseError, match=message):
+            load_house(tmp_path / "house.xml")
+    monkeypatch.setenv("STUBBORN_TEXTURE_MB", "3")
+    assert load_house(tmp_path / "house.xml").name == "house"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import zipfile
 from pathlib import Path
 
 import cv2
@@ -141,3 +142,68 @@ def test_a_run_with_a_root_works_and_one_without_names_the_missing_option(
     assert run.entry([*house, *few, "--root", str(tmp_path / "package")]) == 0
     assert run.entry(["--root", str(tmp_path), *few]) == 2
     assert "--root and --start-deg need --house" in capsys.readouterr().err
+
+
+ELSEWHERE = {
+    "Include": '<Include file="../common/sofa.xml"/>',
+    "a file in an archive": '<include file="parts/a.zip/sofa.xml"/>',
+    "a mesh in an archive": MESH.format(file="parts/a.ZIP/cube.obj"),
+    "a folder of meshes that is an archive": '<compiler meshdir="a.mjz"/>' + MESH.format(file="cube.obj"),
+    "a drive": MESH.format(file="C:/cube.obj"),
+    "a drive that two names make": '<compiler meshdir="C:"/>' + MESH.format(file="cube.obj"),
+    "an address": '<include file="file:///etc/passwd"/>',
+    "a backslash that is a root": MESH.format(file="\\cube.obj"),
+    "a model": '<asset><model name="m" file="parts/inner.xml"/></asset>',
+    "a flexible body": '<worldbody><flexcomp name="f" type="mesh" file="parts/cube.obj"/></worldbody>',
+    "an include in an include": '<include file="parts/inner.xml"><include file="/etc/passwd"/></include>',
+}
+
+
+@pytest.mark.parametrize("more", ELSEWHERE.values(), ids=ELSEWHERE)
+def test_names_that_mujoco_would_open_elsewhere_are_refused(
+    more: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = write(tmp_path, more)
+    (file.parent / "parts" / "inner.xml").write_text(SOFA)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "C:").mkdir()
+    (tmp_path / "C:" / "cube.obj").write_text(CUBE)
+    for name in ("parts/a.zip", "parts/a.ZIP", "a.mjz"):
+        with zipfile.ZipFile(file.parent / name, "w") as archive:
+            archive.writestr("sofa.xml", SOFA)
+            archive.writestr("cube.obj", CUBE)
+    with pytest.raises(HouseError, match=r"is not read|is written 'include'|reads another file|has content"):
+        load_house(file)
+
+
+def test_limits_count_included_files_too(tmp_path: Path) -> None:
+    file = write(tmp_path, '<include file="parts/inner.xml"/>')
+    for content, message in (
+        ("<mujoco><worldbody>" + "<body/>" * 100_001 + "</worldbody></mujoco>", "more than 100000 elements"),
+        ("<mujoco><worldbody>" + "<body>" * 300 + "</body>" * 300 + "</worldbody></mujoco>", "nested more than 200"),
+        ('<mujoco><include file="../house.xml"/></mujoco>', "included more than once"),
+    ):
+        (file.parent / "parts" / "inner.xml").write_text(content)
+        with pytest.raises(HouseError, match=message):
+            load_house(file)
+
+
+@pytest.mark.parametrize(
+    ("encoding", "declared"),
+    [("utf-8-sig", ""), ("utf-16", "UTF-16"), ("utf-16-le", ""), ("utf-32", ""), ("cp1252", "Windows-1252"),
+     ("gb18030", "GB18030"), ("utf-8", "utf-16")],
+)  # fmt: skip
+def test_houses_in_the_encodings_of_other_programs_are_read(encoding: str, declared: str, tmp_path: Path) -> None:
+    file = write(tmp_path, '<include file="parts/é.xml"/>')
+    text = file.read_text() if not declared else f'<?xml version="1.0" encoding="{declared}"?>{file.read_text()}'
+    file.write_bytes(text.encode(encoding))
+    (file.parent / "parts" / "é.xml").write_bytes(SOFA.encode(encoding))
+    assert [geom.name for geom in load_house(file).spec.geoms] == ["sofa_00", "floor_00"]
+
+
+@pytest.mark.parametrize("declared", ["UTF-7", "punycode", "rot13", "zlib", "EBCDIC-CP-US", "nonsense", "os", "cp037"])
+def test_an_encoding_that_is_not_read_is_one_line(declared: str, tmp_path: Path) -> None:
+    file = write(tmp_path)
+    file.write_text(f'<?xml version="1.0" encoding="{declared}"?>{file.read_text()}')
+    with pytest.raises(HouseError, match=r"encoding '.*' is not read|not well-formed|not an MJCF file|is not text in"):
+        load_house(file)

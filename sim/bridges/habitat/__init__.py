@@ -1,0 +1,26 @@
+"""Habitat's interface for evaluation scripts and agents: the names that published code of ObjectNav uses.
+
+`from sim.bridges import habitat` in place of `import habitat` is all that an evaluation loop needs: `habitat.Env`,
+`habitat.Benchmark`, `habitat.Agent`, `habitat.get_config`. `sim.bridges.habitat.stand_in` provides the same names as
+modules called `habitat`, so that published code runs unchanged; docs/habitat.md describes both.
+"""
+
+from sim.bridges.habitat.benchmark import Agent, Benchmark, Challenge
+from sim.bridges.habitat.config import Config, get_config, read_write
+from sim.bridges.habitat.conversions import HabitatSimActions, Observations
+from sim.bridges.habitat.env import Env
+from sim.bridges.habitat.episodes import ObjectGoal, ObjectGoalNavEpisode
+
+__all__ = [
+    "Agent",
+    "Benchmark",
+    "Challenge",
+    "Config",
+    "Env",
+    "HabitatSimActions",
+    "ObjectGoal",
+    "ObjectGoalNavEpisode",
+    "Observations",
+    "get_config",
+    "read_write",
+]

@@ -1,0 +1,274 @@
+"""Habitat's configuration: one tree with attribute access, in the layouts of its old and new versions.
+
+Agents read it; an environment takes from it what can be set here (`SETTINGS`): the split, the number of steps and the
+camera. All other values describe this project's task and change nothing.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import json
+import logging
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from sim.errors import ConfigError
+from sim.interface import FORWARD_M, MAX_STEPS, TURN_RAD, Action, CameraModel, RobotModel, SuccessRule
+from sim.reading import read_bytes
+
+_LOG = logging.getLogger("habitat")
+_MOST_BYTES = 1 << 20
+_MOST_VALUES = 20_000
+"""Largest number of values of a file, counted as often as its aliases repeat them."""
+_OLD, _NEW = "SIMULATOR.{}_SENSOR.{}", "habitat.simulator.agents.main_agent.sim_sensors.{}_sensor.{}"
+
+
+def _places(field: str, *sensors: str) -> tuple[str, ...]:
+    """Returns the paths of a field of cameras in both layouts."""
+    old = [_OLD.format(sensor.upper(), field.upper()) for sensor in sensors]
+    return (*old, *(_NEW.format(sensor, field) for sensor in sensors))
+
+
+SETTINGS: Mapping[str, tuple[str, ...]] = {
+    "split": ("DATASET.SPLIT", "habitat.dataset.split"),
+    "max_steps": ("ENVIRONMENT.MAX_EPISODE_STEPS", "habitat.environment.max_episode_steps"),
+    "width_px": _places("width", "rgb", "depth"),
+    "height_px": _places("height", "rgb", "depth"),
+    "hfov_deg": _places("hfov", "rgb", "depth"),
+    "position": _places("position", "rgb", "depth"),
+    "min_depth_m": _places("min_depth", "depth"),
+    "max_depth_m": _places("max_depth", "depth"),
+    "normalize_depth": _places("normalize_depth", "depth"),
+}
+"""What an environment takes from a configuration, with the paths of each value in both layouts."""
+
+
+class Config(dict[str, Any]):
+    """A tree of values with attribute access, like the configurations of yacs and OmegaConf that Habitat uses."""
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            there_is = ", ".join(map(str, self)) or "nothing"
+            raise AttributeError(f"The configuration has no '{name}' here. It has: {there_is}.") from None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        self[name] = value
+
+    def clone(self) -> Config:
+        """Returns a copy that shares nothing with this one."""
+        return copy.deepcopy(self)
+
+    def freeze(self) -> None:
+        """Does nothing: a configuration can always be changed."""
+
+    def defrost(self) -> None:
+        """Does nothing: a configuration can always be changed."""
+
+
+@contextlib.contextmanager
+def read_write(config: Config) -> Iterator[Config]:
+    """Does nothing: a configuration can always be changed."""
+    yield config
+
+
+def make_config(
+    *,
+    camera: CameraModel | None = None,
+    robot: RobotModel | None = None,
+    success: SuccessRule | None = None,
+    max_steps: int = MAX_STEPS,
+    split: str = "val",
+) -> Config:
+    """Returns the configuration of a task, in the old layout and, under `habitat`, in the new one.
+
+    Args:
+        camera, robot, success: of the task; None: the defaults.
+        max_steps: actions of an episode.
+        split: name of the split.
+    """
+    camera, robot = camera or CameraModel(), robot or RobotModel()
+    distance_m = (success or SuccessRule()).distance_m
+    rgb = {
+        "width": camera.width_px,
+        "height": camera.height_px,
+        "hfov": round(math.degrees(camera.hfov_rad), 6),
+        "position": [0, camera.height_m, 0],
+    }
+    depth = rgb | {"min_depth": camera.min_depth_m, "max_depth": camera.max_depth_m, "normalize_depth": True}
+    body = {"height": robot.height_m, "radius": robot.radius_m}
+    motion = {"forward_step_size": FORWARD_M, "turn_angle": round(math.degrees(TURN_RAD))}
+    actions = [action.name for action in Action]
+    task = {"type": "ObjectNav-v1", "success_distance": distance_m, "goal_sensor_uuid": "objectgoal"}
+    measurements = ["distance_to_goal", "success", "spl", "soft_spl", "collisions"]
+    steps, data = {"max_episode_steps": max_steps}, {"type": "ObjectNav-v1", "split": split}
+    old = {
+        "ENVIRONMENT": _upper(steps),
+        "SIMULATOR": _upper(motion)
+        | {"RGB_SENSOR": _upper(rgb), "DEPTH_SENSOR": _upper(depth)}
+        | {"AGENT_0": _upper(body) | {"SENSORS": ["RGB_SENSOR", "DEPTH_SENSOR"]}},
+        "TASK": _upper(task)
+        | {"POSSIBLE_ACTIONS": actions, "MEASUREMENTS": [name.upper() for name in measurements]}
+        | {"SENSORS": ["OBJECTGOAL_SENSOR", "COMPASS_SENSOR", "GPS_SENSOR"]},
+        "DATASET": _upper(data),
+    }
+    sensors = {"rgb_sensor": rgb, "depth_sensor": depth}
+    habitat = {
+        "environment": steps,
+        "simulator": motion | {"agents": {"main_agent": body | {"sim_sensors": sensors}}},
+        "task": task
+        | {"actions": {name.lower(): {} for name in actions}, "measurements": {name: {} for name in measurements}},
+        "dataset": data,
+    }
+    return _tree(old | {"habitat": habitat})
+
+
+def get_config(
+    config_paths: str | Sequence[str] | None = None, overrides: Sequence[Any] | None = None, *_: Any, **__: Any
+) -> Config:
+    """Returns the configuration of this project's task, changed by files and by overrides.
+
+    Args:
+        config_paths: YAML files of either layout; several are separated by commas. A path at which there is no file
+            names a configuration that comes with Habitat; it changes nothing, and a warning says so.
+        overrides: `path=value`, or paths and values in turn.
+
+    Raises:
+        ConfigError: a file cannot be read, or an override has another form.
+    """
+    config = make_config()
+    paths = config_paths.split(",") if isinstance(config_paths, str) else [str(path) for path in config_paths or ()]
+    for path in paths:
+        if Path(path).is_file():
+            _merge(config, _read_yaml(Path(path)))
+        else:
+            _LOG.warning("There is no configuration file '%s': the task of this project is used.", path)
+    for path, value in _assignments(list(overrides or ())):
+        _merge(config, _nested(path, value))
+    _remove_other_actions(config)
+    return config
+
+
+def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the entries of `SETTINGS` in which a configuration differs from that of this project's task.
+
+    Raises:
+        ConfigError: two paths of one setting have different values, such as the widths of RGB and depth.
+    """
+    default, found = make_config(), dict[str, Any]()
+    for name, paths in SETTINGS.items():
+        values = {path: _at(config, path) for path in paths}
+        changed = {path: value for path, value in values.items() if value not in (None, _at(default, path))}
+        for path, value in changed.items():
+            if found.setdefault(name, value) != value:
+                first = next(iter(changed))
+                raise ConfigError(
+                    f"The configuration has {first}={found[name]!r} and {path}={value!r}; all images have one camera."
+                )
+    return found
+
+
+def _remove_other_actions(config: Config) -> None:
+    """Removes actions that the robot does not have, such as LOOK_UP, from the lists that agents choose from."""
+    known = {action.name for action in Action}
+    removed = set[str]()
+    for tree, name in ((config.get("TASK"), "POSSIBLE_ACTIONS"), (_at(config, "habitat.task"), "actions")):
+        listed = tree.get(name) if isinstance(tree, Config) else None
+        if not isinstance(tree, Config) or not isinstance(listed, (list, Config)):
+            continue
+        others = {str(each) for each in listed} - known - {each.lower() for each in known}
+        kept = {each for each in map(str, listed) if each not in others}
+        tree[name] = (
+            Config({key: value for key, value in listed.items() if key in kept})
+            if isinstance(listed, Config)
+            else [each for each in listed if str(each) in kept]
+        )
+        removed |= others
+    if removed:
+        _LOG.warning("This robot has no action %s: removed from the configuration.", ", ".join(sorted(removed)))
+
+
+def _upper(tree: Mapping[str, Any]) -> dict[str, Any]:
+    return {name.upper(): value for name, value in tree.items()}
+
+
+def _tree(value: Any) -> Any:
+    """Returns nested dicts as a `Config`; lists and dicts are copied."""
+    if isinstance(value, Mapping):
+        return Config({str(key): _tree(each) for key, each in value.items()})
+    return [_tree(each) for each in value] if isinstance(value, list) else value
+
+
+def _merge(config: Config, changes: Mapping[str, Any]) -> None:
+    """Puts the values of nested dicts into a configuration, in place."""
+    for key, value in changes.items():
+        inner = config.get(str(key))
+        if isinstance(inner, Config) and isinstance(value, Mapping):
+            _merge(inner, value)
+        else:
+            config[str(key)] = _tree(value)
+
+
+def _at(config: Mapping[str, Any], path: str) -> Any:
+    """Returns the value at a path; None where there is none."""
+    value: Any = config
+    for name in path.split("."):
+        value = value.get(name) if isinstance(value, Mapping) else None
+    return value
+
+
+def _nested(path: str, value: Any) -> dict[str, Any]:
+    for name in reversed(path.lstrip("+").split(".")):
+        value = {name: value}
+    return value
+
+
+def _assignments(overrides: list[Any]) -> Iterator[tuple[str, Any]]:
+    """Yields path and value of each override."""
+    while overrides:
+        first = str(overrides.pop(0))
+        path, separator, text = first.partition("=")
+        if separator:
+            try:
+                value = json.loads(text)
+            except ValueError:
+                value = text
+        elif overrides:
+            value = overrides.pop(0)
+        else:
+            raise ConfigError(f"An override has the form path=value, got '{first}'.")
+        yield path, value
+
+
+def _read_yaml(file: Path) -> Mapping[str, Any]:
+    """Returns the content of a YAML file.
+
+    Raises:
+        ConfigError: it cannot be read, holds no mapping, or is too large.
+    """
+    try:
+        import yaml
+    except ImportError:
+        raise ConfigError(f"Configuration '{file}': reading YAML needs the package pyyaml (extra `habitat`).") from None
+    content = read_bytes(file, what="Configuration", most=_MOST_BYTES)
+    try:
+        tree = yaml.safe_load(content)
+        values = 0
+        stack = [tree]
+        while stack:
+            value = stack.pop()
+            values += 1
+            if values > _MOST_VALUES:
+                raise ConfigError(f"Configuration '{file}' has more than {_MOST_VALUES} values.")
+            stack += value.values() if isinstance(value, Mapping) else value if isinstance(value, list) else ()
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        if isinstance(error, ConfigError):
+            raise
+        raise ConfigError(f"Configuration '{file}' is not valid YAML: {' '.join(str(error).split())}") from None
+    if tree is not None and not isinstance(tree, Mapping):
+        raise ConfigError(f"Configuration '{file}' must be a mapping of names to values, got {type(tree).__name__}.")
+    return tree or {}

@@ -1,0 +1,182 @@
+"""Converts observations to Habitat's form, and the actions of a Habitat agent to `Action`.
+
+| observation | Habitat's form |
+|---|---|
+| rgb | uint8 (h, w, 3), unchanged |
+| depth | float32 (h, w, 1), scaled from [min_depth_m, max_depth_m] of the camera to [0, 1]; 0: nearer, or no return |
+| semantic | int32 (h, w, 1), mpcat40 id |
+| gps | float32 (2,), metres forward and **right** of the start pose |
+| compass | float32 (1,), unchanged: radians, counter-clockwise |
+| objectgoal | int64 (1,), index into the categories of MP3D (those of this project) or HM3D |
+
+Source: `habitat.tasks.nav` and `habitat.sims.habitat_simulator` of Habitat-Lab 0.3.
+"""
+
+from __future__ import annotations
+
+import difflib
+import operator
+import reprlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+
+from sim.errors import AgentError, ConfigError
+from sim.interface import GOAL_CATEGORIES, MPCAT40, Action, CameraModel, Observation
+
+HM3D_GOALS = ("chair", "bed", "plant", "toilet", "tv_monitor", "sofa")
+"""The six goal categories of the ObjectNav challenges 2022 and 2023, in their order."""
+CATEGORIES: Mapping[str, tuple[str, ...]] = MappingProxyType({"mp3d": GOAL_CATEGORIES, "hm3d": HM3D_GOALS})
+"""Goal categories by the name of the data set that numbers them."""
+ACTION_IDS: Mapping[str, int] = MappingProxyType(
+    {"stop": 0, "move_forward": 1, "turn_left": 2, "turn_right": 3, "look_up": 4, "look_down": 5}
+)
+"""Habitat's numbers of actions; the camera of this project does not tilt, so that the last two are refused."""
+_DEEPEST = 3
+"""Levels of dicts around an action."""
+
+
+class Observations(dict[str, Any]):
+    """The observation of one step by the name of the sensor."""
+
+
+class _Actions:
+    """Habitat's table of action numbers: attribute, item and iteration, in lower or upper case."""
+
+    def __getattr__(self, name: str) -> int:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"HabitatSimActions has no '{name}'. It has: {', '.join(ACTION_IDS)}.") from None
+
+    def __getitem__(self, name: str) -> int:
+        return ACTION_IDS[name.lower()]
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and name.lower() in ACTION_IDS
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(ACTION_IDS)
+
+    def __len__(self) -> int:
+        return len(ACTION_IDS)
+
+    def has_action(self, name: str) -> bool:
+        """Returns whether there is an action of this name."""
+        return name in self
+
+
+HabitatSimActions = _Actions()
+"""`HabitatSimActions.MOVE_FORWARD` or `.move_forward` is 1, as in Habitat."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Conversion:
+    """The conversion of observations for one agent or environment."""
+
+    camera: CameraModel
+    categories: str = "mp3d"
+    """The numbering of goal categories, a key of `CATEGORIES`."""
+    normalize_depth: bool = True
+    """False: depth is in metres."""
+
+    def __post_init__(self) -> None:
+        if self.categories not in CATEGORIES:
+            near = difflib.get_close_matches(str(self.categories), CATEGORIES, n=1)
+            hint = f" Did you mean '{near[0]}'?" if near else ""
+            raise ConfigError(f"categories must be one of {', '.join(CATEGORIES)}, got '{self.categories}'.{hint}")
+
+    @property
+    def goals(self) -> tuple[str, ...]:
+        """The goal categories in the order of their numbers."""
+        return CATEGORIES[self.categories]
+
+    def goal_number(self, goal: str) -> int:
+        """Returns the number of a goal category.
+
+        Raises:
+            AgentError: the data set has no such category.
+        """
+        if goal not in self.goals:
+            raise AgentError(
+                f"The goal '{goal}' is not one of the categories of {self.categories} ({', '.join(self.goals)}); "
+                "--goal chooses episodes of one category."
+            )
+        return self.goals.index(goal)
+
+    def observations(self, observation: Observation) -> Observations:
+        """Returns an observation in Habitat's form; it shares no memory with the given one."""
+        found = Observations({name: np.array(value) for name, value in observation.items()})
+        if "depth" in found:
+            found["depth"] = self._depth(found["depth"])[:, :, None]
+        if "semantic" in found:
+            found["semantic"] = found["semantic"].astype(np.int32)[:, :, None]
+        forward_m, left_m = observation["gps"]
+        found["gps"] = np.array([forward_m, 0.0 - left_m], np.float32)
+        number = self.goal_number(GOAL_CATEGORIES[int(observation["objectgoal"][0])])
+        found["objectgoal"] = np.array([number], np.int64)
+        return found
+
+    def space(self, own: Mapping[str, spaces.Space[Any]]) -> spaces.Dict:
+        """Returns the space of the observations in Habitat's form, for the spaces of this project's sensors."""
+        found = dict(own)
+        height_px, width_px = self.camera.height_px, self.camera.width_px
+        found["objectgoal"] = spaces.Box(0, len(self.goals) - 1, (1,), np.int64)
+        if "depth" in found:
+            deepest = 1.0 if self.normalize_depth else self.camera.max_depth_m
+            found["depth"] = spaces.Box(0.0, deepest, (height_px, width_px, 1), np.float32)
+        if "semantic" in found:
+            found["semantic"] = spaces.Box(0, len(MPCAT40) - 1, (height_px, width_px, 1), np.int32)
+        return spaces.Dict(found)
+
+    def _depth(self, depth_m: np.ndarray) -> np.ndarray:
+        """Returns depth clipped to the camera's range and scaled, float32 (h, w)."""
+        near_m, far_m = self.camera.min_depth_m, self.camera.max_depth_m
+        clipped = np.clip(depth_m, near_m, far_m)
+        return ((clipped - near_m) / (far_m - near_m) if self.normalize_depth else clipped).astype(np.float32)
+
+
+def to_action(given: Any) -> Action:
+    """Returns the action that a Habitat agent gave: a number, a name, or a dict with the key `action`.
+
+    Numbers may be Python's, NumPy's, or tensors and arrays of one element; names may be in upper case.
+
+    Raises:
+        AgentError: it is none of the four actions.
+    """
+    inner = given
+    for _ in range(_DEEPEST):
+        if isinstance(inner, Mapping):
+            if "action" not in inner:
+                break
+            inner = inner["action"]
+    if isinstance(inner, (list, tuple)) and len(inner) == 1:
+        inner = inner[0]
+    number = ACTION_IDS.get(inner.lower()) if isinstance(inner, str) else _whole_number(inner)
+    if number in (ACTION_IDS["look_up"], ACTION_IDS["look_down"]):
+        raise AgentError(f"act() returned {reprlib.repr(given)}: the camera of this robot does not tilt.")
+    if number is None or number not in tuple(Action):
+        names = ", ".join(f"{number} {name}" for name, number in ACTION_IDS.items() if number < len(Action))
+        raise AgentError(
+            f'act() returned {reprlib.repr(given)}; an action is one of {names}, or a dict {{"action": one of these}}.'
+        )
+    return Action(number)
+
+
+def _whole_number(value: Any) -> int | None:
+    """Returns an integer of Python, NumPy or a tensor of one element; None for anything else."""
+    if isinstance(value, (bool, np.bool_)):
+        return None
+    if getattr(value, "shape", ()) != () and hasattr(value, "reshape"):  # an array or tensor
+        try:
+            value = value.reshape(-1)[0] if np.prod(value.shape) == 1 else None
+        except Exception:  # an object of the agent's
+            return None
+    try:
+        return operator.index(value)
+    except Exception:
+        return None

@@ -1,0 +1,100 @@
+"""Episodes in the form of Habitat's `ObjectGoalNavEpisode`, for evaluation scripts that read them."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from sim.episodes import habitat
+from sim.episodes.splits import Episode, Split
+from sim.reading import read_gzip_json
+
+
+@dataclass(frozen=True, kw_only=True)
+class ObjectGoal:
+    """An instance of the goal category, as in the episode files."""
+
+    object_id: str
+    object_category: str
+    position: list[float]
+    """Its centre in Habitat's frame: y up, metres."""
+    view_points: list[dict[str, Any]] = field(default_factory=list)
+    """Places from which a STOP succeeds: `{"agent_state": {"position": ..., "rotation": ...}}`."""
+
+    @property
+    def object_name(self) -> str:
+        """The name of the instance."""
+        return self.object_id
+
+
+@dataclass(frozen=True, kw_only=True)
+class ObjectGoalNavEpisode:
+    """An episode with Habitat's field names. Positions are y up, rotations are quaternions xyzw."""
+
+    episode_id: str
+    scene_id: str
+    start_position: list[float]
+    start_rotation: list[float]
+    object_category: str
+    info: dict[str, Any]
+    """`geodesic_distance`: recorded length of the shortest path, metres; None: unknown."""
+    goals_file: Path
+    """The file of the house's episodes and goals; there is none where episodes are drawn in a house."""
+
+    @property
+    def goals_key(self) -> str:
+        """The key of the goals in the episode files."""
+        return habitat.goals_key(Path(self.scene_id).stem, self.object_category)
+
+    @functools.cached_property
+    def goals(self) -> list[ObjectGoal]:
+        """The instances of the goal category that the house's file lists; empty where there is no such file.
+
+        Raises:
+            ConfigError: the file has another format.
+        """
+        if not self.goals_file.is_file():
+            return []
+        content = read_gzip_json(self.goals_file, _GoalsFile, what="Episode file")
+        return [
+            ObjectGoal(
+                object_id=str(each.object_id),
+                object_category=each.object_category,
+                position=each.position,
+                view_points=each.view_points,
+            )
+            for each in content.goals_by_category.get(self.goals_key, [])
+        ]
+
+
+class _GoalEntry(msgspec.Struct):
+    """The fields of a goal that are read."""
+
+    object_id: str | int
+    object_category: str
+    position: list[float]
+    view_points: list[dict[str, Any]] = msgspec.field(default_factory=list)
+
+
+class _GoalsFile(msgspec.Struct):
+    """The part of a house's file that lists goals."""
+
+    goals_by_category: dict[str, list[_GoalEntry]] = msgspec.field(default_factory=dict)
+
+
+def to_habitat(split: Split, episode: Episode) -> ObjectGoalNavEpisode:
+    """Returns an episode of a split in Habitat's form."""
+    state = habitat.to_agent_state(episode.start)
+    return ObjectGoalNavEpisode(
+        episode_id=episode.episode_id,
+        scene_id=f"mjcf_houses/{split.name}/{episode.house}.xml",
+        start_position=state["position"],
+        start_rotation=state["rotation"],
+        object_category=episode.goal,
+        info={"geodesic_distance": episode.shortest_path_m},
+        goals_file=split.house_paths[episode.house].parent / "content" / f"{episode.house}.json.gz",
+    )
