@@ -150,11 +150,25 @@ def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:
     try:
         with contextlib.redirect_stderr(messages):
             options = (tyro.conf.FlagCreatePairsOff,)
-            return tyro.cli(args_type, prog=invocation.program(), args=argv, description=description, config=options)
+            shown = _without_empty_defaults(args_type)
+            args = tyro.cli(shown, prog=invocation.program(), args=argv, description=description, config=options)
+            return args_type(**vars(args))
     except SystemExit as stop:
         if stop.code in (0, None):
             raise
         raise ConfigError(_message_in_box(messages.getvalue())) from None
+
+
+def _without_empty_defaults(args_type: type[ArgsT]) -> type[ArgsT]:
+    """Returns a dataclass of the same options, whose help does not show "(default: None)".
+
+    The text of an option says what happens without it.
+    """
+    hints = typing.get_type_hints(args_type, include_extras=True)
+    empty = [field.name for field in dataclasses.fields(args_type) if field.default in (None, ())]  # type: ignore[arg-type]
+    silent = {name: Annotated[hints[name], tyro.conf.arg(help_behavior_hint="")] for name in empty}
+    names = {"__annotations__": silent, "__doc__": args_type.__doc__, "__module__": args_type.__module__}
+    return typing.cast(type[ArgsT], type(args_type.__name__, (args_type,), names))
 
 
 def check(args: Any) -> None:

@@ -1,18 +1,14 @@
-"""Output of a run in the terminal: progress while it runs, tables at the end."""
+"""Prints the results of a run in the terminal; `sim.analysis.progress` says what happens while it runs."""
 
 from __future__ import annotations
 
-import contextlib
 import functools
-import threading
-import time
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 from rich.text import Text
 
@@ -23,8 +19,6 @@ from sim.reading import printable
 
 Line = Mapping[str, Any]
 MOST_EPISODES_SHOWN = 20
-QUIET_S = 5.0
-"""Output that is not a terminal is never silent for longer than about this while an episode runs."""
 PLAIN_WIDTH = 120
 """Columns of output that is not a terminal (a file, a pipe, a CI log)."""
 
@@ -44,87 +38,6 @@ def make_console() -> Console:
     """Returns a console for the terminal, or for plain text that is wide enough for the tables."""
     console = PlainConsole()
     return console if console.is_terminal else PlainConsole(width=PLAIN_WIDTH)
-
-
-class Started(Protocol):
-    """An episode that begins."""
-
-    @property
-    def episode_id(self) -> str: ...  # noqa: D102
-    @property
-    def house(self) -> str: ...  # noqa: D102
-    @property
-    def goal(self) -> str: ...  # noqa: D102
-
-
-class ProgressReport:
-    """Says which episodes begin, run and end: with a bar in a terminal, else with lines of text.
-
-    A line is printed when an episode begins and when it ends, and every `QUIET_S` seconds in between, so that a log or
-    a pipe shows that the run goes on.
-    """
-
-    def __init__(self, console: Console, *, total: int, quiet_s: float = QUIET_S) -> None:
-        self._console, self._total, self._quiet_s = console, total, quiet_s
-        self._running: dict[str, tuple[Started, float]] = {}
-        self._lock = threading.Lock()
-        self._over = threading.Event()
-        self._printed_s = time.monotonic()
-        self._done = 0
-        self._bar = _bar(console) if console.is_terminal else None
-
-    def started(self, episode: Started) -> None:
-        """Says that an episode begins."""
-        with self._lock:
-            self._running[episode.episode_id] = (episode, time.monotonic())
-            self._print(f"{episode.episode_id} begins: looking for {_goal(episode)} in house {episode.house}")
-
-    def over(self, lines: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-        """Yields the result lines, and says what happens until the last one."""
-        watch = threading.Thread(target=self._say_that_it_runs, daemon=True, name="progress")
-        with contextlib.ExitStack() as stack:
-            if self._bar is not None:
-                stack.enter_context(self._bar)
-                self._task = self._bar.add_task("loading the first house", total=self._total)
-            watch.start()
-            stack.callback(watch.join)
-            stack.callback(self._over.set)
-            for line in lines:
-                self._ended(line)
-                yield line
-
-    def _ended(self, line: Line) -> None:
-        with self._lock:
-            self._running.pop(line["episode_id"], None)
-            self._done += 1
-            if self._bar is not None:
-                self._bar.update(self._task, advance=1)
-            self._print(f"[{self._done}/{self._total}] {describe(line)}")
-
-    def _say_that_it_runs(self) -> None:
-        while not self._over.wait(min(0.5, self._quiet_s)):
-            with self._lock:
-                now_s = time.monotonic()
-                if self._running and self._bar is None and now_s - self._printed_s >= self._quiet_s:
-                    running = (f"{name} for {now_s - since_s:.0f} s" for name, (_, since_s) in self._running.items())
-                    self._print(f"[{self._done}/{self._total}] running: {', '.join(running)}")
-
-    def _print(self, words: str) -> None:
-        self._printed_s = time.monotonic()
-        if self._bar is not None:
-            self._bar.update(self._task, description=words)
-            return
-        self._console.print(words, highlight=False, markup=False, soft_wrap=True)
-        self._console.file.flush()
-
-
-def _bar(console: Console) -> Progress:
-    columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
-    return Progress(*columns, TextColumn("{task.description}", markup=False), console=console)
-
-
-def _goal(episode: Started) -> str:
-    return episode.goal.replace("_", " ")
 
 
 def print_where_to_look(

@@ -12,10 +12,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import cv2
 import numpy as np
 
 from sim import cli
+from sim.analysis import display
 from sim.files import write_picture
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Catalogue, Style
@@ -27,9 +27,22 @@ from sim.houses.house import House
 from sim.houses.load import load_house
 from sim.interface import ConfigError
 from sim.paths import assets_dir
-from sim.viewers.house_pictures import Picture, add_backdrop, camera_at, draw_top, draw_views, render, storeys, tiled
+from sim.viewers.house_pictures import (
+    Picture,
+    add_backdrop,
+    camera_at,
+    draw_top,
+    draw_views,
+    render,
+    storeys,
+    tiled,
+    titled,
+)
+from sim.viewers.text import BOLD, write
 
 TILE_PX = (320, 320)
+MOST_COLUMNS = 6
+INK = (50, 50, 50)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,19 +91,23 @@ def main(args: Args) -> int:
             if of_pool:
                 copies, name = (2, args.pool) if args.furniture is None else (1, "imported")
                 sheet = draw_sheet(of_pool, np.random.default_rng(args.seed), copies, catalogue)
-                _save(args.out / f"sheet_{name}_{category}.png", sheet)
+                title = f"{category.replace('_', ' ')}: {display.counted(len(of_pool), 'style')}, {name}"
+                _save(args.out / f"sheet_{name}_{category}.png", titled(sheet, title))
     return 0
 
 
 def _draw_house(out: Path, house: House) -> None:
     """Writes the pictures of a house."""
-    for number, storey in enumerate(storeys(house)):
-        _save(out / f"{house.name}_top{f'_{number}' if number else ''}.png", draw_top(storey))
+    parts = storeys(house)
+    for number, storey in enumerate(parts):
+        which = f", storey {number + 1} of {len(parts)}" if len(parts) > 1 else ""
+        picture = titled(draw_top(storey), f"{house.name}{which}, from above")
+        _save(out / f"{house.name}_top{f'_{number}' if number else ''}.png", picture)
     views = draw_views(house)
     if views is None:
         print(f"House '{house.name}' has no room and no labelled object to look at: there are no views.")
     else:
-        _save(out / f"{house.name}_views.png", views)
+        _save(out / f"{house.name}_views.png", titled(views, f"{house.name}, as the robot sees it"))
 
 
 def _imported(folder: Path, pool: Pool) -> Catalogue:
@@ -108,10 +125,11 @@ def draw_sheet(
         for _ in range(copies):
             item = catalogue.make_item(style.category, rng, pool=style.pool, style=style.name)
             tile = np.ascontiguousarray(_portrait(item))
-            text = f"{style.name} {item.size_m[0]:.2f}x{item.size_m[1]:.2f}x{item.size_m[2]:.2f}"
-            cv2.putText(tile, text, (6, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.42, (60, 60, 60), 1, cv2.LINE_AA)
+            deep, wide, high = item.size_m
+            write(tile, style.name.replace("_", " "), (8, 22), TILE_PX[0] - 16, 17, INK, BOLD)
+            write(tile, f"{wide:.2f} m wide, {deep:.2f} m deep, {high:.2f} m high", (8, 40), TILE_PX[0] - 16, 14, INK)
             tiles.append(tile)
-    return tiled(tiles, 6)
+    return tiled(tiles, min(MOST_COLUMNS, len(tiles)))
 
 
 def _portrait(item: Item) -> Picture:

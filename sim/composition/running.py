@@ -10,6 +10,7 @@ from typing import Any
 from rich.console import Console
 
 from sim.analysis import display
+from sim.analysis.progress import ProgressReport
 from sim.composition.agents import notes_on
 from sim.composition.isolation import isolation_of
 from sim.composition.options import RunOptions
@@ -76,7 +77,7 @@ def run_missing(
             if (cache := choose_cache()) is not None:
                 console.print(f"Neither the installation nor a home folder can be written: it is kept in {cache}.")
         spec = RunnerSpec("sim.composition.runner:EpisodeRunner", setup)
-        progress = display.ProgressReport(console, total=len(todo))
+        progress = ProgressReport(console, total=len(todo), max_steps=setup.config.task.max_steps)
 
         def lost(episode: Episode, reason: str) -> dict[str, Any]:
             return error_line(setup, episode, reason)

@@ -23,7 +23,7 @@ from typing import Any, Protocol
 
 from sim.errors import ConfigError
 from sim.evaluation.watch import TICK_S, Calls, watched_as
-from sim.evaluation.workers import ItemRunner, ItemT, RunnerSpec, WorkerLost, run_here, run_in_pool
+from sim.evaluation.workers import ItemRunner, ItemT, OnStart, RunnerSpec, WorkerLost, run_here, run_in_pool
 
 EXECUTORS = ("local", "ray")
 """Names of `--executor`."""
@@ -41,7 +41,7 @@ class Executor(Protocol):
         items: Sequence[ItemT],
         *,
         on_death: Callable[[ItemT, str], Any],
-        on_start: Callable[[ItemT], None] | None = None,
+        on_start: OnStart[ItemT] | None = None,
     ) -> Iterator[Any]:
         """Yields a result line for each item, in the order in which the items end.
 
@@ -49,7 +49,7 @@ class Executor(Protocol):
             spec: how each worker builds its runner.
             items: the work.
             on_death: returns the line of an item that its workers did not survive, from the item and the reason.
-            on_start: called in this process when an item begins.
+            on_start: called in this process when an item begins, with the item and the number of its steps so far.
 
         Raises:
             WorkersError: no worker can be started.
@@ -109,7 +109,7 @@ class Processes:
         items: Sequence[ItemT],
         *,
         on_death: Callable[[ItemT, str], Any],
-        on_start: Callable[[ItemT], None] | None = None,
+        on_start: OnStart[ItemT] | None = None,
     ) -> Iterator[Any]:
         """See `Executor`."""
         if self.workers == 1 and not self.isolation.needed:
@@ -153,6 +153,9 @@ class _Process:
         self.calls.rest()
         with contextlib.suppress(OSError):  # it died while idle: `receive` finds the pipe closed
             self.connection.send(item)
+
+    def steps(self) -> int:
+        return self.calls.step_count[0]
 
     def receive(self) -> Any:
         try:

@@ -19,7 +19,7 @@ from typing import Any
 from sim import invocation
 from sim.errors import ConfigError, WorkersError
 from sim.evaluation.executors import Isolation, Supervisor
-from sim.evaluation.workers import ItemRunner, ItemT, RunnerSpec, WorkerLost, run_in_pool
+from sim.evaluation.workers import ItemRunner, ItemT, OnStart, RunnerSpec, WorkerLost, run_in_pool
 from sim.paths import code_hash
 
 try:
@@ -71,7 +71,7 @@ class RayCluster:
         items: Sequence[ItemT],
         *,
         on_death: Callable[[ItemT, str], Any],
-        on_start: Callable[[ItemT], None] | None = None,
+        on_start: OnStart[ItemT] | None = None,
     ) -> Iterator[Any]:
         """See `sim.evaluation.executors.Executor`."""
         pool = _ActorPool(spec, self.isolation)
@@ -107,6 +107,9 @@ class _Actor:
 
     def send(self, item: Any) -> None:
         self.answer = self.actor.run.remote(item)
+
+    def steps(self) -> None:
+        """Returns None: the steps are counted on another machine."""
 
     def receive(self) -> Any:
         try:

@@ -19,7 +19,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import AgentError, PhysicsError, debug
 from sim.evaluation.own_code import MOST_LETTERS, one_line, place_of, text_of
-from sim.evaluation.watch import is_stop, marked
+from sim.evaluation.watch import count_steps, is_stop, marked
 from sim.geometry.pose import Pose
 from sim.interface import Action, Agent, Observation, StatesConfidence, StatesTarget
 from sim.task.trajectory import FARTHEST_M, trajectory_file, write_trajectory
@@ -76,6 +76,7 @@ def play_episode(
         EpisodeError, HouseError: the episode cannot begin.
     """
     name = type(agent).__name__ if name is None else name
+    count_steps(0)
     observation, info = env.reset(seed=seed, options={"episode": episode})
     ask(f"Agent '{name}', reset", lambda: agent.reset(episode.goal, seed if seed_of_agent is None else seed_of_agent))
     for viewer in viewers:
@@ -149,6 +150,7 @@ class _RunningEpisode:
     def _carry_out(self, action: Action) -> None:
         self.observation, _, terminated, truncated, self.info = self.env.step(action)
         self.steps += 1
+        count_steps(self.steps)
         self.done = terminated or truncated
         if self.on_step is not None:
             self.on_step(self.steps, self.agent, self.info)

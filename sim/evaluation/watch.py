@@ -1,17 +1,20 @@
-"""Marks the calls of an agent, so that the process that started a worker can end a call that never returns.
+"""Marks the calls and steps of an agent: a call that never returns can be ended, and a run shows its progress.
 
-A worker writes the beginning and the end of each call to memory that it shares with the process that started it
-(`sim.evaluation.executors`). Nothing in the worker itself can end a call: it may loop in C or have stopped the process.
+A worker writes the beginning and the end of each call, and the number of steps of its episode, to memory that it shares
+with the process that started it (`sim.evaluation.executors`). Nothing in the worker itself can end a call: it may loop
+in C or have stopped the process.
 """
 
 from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, MutableSequence
 from multiprocessing.context import SpawnContext
 from typing import Any
 
+Steps = Callable[[], int | None]
+"""Returns the number of steps of a running episode so far; None: not known in this process."""
 WHERE_BYTES = 240
 """Longest description of a call."""
 TICK_S = 0.25
@@ -31,6 +34,8 @@ class Calls:
     def __init__(self, context: SpawnContext, *, limit_s: float) -> None:
         self._mark = context.RawArray("d", 1)  # time of the last begin, or minus that of the last end
         self._where = context.RawArray("c", WHERE_BYTES)
+        self.step_count: MutableSequence[int] = context.RawArray("q", 1)
+        """One number: the steps of the episode that runs."""
         self.limit_s = limit_s
         self._seen, self._waited_s, self._looked_s = 0.0, 0.0, time.monotonic()
 
@@ -49,7 +54,8 @@ class Calls:
         self._mark[0] = -time.monotonic()
 
     def rest(self) -> None:
-        """Starts to wait anew: the worker gets work now."""
+        """Starts to wait anew, with no step: the worker gets work now."""
+        self.step_count[0] = 0
         self._waited_s, self._looked_s = 0.0, time.monotonic()
 
     def overdue(self) -> str:
@@ -71,12 +77,24 @@ class Calls:
 
 _calls: Calls | None = None
 """The calls of this worker; None: this process is not a watched worker."""
+_step_count: MutableSequence[int] = [0]
+"""One number: the steps of the episode that runs in this process."""
 
 
 def watched_as(calls: Calls) -> None:
-    """Has `marked` write to these calls: this process is a worker."""
-    global _calls
-    _calls = calls
+    """Has `marked` and `count_steps` write to these calls: this process is a worker."""
+    global _calls, _step_count
+    _calls, _step_count = calls, calls.step_count
+
+
+def count_steps(steps: int) -> None:
+    """Sets the number of steps of the episode that runs in this process."""
+    _step_count[0] = steps
+
+
+def counted_steps() -> int:
+    """Returns the number of steps of the episode that runs in this process."""
+    return _step_count[0]
 
 
 def is_stop(error: BaseException) -> bool:

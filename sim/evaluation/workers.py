@@ -16,9 +16,12 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from sim.errors import WorkersError
 from sim.evaluation.own_code import text_of
+from sim.evaluation.watch import Steps, counted_steps
 
 _log = logging.getLogger(__name__)
 ItemT = TypeVar("ItemT", bound="WorkItem")
+OnStart = Callable[[ItemT, Steps], None]
+"""Called with an item that begins and a function that returns the number of its steps so far."""
 MAX_TRIES = 2
 """Number of times that an item is started; if its worker dies each time, the item is an error."""
 MAX_FAILED_STARTS = 3
@@ -99,6 +102,10 @@ class Worker(Protocol):
         """Sends it an item. If it has died since, `receive` reports it."""
         ...
 
+    def steps(self) -> int | None:
+        """Returns the number of steps of its item so far; None: not known."""
+        ...
+
     def receive(self) -> Any:
         """Returns its message, after `WorkerPool.wait` has returned it.
 
@@ -159,15 +166,13 @@ def _sendable(error: BaseException) -> BaseException:
     return error
 
 
-def run_here(
-    spec: RunnerSpec, items: Sequence[ItemT], *, on_start: Callable[[ItemT], None] | None = None
-) -> Iterator[Any]:
+def run_here(spec: RunnerSpec, items: Sequence[ItemT], *, on_start: OnStart[ItemT] | None = None) -> Iterator[Any]:
     """Yields the result line of each item, run in this process, house by house; `on_start` is called before each."""
     runner = spec.build()
     try:
         for item in sorted(items, key=lambda item: item.house):  # stable: keeps the order within a house
             if on_start is not None:
-                on_start(item)
+                on_start(item, counted_steps)
             yield runner.run(item)
     finally:
         runner.close()
@@ -179,7 +184,7 @@ def run_in_pool(
     *,
     max_workers: int,
     on_death: Callable[[ItemT, str], Any],
-    on_start: Callable[[ItemT], None] | None = None,
+    on_start: OnStart[ItemT] | None = None,
 ) -> Iterator[Any]:
     """Yields a result line for each item, in the order in which the items end.
 
@@ -189,7 +194,7 @@ def run_in_pool(
         max_workers: largest number of workers at a time.
         on_death: returns the line of an item whose worker died `MAX_TRIES` times, or that took too long, from the item
             and the reason.
-        on_start: called when a worker gets an item.
+        on_start: see `OnStart`.
 
     Raises:
         WorkersError: workers die before they are ready.
@@ -245,7 +250,7 @@ class _Scheduler(Generic[ItemT]):
     queue: _Queue[ItemT]
     max_workers: int
     on_death: Callable[[ItemT, str], Any]
-    on_start: Callable[[ItemT], None] | None = None
+    on_start: OnStart[ItemT] | None = None
     slots: list[_WorkerSlot[ItemT]] = field(default_factory=list)
     tries: dict[str, int] = field(default_factory=dict)
     failed_starts: int = 0
@@ -279,7 +284,7 @@ class _Scheduler(Generic[ItemT]):
     def _say_start(self, slot: _WorkerSlot[ItemT]) -> None:
         """Calls `on_start` for the item that a worker got."""
         if self.on_start is not None and slot.item is not None:
-            self.on_start(slot.item)
+            self.on_start(slot.item, slot.worker.steps)
 
     def _receive(self, slot: _WorkerSlot[ItemT]) -> Iterator[Any]:
         """Handles one message of a worker: that it is ready, a line, or its death."""

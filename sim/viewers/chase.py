@@ -19,6 +19,7 @@ from sim.env.scene import Scene
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.labels import RENDERED_GROUPS, collidable_geoms, geoms_of, opacity, rendered_geoms
+from sim.houses.proposals import geom_box
 from sim.interface import MPCAT40_ID, CameraModel
 from sim.robot.body import PREFIX
 from sim.sensors.lamps import Lamps
@@ -46,6 +47,9 @@ _TINT, _IN_FRONT_M = 0.4, 0.06
 _COVER_M = 0.12
 """A point of an invisible geom with a visible surface within this distance is no invisible obstacle: it is a part of
 visible furniture that only collides."""
+_INSIDE, _PANE_M = 0.8, 0.08
+"""A geom with this share of its volume inside of the box around the visible parts of its object is a part of them, but
+not a pane, which is thinner than the second number: that of a glass door lies in the box around its frame."""
 _AXES = np.vstack([np.eye(3), -np.eye(3)])
 _SPECK_PX = 12
 """Outlines around less than this area are not drawn."""
@@ -84,7 +88,7 @@ class ChaseView:
         robot = np.flatnonzero(geoms_of(model, PREFIX))
         visual = rendered_geoms(model)
         self._geoms = np.union1d(np.flatnonzero(visual), robot)
-        self._hidden = np.setdiff1d(np.flatnonzero(_hidden_obstacles(scene.world)), robot)
+        self._hidden = np.flatnonzero(hidden_obstacles(scene.world))
         self._scene = GeomScene(model, unhidden=[*robot.tolist(), *self._hidden.tolist()])
         self._lamps = Lamps(model, Visibility(model, visual, self._size, Z_NEAR_M), np.flatnonzero(visual))
         self._shading = make_shading(model, self._size, profile)
@@ -143,6 +147,8 @@ class ChaseView:
             axes: (3, 3) the camera's axes.
         """
         self._scene.fill(self._world.data, hidden, eye_m, axes, self._slopes, near_m)
+        for geom in self._scene.scene.geoms[: self._scene.scene.ngeom]:
+            geom.rgba[3], geom.transparent = 1.0, 0  # MuJoCo writes no depth of glass
         mujoco.mjr_restoreBuffer(self._context)
         mujoco.mjr_render(self._rect, self._scene.scene, self._context)
         mujoco.mjr_readPixels(None, self._depth, self._rect, self._context)
@@ -194,14 +200,29 @@ class ChaseView:
         return geom
 
 
-def _hidden_obstacles(world: World) -> NDArray[np.bool_]:
-    """Returns (ngeom,) True for obstacles that no camera renders; floors and ceilings are none."""
+def hidden_obstacles(world: World) -> NDArray[np.bool_]:
+    """Returns (ngeom,) True for obstacles that no camera renders; floors, ceilings and the robot are none."""
     model, labels = world.model, world.labels
     flat = np.isin(labels.geom_category, [MPCAT40_ID["floor"], MPCAT40_ID["ceiling"]])
     hidden = collidable_geoms(model) & ~rendered_geoms(model) & (opacity(model) > 0.0) & ~flat
+    hidden &= ~geoms_of(model, PREFIX)
     for geom in np.flatnonzero(hidden).tolist():
-        hidden[geom] = _covered_share(world, geom) < 0.5
+        hidden[geom] = _covered_share(world, geom) < 0.5 and not _is_inside_visible(world, geom)
     return hidden
+
+
+def _is_inside_visible(world: World, geom: int) -> bool:
+    """Returns whether a geom lies between visible parts of its own object, as a box under a table with four legs."""
+    model, data, number = world.model, world.data, int(world.labels.geom_instance[geom])
+    own = world.labels.instances[number].geom_ids if number >= 0 else ()
+    visible = np.intersect1d(np.array(own, np.int64), np.flatnonzero(rendered_geoms(model)))
+    if not visible.size or 2.0 * model.geom_aabb[geom, 3:].min() < _PANE_M:
+        return False
+    boxes = np.array([geom_box(model, data, each) for each in visible.tolist()])
+    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
+    other_low, other_high = geom_box(model, data, geom)
+    both = np.prod(np.maximum(np.minimum(high, other_high) - np.maximum(low, other_low), 0.0))
+    return bool(both >= _INSIDE * np.prod(other_high - other_low))
 
 
 def _covered_share(world: World, geom: int) -> float:

@@ -8,7 +8,6 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,6 +24,8 @@ Picture = NDArray[np.uint8]
 ViewPose = tuple[float, float, float, float]
 """x, y, height of the floor (metres) and yaw (degrees)."""
 VIEW_PX = (640, 480)
+TITLE_PX = 44
+"""Height of the line of a title."""
 TOP_PX = (1400, 1100)
 TOP_FOVY_DEG = 12.0
 """Field of view from above: small, so that walls hide little of the furniture that stands at them."""
@@ -210,7 +211,7 @@ def draw_views(house: House, columns: int = 3) -> Picture | None:
     tiles = []
     for (name, _), picture in zip(poses, render_all(model, cameras, VIEW_PX, fovy_deg=fovy), strict=True):
         tile = np.ascontiguousarray(picture)
-        cv2.putText(tile, name, (8, 20), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (200, 30, 30), 1, cv2.LINE_AA)
+        _outlined(tile, name, (10, 26), 22)
         tiles.append(tile)
     return tiled(tiles, min(columns, len(tiles))) if tiles else None
 
@@ -390,3 +391,10 @@ def tiled(tiles: list[Picture], columns: int) -> Picture:
     blank = np.full_like(tiles[0], 255)
     tiles = tiles + [blank] * (-len(tiles) % columns)
     return np.vstack([np.hstack(tiles[i : i + columns]) for i in range(0, len(tiles), columns)])
+
+
+def titled(picture: Picture, title: str) -> Picture:
+    """Returns a picture (h, w, 3) below a line with its title."""
+    head = np.full((TITLE_PX, picture.shape[1], 3), 255, np.uint8)
+    write(head, title, (12, round(0.7 * TITLE_PX)), picture.shape[1] - 24, round(0.55 * TITLE_PX), (20, 20, 20), BOLD)
+    return np.vstack([head, picture])

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sim.evaluation.watch import marked
+from sim.evaluation.watch import count_steps, marked
 from sim.interface import Action, Observation
 
 
@@ -72,7 +72,7 @@ class Job:
 
 
 class JobRunner:
-    """A runner whose result line holds its process id and how often it changed houses."""
+    """A runner whose result line holds its process id and how often it changed houses; a letter of an id is a step."""
 
     def __init__(self) -> None:
         self.house: str | None = None
@@ -88,6 +88,7 @@ class JobRunner:
                 HANGING[item.hang]()
         if item.fail:
             raise ValueError(f"{item.episode_id} cannot be done")
+        count_steps(len(item.episode_id))
         self.changes += item.house != self.house
         self.house = item.house
         return {"episode_id": item.episode_id, "pid": os.getpid(), "changes": self.changes}

@@ -31,6 +31,30 @@ def test_parsed_arguments_reach_main() -> None:
     assert seen == [Args(episodes=7)]
 
 
+@dataclass(frozen=True)
+class Optional:
+    """Options that need not be given."""
+
+    weights: Path | None = None
+    """A file; by default the shipped one."""
+    only: tuple[str, ...] = ()
+    """Some names; all if not given."""
+    seed: int = 3
+    """A number."""
+
+
+def test_the_help_of_an_option_shows_no_empty_default(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        cli.parse(Optional, ["--help"])
+    shown = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    assert "by default the shipped one. --only" in shown
+    assert "None)" not in shown
+    assert "(default: )" not in shown
+    assert "A number. (default: 3)" in shown
+    parsed = cli.parse(Optional, ["--only", "a", "b"])
+    assert parsed == Optional(only=("a", "b"))
+
+
 @pytest.mark.parametrize(
     ("argv", "named"),
     [(["--episodes", "many"], "many"), (["--epsodes", "3"], "--epsodes"), (["--episodes"], "--episodes")],

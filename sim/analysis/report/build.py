@@ -16,7 +16,7 @@ from sim.analysis.report import distributions
 from sim.analysis.report.drawings import Drawings, Trajectories, draw_episodes, read_trajectories
 from sim.analysis.report.episodes import Row, by_number, columns_of, facts_of_line, outcome_choices, row_of
 from sim.analysis.report.facts import facts_of
-from sim.analysis.report.figures import Group, Runs, causes, grouped, groups, interval_note, means, verdict
+from sim.analysis.report.figures import Group, Runs, causes, few_note, grouped, groups, interval_note, means, verdict
 from sim.analysis.report.media import link_to, picture_of, thumbnail, video_of
 from sim.analysis.report.trend import trend
 from sim.errors import ConfigError
@@ -53,7 +53,7 @@ def build_page(runs: Sequence[Run], *, out_folder: Path, command: str) -> str:
         title=_title(runs),
         several=len(runs) > 1,
         runs=[facts_of(run, label, trajectories, i) for i, (run, label) in enumerate(zip(runs, labels, strict=True))],
-        notes=[*unreadable, *undrawn, *broken],
+        notes=[*filter(None, [few_note(len(episode_ids))]), *unreadable, *undrawn, *broken],
         count=len(episode_ids),
         interval_note=interval_note(lines),
         fields=differences_table(*runs) if len(runs) > 1 else None,

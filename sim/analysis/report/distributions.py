@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bisect
+import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +12,7 @@ from sim.analysis.comparison import Line
 from sim.analysis.report.figures import Proportion, Runs, wilson
 
 NEVER = "never"
-SPL_LABELS = ("0", *(f"{low / 10:g} to {(low + 1) / 10:g}" for low in range(10)))
+SPL_LABELS = ("failed", *(f"{low / 10:g}-{(low + 1) / 10:g}" for low in range(10)))
 CONFIDENCE_BINS = 10
 
 
@@ -46,7 +47,7 @@ DISTANCES = Bins((0.0, 4.0, 8.0, 12.0, 16.0, 24.0, 40.0), "m", "no path")
 HOUSE_SIZES = Bins((0.0, 60.0, 80.0, 100.0, 125.0, 150.0, 300.0, 500.0), "m²", "size unknown")
 """Bins of the floor area of all rooms of a house."""
 FIRST_SIGHTS = Bins((0.0, 1.0, 10.0, 25.0, 50.0, 100.0, 200.0), "steps", NEVER)
-FIRST_SIGHT_LABELS = ("0", "1 to 9", "10 to 24", "25 to 49", "50 to 99", "100 to 199", "200 on", NEVER)
+FIRST_SIGHT_LABELS = ("0", "1-9", "10-24", "25-49", "50-99", "100-199", "200 on", NEVER)
 """Labels of the bins of `FIRST_SIGHTS`, which are whole numbers."""
 
 
@@ -63,10 +64,16 @@ class Histogram:
         """Number of episodes of each run that have the number."""
         return [sum(counts) for counts in self.counts]
 
+    def shares(self, run: int) -> list[Proportion]:
+        """Returns the share of each bin in a run's episodes."""
+        return [wilson(count, self.totals[run]) for count in self.counts[run]]
+
     @property
-    def highest_share(self) -> float:
-        """The largest share of a bin in any run, the height of all pictures; 1 without episodes."""
-        return max((max(c) / t for c, t in zip(self.counts, self.totals, strict=True) if t), default=1.0)
+    def top_percent(self) -> int:
+        """Upper end of the axis of all pictures, a multiple of 20: at least the ends of the intervals of all bars."""
+        shares = [share for run in range(len(self.counts)) for share in self.shares(run) if share.count]
+        highest = max((100.0 * share.interval[1] for share in shares), default=100.0)
+        return min(100, 20 * math.ceil(highest / 20.0))
 
 
 def spl_histogram(runs: Runs) -> Histogram:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sim.analysis.comparison import Line
 from sim.analysis.metrics import (
@@ -44,6 +44,8 @@ METRICS = (
 )
 """Metrics by which runs are judged and compared."""
 Z95 = 1.959964
+FEW = 30
+"""With fewer episodes a bootstrap interval is too narrow; it has no width where all episodes ended alike."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +129,9 @@ def causes(runs: Runs) -> list[Group]:
 
 
 def _proportion(values: Sequence[float], houses: Sequence[str]) -> Proportion:
-    """Returns the proportion of ones with its bootstrap interval over houses."""
+    """Returns the proportion of ones with its bootstrap interval over houses, of few episodes with Wilson's."""
+    if len(values) < FEW:
+        return wilson(round(sum(values)), len(values))
     share = estimate(values, houses)
     return Proportion(round(sum(values)), len(values), (share.low or 0.0, share.high or 0.0))
 
@@ -137,7 +141,17 @@ _OTHER = {"error": "The episode ended with an error.", "failed": "No cause was r
 
 def means(runs: Runs) -> list[tuple[Metric, list[Cell], list[Cell]]]:
     """Returns for each metric its mean in each run, and the paired differences of the others from the first run."""
-    return [(metric, [metric.cell(lines) for lines in runs], differences(metric, runs)) for metric in METRICS]
+    return [(metric, [_mean(metric, lines) for lines in runs], differences(metric, runs)) for metric in METRICS]
+
+
+def _mean(metric: Metric, lines: Sequence[Line]) -> Cell:
+    """Returns the mean of a metric; a share of few episodes has Wilson's interval."""
+    cell = metric.cell(lines)
+    value = cell.estimate
+    if not metric.percent or value.mean is None or value.count >= FEW:
+        return cell
+    low, high = wilson(round(value.mean * value.count), value.count).interval
+    return replace(cell, estimate=replace(value, low=low, high=high))
 
 
 def differences(metric: Metric, runs: Runs) -> list[Cell]:
@@ -156,11 +170,24 @@ def verdict(difference: Estimate) -> str:
     return "higher" if difference.mean > 0.0 else "lower"
 
 
+def few_note(count: int) -> str:
+    """Returns a warning about the intervals of few episodes; "" for enough of them."""
+    if count >= FEW:
+        return ""
+    return (
+        f"Only {count} episode{'s' * (count != 1)}: little is certain. Intervals of shares in % are Wilson's, which "
+        "hold for few episodes; those of other means are too narrow. All are bootstrap intervals from "
+        f"{FEW} episodes on."
+    )
+
+
 def interval_note(runs: Runs) -> str:
     """Returns the sentence that says how the bootstrap intervals of a report are made."""
+    few = len(runs[0]) < FEW
+    kind = "95 % intervals of shares by Wilson, of other means by bootstrap" if few else "95 % bootstrap intervals"
     if len(set(houses_of(runs[0]))) == 1:
         return (
-            "95 % bootstrap intervals. There is one house: its episodes are resampled, and the intervals (*) say "
+            f"{kind}. There is one house: its episodes are resampled, and the intervals (*) say "
             "nothing about other houses."
         )
-    return "95 % bootstrap intervals: houses are resampled, then the episodes of each house."
+    return f"{kind}: houses are resampled, then the episodes of each house."

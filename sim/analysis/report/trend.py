@@ -39,6 +39,8 @@ class Chart:
     points: Sequence[Point]
     top: str
     """Text at the upper end of the axis, which begins at 0."""
+    half: str
+    """Text at its middle."""
     floor_y: int = HEIGHT - BOTTOM
 
     @property
@@ -69,7 +71,8 @@ def _chart(metric: Metric, cells: Sequence[Cell], labels: Sequence[str]) -> Char
         if value.mean is not None and value.low is not None and value.high is not None:
             heights = (place(value.mean), place(value.low), place(value.high))
             points.append(Point(label, LEFT + step * (i + 0.5), *heights, cell.text()))
-    return Chart(metric.title, points, f"{(100.0 if metric.percent else 1.0) * top:g}")
+    shown = top * (100.0 if metric.percent else 1.0)
+    return Chart(metric.title, points, f"{shown:g}", f"{shown / 2:g}")
 
 
 def _round_up(value: float) -> float:

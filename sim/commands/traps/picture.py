@@ -1,4 +1,4 @@
-"""Draws a trial: the trap from above with invisible geoms in colour, the robot's true path, and the agent's map."""
+"""Draws a trial: the trap from above, its invisible obstacles as tinted surfaces, the robot's true path, the map."""
 
 from __future__ import annotations
 
@@ -12,38 +12,69 @@ from sim.commands.traps.trial import Trial
 from sim.env.objectnav import ObjectNavEnv
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
-from sim.housegen.traps.site import INVISIBLE_GROUP
+from sim.houses.geoms import geom_polytope
 from sim.houses.house import House
-from sim.houses.labels import read_labels, rendered_geoms
+from sim.houses.labels import read_labels
 from sim.interface import MPCAT40_ID
+from sim.viewers.chase import hidden_obstacles
+from sim.viewers.text import BOLD, text_width, write
+from sim.viewers.viewer import Colour
+from sim.world.world import World
 
 Picture = NDArray[np.uint8]
 HEIGHT_PX = 480
+HEAD_PX, FOOT_PX = 32, 26
+"""Height of the title above the scene and of the legend below it."""
 FOVY_DEG = 6.0
 MARGIN_M = 0.3
 PATH, STOPPED, START, END = (40, 90, 220), (225, 30, 30), (20, 150, 60), (20, 20, 20)
-PAPER = (245, 245, 245)
-INVISIBLE = (0.2, 0.75, 0.95, 1.0)
-"""Colour of geoms that cameras do not render."""
+INVISIBLE: Colour = (20, 160, 225)
+"""Colour of obstacles that cameras do not render."""
+LEGEND = (
+    ("driven path", PATH),
+    ("start", START),
+    ("end", END),
+    ("contact that stopped", STOPPED),
+    ("invisible", INVISIBLE),
+)
+PAPER, INK = (245, 245, 245), (30, 30, 30)
+_TINT = 0.4
+_LEAN_M = (0.18, 0.30)
+"""A point of an invisible obstacle is drawn this far to the right and up for each metre of its height: seen vertically,
+a pane of glass would be a line."""
 
 
 def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Picture:
-    """Returns the top view and, if there is a map, the map next to it, uint8 (h, w, 3)."""
-    top = TopView(env.scene.world.house, env.scene.task.truth.space(env.episode.start.floor_z_m).frame)
+    """Returns the top view and, if there is a map, the map next to it, uint8 (h, w, 3), between title and legend."""
+    world = env.scene.world
+    top = TopView(world.house, env.scene.task.truth.space(env.episode.start.floor_z_m).frame)
+    top.invisible(world)
     top.path(trial.positions_m)
     for _, contact in trial.stops:
-        top.dot(contact.position_m[:2], STOPPED, 3)
-    top.dot(trial.positions_m[0], START, 6)
-    top.dot(trial.positions_m[-1], END, 6)
+        top.dot(contact.position_m[:2], STOPPED, 4)
+    top.dot(trial.positions_m[0], START, 7)
+    top.dot(trial.positions_m[-1], END, 7)
+    picture = top.image
+    if belief is not None:
+        width = round(belief.shape[1] * HEIGHT_PX / belief.shape[0])
+        small = np.asarray(cv2.resize(belief, (width, HEIGHT_PX), interpolation=cv2.INTER_AREA), np.uint8)
+        picture = np.hstack([picture, small])
     outcome = "escaped" if trial.escaped else "stuck"
     title = f"{trial.episode_id}, {trial.agent}: {outcome}, {len(trial.motions)} steps"
-    for colour, thickness in ((END, 3), (PAPER, 1)):  # mostly on the black surroundings of a scene
-        cv2.putText(top.image, title, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, colour, thickness, cv2.LINE_AA)
-    if belief is None:
-        return top.image
-    width = round(belief.shape[1] * HEIGHT_PX / belief.shape[0])
-    small = np.asarray(cv2.resize(belief, (width, HEIGHT_PX), interpolation=cv2.INTER_AREA), np.uint8)
-    return np.hstack([top.image, small])
+    return _framed(picture, title)
+
+
+def _framed(picture: Picture, title: str) -> Picture:
+    """Returns a picture with a title above it and the legend of the top view below it."""
+    wide = picture.shape[1]
+    head, foot = (np.full((high, wide, 3), PAPER, np.uint8) for high in (HEAD_PX, FOOT_PX))
+    write(head, title, (10, 22), wide - 20, 18, INK, BOLD)
+    left = 10
+    for words, colour in LEGEND:
+        cv2.circle(foot, (left + 6, FOOT_PX // 2), 6, colour, -1, cv2.LINE_AA)
+        write(foot, words, (left + 18, 18), wide - left, 14, INK)
+        left += 38 + text_width(words, 14)
+    return np.vstack([head, picture, foot])
 
 
 class TopView:
@@ -67,6 +98,21 @@ class TopView:
         """Draws a point."""
         cv2.circle(self.image, self._pixel(place_m), radius_px, colour, -1, cv2.LINE_AA)
 
+    def invisible(self, world: World) -> None:
+        """Draws obstacles that no camera renders as tinted surfaces, which lean to the right and up."""
+        surfaces = np.zeros(self.image.shape[:2], np.uint8)
+        outlines = []
+        for geom in np.flatnonzero(hidden_obstacles(world)).tolist():
+            corners_m = geom_polytope(world.model, world.data, geom).vertices_m
+            leaning_m = corners_m[:, :2] + corners_m[:, 2:] * _LEAN_M
+            points = [self._pixel((x, y)) for x, y in leaning_m.tolist()]
+            outline = cv2.convexHull(np.array(points, np.int32))
+            cv2.fillConvexPoly(surfaces, outline, 1)
+            outlines.append(outline)
+        there = surfaces > 0
+        self.image[there] = ((1.0 - _TINT) * self.image[there] + _TINT * np.array(INVISIBLE)).astype(np.uint8)
+        cv2.polylines(self.image, outlines, True, INVISIBLE, 2, cv2.LINE_AA)
+
     def _pixel(self, place_m: tuple[float, float]) -> tuple[int, int]:
         """Returns the pixel of a point."""
         x = 0.5 * self._width_px + (place_m[0] - self._middle_m[0]) * self._px_m
@@ -88,7 +134,6 @@ class TopView:
         try:
             option = mujoco.MjvOption()
             option.sitegroup[:] = 0
-            option.geomgroup[INVISIBLE_GROUP] = 1
             renderer.update_scene(data, camera, option)
             renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
             return np.asarray(renderer.render().copy(), np.uint8)
@@ -97,13 +142,10 @@ class TopView:
 
 
 def _without_ceiling(house: House) -> mujoco.MjModel:
-    """Returns the scene without ceiling, with invisible geoms in `INVISIBLE`."""
+    """Returns the scene without ceiling."""
     spec = house.spec.copy()
-    model = spec.compile()
-    labels, shown = read_labels(model, rules=house.rules, ignore_prefix=""), rendered_geoms(model)
+    labels = read_labels(spec.compile(), rules=house.rules, ignore_prefix="")
     for geom in spec.geoms:
         if labels.geom_category[geom.id] == MPCAT40_ID["ceiling"]:
             geom.material, geom.rgba = "", (0.0, 0.0, 0.0, 0.0)
-        elif not shown[geom.id]:
-            geom.material, geom.rgba = "", INVISIBLE
     return spec.compile()

@@ -19,7 +19,7 @@ from sim.analysis.comparison import (
     require_same_episodes,
 )
 from sim.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_csv, to_markdown, to_rich
-from sim.commands.compare import compare
+from sim.commands.compare import Args, compare, main, verdict
 from sim.evaluation.bootstrap import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.evaluation.config_fields import ABSENT
 from sim.interface import ConfigError
@@ -241,3 +241,40 @@ def test_a_comparison_names_errors_and_metrics_without_a_value(tmp_path: Path) -
     (fewer,) = (note for note in notes if note.startswith("Differences of fewer"))
     assert "collisions 1" in fewer
     assert "success" not in fewer
+
+
+def test_an_object_in_place_of_a_value_is_shown_by_its_number_of_fields(tmp_path: Path) -> None:
+    first, second = (read_run(run_folder(tmp_path / name, "ab")) for name in "ab")
+    first = replace(first, config={**first.config, "own": None})
+    second = replace(second, config={**second.config, "own": {"deep": {"x": 1}, "wide": 2}, "kind": "x"})
+    shown = dict(differences_table(first, second).rows)
+    assert shown == {"kind": ["(absent)", '"x"'], "own": ["null", "2 fields"]}
+
+
+@pytest.mark.parametrize(
+    ("gained", "episodes", "words"),
+    [
+        (0, 40, "success %: no significant difference, "),
+        (40, 40, "success %: B is higher, +100.0 "),
+        (2, 2, f"success %: no significant difference (fewer than {MIN_PAIRS} pairs), "),
+    ],
+)
+def test_the_verdict_names_success_and_spl_and_whether_they_differ(
+    gained: int, episodes: int, words: str, tmp_path: Path
+) -> None:
+    ids = [chr(ord("A") + i) for i in range(episodes)]
+    first, second = (read_run(run_folder(tmp_path / name, "".join(ids), success=0.0, spl=0.0)) for name in "ab")
+    changes: dict[str, dict[str, object]] = {
+        name: {"house": f"h{i}", "success": float(i < gained), "spl": 0.5 * (i < gained)} for i, name in enumerate(ids)
+    }
+    first = replace(first, lines={name: {**first.lines[name], "house": of["house"]} for name, of in changes.items()})
+    second = replace(second, lines={name: {**second.lines[name], **of} for name, of in changes.items()})
+    said = verdict(first, second)
+    assert said.startswith(f"Verdict over {episodes} episodes. {words}")
+    assert "SPL: " in said
+
+
+def test_a_comparison_prints_its_verdict_last(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folders = [run_folder(tmp_path / name, "abc") for name in "ab"]
+    assert main(Args(first=folders[0], second=folders[1])) == 0
+    assert capsys.readouterr().out.strip().splitlines()[-1].startswith("Verdict over 3 episodes.")

@@ -6,19 +6,13 @@ import io
 import re
 import shlex
 import sys
-import threading
-import time
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from rich.table import Table
 
-from sim.analysis.display import PlainConsole, ProgressReport, describe, print_results, print_where_to_look
-from sim.episodes.splits import Episode
+from sim.analysis.display import PlainConsole, describe, file_size, print_results, print_where_to_look
 from sim.evaluation.results import summarise
-from sim.geometry.pose import Pose
 
 
 def printed(*objects: object, terminal: bool = False) -> str:
@@ -46,33 +40,15 @@ def test_control_characters_are_printed_as_escapes() -> None:
     assert not {"\x1b", "\x07", "\u009b"} & set(shown)
 
 
-def test_the_progress_of_an_episode_with_brackets_in_its_id_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
-    line = {"episode_id": "a[/b]", "goal": "bed", "success": 1.0, "num_steps": 3, "wall_time_s": 1.0}
-    stream = io.StringIO()
-    console = PlainConsole(file=stream, width=100, force_terminal=True)
-    progress = ProgressReport(console, total=1)
-    assert list(progress.over([line])) == [line]
-    assert "a[/b]: bed found" in stream.getvalue()
-
-
-def test_a_pipe_gets_a_line_when_an_episode_begins_while_it_runs_and_when_it_ends() -> None:
-    stream = io.StringIO()
-    progress = ProgressReport(PlainConsole(file=stream, width=100), total=1, quiet_s=0.05)
-    episode = Episode("e0", "val_00", "tv_monitor", Pose(0.0, 0.0, 0.0))
-    line = {"episode_id": "e0", "goal": "tv_monitor", "success": 1.0, "num_steps": 3, "wall_time_s": 1.0}
-
-    def lines() -> Iterator[dict[str, Any]]:
-        progress.started(episode)
-        time.sleep(0.4)
-        yield line
-
-    assert list(progress.over(lines())) == [line]
-    first, *running, last = stream.getvalue().splitlines()
-    assert first == "e0 begins: looking for tv monitor in house val_00"
-    assert running
-    assert all(re.fullmatch(r"\[0/1\] running: e0 for \d+ s", each) for each in running)
-    assert last == "[1/1] e0: tv monitor found after 3 steps, 1 s"
-    assert "progress" not in {thread.name for thread in threading.enumerate()}
+@pytest.mark.parametrize(
+    ("size_bytes", "shown"),
+    [
+        (0, "0 bytes"), (1, "1 byte"), (999, "999 bytes"), (1000, "1 kB"), (42_600, "43 kB"), (999_499, "999 kB"),
+        (999_500, "1.0 MB"), (1_240_000, "1.2 MB"),
+    ],
+)  # fmt: skip
+def test_the_size_of_a_file_has_the_unit_that_fits_it(size_bytes: int, shown: str) -> None:
+    assert file_size(size_bytes) == shown
 
 
 BROKEN = {

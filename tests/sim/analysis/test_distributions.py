@@ -18,7 +18,7 @@ from sim.analysis.report.distributions import (
     first_sight_histogram,
     spl_histogram,
 )
-from sim.analysis.report.figures import grouped
+from sim.analysis.report.figures import causes, few_note, grouped, means
 from sim.analysis.report.trend import HEIGHT, METRICS, TOP, trend
 
 Line = dict[str, Any]
@@ -59,10 +59,24 @@ def test_spl_counts_failures_apart_and_each_tenth_from_its_lower_edge() -> None:
     histogram = spl_histogram([lines, []])
     counts = dict(zip(SPL_LABELS, histogram.counts[0], strict=True))
     assert {name: count for name, count in counts.items() if count} == {
-        "0": 1, "0 to 0.1": 1, "0.1 to 0.2": 1, "0.9 to 1": 2
+        "failed": 1, "0-0.1": 1, "0.1-0.2": 1, "0.9-1": 2
     }  # fmt: skip
     assert histogram.totals == [5, 0]
-    assert histogram.highest_share == pytest.approx(0.4)
+    assert [share.percent for share in histogram.shares(0) if share.count] == pytest.approx([20.0, 20.0, 20.0, 40.0])
+    assert histogram.top_percent == 80  # the Wilson interval of 2 of 5 ends at 77 %
+    assert spl_histogram([[], []]).top_percent == 100
+
+
+def test_five_equal_episodes_do_not_look_certain() -> None:
+    few, many = ([line(success=1.0, house=f"h{i}") for i in range(count)] for count in (5, 40))
+    (_, cells, _), *_ = means([few])
+    assert cells[0].estimate.low == pytest.approx(0.566, abs=0.001)
+    assert "Only 5 episodes" in few_note(len(few))
+    (_, cells, _), *_ = means([many])
+    assert cells[0].estimate.low == 1.0
+    assert few_note(len(many)) == ""
+    failed = causes([[line(success=0.0, failure="loop")] * 5])
+    assert failed[0].shares[0].interval[0] < 0.6
 
 
 def test_an_episode_that_never_showed_the_goal_is_the_last_bin_of_first_sights() -> None:
@@ -70,7 +84,7 @@ def test_an_episode_that_never_showed_the_goal_is_the_last_bin_of_first_sights()
     lines += [line(first_seen_step=None, gt_explored=False), line(first_seen_step=None, gt_explored=None)]
     counts = dict(zip(FIRST_SIGHT_LABELS, first_sight_histogram([lines]).counts[0], strict=True))
     assert {name: count for name, count in counts.items() if count} == {
-        "0": 1, "1 to 9": 2, "10 to 24": 1, "200 on": 1, "never": 1
+        "0": 1, "1-9": 2, "10-24": 1, "200 on": 1, "never": 1
     }  # fmt: skip
 
 

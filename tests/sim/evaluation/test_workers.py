@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from sim.evaluation.executors import Processes
+from sim.evaluation.watch import Steps
 from sim.evaluation.workers import MAX_TRIES, RunnerSpec
 from tests.helpers.runners import Job
 
@@ -26,6 +27,17 @@ def never(item: object, reason: str) -> dict:
 def test_each_item_gives_one_line(workers: int) -> None:
     lines = list(Processes(workers).run(SPEC, jobs(12), on_death=never))
     assert sorted(line["episode_id"] for line in lines) == sorted(item.episode_id for item in jobs(12))
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_the_steps_of_an_item_are_seen_where_it_was_started(workers: int) -> None:
+    counts: list[Steps] = []
+    executor = Processes(workers)
+    for line in executor.run(
+        SPEC, [Job("seven_7", "h")], on_death=never, on_start=lambda _, steps: counts.append(steps)
+    ):
+        assert line["episode_id"] == "seven_7"
+        assert [steps() for steps in counts] == [7]
 
 
 def test_one_worker_is_this_process() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import resource
 from collections.abc import Iterator
@@ -22,6 +23,7 @@ from sim.episodes.splits import Episode
 from sim.evaluation.results import VIEWER_OPTIONS
 from sim.evaluation.rollout import play_episode
 from sim.geometry.pose import Pose
+from sim.gl import mujoco
 from sim.houses.labels import geoms_of
 from sim.interface import MPCAT40, Action, CameraModel, ConfigError, Scores, SuccessRule
 from sim.robot.body import PREFIX
@@ -29,7 +31,7 @@ from sim.run import entry
 from sim.task.explanations import Outcome, explain_end
 from sim.task.ground_truth import GroundTruth
 from sim.viewers import overlay, video
-from sim.viewers.chase import ChaseView
+from sim.viewers.chase import ChaseView, hidden_obstacles
 from sim.viewers.topview import (
     BLOCKED,
     FREE,
@@ -506,3 +508,20 @@ def test_reading_the_agents_perception_twice_changes_nothing(house: Path, semant
     true = env.truth_images["semantic"][stride // 2 :: stride, stride // 2 :: stride]
     assert (seen.categories == true).mean() > 0.3
     env.close()
+
+
+def test_only_obstacles_that_nothing_visible_covers_are_tinted() -> None:
+    house = with_box(room(6, 6), "window_00", centre_m=(1.5, 0, 1.0), half_m=(0.01, 1.0, 1.0), group=3)  # a pane
+    house = with_box(house, "table_00", centre_m=(-1, 1, 0.7), half_m=(0.5, 0.4, 0.02))
+    house = with_box(
+        house, "table_01", centre_m=(-1, 1, 0.7), half_m=(0.48, 0.38, 0.02), group=3
+    )  # what collides of it
+    house = with_box(house, "floor_02", centre_m=(0, 0, -0.05), half_m=(3, 3, 0.02), group=3)
+    table = house.spec.worldbody.add_body(name="table_02", pos=(-1.8, -1.7, 0.4))
+    for x_m, y_m in itertools.product((-0.6, 0.6), repeat=2):
+        table.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, pos=(x_m, y_m, 0), size=(0.02, 0.02, 0.4))
+    table.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, name="hull", size=(0.6, 0.6, 0.4), group=3)
+    table.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, name="glass", pos=(0, 0, 0.4), size=(0.6, 0.6, 0.005), group=3)
+    world = World(house)
+    hidden = {world.model.geom(geom).name for geom in np.flatnonzero(hidden_obstacles(world))}
+    assert hidden == {"window_00", "glass"}

@@ -305,26 +305,38 @@
     return legend;
   }
 
+  function niceTop(value) {
+    const unit = 10 ** Math.floor(Math.log10(value));
+    return [1, 2, 4, 6, 8, 10].find((n) => n * unit >= value) * unit;
+  }
+
   function makeChart(path) {
-    const known = path.d.filter((d) => d !== null);
-    const top = Math.max(10, ...known);
-    const words = `Distance to the goal over ${path.n} steps, from ${(top / 10).toFixed(1)} m at the top to 0`;
-    const chart = svg("svg", { class: "chart", viewBox: `0 0 ${Math.max(1, path.n)} 100`, preserveAspectRatio: "none", role: "img", "aria-label": words });
-    chart.append(svg("title", {}, words));
+    const top = niceTop(Math.max(1, ...path.d.filter((d) => d !== null).map((d) => d / 10)));
+    const x = (step) => 34 + (438 * step) / Math.max(1, path.n), y = (metres) => 98 - (84 * metres) / top;
+    const words = `Distance to the goal over ${path.n} steps, up to ${top} m`;
+    const chart = svg("svg", { class: "chart", viewBox: "0 0 480 126", role: "img", "aria-label": words });
+    chart.append(svg("title", {}, words), svg("rect", { class: "box", x: 34, y: 14, width: 438, height: 84 }));
     for (const [first, last] of path.seen) {
-      chart.append(svg("rect", { class: "in-view", x: first, y: 0, width: last - first + 1, height: 100 }));
+      chart.append(svg("rect", { class: "in-view", x: x(first), y: 14, width: Math.min(472, x(last + 1)) - x(first), height: 84 }));
     }
-    for (const step of path.stopped) chart.append(svg("path", { class: "tick", d: `M${step + 1} 100v-12` }));
+    for (const part of [0, 0.5, 1]) {
+      chart.append(svg("path", { class: "grid", d: `M34 ${y(part * top)}H472` }), svg("text", { class: "end", x: 30, y: y(part * top) + 3 }, `${part * top}`));
+    }
+    for (const step of [0, Math.round(path.n / 2), path.n]) {
+      chart.append(svg("text", { class: step === path.n ? "end" : "mid", x: x(step), y: 110 }, `${step}`));
+    }
+    chart.append(svg("text", { x: 34, y: 10 }, "m to the goal"), svg("text", { class: "mid", x: 253, y: 123 }, "step"));
+    for (const step of path.stopped) chart.append(svg("path", { class: "tick", d: `M${x(step + 1)} 98v-10` }));
     let piece = [];
     const flush = () => {
       if (piece.length > 1) chart.append(svg("polyline", { points: piece.join(" ") }));
       piece = [];
     };
-    path.d.forEach((d, step) => (d === null ? flush() : piece.push(`${step},${96 - (92 * d) / top}`)));
+    path.d.forEach((d, step) => (d === null ? flush() : piece.push(`${x(step)},${y(d / 10)}`)));
     flush();
     const now = svg("path", { class: "now" });
     chart.append(now);
-    return { svg: chart, show: (step) => now.setAttribute("d", `M${step} 0V100`) };
+    return { svg: chart, show: (step) => now.setAttribute("d", `M${x(step)} 14V98`) };
   }
 
   // ---- events
