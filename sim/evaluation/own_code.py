@@ -10,7 +10,7 @@ import traceback
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from sim.reading import printable, read_bytes
+from sim.reading import printable, read_bytes, sha256_of
 
 MOST_LETTERS = 2000
 """Longest text of an error in results and messages."""
@@ -79,8 +79,7 @@ def hash_of_own(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
     for place in sorted(contents):
         digest.update(place.encode() + contents[place])
     for file in (each for each in others if each.suffix != ".py"):
-        with file.open("rb") as stream:
-            digest.update(file.name.encode() + hashlib.file_digest(stream, "sha256").digest())
+        digest.update(file.name.encode() + bytes.fromhex(sha256_of(file, what="File of an agent")))
     return digest.hexdigest()[:12] if contents or others else ""
 
 

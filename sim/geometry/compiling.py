@@ -40,7 +40,9 @@ class Kernel:
             import numba
 
             if folder is not None:
-                numba.config.CACHE_DIR = str(folder)
+                from numba.core import config
+
+                config.CACHE_DIR = str(folder)  # pyright: ignore[reportAttributeAccessIssue]
             self._compiled = numba.njit(**self._options)(self._function)
             names = self._function.__globals__
             names |= {name: value.compiled() for name, value in names.items() if isinstance(value, Kernel)}

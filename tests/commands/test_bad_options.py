@@ -99,7 +99,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
     "sim.commands.bench.bench": [
         ("--parts z", "--parts must be some of a,b,c"),
         ("--markdown nowhere.md", "cannot be read"),
-        ("--markdown FILE", "cannot be read"),
+        ("--markdown FILE", "is not text in UTF-8"),
     ],
     "tools.maintenance.bench_against": [
         ("--against nowhere", "names no commit"),
@@ -121,7 +121,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
     "sim.commands.gallery": [
         ("--out OUT", "needs --houses FILE ..., --house FILE or --sheet"),
         ("--out OUT --houses nowhere.xml", "no such file"),
-        ("--out OUT --houses FILE", "not an MJCF file"),
+        ("--out OUT --houses FILE", "is not text in utf-8"),
         ("--out OUT --sheet --categories spoons", "spoons"),
         ("--out OUT --sheet --furniture nowhere", "has no models.json"),
     ],

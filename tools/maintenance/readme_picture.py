@@ -60,7 +60,7 @@ def frames_of(file: Path) -> list[NDArray[np.uint8]]:
         ConfigError: the file does not exist or holds no video.
     """
     try:
-        with open_plain(file, what="Video") as stream, av.open(stream) as container:
+        with open_plain(file, what="Video") as stream, av.open(stream, mode="r") as container:
             frames = [np.asarray(frame.to_ndarray(format="rgb24"), np.uint8) for frame in container.decode(video=0)]
     except (OSError, ValueError, IndexError) as error:  # each error of FFmpeg is one of the first two
         raise ConfigError(f"'{file}' cannot be read as a video: {error}.") from None

@@ -171,6 +171,8 @@ def _write_seeds(args: Args) -> Iterator[Made]:
         movable=args.movable,
     )
     furniture = None if args.furniture is None else _imported(args)
+    if furniture is not None:
+        furniture.catalogue(config.pool)  # raises before anything is written
     copy_textures(args.out / SHARED_TEXTURES)
     make = functools.partial(_make_seed, config, furniture)
     seeds = range(args.first_seed, args.first_seed + (args.houses or 1))
