@@ -167,5 +167,5 @@ def test_the_limit_of_textures_is_a_variable_of_the_environment(
         monkeypatch.setenv("STUBBORN_TEXTURE_MB", limit)
         with pytest.raises(HouseError, match=message):
             load_house(tmp_path / "house.xml")
-    monkeypatch.setenv("STUBBORN_TEXTURE_MB", "3")
+    monkeypatch.setenv("STUBBORN_TEXTURE_MB", "20")
     assert load_house(tmp_path / "house.xml").name == "house"
