@@ -50,7 +50,7 @@ MOST_WORDS = {
     "docs/running.md": 700,
     "docs/watching.md": 800,
     "docs/agents.md": 800,
-    "docs/gymnasium.md": 780,
+    "docs/gymnasium.md": 800,
     "docs/habitat.md": 700,
     "docs/houses.md": 1100,
     "docs/furniture.md": 600,
@@ -60,12 +60,12 @@ MOST_WORDS = {
     "docs/explorers.md": 900,
     "docs/results.md": 900,
     "docs/differences.md": 700,
-    "docs/traps.md": 270,
+    "docs/traps.md": 250,
     "docs/performance.md": 300,
     "docs/maintaining.md": 250,
 }
 """The largest number of words of each page, code and tables included. A new page takes its words from other pages."""
-MOST_WORDS_IN_ALL = 13_200
+MOST_WORDS_IN_ALL = 12_500 + MOST_WORDS["docs/habitat.md"]
 MOST_LINES_OF_CHANGELOG = 80
 CHANGELOG_HEADINGS = {"Added", "Changed", "Deprecated", "Fixed", "Removed", "Security"}
 PAGES = [str(page.relative_to(ROOT)) for page in documented.pages()]

@@ -1,7 +1,8 @@
 """Hooks of MkDocs (`mkdocs.yml`): rules of the built site, reported as warnings, which `--strict` turns into errors.
 
-The site asks no other host for anything: the reader may be offline, and no other host learns who reads it. Links that
-a reader follows are another matter.
+Links to files outside of `docs/`, which GitHub follows, become paths of the repository. The site asks no other host for
+anything: the reader may be offline, and no other host learns who reads it. Links that a reader follows are another
+matter.
 """
 
 from __future__ import annotations
@@ -16,11 +17,12 @@ _LOG = logging.getLogger("mkdocs.hooks.site")
 _TAG = re.compile(r"<(script|link|img|iframe|source|video|audio|object|embed)\b[^>]*>", re.IGNORECASE)
 _ADDRESS = re.compile(r"""\b(?:src|href|data|srcset|poster)\s*=\s*["']?((?:https?:)?//[^"'\s>]+)""", re.IGNORECASE)
 _IN_STYLE = re.compile(r"""(?:url\(|@import)\s*["']?((?:https?:)?//[^"')\s]+)""", re.IGNORECASE)
+_OUTSIDE = re.compile(r"\[([^\]]+)\]\(\.\./([^)]+)\)")
 _MERMAID = re.compile(r"""<(?:pre|div)[^>]*class=["'][^"']*\bmermaid\b""")
 
 
 def fetched_from_elsewhere(page: str) -> Iterator[str]:
-    """Addresses on other hosts that a browser would fetch by itself for this text of HTML or CSS."""
+    """Yields the addresses on other hosts that a browser would fetch by itself for this text of HTML or CSS."""
     for tag in _TAG.finditer(page):
         if 'rel="canonical"' not in tag[0]:
             yield from (found[1] for found in _ADDRESS.finditer(tag[0]))
@@ -29,8 +31,13 @@ def fetched_from_elsewhere(page: str) -> Iterator[str]:
         yield "https://unpkg.com/mermaid (the theme's script draws class mermaid with it: use an SVG file)"
 
 
+def on_page_markdown(markdown: str, **_: Any) -> str:
+    """Returns the text of a page with the paths of files outside of `docs/` in place of links to them."""
+    return _OUTSIDE.sub(r"\1 (`\2`)", markdown)
+
+
 def on_post_build(config: Any) -> None:
-    """Warn of every page that would ask another host."""
+    """Warns of every page that would ask another host."""
     site = Path(config["site_dir"])
     for file in sorted([*site.rglob("*.html"), *site.rglob("*.css")]):
         for address in sorted(set(fetched_from_elsewhere(file.read_text(encoding="utf-8")))):
