@@ -17,7 +17,9 @@ from sim.analysis.display import describe
 from sim.evaluation.watch import Steps
 
 QUIET_S = 5.0
-"""Output that is not a terminal is never silent for longer than about this while an episode runs."""
+"""Output that is not a terminal is first silent for about this while an episode runs; each silence is longer ..."""
+LONGEST_QUIET_S = 60.0
+"""... until it reaches this, so that the log of a long episode stays short."""
 MOST_NAMED = 3
 """Most running episodes that are named at a time."""
 
@@ -44,8 +46,8 @@ class _Running:
 class ProgressReport:
     """Says which episodes begin, run and end: with a bar in a terminal, else with lines of text.
 
-    A line is printed when an episode begins and when it ends, and every `QUIET_S` seconds in between, so that a log or
-    a pipe shows that the run goes on.
+    A line is printed when an episode begins and when it ends, and after silences of `QUIET_S` to `LONGEST_QUIET_S` in
+    between, so that a log or a pipe shows that the run goes on.
 
     Args:
         console: prints.
@@ -59,6 +61,7 @@ class ProgressReport:
         self._running: dict[str, _Running] = {}
         self._lock = threading.Lock()
         self._over = threading.Event()
+        self._wait_s = quiet_s
         self._printed_s = time.monotonic()
         self._first: tuple[float, int] | None = None
         """Time and number of steps when steps were seen for the first time, after house and kernels were loaded."""
@@ -90,6 +93,7 @@ class ProgressReport:
         with self._lock:
             self._running.pop(line["episode_id"], None)
             self._done += 1
+            self._wait_s = self._quiet_s
             self._steps_done += line["num_steps"]
             if self._bar is not None:
                 self._bar.update(self._task, completed=self._done)
@@ -98,9 +102,10 @@ class ProgressReport:
     def _say_that_it_runs(self) -> None:
         while not self._over.wait(min(0.5, self._quiet_s)):
             with self._lock:
-                due = self._bar is not None or time.monotonic() - self._printed_s >= self._quiet_s
+                due = self._bar is not None or time.monotonic() - self._printed_s >= self._wait_s
                 if self._running and due:
                     self._print_running()
+                    self._wait_s = min(1.5 * self._wait_s, LONGEST_QUIET_S)
 
     def _print_running(self) -> None:
         now_s = time.monotonic()

@@ -21,7 +21,8 @@ class RunOptions:
     explorer: str | None = None
     """The explorer of agents that take one: a name of --list-agents, or your own as package.module:NAME."""
     semantics: str = "rednet"
-    """Source of segmentation: rednet, noisy (ground truth with the errors of a network) or gt (ground truth)."""
+    """Source of segmentation: rednet, noisy (ground truth with the errors of a network), gt (ground truth), or your own
+    as package.module:NAME."""
     weights: Path | None = None
     """With --semantics rednet: your network in place of the shipped one."""
     verification: str = "naive-bayes"

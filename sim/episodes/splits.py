@@ -160,7 +160,13 @@ def load_split(name_or_path: str | Path) -> Split:
         ConfigError: there is no such split or folder, or its files have another format.
     """
     shipped = shipped_splits()
-    folder = assets_dir() / name_or_path if str(name_or_path) in shipped else Path(name_or_path)
+    given = Path(name_or_path)
+    if str(name_or_path) in shipped and _index_of(given).is_file() and given.resolve().parent != assets_dir().resolve():
+        raise ConfigError(
+            f"'{name_or_path}' is a shipped split and a folder here: write ./{name_or_path} for the folder, or run the "
+            "command elsewhere."
+        )
+    folder = assets_dir() / name_or_path if str(name_or_path) in shipped else given
     if not folder.is_dir():
         there_is = ", ".join(shipped) or "none"
         raise ConfigError(

@@ -51,10 +51,17 @@ class Kernel:
 
 
 def must_compile() -> bool:
-    """Returns True if numba's cache is empty: compiling all kernels, at their first calls, takes up to a minute."""
+    """Returns True if numba has compiled no kernel of the simulator, or none of the agent.
+
+    Compiling all of them, at their first calls, takes up to a minute.
+    """
     choose_cache()
-    folder = Path(os.environ.get(_VARIABLE) or Path(__file__).with_name("__pycache__"))
-    return not any(folder.rglob("*.nbi"))
+    if os.environ.get(_VARIABLE):
+        folders = [Path(os.environ[_VARIABLE])]
+    else:
+        packages = Path(__file__).resolve().parents[2]
+        folders = [packages / "sim" / "geometry", packages / "stubborn" / "kernels"]
+    return not all(any(folder.rglob("*.nbi")) for folder in folders)
 
 
 def choose_cache() -> Path | None:

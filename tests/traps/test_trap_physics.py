@@ -5,12 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sim.commands.traps.report import make_agent
+from sim.commands.traps.report import Args, main, make_agent
 from sim.commands.traps.trial import Trial, run_trial
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.recipes import START_TURNS_RAD
@@ -62,6 +63,13 @@ def run_in_trap(env: ObjectNavEnv, trap: str, heading: int, name: str) -> tuple[
     agent = make_agent(name, env)
     assert isinstance(agent, StubbornAgent)
     return run_trial(env, agent, name, env.split.episode(f"{trap}_{heading}")), agent
+
+
+def test_the_report_takes_an_agent_of_the_user(tmp_path: Path) -> None:
+    agent = "tests.helpers.runners:make_quitter"
+    args = Args(out=tmp_path, agents=(agent,), traps=("glass_pane",), headings=1, pictures=False)
+    assert main(args) == 0
+    assert f"glass_pane,glass_pane_0,{agent},False" in (tmp_path / "traps.csv").read_text()
 
 
 @pytest.mark.parametrize(("trap", "heading"), sample(CASES, 8))

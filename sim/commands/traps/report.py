@@ -25,16 +25,16 @@ from sim import cli
 from sim.analysis import display
 from sim.commands.traps.picture import draw_trial
 from sim.commands.traps.trial import Trial, run_trial
+from sim.composition.agents import build_agent, find_agent
 from sim.env.objectnav import ObjectNavEnv
-from sim.env.oracle import Oracle
 from sim.episodes.splits import Episode
 from sim.files import open_to_grow, write_together
 from sim.files import write_picture as save_picture
 from sim.interface import Agent, ConfigError
 from sim.reading import Count as ReadCount
 from sim.reading import Name, Number, read_lines
-from stubborn import agents
 from stubborn.agent import StubbornAgent
+from stubborn.detection.verification import AcceptAll
 from stubborn.drawing import map_painter
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
@@ -55,7 +55,7 @@ class Args:
     split: str = "traps"
     """The traps: a shipped split, or a folder of yours with episodes (`stubborn episodes --recipe traps`)."""
     agents: tuple[str, ...] = DEFAULT_AGENTS
-    """Names of agents: oracle, or names of `stubborn.agents`."""
+    """Agents of `stubborn run`, also your own as package.module:NAME."""
     traps: tuple[str, ...] = ()
     """Names of traps; all if not given."""
     headings: cli.Count = 3
@@ -108,7 +108,9 @@ class Row(msgspec.Struct):
 
 def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:
     """Runs an agent in the episodes that are not done, and draws the pictures."""
-    sensors = () if name == "oracle" else ("depth", "semantic")
+    spec = find_agent(name)
+    truth = ("semantic",) if spec.uses_segmentation else ()
+    sensors = tuple(dict.fromkeys((*spec.sensors, *truth)))
     env = ObjectNavEnv(split=args.split, sensors=sensors, max_steps=args.max_steps)
     try:
         agent = make_agent(name, env)
@@ -138,9 +140,8 @@ def make_agent(name: str, env: ObjectNavEnv) -> Agent:
     Raises:
         ConfigError: there is no such agent.
     """
-    if name == "oracle":
-        return Oracle(env)
-    return agents.make(name, camera=env.camera_model, robot=env.robot_model, segmenter=GroundTruthSegmenter())
+    spec = find_agent(name)
+    return build_agent(name, spec, env, segmenter=GroundTruthSegmenter(), verifier=AcceptAll(), config=spec.config)
 
 
 def wanted(env: ObjectNavEnv, args: Args) -> list[Episode]:

@@ -66,6 +66,19 @@ def test_a_pipe_gets_a_line_when_an_episode_begins_while_it_runs_and_when_it_end
     assert last == "[1/1] e0: tv monitor found after 3 steps, 1 s"
 
 
+def test_silences_grow_so_that_the_log_of_a_long_episode_stays_short() -> None:
+    stream = io.StringIO()
+    progress = ProgressReport(PlainConsole(file=stream, width=100), total=1, max_steps=500, quiet_s=0.02)
+
+    def lines() -> Iterator[dict[str, Any]]:
+        progress.started(episode("e0"), lambda: 1)
+        time.sleep(0.8)
+        yield LINE
+
+    assert list(progress.over(lines())) == [LINE]
+    assert 3 < stream.getvalue().count("running") < 12
+
+
 def test_the_time_left_follows_from_the_steps_of_ended_episodes() -> None:
     running = [each for each in report(("b0", itertools.count(10).__next__), ended=4) if "running" in each]
     found = re.findall(r"step (\d+) of 500; ([\d.]+) steps/s, about ([\d.]+) s left", running[-1])[0]

@@ -77,6 +77,19 @@ def test_a_split_written_and_read_is_the_same_in_the_same_order(folder):
     assert split.episode("tiny_0001").house == "a"
 
 
+def test_a_folder_here_with_the_name_of_a_shipped_split_is_not_read_in_two_ways(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "traps").mkdir()
+    (tmp_path / "traps" / "alone.xml").write_text(room(3, 3).spec.to_xml())
+    assert load_split("traps").version != "mine"  # a folder that is no split
+    write_split(Path("traps"), [Episode("t0", "alone", "sofa", Pose(0.0, 0.0, 0.0))], {"alone": {}}, version="mine")
+    with pytest.raises(ConfigError, match=r"write \./traps for the folder"):
+        load_split("traps")
+    assert load_split("./traps").version == "mine"
+
+
 def test_the_files_have_the_fields_that_habitats_loader_reads(folder):
     content = json.loads(gzip.decompress((folder / "content" / "b.json.gz").read_bytes()))
     assert set(content) == {
