@@ -48,7 +48,7 @@ class Args:
     """Trains an agent with PPO to drive to the sofa of a room."""
 
     minutes: cli.Positive = 30.0
-    """Time of the training."""
+    """Time of the training; the trials at the end take theirs in addition."""
     steps: cli.Count = 10_000_000
     """Most steps of the training, all environments together."""
     envs: cli.Count = 2
@@ -171,15 +171,15 @@ def main(args: Args) -> int:
     content = io.BytesIO()
     policy.save(content)
     write_atomically(args.out / "policy.zip", content.getvalue())
-    if args.trials:
-        print(f"trying the policy in {args.trials} new episodes", flush=True)
-        print(f"success without exploration: {success_of(policy, args.trials, args):.2f} of {args.trials} new episodes")
     settings = args.out / "run.toml"
     write_atomically(
         settings,
         f"agent.policy = {json.dumps(str(args.out / 'policy.zip'))}\n"
         f"camera.min_depth_m = {CAMERA.min_depth_m}\ntask.max_steps = {args.max_steps}\n",
     )
+    if args.trials:
+        print(f"trying the policy in {args.trials} new episodes", flush=True)
+        print(f"success without exploration: {success_of(policy, args.trials, args):.2f} of {args.trials} new episodes")
     print(f"policy: {args.out / 'policy.zip'}")
     print(
         f"stubborn run --agent examples.ppo_agent:AGENT --config-file {shlex.quote(str(settings))} "
