@@ -129,7 +129,8 @@ class ProgressReport:
     def _pace(self, counts: list[int], now_s: float) -> str:
         """Returns the steps per second since the first steps and the time left; "" before them.
 
-        An episode has as many steps as those that ended have on average. Before the first end it has the most steps.
+        An episode is expected to have as many steps as those that ended have on average, and the most steps before the
+        first end.
         """
         made = self._steps_done + sum(counts)
         if self._first is None and made > 0:
@@ -140,6 +141,8 @@ class ProgressReport:
         waiting = self._total - self._done - len(counts)
         left = waiting * expected + sum(max(0.0, expected - count) for count in counts)
         rate, bound = (made - self._first[1]) / (now_s - self._first[0]), "about" if self._done else "at most"
+        if left == 0.0:  # the last episodes are longer than the ones before them
+            return f"; {rate:.1f} steps/s"
         return f"; {rate:.1f} steps/s, {bound} {_duration(left / rate)} left"
 
     def _print(self, words: str) -> None:

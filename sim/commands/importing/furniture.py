@@ -30,7 +30,7 @@ class Args:
     """Import models of furniture that you have installed, for use in generated houses."""
 
     source: Path
-    """Folder with .sh3f files, or with models and a table models.csv or models.toml (its columns: docs/furniture.md)."""
+    """Folder with .sh3f files, or with models and a models.csv or models.toml (columns: docs/furniture.md)."""
     out: cli.OutFolder
     """Folder for models.json and the meshes; created if missing."""
     verbose: bool = False

@@ -86,6 +86,11 @@ def test_the_time_left_follows_from_the_steps_of_ended_episodes() -> None:
     assert left_s == pytest.approx((5 * 40 + 40 - step) / rate, abs=1.0)
 
 
+def test_no_time_left_is_named_where_the_last_episode_is_longer_than_those_before() -> None:
+    running = [each for each in report(("b0", itertools.count(60).__next__), ended=4, total=5) if "running" in each]
+    assert running[-1].endswith(" steps/s")
+
+
 def test_many_running_episodes_are_counted_and_workers_elsewhere_have_no_steps() -> None:
     many = [each for each in report(*((f"b{i}", lambda: 1) for i in range(5))) if "running" in each]
     assert "b2, step 1 of 500 and 2 more" in many[-1]
