@@ -125,6 +125,9 @@ os.environ.setdefault("GOMP_SPINCOUNT", "30000")
 
 import mujoco  # noqa: E402
 
+if not _IS_USABLE:
+    os.environ["MUJOCO_GL"] = BACKEND  # spawned workers refuse the same name
+
 
 def _disable_log_file() -> None:
     """Stops MuJoCo from writing MUJOCO_LOG.TXT into the working directory."""

@@ -24,6 +24,7 @@ from sim.bridges.stubborn_client import MOST_HEADER_BYTES, ProtocolError, unpack
 from sim.configuration import as_json
 from sim.errors import AgentError, ConfigError
 from sim.evaluation.own_code import one_line
+from sim.evaluation.rollout import ask
 from sim.interface import GOAL_CATEGORIES, Action, Agent, AgentSpec, CameraModel, Observation, RobotModel, SuccessRule
 from sim.task.trajectory import FARTHEST_M
 from sim.viewers.viewer import Colour
@@ -104,6 +105,8 @@ class ProcessAgent:
         step_timeout_s: float = 0.0,
         **others: object,
     ) -> None:
+        self.name = f"{PREFIX}{shlex.join(command)}"
+        """As `--agent` has it."""
         self._command, self._config, self._limit_s = list(command), config, step_timeout_s or float("inf")
         self._setup = {
             "camera": as_json(camera),
@@ -119,7 +122,7 @@ class ProcessAgent:
         try:
             self._start()
         except AgentError as error:
-            raise ConfigError(f"Agent '{PREFIX}{shlex.join(command)}' cannot be started: {error}.") from None
+            raise ConfigError(f"Agent '{self.name}' cannot be started: {error}.") from None
 
     def reset(self, goal: str, seed: int) -> None:
         """Starts a new episode, in a new process where the last one has failed."""
@@ -220,7 +223,7 @@ class ProcessPainter:
 
     def paint(self, size_px: int) -> NDArray[np.uint8]:
         """Returns the agent's image, fitted into (size_px, size_px, 3)."""
-        image, self._words = self._agent.map_image()
+        image, self._words = ask(f"Agent '{self._agent.name}', map_image", self._agent.map_image)
         height, width = (max(1, round(side * size_px / max(image.shape[:2]))) for side in image.shape[:2])
         kind = cv2.INTER_AREA if height < image.shape[0] else cv2.INTER_NEAREST
         top, left = (size_px - height) // 2, (size_px - width) // 2

@@ -245,12 +245,14 @@ class AgentProcess:
     def _keep(self, printed: bytes) -> None:
         """Keeps the end of what the agent prints, and shows its beginning."""
         self._tail = (self._tail + printed)[-TAIL_BYTES:]
-        room = max(0, PRINTED_BYTES - self._printed_bytes)
+        before = self._printed_bytes
         self._printed_bytes += len(printed)
-        if printed[:room]:
-            rest = "" if self._printed_bytes <= PRINTED_BYTES else "\n[the agent prints more, which is left out]\n"
+        shown = printed[: max(0, PRINTED_BYTES - before)].decode("utf-8", errors="replace")
+        if before <= PRINTED_BYTES < self._printed_bytes:
+            shown += "\n[the agent prints more, which is left out]\n"
+        if shown:
             with contextlib.suppress(OSError, ValueError):
-                sys.stderr.write(printed[:room].decode("utf-8", errors="replace") + rest)
+                sys.stderr.write(shown)
 
     def _next_message(self) -> Answer | None:
         """Removes the next whole message from what was received; None: it is not complete.

@@ -78,7 +78,10 @@ def _run(words: list[str]) -> int:
         runpy.run_path(words[0], run_name="__main__")
         return 0
     except SystemExit as stop:
-        return stop.code if isinstance(stop.code, int) else int(stop.code is not None)
+        if stop.code is None or isinstance(stop.code, int):
+            return stop.code or 0
+        print(stop.code, file=sys.stderr)  # as Python does
+        return 1
     except (ObjectNavError, KeyboardInterrupt):
         raise
     except BaseException as error:

@@ -18,7 +18,7 @@ from sim.composition.imports import import_attribute
 from sim.composition.isolation import HABITAT
 from sim.errors import AgentError, ConfigError, ObjectNavError
 from sim.evaluation.own_code import place_of, text_of
-from sim.evaluation.watch import is_stop, marked
+from sim.evaluation.watch import FACTORY_S, is_stop, marked
 from sim.interface import Agent, AgentFactory, AgentSpec, Segmenter
 from stubborn import agents
 from stubborn.agent import AgentConfig
@@ -165,7 +165,7 @@ def build_agent(
     if spec.uses_ground_truth:
         parts["truth"] = env
     try:
-        with marked(f"Agent '{name}', its factory"):
+        with marked(f"Agent '{name}', its factory", FACTORY_S):
             return spec.build(name, max_steps=env.task_config.max_steps, step_timeout_s=step_timeout_s, **parts)
     except BaseException as error:
         if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):

@@ -60,7 +60,7 @@ def episodes_of(setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
             choose = _named_episodes if options.only else _first_episodes
             episodes = choose(split_of_agent, options)
         else:
-            episodes = _drawn_episodes(env, setup)
+            episodes = drawn_episodes(env, setup)
     finally:
         env.close()
     return episodes, {"name": split.name, "version": split.version, "sha256": split.sha256}
@@ -75,7 +75,7 @@ MAX_REPEATS = 60
 """Draws in a row that give an episode that is there already, until there is no other one."""
 
 
-def _drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
+def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
     """Returns new episodes in the one house of a run; without noise they are all different.
 
     Raises:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import operator
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -95,7 +96,8 @@ class OwnSegmenter:
         self._shape = camera.height_px, camera.width_px
         names = [each if isinstance(each, str) else each.name for each in spec.sensors]
         self._reads = frozenset(("depth", *names, *POSE_SENSORS))
-        self._frame: Observation | None = None
+        self._arrays: tuple[NDArray, ...] = ()
+        """Of the frame; an agent may put them into a dictionary of its own."""
         self._done: dict[str, Any] = {}
         """Results of the frame by method and goal."""
 
@@ -130,8 +132,9 @@ class OwnSegmenter:
 
     def _once(self, observation: Observation, key: str, compute: Callable[[Observation], Any]) -> Any:
         """Returns a result of a frame, computed from what the segmenter declares at the first request."""
-        if observation is not self._frame:
-            self._frame, self._done = observation, {}
+        arrays = tuple(observation.values())
+        if len(arrays) != len(self._arrays) or any(map(operator.is_not, arrays, self._arrays)):
+            self._arrays, self._done = arrays, {}
         if key not in self._done:
             seen = {name: value for name, value in observation.items() if name in self._reads}
             self._done[key] = compute(seen)

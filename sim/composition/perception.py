@@ -111,12 +111,16 @@ def _checked(given: Perceived) -> Perceived:
     scores, categories = given
     if scores is not None:
         target, best_other = (np.asarray(each, np.float32) for each in scores)
-        if target.ndim != 2 or not (0.0 <= target.min() <= target.max() <= 1.0):
+        if any(each.ndim != 2 or not 0.0 <= each.min() <= each.max() <= 1.0 for each in (target, best_other)):
             raise ValueError("scores must be Scores(target, best_other), both (h, w) in [0, 1]")
         scores = Scores(target, best_other)
     if categories is not None:
         categories = np.asarray(categories)
-        if categories.ndim != 2 or categories.dtype.kind not in "iu" or not 0 <= categories.max() < len(MPCAT40):
+        if (
+            categories.ndim != 2
+            or categories.dtype.kind not in "iu"
+            or not (0 <= categories.min() <= categories.max() < len(MPCAT40))
+        ):
             raise ValueError("categories must be mpcat40 ids 0 to 40, (h, w)")
         categories = categories.astype(np.uint8)
     return Perceived(scores, categories)

@@ -12,9 +12,9 @@ from rich.console import Console
 from sim.analysis import display
 from sim.analysis.progress import ProgressReport
 from sim.composition.agents import notes_on
-from sim.composition.isolation import isolation_of
+from sim.composition.isolation import RUNNER, isolation_of
 from sim.composition.options import RunOptions
-from sim.composition.record import code_of, error_line, record_of
+from sim.composition.record import error_line, record_of
 from sim.composition.seed_key import seed_key_of
 from sim.composition.setup import Setup
 from sim.episodes.splits import Episode, load_split
@@ -49,7 +49,7 @@ def run_missing(
         options.executor, workers=options.workers, address=options.address, isolation=isolation_of(options)
     )
     record = record_of(setup, split)
-    run = RunDirectory(options.out, record)
+    run, code = RunDirectory(options.out, record), record["versions"]["code"]
     try:
         if run.healed:
             console.print(run.healed)
@@ -57,7 +57,7 @@ def run_missing(
         again = run.errors([episode.episode_id for episode in episodes]) if options.retry_errors else set()
         done = {line["episode_id"] for line in run.lines} - again
         if not options.keep_results:
-            run.require_own_code(code_of(options), done)
+            run.require_own_code(code, done)
         if options.retry_errors:
             console.print(f"{len(again)} episodes that ended with an error are run again.")
         todo = [episode for episode in episodes if episode.episode_id not in done]
@@ -71,12 +71,12 @@ def run_missing(
             console.print(note, highlight=False, soft_wrap=True)
         if setup.borrowed_parameters:
             console.print(setup.borrowed_parameters, highlight=False, markup=False, soft_wrap=True)
-        _report_resumed(run, len(episodes), len(todo), code_of(options), console)
+        _report_resumed(run, len(episodes), len(todo), code, console)
         if todo and must_compile():
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
             if (cache := choose_cache()) is not None:
                 console.print(f"Neither the installation nor a home folder can be written: it is kept in {cache}.")
-        spec = RunnerSpec("sim.composition.runner:EpisodeRunner", setup)
+        spec = RunnerSpec(f"{RUNNER}:EpisodeRunner", setup)
         progress = ProgressReport(console, total=len(todo), max_steps=setup.config.task.max_steps)
 
         def lost(episode: Episode, reason: str) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import fcntl
+import os
 import secrets
 from pathlib import Path
 
@@ -49,7 +50,7 @@ def _shared_key(file: Path, *, make: bool) -> str | None:
         file.parent.mkdir(parents=True, exist_ok=True)
         with open_to_grow(file, "a+") as stream:
             fcntl.flock(stream, fcntl.LOCK_EX)  # shards begin at the same time
-            if stream.tell() == 0:
+            if stream.seek(0, os.SEEK_END) == 0:  # another shard may have written after the file was opened
                 stream.write(secrets.token_hex(8))
     if not file.exists():
         return None

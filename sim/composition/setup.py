@@ -102,7 +102,10 @@ class Setup:
         options = self.options
         named = {name: getattr(options, name) for name in ("out", "house", "labels", "root")}
         paths = {name: path.absolute() for name, path in named.items() if path is not None}
-        return replace(self, options=replace(options, **paths))
+        robot = self.config.robot
+        if robot.file is not None:
+            robot = replace(robot, file=replace(robot.file, path=robot.file.path.absolute()))
+        return replace(self, options=replace(options, **paths), config=replace(self.config, robot=robot))
 
     def require_planned(self, split: Split) -> None:
         """Raises ConfigError where a split is not the one from which the episodes were planned."""

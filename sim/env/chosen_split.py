@@ -54,6 +54,8 @@ def _with_houses(split: Split, names: Sequence[str]) -> Split:
         there_is = ", ".join(split.houses[:5]) + (" ..." if len(split.houses) > 5 else "")
         raise ConfigError(f"Split '{split.name}' has no house '{unknown[0]}'. It has: {there_is}.")
     episodes = tuple(episode for episode in split.episodes if episode.house in names)
+    if split.episodes and not episodes:
+        raise ConfigError(f"Split '{split.name}' has no episode in {', '.join(names)}.")
     return replace(split, house_paths={name: split.house_paths[name] for name in names}, episodes=episodes)
 
 

@@ -159,6 +159,8 @@ class _Process:
 
     def receive(self) -> Any:
         try:
+            if self.loss:  # it was killed, and a process that it forked may keep the pipe open
+                raise EOFError
             message = self.connection.recv()
         except Exception:  # the pipe was closed, or code of a user wrote to it
             where, killed = self.calls.where, self.loss

@@ -66,7 +66,7 @@ def hash_of_own(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
     Returns:
         The hash; "" where no module is the user's.
     """
-    contents: dict[str, bytes] = {}
+    contents: dict[Path, tuple[str, bytes]] = {}
     for name in modules:
         file = Path(getattr(sys.modules.get(name), "__file__", None) or "<none>").resolve()
         if file.suffix == ".py" and file.is_file() and _is_users(file):
@@ -76,20 +76,20 @@ def hash_of_own(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
     for file in others:
         if file.suffix == ".py":
             _read_with_imports(file, file.parent, contents)
-    for place in sorted(contents):
-        digest.update(place.encode() + contents[place])
+    for place, source in sorted(contents.values()):
+        digest.update(place.encode() + source)
     for file in (each for each in others if each.suffix != ".py"):
         digest.update(file.name.encode() + bytes.fromhex(sha256_of(file, what="File of an agent")))
     return digest.hexdigest()[:12] if contents or others else ""
 
 
-def _read_with_imports(file: Path, root: Path, contents: dict[str, bytes]) -> None:
-    """Adds a file and what it imports from below `root` to the contents, by their paths relative to it."""
-    place = str(file.relative_to(root))
-    if place in contents:
+def _read_with_imports(file: Path, root: Path, contents: dict[Path, tuple[str, bytes]]) -> None:
+    """Adds a file and what it imports from below `root` to the contents, with their paths relative to it."""
+    if file in contents:
         return
-    contents[place] = read_bytes(file, what="Module")
-    for module in _imported(contents[place], file, root):
+    source = read_bytes(file, what="Module")
+    contents[file] = str(file.relative_to(root)), source
+    for module in _imported(source, file, root):
         path = root.joinpath(*module.split("."))
         for each in (path.with_name(f"{path.name}.py"), path / "__init__.py"):
             if each.is_file() and _is_users(each):

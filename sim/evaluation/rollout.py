@@ -170,20 +170,19 @@ def ask(where: str, call: Callable[[], Any]) -> Any:
     """Returns what a call of the agent returns.
 
     Raises:
-        AgentError: it raised an error, or called `exit`; the message begins with `where` and ends with file and line.
+        AgentError: it raised an error, or called `exit`; the message begins with `where` and
+            ends with the file and line of the user's code.
     """
     try:
         with marked(where):
             return call()
-    except AgentError as error:  # of a part of the agent, which names its own line
-        raise AgentError(f"{where}: {error}") from error
     except BaseException as error:  # also `SystemExit`, `CancelledError` and classes of the user
         if is_stop(error):
             raise
         if debug():
             traceback.print_exc()
-        if isinstance(error, AgentError):  # of a bridge to another interface or process; the message has it all
-            raise AgentError(f"{where}: {text_of(error)}") from None
+        if isinstance(error, AgentError):  # of a part of the agent or of a bridge, whose message names the place
+            raise AgentError(f"{where}: {text_of(error)}") from error
         reason = f"{type(error).__name__}: {text_of(error)}"
         raise AgentError(f"{where}: {reason}{place_of(error, below=__file__)}") from error
 

@@ -23,6 +23,10 @@ BETWEEN_CALLS_S = 1800.0
 """Longest time without a call: loading a house, rendering, compiling the kernels in the first run."""
 
 
+FACTORY_S = 120.0
+"""Shortest limit for making an agent, which loads weights: `--step-timeout` is that of its steps."""
+
+
 class Calls:
     """Memory of one worker, shared with the process that watches it.
 
@@ -34,6 +38,7 @@ class Calls:
     def __init__(self, context: SpawnContext, *, limit_s: float) -> None:
         self._mark = context.RawArray("d", 1)  # time of the last begin, or minus that of the last end
         self._where = context.RawArray("c", WHERE_BYTES)
+        self._least_s = context.RawArray("d", 1)  # of the call that runs
         self.step_count: MutableSequence[int] = context.RawArray("q", 1)
         """One number: the steps of the episode that runs."""
         self.limit_s = limit_s
@@ -44,8 +49,9 @@ class Calls:
         """The call that runs, for example "Agent 'mine:make', step 3"; "" between two calls."""
         return self._where.value.decode(errors="replace") if self._mark[0] > 0.0 else ""
 
-    def begin(self, where: str) -> None:
-        """Marks the beginning of a call, in the worker."""
+    def begin(self, where: str, least_s: float = 0.0) -> None:
+        """Marks the beginning of a call, in the worker; its limit is at least `least_s`."""
+        self._least_s[0] = least_s
         self._where.value = where.encode(errors="replace")[: WHERE_BYTES - 1]
         self._mark[0] = time.monotonic()
 
@@ -67,7 +73,7 @@ class Calls:
         passed_s, self._looked_s = min(now_s - self._looked_s, 2.0 * TICK_S), now_s
         self._waited_s = self._waited_s + passed_s if mark == self._seen else 0.0
         self._seen = mark
-        limit_s = self.limit_s if mark > 0.0 else max(self.limit_s, BETWEEN_CALLS_S)
+        limit_s = max(self.limit_s, self._least_s[0] if mark > 0.0 else BETWEEN_CALLS_S)
         if self.limit_s == 0.0 or self._waited_s <= limit_s:
             return ""
         return (
@@ -103,12 +109,12 @@ def is_stop(error: BaseException) -> bool:
 
 
 @contextlib.contextmanager
-def marked(where: str) -> Iterator[Any]:
-    """Marks a call of the agent for as long as the `with` block runs."""
+def marked(where: str, least_s: float = 0.0) -> Iterator[Any]:
+    """Marks a call of the agent for as long as the `with` block runs; it may take at least `least_s`."""
     if _calls is None:
         yield
         return
-    _calls.begin(where)
+    _calls.begin(where, least_s)
     try:
         yield
     finally:

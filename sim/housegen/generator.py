@@ -41,7 +41,7 @@ from sim.houses.writing import house_text
 from sim.world.check import check_house
 
 GENERATOR_VERSION = 3
-"""Increased whenever the same seed gives another house."""
+"""Increased whenever the same seed gives another house; what `HouseConfig.exact` changes is recorded as such."""
 MAX_TRIES = 12
 MAX_REASONS = 3
 """Reasons that the error of a seed without a house lists."""

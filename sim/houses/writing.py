@@ -58,6 +58,8 @@ def write_house(spec: mujoco.MjSpec, folder: str | Path, name: str | None = None
     files: dict[Path, bytes | str] = {path: house_text(spec, SHARED_TEXTURES)}
     for texture in spec.textures:
         for file in (each for each in (texture.file, *texture.cubefiles) if each):
+            if Path(file).name != file:
+                raise HouseError(f"House '{name}': texture '{file}' must be a file name without a folder.")
             source = asset_path(spec, Path(spec.modelfiledir), file, texture=True)
             files[folder / SHARED_TEXTURES / file] = read_bytes(source, what="Texture", error=HouseError)
     write_together(files)

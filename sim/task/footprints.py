@@ -86,7 +86,7 @@ class Footprints:
     def of(self, data: mujoco.MjData, instance: Instance) -> Footprint | None:
         """Returns the footprint of an instance in a state, kinematics computed; None where nothing of it is rendered.
 
-        The first state of each instance is kept, which is the one of the house file, and the last one.
+        The first and the last state of each instance are kept.
         """
         geoms = instance.geom_ids
         place = data.geom_xpos[list(geoms)].tobytes() + data.geom_xmat[list(geoms)].tobytes()

@@ -201,7 +201,7 @@ class ChaseView:
 
 
 def hidden_obstacles(world: World) -> NDArray[np.bool_]:
-    """Returns (ngeom,) True for obstacles that no camera renders; floors, ceilings and the robot are none."""
+    """Returns (ngeom,) True for obstacles that no camera renders; floors, ceilings and the robot do not count."""
     model, labels = world.model, world.labels
     flat = np.isin(labels.geom_category, [MPCAT40_ID["floor"], MPCAT40_ID["ceiling"]])
     hidden = collidable_geoms(model) & ~rendered_geoms(model) & (opacity(model) > 0.0) & ~flat

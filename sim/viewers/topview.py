@@ -114,9 +114,9 @@ class TopView:
             for piece in footprint.parts:
                 cv2.fillConvexPoly(image, self._pixels(piece.vertices_m), INSTANCE, cv2.LINE_AA)
         if abs(start.floor_z_m - floor_z_m) < LEVEL_M:
-            way = self._pixels(shortest_path_m(space, target, (start.x_m, start.y_m)))
-            cv2.polylines(image, [way.reshape(-1, 1, 2)], False, SHORTEST, 2, cv2.LINE_AA)
-            cv2.circle(image, way[0].tolist(), 4, SHORTEST, cv2.FILLED, cv2.LINE_AA)
+            path_px = self._pixels(shortest_path_m(space, target, (start.x_m, start.y_m)))
+            cv2.polylines(image, [path_px.reshape(-1, 1, 2)], False, SHORTEST, 2, cv2.LINE_AA)
+            cv2.circle(image, path_px[0].tolist(), 4, SHORTEST, cv2.FILLED, cv2.LINE_AA)
         return image
 
     def _from_cells(self, space: FreeSpace) -> NDArray[np.float64]:

@@ -41,7 +41,7 @@ class Args:
     name: tuple[str, ...] = ()
     """Further names or addresses under which browsers reach this machine; needed with --host 0.0.0.0."""
     agent: tuple[str, ...] = ()
-    """Your agents, as package.module:NAME; the page offers them beside those of --list-agents."""
+    """Your agents, as package.module:NAME; the page offers them in addition to those of --list-agents."""
     explorer: tuple[str, ...] = ()
     """Your explorers, as package.module:NAME."""
     semantics: tuple[str, ...] = ()
@@ -93,8 +93,9 @@ def main(args: Args) -> int:
     config = uvicorn.Config(
         app, log_level="warning", access_log=False, ws_max_size=MAX_MESSAGE_BYTES, timeout_graceful_shutdown=1
     )
-    for name in ("uvicorn.error", "asyncio", "sim.web.server"):
-        logging.getLogger(name).addFilter(in_one_line)
+    for handler in (*logging.getLogger("uvicorn").handlers, logging.lastResort):  # of all loggers, uvicorn's and others
+        if handler is not None:
+            handler.addFilter(in_one_line)
     names = sorted(hosts - HERE) or ["127.0.0.1"]
     addresses = ", ".join(f"http://{f'[{name}]' if ':' in name else name}:{port}" for name in names)
     display.make_console().print(

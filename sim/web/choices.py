@@ -17,7 +17,7 @@ from sim.composition.human import HUMAN_NAME
 from sim.composition.options import RunOptions
 from sim.composition.segmenters import KINDS, NetworkConfig, find_segmentation
 from sim.episodes.splits import load_split, one_house, shipped_splits
-from sim.errors import ConfigError
+from sim.errors import ConfigError, HouseError
 from sim.houses.labels import read_labels
 from sim.interface import GOAL_CATEGORIES
 from sim.reading import convert
@@ -125,7 +125,11 @@ class Choices:
         for name in ("seed", "seed_key", "noise", "profile", "verification"):
             if record.get(name) is not None:
                 options = replace(options, **{name: record[name]})
-        return replace(self._wish(convert(asked, _Start, where="The run's config.json"), options), record=record)
+        wish = self._wish(convert(asked, _Start, where="The run's config.json"), options)
+        if file:  # its episodes are drawn again, so everything that they depend on is that of the run
+            drawn = {name: record.get(name) for name in ("goal", "start_deg")}
+            wish = replace(wish, options=replace(wish.options, **drawn, episodes=record["episodes"]))
+        return replace(wish, record=record)
 
     def _wish(self, asked: _Start, options: RunOptions) -> Wish:
         """Returns an episode; raises ConfigError where a part of it is not offered."""
@@ -198,6 +202,8 @@ def _goals_of_house(file: Path, options: RunOptions) -> Goals:
     fixed = split.sidecar(file.stem).goal
     found = read_labels(house.spec.copy().compile(), rules=house.rules).categories()
     goals = [goal for goal in GOAL_CATEGORIES if goal in found and fixed in (None, goal)]
+    if not goals:
+        raise HouseError(f"House '{file}' has no object of a goal category to look for.")
     return {file.stem: {goal: [] for goal in sorted(goals)}}
 
 

@@ -42,7 +42,7 @@ class Wish:
     """None: another one of this house and goal each time."""
     driver: Driver = "agent"
     options: RunOptions
-    """Of the episode's run."""
+    """Options of the run that the episode belongs to."""
     record: Mapping[str, Any] | None = None
     """The `config.json` of the finished run to which the episode belongs; None: it belongs to none."""
 

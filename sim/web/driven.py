@@ -53,8 +53,10 @@ class DrivenRuns:
         person = setup_of_person(setup, None, with_agent=with_agent)
         run = self._run
         if run is None or person.options != self._options or episode.episode_id in self._done:
-            run = self._new_run()
-            self._options, self._done = person.options, set()
+            run, done = self._new_run(), set[str]()
+        else:
+            done = self._done
+        options = person.options
         person = replace(person, options=replace(person.options, out=run))
         split = {"name": env.split.name, "version": env.split.version, "sha256": env.split.sha256}
         content = record_of(person, split)
@@ -67,8 +69,7 @@ class DrivenRuns:
         finally:
             directory.discard_if_empty()
             directory.close()
-        self._run = run
-        self._done.add(episode.episode_id)
+        self._run, self._options, self._done = run, options, done | {episode.episode_id}
         return run
 
     def _new_run(self) -> Path:

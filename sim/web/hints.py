@@ -25,7 +25,7 @@ class Hints:
         """
         if step == self._step:
             return self._given
-        # The oracle takes a position off its plan for a blocked step, so it begins anew unless its action was taken.
+        # The oracle takes a position off its route for a blocked step, so it begins anew unless its action was taken.
         followed = self._step is not None and step == self._step + 1 and last == self._given
         reachable = self._env.scene.task.metrics()["distance_to_goal"] is not None
         if reachable and not followed:

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from sim.cli import USAGE_ERRORS
+from sim.composition.environments import drawn_episodes
 from sim.composition.record import record_of
 from sim.composition.runner import Parts, build_parts
 from sim.composition.setup import Setup, resolve
@@ -112,7 +113,7 @@ class Session:
         self._tell(wish, "loading", f"Loading house {wish.house} and the agent {wish.agent} ...")
         made = self._made_for(wish)
         parts, pictures = made.parts, made.pictures
-        episode = choose_episode(parts.env, wish, self._turn)
+        episode = choose_episode(parts.env, wish, self._turn, made.setup)
         self._turn += 1
         shared = SharedAgent(parts, pictures, self.controls, self._audience)
         about: dict[str, Any] = {"note": unlike_the_run(made.setup, parts.env, wish.record)}
@@ -268,12 +269,19 @@ class _Watcher:
         pass
 
 
-def choose_episode(env: ObjectNavEnv, wish: Wish, turn: int) -> Episode:
+def choose_episode(env: ObjectNavEnv, wish: Wish, turn: int, setup: Setup) -> Episode:
     """Returns the episode that a user asks for; without an id another one of its house and goal turn after turn.
+
+    An episode of a finished run in a house file is drawn again with all others of that run.
 
     Raises:
         EpisodeError: there is no such episode, or none can be drawn in a house file.
     """
+    if wish.options.house is not None and wish.record is not None:
+        again = {episode.episode_id: episode for episode in drawn_episodes(env, setup)}
+        if wish.episode_id not in again:
+            raise EpisodeError(f"The run has no episode '{wish.episode_id}'. It has: {', '.join(list(again)[:5])}, ...")
+        return again[wish.episode_id]
     if wish.options.house is not None:
         return _draw_episode(env, wish, turn)
     if wish.episode_id is not None:
@@ -285,7 +293,7 @@ def choose_episode(env: ObjectNavEnv, wish: Wish, turn: int) -> Episode:
 
 
 def _draw_episode(env: ObjectNavEnv, wish: Wish, turn: int) -> Episode:
-    """Returns the episode that `stubborn run --house` draws under the same number."""
+    """Returns a new episode in a house file, with the goal and start that the options fix."""
     number = re.fullmatch(rf"{re.escape(wish.house)}_(\d{{4,9}})", wish.episode_id or f"{wish.house}_{turn:04d}")
     if number is None:
         raise EpisodeError(f"Episodes of house '{wish.house}' are {wish.house}_0000 and so on, not {wish.episode_id}.")

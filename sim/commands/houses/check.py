@@ -17,7 +17,7 @@ from __future__ import annotations
 import functools
 import statistics
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -140,9 +140,10 @@ def _check_seeds(args: Args) -> Iterator[Checked]:
 
 def _check_split(args: Args, split: str) -> Iterator[Checked]:
     """Checks the houses of a split."""
-    houses: Sequence[str] = load_split(split).houses
-    generated = args.furnished or _is_generated(load_split(split))
-    return ordered_map(functools.partial(_check_named, split, args.views, generated), houses, workers=args.workers)
+    found = load_split(split)
+    generated = args.furnished or _is_generated(found)
+    check = functools.partial(_check_named, found, args.views, generated)
+    return ordered_map(check, found.houses, workers=args.workers)
 
 
 def _is_generated(split: Split) -> bool:
@@ -164,9 +165,9 @@ def _check_seed(config: HouseConfig, views: int, seed: int) -> Checked:
     return Checked(name, faults, tries=house.tries, rejects=house.rejects, seconds=seconds)
 
 
-def _check_named(split: str, views: int, generated: bool, name: str) -> Checked:
+def _check_named(split: Split, views: int, generated: bool, name: str) -> Checked:
     """Checks one house of a split."""
-    return _check_loaded(load_split(split).load_house(name), views, generated=generated)
+    return _check_loaded(split.load_house(name), views, generated=generated)
 
 
 def _check_loaded(house: House, views: int, *, generated: bool) -> Checked:

@@ -105,7 +105,7 @@ def _export_named(out: Path, source: dict[str, Any], name: str) -> Exported:
 def _export_seed(out: Path, config: HouseConfig, seed: int) -> Exported:
     """Generates the house of a seed and exports it."""
     source = {"pool": config.pool, "kind": config.kind, "area_m2": config.area_m2, "seed": seed}
-    source |= {"generator": GENERATOR_VERSION}
+    source |= {"generator": GENERATOR_VERSION, "exact": config.exact}
     return _export(out, name_of(config, seed), source, lambda: house_of(config, seed))
 
 

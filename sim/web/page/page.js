@@ -76,6 +76,7 @@ function showWanted() {
 function told(news) {
   if (news.kind === "refused") {
     $("message").textContent = news.message;
+    following = false;
     return;
   }
   state = news;
