@@ -18,6 +18,7 @@ from sim.web.choices import Choices, Offer
 from sim.web.controls import Wish
 from sim.web.driven import DrivenRuns
 from sim.web.session import Frame, Session
+from tests.helpers.worlds import room, with_box
 
 START = {"split": "traps", "house": "wedged_spawn", "goal": "bed", "agent": "oracle", "semantics": "gt"}
 OWN_AGENT = "examples.my_agent:AGENT"
@@ -130,6 +131,19 @@ def test_an_episode_of_a_run_is_repeated_exactly(own: Choices, house: Path, tmp_
     (begun,) = (state for state in audience.told if state["phase"] == "playing")
     assert (begun["episode_id"], begun["note"]) == (line["episode_id"], "")
     last = audience.frames[-1].facts
+    assert (last["step"], last["driven_m"]) == (line["num_steps"], line["path_length"])
+
+
+def test_an_episode_of_a_run_without_noise_in_a_house_with_two_goals_begins_where_it_began(tmp_path: Path) -> None:
+    built = with_box(room(5, 5), "sofa_00", centre_m=(2.0, 0, 0.4), half_m=(0.3, 0.6, 0.4))
+    built = with_box(built, "bed_00", centre_m=(-2.0, 0, 0.3), half_m=(0.3, 0.6, 0.3))
+    (tmp_path / "two.xml").write_text(built.spec.to_xml())
+    options = ["--house", str(tmp_path / "two.xml"), "--agent", "oracle", "--semantics", "gt", "--seed", "3"]
+    assert sim_run.entry([*options, "--episodes", "3", "--out", str(tmp_path / "run")]) == 0
+    line = read_result_lines(tmp_path / "run" / "results.jsonl").values[2]
+    offered = Choices(Offer(houses=(tmp_path / "two.xml",), options=RunOptions(weights=None, profile="fast")))
+    wish = offered.again(read_record(tmp_path / "run" / "config.json"), line, "agent")
+    last = play(wish, tmp_path).frames[-1].facts
     assert (last["step"], last["driven_m"]) == (line["num_steps"], line["path_length"])
 
 
