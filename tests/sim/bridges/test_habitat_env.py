@@ -248,6 +248,7 @@ def test_a_script_runs_with_its_arguments(house: Path, tmp_path: Path, capsys: p
         ("import habitat.datasets", 2, "'habitat.datasets' is not part of the stand-in"),
         ("1 / 0", 2, "script.py': ZeroDivisionError: division by zero (test_an_error"),
         ("raise SystemExit(3)", 3, ""),
+        ("raise SystemExit('No weights.')", 1, "No weights."),
         ("def f(:", 2, "SyntaxError"),
         (None, 2, "There is no script"),
     ],

@@ -10,6 +10,7 @@ import pytest
 
 from sim.composition import setup as composition
 from sim.composition.options import RunOptions
+from sim.composition.seed_key import KEY_FILE, seed_key_of
 from sim.composition.setup import resolve
 from sim.interface import CameraModel, RobotModel
 from sim.run import entry
@@ -71,3 +72,11 @@ def test_presets_are_configurations_of_one_agent() -> None:
         assert type(config) is AgentConfig, name
         assert agents.SPECS[name].description == description
         assert agents.SPECS[name].make is StubbornAgent
+
+
+def test_a_shard_takes_the_key_that_another_one_has_written_since_it_opened_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("fcntl.flock", lambda *_: (tmp_path / KEY_FILE).write_text("of another shard"))
+    options = RunOptions(out=tmp_path / "shard_1_of_2", shard="1/2")
+    assert seed_key_of(options) == "of another shard"
