@@ -147,7 +147,7 @@ def test_fields_of_explorers_are_set():
     [
         ({"batch": 1}, "must be >= 2, got 1 and 1024"),
         ({"envs": 1, "rollout": 1}, "must be >= 2, got 256 and 1"),
-        ({"beside": (Path("other"),)}, r"--beside: 'other/train.csv' is not a curve of this command"),
+        ({"beside": (Path("other"),)}, r"Curve 'other/train.csv' is not a table of numbers"),
     ],
 )
 def test_options_that_would_fail_later_are_refused(
