@@ -101,6 +101,7 @@ def test_the_same_seed_gives_the_same_bytes_and_another_seed_other_starts(folder
     assert made(0) != made(1)
 
 
+@pytest.mark.slow
 def test_two_processes_write_the_same_bytes_as_one(folder):
     def made(workers: int) -> list[bytes]:
         main(Args(split=folder, episodes=4, workers=workers))

@@ -45,6 +45,7 @@ def rule(house: str, *, seed: int) -> Demonstration:
     )
 
 
+@pytest.mark.slow
 def test_a_training_learns_a_rule_and_is_continued(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     for number in range(60):  # house_0 is held back
         write_demonstration(tmp_path / "shown" / f"{number}.npz", rule(f"house_{number % 5}", seed=number))

@@ -118,6 +118,7 @@ def test_the_recipe_with_balanced_objects_trains_continues_and_says_what_it_draw
         main(options(tmp_path, **recipe, rare_share=0.1))
 
 
+@pytest.mark.slow
 def test_a_killed_run_keeps_its_best_network_and_has_no_row_twice(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -186,6 +187,7 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
         main(options(tmp_path, out=tmp_path / "other", init=first, size="unet"))
 
 
+@pytest.mark.slow
 def test_a_network_on_depth_is_trained_further_with_geometry_and_then_keeps_it(tmp_path: Path) -> None:
     write_views(tmp_path / "train", 3, rows_px=48)
     write_views(tmp_path / "val", 2, rows_px=48)
@@ -217,6 +219,7 @@ def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> 
         main(options(tmp_path, views=(tmp_path / "train", tmp_path / "nothing")))
 
 
+@pytest.mark.slow
 def test_a_run_is_continued_with_its_own_options_and_for_longer_only(tmp_path: Path) -> None:
     for name in ("train", "other"):
         write_views(tmp_path / name, 3 + len(name) % 2)

@@ -144,6 +144,7 @@ def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
     assert len(asked) == len(judged)  # candidates that are only seen from afar are not logged
 
 
+@pytest.mark.slow
 def test_two_workers_log_the_same_as_one(split: Path, tmp_path: Path):
     one = log_after(split, tmp_path / "one", 3)
     args = train_verifier.Args(

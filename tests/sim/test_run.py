@@ -37,14 +37,14 @@ def run(*options: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command(*options), capture_output=True, text=True, check=False)
 
 
-def test_results_are_the_same_twice_and_with_two_workers(house: Path, tmp_path: Path) -> None:
-    for name, workers in (("once", 1), ("twice", 1), ("shared", 2)):
+def test_results_are_the_same_in_one_process_and_in_two_workers(house: Path, tmp_path: Path) -> None:
+    for name, workers in (("once", 1), ("shared", 2)):
         options = ("--house", house, "--episodes", 3, "--workers", workers, "--config", "task.max_steps=40")
         done = run(*options, "--out", tmp_path / name)
         assert done.returncode == 0, done.stderr
         assert "95 % interval" in done.stdout
     assert len(lines_of(tmp_path / "once")) == 3
-    assert lines_of(tmp_path / "once") == lines_of(tmp_path / "twice") == lines_of(tmp_path / "shared")
+    assert lines_of(tmp_path / "once") == lines_of(tmp_path / "shared")
 
 
 def test_another_seed_draws_other_starts(house: Path, tmp_path: Path) -> None:
@@ -336,7 +336,7 @@ def test_an_agent_that_kills_its_process_costs_no_line_and_is_not_run_again_with
 
 
 def test_a_folder_made_with_other_options_is_refused(house: Path, tmp_path: Path) -> None:
-    options = ("--agent", "random", "--house", house, "--out", tmp_path)
+    options = ("--agent", "random", "--house", house, "--config", "task.max_steps=20", "--out", tmp_path)
     assert run(*options, "--episodes", 1).returncode == 0
     refused = run(*options, "--episodes", 1, "--seed", 1)
     assert refused.returncode == 2

@@ -18,6 +18,7 @@ def options(tmp_path: Path, **changes: object) -> Args:
     return Args(**{**base, "hours": 0.0002, "turn_hours": 0.0001, **changes})  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_networks_take_turns_until_all_have_trained_for_the_same_time(tmp_path: Path) -> None:
     write_views(tmp_path / "train", 4, rows_px=48)
     write_views(tmp_path / "val", 2, rows_px=48)

@@ -99,6 +99,7 @@ def test_a_split_of_a_thousand_episodes_takes_well_under_a_second() -> None:
     assert time.process_time() - began_s < 1.0
 
 
+@pytest.mark.slow
 def test_a_ratio_of_medians_is_significant_when_its_interval_excludes_one() -> None:
     rng, names = np.random.default_rng(0), houses_of(20, 10)
     first = rng.uniform(50.0, 150.0, 200)
@@ -111,6 +112,7 @@ def test_a_ratio_of_medians_is_significant_when_its_interval_excludes_one() -> N
     assert (half.significant, same.mean, same.significant) == (True, 1.0, False)
 
 
+@pytest.mark.slow
 def test_the_interval_of_a_ratio_of_medians_holds_the_true_one_in_about_95_of_100_samples() -> None:
     rng, held, names = np.random.default_rng(0), 0, houses_of(20, 5)
     for _ in range(60):

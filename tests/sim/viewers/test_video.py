@@ -88,6 +88,7 @@ def test_filming_changes_no_result_line_with_noise_of_any_sensor(house: Path, tm
     assert len(frames_of(video_file(tmp_path / "filmed", line["episode_id"]))) == line["num_steps"] + video.END_FRAMES
 
 
+@pytest.mark.slow
 def test_a_run_resumed_with_two_workers_records_the_remaining_episodes(house: Path, tmp_path: Path) -> None:
     options = ["--agent", "tests.helpers.runners:make_quitter", "--house", str(house), "--out", str(tmp_path)]
     assert entry([*options, "--episodes", "1"]) == 0
