@@ -236,7 +236,7 @@ _TRANSFER = (
 _UNSEEN = (
     *_MODELS,
     "stubborn houses generate --furniture {tmp}/models --furniture-split transfer --only-imported"
-    " --first-seed 7000 --houses 1 --area-m2 60 --out {tmp}/unseen",
+    " --first-seed 7000 --houses 2 --area-m2 60 --out {tmp}/unseen",
     "stubborn episodes --split {tmp}/unseen --recipe val --episodes 3",
 )
 _SHARDS = tuple(f"{_RUN} {_SMALL} --agent oracle --episodes 2 --shard {i}/2 --out {{tmp}}/big" for i in (1, 2))

@@ -26,7 +26,7 @@ def episode(name: str) -> Episode:
 
 
 def report(*running: tuple[str, Steps], ended: int = 0, total: int = 10, terminal: bool = False) -> list[str]:
-    """Returns what is printed when some episodes have ended with 40 steps each and others run for 0.2 s."""
+    """Returns what is printed when some episodes have ended with 40 steps each and others run for 0.5 s."""
     stream = io.StringIO()
     console = PlainConsole(file=stream, width=200, force_terminal=terminal, color_system=None)
     progress = ProgressReport(console, total=total, max_steps=500, quiet_s=0.05)
@@ -36,7 +36,7 @@ def report(*running: tuple[str, Steps], ended: int = 0, total: int = 10, termina
             yield LINE | {"episode_id": f"e{number}", "num_steps": 40}
         for name, steps in running:
             progress.started(episode(name), steps)
-        time.sleep(0.2 if not terminal else 0.7)
+        time.sleep(0.5 if not terminal else 0.7)
 
     assert len(list(progress.over(lines()))) == ended
     assert "progress" not in {thread.name for thread in threading.enumerate()}
@@ -53,7 +53,7 @@ def test_a_pipe_gets_a_line_when_an_episode_begins_while_it_runs_and_when_it_end
 
     def lines() -> Iterator[dict[str, Any]]:
         progress.started(episode("e0"), itertools.count(2).__next__)
-        time.sleep(0.2)
+        time.sleep(0.5)
         yield LINE
 
     assert list(progress.over(lines())) == [LINE]

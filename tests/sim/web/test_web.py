@@ -204,8 +204,7 @@ def test_broken_frames_leave_no_traceback(server: Server, frame: bytes) -> None:
     with server.connect() as socket:
         socket.recv(timeout=10)
         socket.socket.sendall(frame)
-        socket.socket.settimeout(0.3)
-        with contextlib.suppress(WebSocketException, TimeoutError):
+        with contextlib.suppress(WebSocketException, TimeoutError):  # the server may have closed it already
             while True:
                 socket.recv(timeout=0.3)
     assert server.get("/")[0] == 200
