@@ -25,6 +25,7 @@ from sim.robot.config import RobotConfig
 from sim.robot.drive import Motion
 from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise, noise_from_dict
 from sim.sensors.profiles import RenderProfile, get_profile
+from sim.sensors.scan import ScanConfig, ScanSensor
 from sim.sensors.sensor import Sensor, SensorContext
 from sim.sensors.standard import STANDARD_SENSORS, resolve_sensors
 from sim.task.config import TaskConfig
@@ -72,11 +73,12 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         noise: noise of sensors and drive: the name of a preset of `sim.sensors.noise`, or a `NoiseConfig`. The metrics
             are never noisy. A house whose sidecar (`sim.houses.sidecar`) fixes noise keeps its own.
         render_mode: `rgb_array` or None.
-        task: when a STOP succeeds, and the number of actions. This and the other configurations, `success`, `camera`
-            and `robot`, may also be a dict of some of their fields: `camera={"width_px": 128, "height_px": 96}`.
+        task: when a STOP succeeds, and the number of actions. This and the other configurations, `success`, `camera`,
+            `scan` and `robot`, may also be a dict of some of their fields: `camera={"width_px": 128, "height_px": 96}`.
         success: replaces `task.success`.
         max_steps: replaces `task.max_steps`.
         camera: intrinsics and mount height.
+        scan: the lidar of the sensor `scan`.
         robot: body and drive.
         cached_houses: number of houses that stay loaded, those that were used last. A house that is not loaded takes
             most of a second and a loaded one about 70 MB (docs/performance.md).
@@ -108,6 +110,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         success: SuccessRule | Mapping[str, Any] | None = None,
         max_steps: int | None = None,
         camera: CameraModel | Mapping[str, Any] | None = None,
+        scan: ScanConfig | Mapping[str, Any] | None = None,
         robot: RobotConfig | Mapping[str, Any] | None = None,
         cached_houses: int = 1,
     ) -> None:
@@ -118,7 +121,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         if start is not None and (self.split.episodes or len(self.split.houses) != 1):
             raise ConfigError("start needs house: the episodes of a split have their own.")
         self.goal, self.start = goal, start
-        self.sensors = resolve_sensors(sensors)
+        self.sensors = _with_scan(resolve_sensors(sensors), as_settings(scan, ScanConfig(), name="scan"))
         self.truth_images: dict[str, NDArray] = {}
         """Images that were rendered last, without noise: at least those of `truth`."""
         self._truth = tuple(truth)
@@ -314,6 +317,14 @@ def _with_changes(
     if success is not None:
         task = replace(task, success=as_settings(success, task.success, name="success"))
     return task if max_steps is None else replace(task, max_steps=max_steps)
+
+
+def _with_scan(sensors: tuple[Sensor, ...], scan: ScanConfig) -> tuple[Sensor, ...]:
+    """Returns the sensors with this lidar in place of the standard one; a `ScanSensor` of another one stays."""
+    return tuple(
+        replace(each, config=scan) if isinstance(each, ScanSensor) and each == ScanSensor() else each
+        for each in sensors
+    )
 
 
 def _check_options(goal: str | None, render_mode: str | None) -> None:
