@@ -141,6 +141,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._scene: Scene | None = None
         self._episode: Episode | None = None
         self._motion: Motion | None = None
+        self._steps_per_action = 1
         self._closed = False
 
     @property
@@ -158,6 +159,11 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         if self._episode is None:
             raise gymnasium.error.ResetNeeded("Call reset() before the first step.")
         return self._episode
+
+    @property
+    def robot_config(self) -> RobotConfig:
+        """Body and drive of the robot."""
+        return self._robot
 
     @property
     def robot_model(self) -> RobotModel:
@@ -198,11 +204,14 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
 
     def step(self, action: int) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
         """Carries out one action; see the class."""
-        scene = self.scene
-        scene.task.require_running()
-        motion = self._motion = scene.world.move(Action(action))
+        self.scene.task.require_running()
+        return self._outcome(self.scene.world.move(Action(action)))
+
+    def _outcome(self, motion: Motion) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
+        """Returns what `step` returns after a motion."""
+        scene, self._motion = self.scene, motion
         observation, semantic = self._observe()
-        scene.task.observe(Action(action), motion, semantic)
+        scene.task.observe(motion.action, motion, semantic)
         reward = float(scene.task.success)
         return observation, reward, scene.task.terminated, scene.task.truncated, self._info(motion.collided)
 
@@ -256,6 +265,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             camera=self.camera_model,
             profile=self._profile,
             task=self.task_config,
+            steps_per_action=self._steps_per_action,
         )
 
     def _make_noise(self, config: NoiseConfig) -> SensorNoise:
