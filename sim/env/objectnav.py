@@ -121,7 +121,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         if start is not None and (self.split.episodes or len(self.split.houses) != 1):
             raise ConfigError("start needs house: the episodes of a split have their own.")
         self.goal, self.start = goal, start
-        self.sensors = _with_scan(resolve_sensors(sensors), as_settings(scan, ScanConfig(), name="scan"))
+        self.scan_config = as_settings(scan, ScanConfig(), name="scan")
+        self.sensors = _with_scan(resolve_sensors(sensors), self.scan_config)
         self.truth_images: dict[str, NDArray] = {}
         """Images that were rendered last, without noise: at least those of `truth`."""
         self._truth = tuple(truth)
