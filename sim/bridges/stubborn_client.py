@@ -42,6 +42,7 @@ import threading
 import time
 import traceback
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -217,9 +218,9 @@ class _Client:
         return answer
 
 
-def _from_habitat(given):
+def _from_habitat(given: Any) -> Any:
     """Returns the number of an action in one of Habitat's forms: a number, a name, or a dict with the key `action`."""
-    inner = given
+    inner: Any = given
     while isinstance(inner, dict) and "action" in inner:
         inner = inner["action"]
     if isinstance(inner, (list, tuple)) and len(inner) == 1:
@@ -228,8 +229,9 @@ def _from_habitat(given):
         raise TypeError("a truth value is no action")
     if isinstance(inner, str):
         return HABITAT_ACTIONS.get(inner.lower(), inner)
-    if getattr(inner, "shape", ()) != () and np.prod(inner.shape) == 1:  # an array or tensor of one element
-        return inner.reshape(-1)[0]
+    shape = getattr(inner, "shape", ())
+    if shape != () and np.prod(shape) == 1:  # an array or tensor of one element
+        return getattr(inner, "reshape")(-1)[0]  # noqa: B009 - of an unknown class
     return inner
 
 

@@ -59,9 +59,9 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
         if abs(ticks - round(ticks)) > 1e-6:
             raise ConfigError(f"period_s must be a whole multiple of {drive.tick_s} s, got {period_s}.")
         high = np.array([drive.speed_m_s, drive.turn_speed_rad_s, 1.0], np.float32)
-        self.action_space = spaces.Box(high * np.float32([-1.0, -1.0, 0.0]), high)
+        self.action_space = spaces.Box(high * np.array([-1.0, -1.0, 0.0], np.float32), high)
 
-    def step(self, action: NDArray[np.floating]) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
+    def step(self, action: Any) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
         """Holds one command for a period; see the class."""
         self.scene.task.require_running()
         speed_m_s, rate_rad_s, stop = self._clipped(action)
@@ -69,7 +69,7 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
             return self._outcome(self.scene.world.move(Action.STOP))
         return self._outcome(self.scene.world.hold(Velocity(speed_m_s, rate_rad_s), self.period_s))
 
-    def _clipped(self, action: NDArray[np.floating]) -> tuple[float, float, float]:
+    def _clipped(self, action: Any) -> tuple[float, float, float]:
         """Returns speed, turn rate and STOP, within the space."""
         given = np.asarray(action, np.float64)
         if given.shape != (3,) or not np.isfinite(given).all():

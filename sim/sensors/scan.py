@@ -59,7 +59,7 @@ class ScanConfig:
     def angles_rad(self) -> NDArray[np.float64]:
         """Direction of each ray (rays,), counter-clockwise from the heading, in increasing order."""
         first = -0.5 * self.fov_rad if self.rays > 1 else 0.0
-        return first + self.step_rad * np.arange(self.rays)
+        return first + self.step_rad * np.arange(self.rays, dtype=np.float64)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.interface import CameraModel
 from sim.sensors.ranges import require_range
 from sim.sensors.scan import ScanConfig
 
@@ -31,6 +32,10 @@ class ScanNoise:
     def __post_init__(self) -> None:
         require_range(self, 0.0, math.inf, "std_m", "std_share")
         require_range(self, 0.0, 1.0, "dropout")
+
+    def model(self, camera: CameraModel) -> NoisyScan | None:
+        """Returns a new noise model for the default lidar; None where all noise is off."""
+        return self.model_of(ScanConfig())
 
     def model_of(self, scan: ScanConfig) -> NoisyScan | None:
         """Returns a new noise model for this lidar; None where all noise is off."""

@@ -146,7 +146,13 @@ def test_stop_ends_the_episode_where_the_robot_is(env: ObjectNavVelocityEnv) -> 
 
 
 def test_what_is_not_allowed_is_refused(env: ObjectNavVelocityEnv, tmp_path: Path) -> None:
-    for wrong in ({"period_s": 0.05}, {"period_s": 0.0}, {"time_limit_s": math.inf}, {"max_steps": 5}):
+    wrongs: tuple[dict[str, Any], ...] = (
+        {"period_s": 0.05},
+        {"period_s": 0.0},
+        {"time_limit_s": math.inf},
+        {"max_steps": 5},
+    )
+    for wrong in wrongs:
         with pytest.raises(ConfigError, match=r"period_s|time_limit_s"):
             make(tmp_path, **wrong)
     for action in ((0.1, 0.0), (np.nan, 0.0, 0.0)):
@@ -199,7 +205,7 @@ def test_discrete_actions_end_at_the_same_places_as_in_the_discrete_environment(
         np.testing.assert_allclose(mine["gps"], theirs["gps"], atol=0.015)
         np.testing.assert_allclose(mine["compass"], theirs["compass"], atol=math.radians(1.5))
         assert not info["collided"]
-    assert info["time_s"] < 1.2 * len(actions) * 2
+        assert info["time_s"] < 1.2 * len(actions) * 2
     by_velocity.close()
     moves.close()
 

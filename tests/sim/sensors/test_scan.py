@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -28,7 +29,7 @@ START = Pose(0.5, -0.2, math.radians(20.0))
 SCANNER = AgentSpec(make=make_spy, sensors=("scan",), uses_segmentation=False)
 
 
-def scan_in(house: House, tmp_path: Path, **options: object) -> np.ndarray:
+def scan_in(house: House, tmp_path: Path, **options: Any) -> np.ndarray:
     """Returns the first reading in a house with a sofa, from `START`."""
     file = tmp_path / "house.xml"
     file.write_text(house.spec.to_xml())
@@ -100,7 +101,9 @@ def test_noise_grows_with_the_distance_and_stays_in_the_range() -> None:
         read_m = noise.apply({"scan": np.full(scan.rays, true_m, np.float32)}, {}, rng)["scan"]
         assert np.mean(read_m == 8.0) == pytest.approx(0.1, abs=0.02)
         assert np.std(read_m[read_m < 8.0]) == pytest.approx(std_m, rel=0.05)
-    edge_m = noise.apply({"scan": np.tile(np.float32([0.0, 0.16, 7.99, 8.0]), 2500)}, {}, rng)["scan"].reshape(-1, 4)
+    edge_m = noise.apply({"scan": np.tile(np.array([0.0, 0.16, 7.99, 8.0], np.float32), 2500)}, {}, rng)[
+        "scan"
+    ].reshape(-1, 4)
     assert edge_m.min() == 0.0
     assert edge_m.max() == 8.0
     assert (edge_m[:, 0] == 0.0).all()
@@ -138,7 +141,13 @@ def test_an_agent_may_declare_it_without_ground_truth_and_the_run_records_it(hou
 
 
 def test_settings_that_are_not_allowed_are_refused() -> None:
-    for wrong in ({"rays": 0}, {"rays": 1.5}, {"min_range_m": 3.0, "max_range_m": 3.0}, {"fov_rad": 7.0}):
+    wrongs: tuple[dict[str, Any], ...] = (
+        {"rays": 0},
+        {"rays": 1.5},
+        {"min_range_m": 3.0, "max_range_m": 3.0},
+        {"fov_rad": 7.0},
+    )
+    for wrong in wrongs:
         with pytest.raises(ConfigError, match="ScanConfig"):
             ScanConfig(**wrong)
     with pytest.raises(ConfigError, match=r"ScanNoise.dropout must be a finite number in \[0, 1\], got 2"):

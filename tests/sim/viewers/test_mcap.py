@@ -135,7 +135,7 @@ def test_frames_lead_from_the_map_to_the_true_pose_and_odometry_is_what_was_beli
         assert math.remainder(yaw + yaw_of(base.rotation) - pose.yaw_rad, math.tau) == pytest.approx(0.0, abs=1e-6)
         place = odometry.pose.pose.position
         assert (place.x, place.y) == pytest.approx(seen["gps"].tolist(), abs=1e-6)
-    assert frames["camera_link"].transform.translation.z == CAMERA.height_m
+        assert frames["camera_link"].transform.translation.z == CAMERA.height_m
 
 
 def test_the_optical_frame_looks_ahead_with_y_down() -> None:
