@@ -26,7 +26,6 @@ from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.results import lines_of
 from tests.helpers.worlds import two_storeys
 
-
 SMALL = ("camera.width_px=160", "camera.height_px=120")
 
 
