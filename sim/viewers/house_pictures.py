@@ -304,8 +304,8 @@ MARGIN_M = 1.0
 def _extent(model: mujoco.MjModel, labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Returns the lowest and highest corner (3,) of all rooms.
 
-    Without rooms it is the part of the storey's grid of free space where something is visible, with a metre around it; a
-    floor counts only where nothing else does, because scenes from elsewhere often stand on a wide plane.
+    Without rooms it is the part of the storey's grid of free space where something is visible, with a metre around it.
+    Floors count only where nothing else is visible, because scenes from elsewhere often stand on a wide plane.
     """
     boxes = [box for room in read_rooms(model) for box in room.boxes]
     if boxes:
