@@ -183,7 +183,7 @@ def check(args: Any) -> None:
 
 
 def _check_value(name: str, value: Any, hint: Any) -> None:
-    """Raises ConfigError where a value is not in the range of its type."""
+    """Raises ConfigError if a value is not in the range of its type."""
     if value is None:
         return
     if dataclasses.is_dataclass(value):
@@ -205,7 +205,7 @@ def _check_value(name: str, value: Any, hint: Any) -> None:
 
 
 def _require_range(name: str, value: float, mark: Meta) -> None:
-    """Raises ConfigError where a number is beyond the bounds of its type."""
+    """Raises ConfigError if a number is beyond the bounds of its type."""
     bounds = (
         ("at least", mark.ge, lambda low: value >= low),
         ("more than", mark.gt, lambda low: value > low),

@@ -206,7 +206,7 @@ def _reason(error: OSError | ValueError) -> str:
 
 
 def _require_short(path: Path, name: str) -> None:
-    """Raises ConfigError where a part of a path is longer than file systems allow."""
+    """Raises ConfigError if a part of a path is longer than file systems allow."""
     for part in path.parts:
         if len(part.encode(errors="surrogateescape")) > 255:
             raise ConfigError(f"{name} has a name of {len(part)} letters, which is too long: at most 255 bytes.")

@@ -340,7 +340,7 @@ def read_npz(
 
 
 def image_size_px(content: bytes) -> tuple[int, int] | None:
-    """Returns width and height of a PNG or JPEG image from its header; None where it is neither."""
+    """Returns width and height of a PNG or JPEG image from its header; None if it is neither."""
     if content[:8] == b"\x89PNG\r\n\x1a\n" and len(content) >= 24:
         width, height = struct.unpack(">II", content[16:24])
         return width, height
@@ -360,7 +360,7 @@ def image_size_px(content: bytes) -> tuple[int, int] | None:
 
 
 def require_small_image(content: bytes, *, where: str, error: type[ObjectNavError] = ConfigError) -> None:
-    """Raises an error where an image is not a PNG or JPEG, or has more than `MAX_PIXELS` pixels."""
+    """Raises an error if an image is not a PNG or JPEG, or has more than `MAX_PIXELS` pixels."""
     size = image_size_px(content)
     if size is None:
         raise error(f"{where} is neither a PNG nor a JPEG image.")

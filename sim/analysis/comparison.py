@@ -40,7 +40,7 @@ class Run:
     """Result lines by `episode_id`."""
 
     def recorded(self, name: str) -> Any:
-        """Returns a field of config.json; raises ConfigError where a run of an older version does not have it."""
+        """Returns a field of config.json; raises ConfigError if a run of an older version does not have it."""
         value = self.config.get(name)
         if value is None:
             raise ConfigError(f"'{self.path / 'config.json'}' has no field '{name}', which this command needs.")

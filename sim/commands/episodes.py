@@ -127,7 +127,7 @@ def main(args: Args) -> int:
 
 
 def folder_of(args: Args) -> Path:
-    """Returns the folder of the split; raises ConfigError where the options name none."""
+    """Returns the folder of the split; raises ConfigError if the options name none."""
     if args.split is None:
         raise ConfigError("episodes needs --split FOLDER, or --house FILE with --out FOLDER.")
     return args.split
@@ -162,7 +162,7 @@ def with_split(args: Args) -> Args:
 
 
 def _require_same(house: House, written: House) -> None:
-    """Raises HouseError where a house that was written as one file has other geoms or labels."""
+    """Raises HouseError if a house that was written as one file has other geoms or labels."""
     first, second = house.spec.copy().compile(), written.spec.copy().compile()
     same = first.ngeom == second.ngeom and np.allclose(first.geom_pos, second.geom_pos, atol=1e-4)
     if same:

@@ -97,7 +97,7 @@ def sources(args: Args) -> tuple[list[Path], Path]:
 
 
 def require_same_options(first: Run, other: Run) -> None:
-    """Raises ConfigError where two runs differ in an option that changes results."""
+    """Raises ConfigError if two runs differ in an option that changes results."""
     for path, a, b in differing_fields(first.config, other.config):
         if path.partition(".")[0] not in NOT_COMPARED and not is_same_file(path, first.config, other.config):
             raise ConfigError(

@@ -12,7 +12,7 @@ MOST_KEY_LETTERS = 200
 
 
 def check_options(options: RunOptions) -> None:
-    """Raises ConfigError where options contradict each other or are out of range."""
+    """Raises ConfigError if options contradict each other or are out of range."""
     for name, smallest in (("episodes", 1), ("workers", 1), ("seed", 0)):
         value = getattr(options, name)
         if value < smallest:

@@ -1,4 +1,4 @@
-"""Imports objects of users that options name as `package.module:NAME`."""
+"""Imports the users' objects that options name as `package.module:NAME`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from sim.evaluation.watch import is_stop
 
 
 def _require_unhidden() -> None:
-    """Raises ConfigError where the current folder has modules that would hide this project's in spawned workers."""
+    """Raises ConfigError if the current folder has modules that would hide this project's in spawned workers."""
     ours = Path(__file__).resolve().parents[2]
     for name in ("sim", "stubborn"):
         for file in (Path(f"{name}.py"), Path(name) / "__init__.py"):
@@ -35,7 +35,7 @@ def import_attribute(
         name: as the user gave it, for messages.
         module_name: dotted name of the module.
         attribute: name of the object.
-        explain: returns a sentence about an error of the import, if it knows the cause.
+        explain: returns a sentence about an error of the import if it knows the cause, else None.
 
     Raises:
         ConfigError: the module cannot be imported, or has no such name.

@@ -96,7 +96,7 @@ def run_missing(
 
 
 def _require_own_lines(options: RunOptions, run: RunDirectory, episodes: Sequence[Episode]) -> None:
-    """Raises ConfigError where the folder holds a line of another split, or one that contradicts its episode."""
+    """Raises ConfigError if the folder holds a line of another split, or one that contradicts its episode."""
     known = {episode.episode_id: (episode.house, episode.goal) for episode in episodes}
     others = [line for line in run.lines if line["episode_id"] not in known]
     if others and options.house is None:  # of the same split, but not asked for now

@@ -105,7 +105,7 @@ def _make_network(env: ObjectNavEnv, config: NetworkConfig) -> Segmenter:
 
 
 def require_size(segmenter: Segmenter, camera: CameraModel) -> None:
-    """Raises ConfigError where a network cannot take the images of a camera; it is given one black image."""
+    """Raises ConfigError if a network cannot take the images of a camera; it is given one black image."""
     height, width = camera.height_px, camera.width_px
     black = {"rgb": np.zeros((height, width, 3), np.uint8), "depth": np.zeros((height, width), np.float32)}
     try:

@@ -108,7 +108,7 @@ class Setup:
         return replace(self, options=replace(options, **paths), config=replace(self.config, robot=robot))
 
     def require_planned(self, split: Split) -> None:
-        """Raises ConfigError where a split is not the one from which the episodes were planned."""
+        """Raises ConfigError if a split is not the one from which the episodes were planned."""
         if self.planned not in (None, split.sha256):
             raise ConfigError(
                 f"The houses or episodes of '{split.name}' have changed since this run was planned; start it again."
@@ -232,7 +232,7 @@ def _own_sensors(spec: AgentSpec, segmentation: SegmentationKind) -> list[Sensor
 def _check_sensors(
     options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind, sensors: tuple[str, ...]
 ) -> None:
-    """Raises ConfigError where a sensor is missing, or shows the truth to an agent that does not declare it."""
+    """Raises ConfigError if a sensor is missing, or shows the truth to an agent that does not declare it."""
     missing = [name for name in _sensor_names(spec, segmentation) if name not in sensors]
     if missing:
         raise ConfigError(f"sensors: agent '{options.agent}' with {options.semantics} needs {', '.join(missing)}.")
@@ -267,7 +267,7 @@ def _noise_reads_truth(sensor: Sensor) -> bool:
 
 
 def _verifier(options: RunOptions, segmentation: SegmentationKind, config: VerificationConfig) -> Verifier:
-    """Returns the verifier of a run; raises ConfigError where there are no such parameters, or no such method."""
+    """Returns the verifier of a run; raises ConfigError if there are no such parameters, or no such method."""
     verifier = verifier_for(segmentation.spec, config.parameters, config.method)
     if isinstance(verifier, FittedVerifier) and config.least_probability is not None:
         return replace(verifier, least_probability=config.least_probability)

@@ -104,7 +104,7 @@ def _leads_to(task: Task, ask: Ask, start: Pose) -> bool:
 
 
 def _require(asks: Sequence[Ask], task: Task, fault: str) -> None:
-    """Raises EpisodeError where the sidecar of a house leaves no goal."""
+    """Raises EpisodeError if the sidecar of a house leaves no goal."""
     if not asks:
         raise EpisodeError(f"House '{task.world.house.name}': its sidecar {fault}.")
 

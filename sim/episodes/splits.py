@@ -62,7 +62,7 @@ class Episode:
 
 
 def require_start(start: Pose) -> None:
-    """Raises EpisodeError where a number of a start is NaN, infinite or larger than `FARTHEST_M`."""
+    """Raises EpisodeError if a number of a start is NaN, infinite or larger than `FARTHEST_M`."""
     if not all(abs(value) <= FARTHEST_M for value in (start.x_m, start.y_m, start.yaw_rad, start.floor_z_m)):
         raise EpisodeError(f"The start {start} is not allowed: finite numbers of at most {FARTHEST_M:g} are.")
 
@@ -112,7 +112,7 @@ class Split:
         return load_house(self.house_file(name), labels_path=self.labels_path, root=self.root)
 
     def require_unchanged(self, name: str) -> None:
-        """Raises HouseError where a house, its sidecar or a file that it uses has changed since this split was read."""
+        """Raises HouseError if a house, its sidecar or a file that it uses has changed since this split was read."""
         if name in self.house_sums and house_sum(self.house_file(name)) != self.house_sums[name]:
             raise HouseError(f"House '{name}': its files have changed since this run was planned; start the run again.")
 
@@ -274,7 +274,7 @@ def write_split(
 
 
 def labels_of(folder: Path) -> Path | None:
-    """Returns the file of label rules in the folder of a split; None where its houses need none."""
+    """Returns the file of label rules in the folder of a split; None if its houses need none."""
     file = folder / LABELS_FILE
     return file if file.is_file() else None
 

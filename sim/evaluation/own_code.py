@@ -29,7 +29,7 @@ def place_of(error: BaseException, *, below: str) -> str:
         below: file of the function that called the code; its own frames do not count.
 
     Returns:
-        The place in brackets after a blank; "" where there is no frame.
+        The place in brackets after a blank; "" if there is no frame.
     """
     frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename != below]
     for tier in (_is_users, _is_not_library, lambda file: True):
@@ -64,7 +64,7 @@ def hash_of_own(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
         files: further files, each with what it imports from its folder where it is a Python file.
 
     Returns:
-        The hash; "" where no module is the user's.
+        The hash; "" if no module is the user's.
     """
     contents: dict[Path, tuple[str, bytes]] = {}
     for name in modules:
@@ -97,7 +97,7 @@ def _read_with_imports(file: Path, root: Path, contents: dict[Path, tuple[str, b
 
 
 def _imported(source: bytes, file: Path, root: Path) -> Iterator[str]:
-    """Yields the names of modules that a source may import, with their packages; nothing where it cannot be parsed."""
+    """Yields the names of modules that a source may import, with their packages; nothing if it cannot be parsed."""
     try:
         nodes = list(ast.walk(ast.parse(source)))
     except (SyntaxError, ValueError):

@@ -42,7 +42,7 @@ class Shard:
         return f"shard_{self.index + 1}_of_{self.count}"
 
     def require_own_numbers(self, whole: Path) -> None:
-        """Raises ConfigError where the folder of the whole run holds shards that are numbered from 0."""
+        """Raises ConfigError if the folder of the whole run holds shards that are numbered from 0."""
         if (whole / f"shard_0_of_{self.count}").exists():
             raise ConfigError(
                 f"--out '{whole}' holds shards of version 0.1, which are numbered from 0 to {self.count - 1}; give "

@@ -188,7 +188,7 @@ class RunDirectory:
         return {line["episode_id"] for line in self.lines if line.get("end_reason") == "error"} & set(episode_ids)
 
     def require_own_code(self, code: str, kept: Collection[str]) -> None:
-        """Raises ConfigError where other code of the user than this one ran the episodes that are kept.
+        """Raises ConfigError if other code of the user than this one ran the episodes that are kept.
 
         Args:
             code: a hash of the code, "+" and a hash of the user's code; without "+" there is no such code.
@@ -279,7 +279,7 @@ class RunDirectory:
         self._digest.update(content)
 
     def _require_untouched(self, *, new: str = "", content: bool = False) -> None:
-        """Raises ConfigError where the results on the disk are not those that this process wrote.
+        """Raises ConfigError if the results on the disk are not those that this process wrote.
 
         Args:
             new: id of the episode whose line is to be written; "": none.
@@ -381,7 +381,7 @@ class RunDirectory:
 
 
 def metric_value(line: Mapping[str, Any], metric: str) -> float | None:
-    """Returns a metric of a result line; None where the line, for example of an older version, does not have it.
+    """Returns a metric of a result line; None if the line, for example of an older version, does not have it.
 
     An episode that ended with an error is a failure, whose success and SPL are 0. It has no other metric: it did not
     run to its end, so that it has too few steps, collisions and metres.

@@ -202,7 +202,7 @@ def next_action(agent: Agent, observation: Observation, where: str) -> Action:
 
 
 def confidence_of(agent: Agent, where: str) -> float | None:
-    """Returns how sure the agent is of the object for which it stops, in [0, 1]; None where it does not state it.
+    """Returns how sure the agent is of the object for which it stops, in [0, 1]; None if it does not state it.
 
     Raises:
         AgentError: `stop_confidence` failed, or returned something else; the message begins with `where`.
@@ -220,7 +220,7 @@ def confidence_of(agent: Agent, where: str) -> float | None:
 
 
 def target_of(agent: Agent, where: str) -> tuple[float, float] | None:
-    """Returns the place for which the agent stops, x and y in the start frame; None where it does not state it.
+    """Returns the place for which the agent stops, x and y in the start frame; None if it does not state it.
 
     Raises:
         AgentError: `stop_target_xy_m` failed, or returned something else; the message begins with `where`.

@@ -131,7 +131,7 @@ def _quaternion(spec: mujoco.MjSpec, orientation: mujoco.MjsOrientation) -> list
 
 
 def require_sizes(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseError) -> None:
-    """Raises an error where a compiled model has a position or a size that is not finite or beyond `FARTHEST_M`."""
+    """Raises an error if a compiled model has a position or a size that is not finite or beyond `FARTHEST_M`."""
     for kind, field in (("body", "pos"), ("geom", "pos"), ("geom", "size"), ("site", "pos"), ("site", "size")):
         values = getattr(model, f"{kind}_{field}")
         bad = np.flatnonzero(~(np.abs(values) <= FARTHEST_M).all(axis=1))
@@ -144,7 +144,7 @@ def require_sizes(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseE
 
 
 def require_few_contacts(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseError) -> None:
-    """Raises an error where a compiled model has so many moving bodies, or contacts, that its physics needs all memory.
+    """Raises an error if a compiled model has so many moving bodies, or contacts, that its physics needs all memory.
 
     The memory of MuJoCo grows with the square of the number of moving bodies.
     """
@@ -179,7 +179,7 @@ class _Scan:
         self._copies = self._loose_sensors = 0.0
 
     def text_of(self, path: Path, *, inner: bool = False) -> bytes:
-        """Returns a file with the files that it includes as one text, UTF-8; raises an error where that is too much.
+        """Returns a file with the files that it includes as one text, UTF-8; raises an error if that is too much.
 
         Args:
             path: the file.
@@ -282,7 +282,7 @@ class _Scan:
     def _found(self, path: Path, name: str) -> Path:
         """Returns a file that a file names: next to the first file, as for MuJoCo, else next to the one that names it.
 
-        Raises an error where it does not exist or must not be read.
+        Raises an error if it does not exist or must not be read.
         """
         for folder in dict.fromkeys((self._allowed.file.parent, path.parent)):
             file = path_as_read(folder, name)
@@ -313,7 +313,7 @@ class _Scan:
 
 
 def _require_small_assets(spec: mujoco.MjSpec, folder: Path, error: type[ObjectNavError]) -> None:
-    """Raises an error where the textures or the files of meshes of a specification are too large."""
+    """Raises an error if the textures or the files of meshes of a specification are too large."""
     size = sum(_texture_bytes(spec, texture, folder) for texture in spec.textures)
     most = _most_texture_bytes(error)
     if size > most:
@@ -344,7 +344,7 @@ def _most_texture_bytes(error: type[ObjectNavError]) -> int:
 
 
 def _bytes_of_asset(file: Path, bytes_per_pixel: int) -> int:
-    """Returns the bytes of an image in memory, of another file its size; 0 where there is none, which MuJoCo names."""
+    """Returns the bytes of an image in memory, of another file its size; 0 if there is none, which MuJoCo names."""
     if not file.is_file():
         return 0
     with open_plain(file, what="Asset") as stream:

@@ -63,7 +63,7 @@ class Allowed:
     """Class of the error: a HouseError is about a house, for which there is `--root`."""
 
     def require(self, reference: Reference) -> None:
-        """Raises an error where another file must not be read.
+        """Raises an error if another file must not be read.
 
         Args:
             reference: the other file; it need not exist.
@@ -136,7 +136,7 @@ def path_as_read(folder: Path, *names: str) -> Path:
 
 
 def require_root(root: Path | None) -> None:
-    """Raises a HouseError where the folder of `--root` does not exist."""
+    """Raises a HouseError if the folder of `--root` does not exist."""
     if root is not None and not root.is_dir():
         raise HouseError(f"--root '{root}': there is no such folder.")
 

@@ -118,7 +118,7 @@ class NoiseSettings(Protocol):
     """Parameters of a noise model, usually a frozen dataclass whose defaults switch it off."""
 
     def model(self, camera: CameraModel) -> NoiseModel | None:
-        """Returns a new noise model for the readings of this camera; None where the noise is switched off."""
+        """Returns a new noise model for the readings of this camera; None if the noise is switched off."""
         ...
 
 

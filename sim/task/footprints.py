@@ -84,7 +84,7 @@ class Footprints:
         self._at_last: dict[tuple[int, ...], _Placed] = {}
 
     def of(self, data: mujoco.MjData, instance: Instance) -> Footprint | None:
-        """Returns the footprint of an instance in a state, kinematics computed; None where nothing of it is rendered.
+        """Returns the footprint of an instance in a state, kinematics computed; None if nothing of it is rendered.
 
         The first and the last state of each instance are kept.
         """

@@ -157,7 +157,7 @@ class GroundTruth:
         return min(found)[-1] if found else None
 
     def _may_be_within(self, geoms: tuple[int, ...], x_m: float, y_m: float, within_m: float) -> bool:
-        """Returns False where the bounding spheres of all geoms are farther in plan from a place than a distance."""
+        """Returns False if all bounding spheres of the geoms are farther than `within_m` from the place, in plan."""
         model, data = self.world.model, self.world.data
         radius_m = np.where(model.geom_rbound[list(geoms)] > 0.0, model.geom_rbound[list(geoms)], np.inf)
         off_m = np.hypot(*(data.geom_xpos[list(geoms), :2] - (x_m, y_m)).T)
@@ -189,7 +189,7 @@ class GroundTruth:
         return self._surroundings[floor_z_m]
 
     def _existing(self, region: GoalRegion) -> GoalRegion:
-        """Returns the region; raises EpisodeError where no storey of the house has an instance."""
+        """Returns the region; raises EpisodeError if no storey of the house has an instance."""
         if not region.exists:
             raise EpisodeError(
                 f"House '{self.world.house.name}' has no '{region.goal}'. "

@@ -236,7 +236,7 @@ class _Header(msgspec.Struct):
 
 
 def _check(trajectory: Trajectory) -> None:
-    """Raises ValueError where the arrays do not fit each other, or hold numbers without meaning."""
+    """Raises ValueError if the arrays do not fit each other, or hold numbers without meaning."""
     count = trajectory.actions.size
     for name, (kind, axes, more) in _ARRAYS.items():
         array = getattr(trajectory, name)

@@ -191,7 +191,7 @@ def storeys(house: House) -> list[House]:
 
 
 def draw_views(house: House, columns: int = 3) -> Picture | None:
-    """Renders what the robot sees, tiled, (h, w, 3) RGB; None where there is nothing to see.
+    """Renders what the robot sees, tiled, (h, w, 3) RGB; None if there is nothing to see.
 
     In each room it is where the view is longest. In a house without rooms it looks at an object of each category.
     """

@@ -212,7 +212,7 @@ class VideoRecorder:
         self._free_chase()
 
     def _agent_map(self) -> overlay.MapPanel | None:
-        """Returns the agent's map; None where it has none."""
+        """Returns the agent's map; None if it has none."""
         painter = self._painter
         if painter is None:
             return None

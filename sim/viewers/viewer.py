@@ -96,5 +96,5 @@ class MapPainter(Protocol):
         ...
 
     def words(self) -> str:
-        """Returns what the agent is doing, such as "explores"; "" where that is not known."""
+        """Returns what the agent is doing, such as "explores"; "" if that is not known."""
         ...

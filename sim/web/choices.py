@@ -132,7 +132,7 @@ class Choices:
         return replace(wish, record=record)
 
     def _wish(self, asked: _Start, options: RunOptions) -> Wish:
-        """Returns an episode; raises ConfigError where a part of it is not offered."""
+        """Returns an episode; raises ConfigError if a part of it is not offered."""
         self._require("house" if asked.split.endswith(".xml") else "split", asked.split, self._splits)
         self._require("agent", asked.agent, self._agents)
         self._require("semantics", asked.semantics, self._semantics)

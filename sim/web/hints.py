@@ -17,7 +17,7 @@ class Hints:
         self._given: Action | None = None
 
     def at(self, step: int, last: Action | None) -> Action | None:
-        """Returns the oracle's action for this moment; None where the goal cannot be reached.
+        """Returns the oracle's action for this moment; None if the goal cannot be reached.
 
         Args:
             step: number of actions so far.

@@ -206,7 +206,7 @@ def _only(scope: Scope, name: bytes) -> str | None:
 
 
 def _name_of(host: str) -> str:
-    """Returns the name in a Host header, without the port; "" where the header has another form."""
+    """Returns the name in a Host header, without the port; "" if the header has another form."""
     found = _HOST.fullmatch(host)
     return "" if found is None else (found["address"] or found["name"]).lower()
 

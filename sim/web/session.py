@@ -211,7 +211,7 @@ class SharedAgent:
         return action
 
     def stop_target_xy_m(self) -> tuple[float, float] | None:
-        """Returns the place for which the agent stops; None where a person does, or where it states none."""
+        """Returns the place for which the agent stops; None if a person does, or if the agent states none."""
         inner = self._inner
         return inner.stop_target_xy_m() if isinstance(inner, StatesTarget) and not self.stopped_by_person else None
 
@@ -302,7 +302,7 @@ def _draw_episode(env: ObjectNavEnv, wish: Wish, turn: int) -> Episode:
 
 
 def unlike_the_run(setup: Setup, env: ObjectNavEnv, record: Mapping[str, Any] | None) -> str:
-    """Returns a sentence on what differs from the run whose episode is shown; "" where nothing does, or without a run.
+    """Returns a sentence on what differs from the run whose episode is shown; "" if nothing does, or without a run.
 
     Args:
         setup: of the episode.

@@ -268,7 +268,7 @@ class Tracks:
         return same[0]
 
     def _begin(self) -> int:
-        """Returns the number of a new track; 0 where there are too many."""
+        """Returns the number of a new track; 0 if there are too many."""
         if self.count + 1 >= self.config.most_tracks:
             return 0
         self.count += 1

@@ -100,7 +100,7 @@ class AgentMapPainter:
         return canvas.image
 
     def words(self) -> str:
-        """Returns what the agent is doing; "" where its route is not shown."""
+        """Returns what the agent is doing; "" if its route is not shown."""
         return describe_intention(self.agent) if self.show_route else ""
 
     def _grow(self, pose: Pose) -> None:

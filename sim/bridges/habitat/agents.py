@@ -146,7 +146,7 @@ def _goals(config: Any) -> tuple[str, ...]:
 
 
 def _require_methods(name: str, agent: Any) -> None:
-    """Raises ConfigError where an object is no agent with Habitat's interface."""
+    """Raises ConfigError if an object is no agent with Habitat's interface."""
     missing = [method for method in ("reset", "act") if not callable(getattr(agent, method, None))]
     if missing:
         raise ConfigError(f"Agent '{name}': a {type(agent).__name__} has no method {' and '.join(missing)}.")
@@ -179,7 +179,7 @@ def _config_of(found: Callable[..., Any], arguments: list[inspect.Parameter]) ->
 
 
 def _require_known_values(config: Any) -> None:
-    """Raises ConfigError where a field of the bridge has a value that is not allowed."""
+    """Raises ConfigError if a field of the bridge has a value that is not allowed."""
     _goals(config)
 
 

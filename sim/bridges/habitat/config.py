@@ -214,7 +214,7 @@ def _merge(config: Config, changes: Mapping[str, Any]) -> None:
 
 
 def _at(config: Mapping[str, Any], path: str) -> Any:
-    """Returns the value at a path; None where there is none."""
+    """Returns the value at a path; None if there is none."""
     value: Any = config
     for name in path.split("."):
         value = value.get(name) if isinstance(value, Mapping) else None

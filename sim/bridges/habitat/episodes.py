@@ -52,7 +52,7 @@ class ObjectGoalNavEpisode:
 
     @functools.cached_property
     def goals(self) -> list[ObjectGoal]:
-        """The instances of the goal category that the house's file lists; empty where there is no such file.
+        """The instances of the goal category that the house's file lists; empty if there is no such file.
 
         Raises:
             ConfigError: the file has another format.

@@ -128,7 +128,7 @@ def lines_of(
 
 
 def _require_log_of(log: Path, wanted: Mapping[str, Any]) -> None:
-    """Raises ConfigError where a log is not of this split and segmentation."""
+    """Raises ConfigError if a log is not of this split and segmentation."""
     file = log / "config.json"
     there = read_json(file, dict[str, Any], what="Config of a log") if file.is_file() else {}
     for path, actual, asked in differing_fields(there, {key: wanted[key] for key in there if key in wanted}):

@@ -124,7 +124,7 @@ def main(args: Args) -> int:
 
 
 def _require_curve(file: Path) -> None:
-    """Raises ConfigError where a file of curves lacks a column that is drawn; one that does not exist is not drawn."""
+    """Raises ConfigError if a file of curves lacks a column that is drawn; one that does not exist is not drawn."""
     if not file.is_file():
         return
     if not set(_DRAWN) <= set(read_columns(file)):

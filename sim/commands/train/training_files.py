@@ -93,7 +93,7 @@ def _list_of(files: Sequence[Path]) -> str:
 
 
 def require_options(out: Path, before: Mapping[str, str], now: Mapping[str, str]) -> None:
-    """Raises ConfigError where options of a run differ from those of its start; both are of `options_of`."""
+    """Raises ConfigError if options of a run differ from those of its start; both are of `options_of`."""
     for name in sorted({*before, *now}):
         was, given = (options.get(name, "(absent)") for options in (before, now))
         if was != given:
@@ -104,7 +104,7 @@ def require_options(out: Path, before: Mapping[str, str], now: Mapping[str, str]
 
 
 def read_columns(file: Path) -> dict[str, list[float]]:
-    """Returns the columns of a CSV file of numbers, NaN for empty fields; nothing where there is no file.
+    """Returns the columns of a CSV file of numbers, NaN for empty fields; nothing if there is no file.
 
     Raises:
         ConfigError: a field is no number.

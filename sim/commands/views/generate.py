@@ -238,7 +238,7 @@ def _recipe(args: Args, seed: int) -> Recipe:
 
 
 def _kept(args: Args, task: ShardTask, config: dict[str, Any]) -> ShardNote | None:
-    """Returns the note of a complete shard; None where it is missing or broken.
+    """Returns the note of a complete shard; None if it is missing or broken.
 
     Raises:
         ConfigError: the shard was generated with other options.
