@@ -1,4 +1,4 @@
-"""Segmentations of users: `--semantics package.module:NAME`. Each result is checked, so that errors name their cause."""
+"""Users' segmentations (`--semantics package.module:NAME`): each result is checked, so that errors name their cause."""
 
 from __future__ import annotations
 
