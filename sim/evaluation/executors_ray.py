@@ -47,7 +47,7 @@ class RayCluster:
         Args:
             address: `HOST:PORT` of its head; None: the cluster that this machine belongs to.
             workers: largest number of workers; those without a free processor do not start.
-            isolation: whether code of a user needs a process of its own on each machine; None: it does not.
+            isolation: whether a user's code needs a process of its own on each machine; None: it does not.
 
         Raises:
             ConfigError: there is no cluster.

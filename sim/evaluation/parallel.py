@@ -18,10 +18,10 @@ ResultT = TypeVar("ResultT")
 
 @dataclass(frozen=True)
 class Shard:
-    """Every `count`-th item from item `index` on: the part of the work that one of several machines processes."""
+    """The part of the work that one of several machines processes: every `count`-th item, from item `index` on."""
 
     index: int = 0
-    """From 0 on; users and names of folders number shards from 1 on."""
+    """Number of the shard, from 0 on; options and names of folders count from 1."""
     count: int = 1
 
     @classmethod
