@@ -8,7 +8,7 @@ from sim.evaluation.parallel import Shard
 from sim.viewers import selection
 
 MOST_KEY_LETTERS = 200
-"""Longest `--seed-key`."""
+"""Largest length of `--seed-key`."""
 
 
 def check_options(options: RunOptions) -> None:

@@ -1,4 +1,4 @@
-"""Writes a house as compact XML, which is the output of MuJoCo without redundant digits, and with its textures."""
+"""Writes a house as compact XML, the output of MuJoCo without redundant digits, together with its textures."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ def house_text(spec: mujoco.MjSpec, textures: str | None = None) -> str:
 def write_house(spec: mujoco.MjSpec, folder: str | Path, name: str | None = None) -> Path:
     """Writes a generated house with its textures into a folder; returns the file `<name>.xml`, for `--house`.
 
-    Several houses share the folder `textures` in it. `stubborn episodes --split` makes the folder a split.
+    Several houses share the subfolder `textures`. `stubborn episodes --split` makes the folder a split.
 
     Args:
-        spec: what `sim.generate` returned, also after changes of yours.
-        folder: it is created if it is missing.
-        name: name of the house; that of the model if None.
+        spec: the specification that `sim.generate` returned; you may have changed it.
+        folder: it is created if it does not exist.
+        name: name of the house; None: the name of the model.
 
     Raises:
         HouseError: the specification has files other than textures, or violates the house format.
