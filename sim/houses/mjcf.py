@@ -347,7 +347,7 @@ def _most_texture_bytes(error: type[ObjectNavError]) -> int:
 
 
 def _bytes_of_asset(file: Path, bytes_per_pixel: int) -> int:
-    """Returns the bytes of an image in memory, or the size of another file; 0 if there is no file (MuJoCo reports it)."""
+    """Returns the bytes of an image in memory, or the size of another file; 0 if there is none (MuJoCo reports it)."""
     if not file.is_file():
         return 0
     with open_plain(file, what="Asset") as stream:
