@@ -95,7 +95,7 @@ def differences_table(first: Run, *others: Run) -> ResultTable:
 
 
 def _short_text(value: Any) -> str:
-    """Returns a value as JSON; of an object that the other run does not have, only its number of fields."""
+    """Returns a value as JSON; for an object that the other run does not have, only its number of fields."""
     return f"{len(value)} fields" if isinstance(value, Mapping) else field_text(value)
 
 

@@ -1,4 +1,4 @@
-"""Prints the results of a run in the terminal; `sim.analysis.progress` says what happens while it runs."""
+"""Prints the results of a run in the terminal; `sim.analysis.progress` reports its progress."""
 
 from __future__ import annotations
 

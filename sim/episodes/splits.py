@@ -38,7 +38,7 @@ from sim.reading import Name, first_unprintable, printable, read_bytes, read_jso
 UNREACHABLE_FILE = "unreachable.json"
 LABELS_FILE = "labels.json"
 _MOST_BYTES = 256 << 20
-"""Largest house file."""
+"""Largest size of a house file."""
 FARTHEST_M = 10_000.0
 """Largest coordinate of a start."""
 
@@ -85,7 +85,7 @@ class Split:
     house_list: HouseList | None = None
     """Generates the houses of a split that is shipped as a list."""
     house_sums: Mapping[str, str] = field(default_factory=dict)
-    """Checksum of each house with its sidecar and the files that it uses; listed houses have theirs in the list."""
+    """Checksum of each house with its sidecar and the files that it uses; for a house list, the list has them."""
 
     @property
     def houses(self) -> tuple[str, ...]:
@@ -189,7 +189,7 @@ def one_house(path: str | Path, *, labels: str | Path | None = None, root: str |
 def split_of_files(
     paths: Sequence[str | Path], *, labels: str | Path | None = None, root: str | Path | None = None
 ) -> Split:
-    """Returns a split of some house files, without episodes.
+    """Returns a split of the given house files, without episodes.
 
     Args:
         paths: the files; each name is that of one house.
@@ -225,14 +225,14 @@ def house_sum(path: Path, *, with_also: bytes = b"") -> str:
 
     Args:
         path: the house file.
-        with_also: further content that counts.
+        with_also: further content to include.
 
     Raises:
         HouseError: a file cannot be read.
     """
     digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=_MOST_BYTES) + _sidecar_bytes(path))
     digest.update(with_also)
-    for file in files_of(path):  # none for a file that stands alone, whose checksum is that of version 0.1
+    for file in files_of(path):  # a house in a single file keeps the checksum of version 0.1
         name = os.path.relpath(file, path.resolve().parent)
         digest.update(name.encode(errors="replace"))
         digest.update(bytes.fromhex(sha256_of(file, what="File of a house", error=HouseError)))
