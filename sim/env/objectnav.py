@@ -267,7 +267,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             raise HouseError(f"House '{house}': the noise in its sidecar is not allowed: {error}") from None
 
     def _require_in_space(self, observation: dict[str, NDArray]) -> None:
-        """Raises ConfigError if the first reading of a sensor of the user's is not in its space."""
+        """Raises ConfigError if the first reading of a user's sensor is not in its space."""
         for sensor in (each for each in self.sensors if each.name not in STANDARD_SENSORS):
             space, reading = sensor.space(self.camera_model), observation[sensor.name]
             if not space.contains(reading):

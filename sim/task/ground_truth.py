@@ -124,19 +124,19 @@ class GroundTruth:
         return self._region_now(goal, floor_z_m).nearest_m(x_m, y_m)
 
     def category_at(self, x_m: float, y_m: float, floor_z_m: float, *, goal: str, within_m: float) -> str | None:
-        """Returns the category of the object at a place of a storey, with objects where they are now in the world.
+        """Returns the category of the object at a place of a storey, at the present positions of the objects.
 
         Args:
             x_m: place in the world.
             y_m: place in the world.
             floor_z_m: height of the storey's floor.
-            goal: category that counts first, because outlines overlap: a cushion lies on a sofa.
+            goal: category that has priority, because footprints overlap: a cushion may lie on a sofa.
             within_m: largest distance in plan from the place to the footprint of the object.
 
         Returns:
-            The goal if an instance is near enough, else the category of the nearest object, of objects at the same
-            distance the smallest. A wall, a door or a window counts only where there is no other object. None: there
-            is nothing.
+            The goal if an instance is near enough, else the category of the nearest object; if several are equally
+            near, that of the smallest. A wall, a door or a window counts only if there is no other object. None: there
+            is no object.
         """
         off_m = self.nearest_now_m(goal, x_m, y_m, floor_z_m)
         if off_m is not None and off_m <= within_m:

@@ -28,7 +28,7 @@ SIGHT_BLOCKERS = ("wall", "door", "window")
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Geometry that does not depend on the goal: all footprints, and the obstacles to sight on one storey."""
+    """Geometry that does not depend on the goal: all footprints, and the obstacles that block sight on one storey."""
 
     footprints: Footprints
     blockers: tuple[ConvexPolygon, ...]

@@ -65,7 +65,7 @@ class Trajectory:
     stop_target_to_goal_m: float | None = None
     """Metres in plan from that place to the nearest instance, walls ignored; None: no place, or storey has none."""
     stop_target_category: str | None = None
-    """Category of the object at that place; None: no place, no object, or a file of an older version."""
+    """Category of the object at that place; None if there is no place or object, or in a file of an older version."""
     about: Mapping[str, Any] = field(default_factory=dict)
     """Identity of the episode, and its scores; JSON types."""
 

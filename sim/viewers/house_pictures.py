@@ -25,7 +25,7 @@ ViewPose = tuple[float, float, float, float]
 """x, y, height of the floor (metres) and yaw (degrees)."""
 VIEW_PX = (640, 480)
 TITLE_PX = 44
-"""Height of the line of a title."""
+"""Height of the strip with a title."""
 TOP_PX = (1400, 1100)
 TOP_FOVY_DEG = 12.0
 """Field of view from above: small, so that walls hide little of the furniture that stands at them."""
@@ -54,7 +54,7 @@ LOOK_SIZES = 1.2
 """The best distance from the middle of an object: this many times its size, and `NEAREST_LOOK_M` more."""
 HIDDEN_GROUP = 3
 QUADS = 28
-"""Squares along an edge of a flat geom, at whose corners light is computed: with few, lamps draw diamonds on floors."""
+"""Number of squares along an edge of a flat geom, at whose corners light is computed; few of them show on floors."""
 CEILING_M = 2.5
 """Height of a storey without rooms."""
 _STRUCTURE = tuple(MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling", "door", "window"))
@@ -394,7 +394,7 @@ def tiled(tiles: list[Picture], columns: int) -> Picture:
 
 
 def titled(picture: Picture, title: str) -> Picture:
-    """Returns a picture (h, w, 3) below a line with its title."""
+    """Returns a picture (h, w, 3) with a strip above it that shows its title."""
     head = np.full((TITLE_PX, picture.shape[1], 3), 255, np.uint8)
     write(head, title, (12, round(0.7 * TITLE_PX)), picture.shape[1] - 24, round(0.55 * TITLE_PX), (20, 20, 20), BOLD)
     return np.vstack([head, picture])

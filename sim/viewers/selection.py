@@ -54,7 +54,7 @@ def make(options: ViewerOptions, painter: MapPainter | None, seen: SeesFrames | 
     Args:
         options: of the run.
         painter: draws the agent's map; None if it has none.
-        seen: gives the segmentation that the agent acts on; None if it has none.
+        seen: provides the segmentation that the agent acts on; None if it has none.
 
     Raises:
         ConfigError: see `check`.
