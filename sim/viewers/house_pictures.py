@@ -54,7 +54,8 @@ LOOK_SIZES = 1.2
 """The best distance from the middle of an object: this many times its size, and `NEAREST_LOOK_M` more."""
 HIDDEN_GROUP = 3
 QUADS = 28
-"""Number of squares along an edge of a flat geom, at whose corners light is computed; few of them show on floors."""
+"""Number of squares along an edge of a flat geom, at whose corners light is computed. If there are few, lamps
+cause diamond shapes on floors."""
 CEILING_M = 2.5
 """Height of a storey without rooms."""
 _STRUCTURE = tuple(MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling", "door", "window"))

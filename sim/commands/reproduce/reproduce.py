@@ -69,7 +69,7 @@ class Args:
     workers: cli.Count = 1
     """Number of processes."""
     step_timeout: cli.NotNegative | None = None
-    """Seconds that one call of an agent may take, as in `stubborn run`; 0 runs your own code in this process."""
+    """Longest time of a call of an agent, seconds, as in `stubborn run`; 0 runs your own code in this process."""
     executor: str = "local"
     """Executor: local processes, or ray (extra `ray`) for a cluster whose machines can all access --out."""
     address: str | None = None
@@ -90,7 +90,7 @@ class Args:
     seed: cli.Seed = 0
     """Seed of the runs."""
     chunk: cli.Count | None = None
-    """Number of episodes that an agent runs in its turn; 20, with several splits 60."""
+    """Number of episodes that an agent runs before the next agent's turn; by default 20, with several splits 60."""
     minutes: cli.NotNegative | None = None
     """Time limit: a chunk that would end later is not started. 0 makes the tables from the existing runs only."""
 

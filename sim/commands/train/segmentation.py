@@ -33,9 +33,9 @@ from sim.commands.train.training_files import (
     cut_rows,
     load_state,
     options_of,
+    print_next_commands,
     require_options,
     save_state,
-    tell_next,
 )
 from sim.interface import CameraModel, ConfigError
 from sim.invocation import command
@@ -167,7 +167,7 @@ def main(args: Args) -> int:
     weights = args.out / "rednet.safetensors"
     if trainer.start_miou is not None:
         print(f"mIoU of goals, calibrated: {trainer.start_miou:.3f} at the start, {trainer.best:.3f} now")
-    tell_next(
+    print_next_commands(
         weights,
         command("evaluate", "--views", *map(str, args.val_views), "--weights", str(weights)),
         command("run", "--semantics", "rednet", "--weights", str(weights)),
