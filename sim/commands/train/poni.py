@@ -68,7 +68,7 @@ class Args:
     val_count: cli.Amount = 900
     """Largest number of held-back samples in an evaluation; 0: all."""
     seed: cli.Seed = 0
-    """Seed of the initial weights, the order and the rotations of the samples; the samples have a seed of their own."""
+    """Seed of the initial weights and of the order and rotations of the samples; the samples have another seed."""
 
 
 def main(args: Args) -> int:
