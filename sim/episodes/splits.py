@@ -37,6 +37,8 @@ from sim.reading import Name, first_unprintable, printable, read_bytes, read_jso
 
 UNREACHABLE_FILE = "unreachable.json"
 LABELS_FILE = "labels.json"
+HOUSE_SUFFIXES = (".xml", ".mjcf")
+"""Endings of house files, in lower or upper case."""
 _MOST_BYTES = 256 << 20
 """Largest size of a house file."""
 FARTHEST_M = 10_000.0
@@ -273,6 +275,22 @@ def write_split(
         file.unlink()
 
 
+def house_files(folder: Path) -> dict[str, Path]:
+    """Returns the house files directly in a folder by name without the ending, in alphabetical order; {} without it.
+
+    Raises:
+        ConfigError: two files differ in their endings only.
+    """
+    found = dict[str, Path]()
+    for path in sorted(folder.iterdir()) if folder.is_dir() else ():
+        if path.suffix.lower() not in HOUSE_SUFFIXES:
+            continue
+        if path.stem in found:
+            raise ConfigError(f"The houses '{found[path.stem]}' and '{path}' have one name; rename one of them.")
+        found[path.stem] = path
+    return found
+
+
 def labels_of(folder: Path) -> Path | None:
     """Returns the file of label rules in the folder of a split; None if its houses need none."""
     file = folder / LABELS_FILE
@@ -303,6 +321,11 @@ def _index_of(folder: Path) -> Path:
     return folder / f"{folder.name}.json.gz"
 
 
+def has_episodes(folder: Path) -> bool:
+    """Returns whether a folder holds the episodes of a split."""
+    return _index_of(folder.resolve()).is_file()
+
+
 def _read_split(folder: Path) -> Split:
     """Returns the split in a folder that has an index."""
     index_file = _index_of(folder)
@@ -321,9 +344,9 @@ def _read_split(folder: Path) -> Split:
         raise ConfigError(f"Episode file '{index_file}', field 'order': an episode is listed twice.")
     ordered = tuple(episodes[each] for each in order)
     house_list = read_house_list(folder) if has_house_list(folder) else None
-    houses = house_list.paths if house_list else {path.stem: path for path in sorted(folder.glob("*.xml"))}
+    houses = house_list.paths if house_list else house_files(folder)
     if (bad := first_unprintable(houses)) is not None:
-        raise ConfigError(f"Split '{folder}': the name of the house '{printable(bad)}.xml' is not plain text.")
+        raise ConfigError(f"Split '{folder}': the name of the house '{printable(bad)}' is not plain text.")
     missing = sorted({episode.house for episode in ordered} - set(houses))
     if missing:
         where = "no such house in its list" if house_list else f"no {missing[0]}.xml"
