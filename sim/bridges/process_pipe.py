@@ -103,7 +103,7 @@ class AgentProcess:
         self._received, self._tail, self._begun = bytearray(), bytearray(), False
         self._printed_bytes = 0
         self._end = ""
-        """How the process has ended, in words; "" while it runs."""
+        """A text on how the process has ended, for messages; "" while it runs."""
         self._memory = _SharedMemory.make()
         self._number = 0
 

@@ -19,7 +19,7 @@ from sim.evaluation.watch import FACTORY_S, is_stop
 
 
 class _TooLong(BaseException):
-    """An import took longer than the limit; not an `Exception`, so that the module's own handlers let it pass."""
+    """An import took longer than the limit; it is not an `Exception`, which handlers in the module could catch."""
 
     def __init__(self, limit_s: float) -> None:
         super().__init__(f"the import did not end within {limit_s:g} s")
@@ -27,7 +27,7 @@ class _TooLong(BaseException):
 
 @contextlib.contextmanager
 def _limited(limit_s: float) -> Iterator[None]:
-    """Raises `_TooLong` in the block after a time; in the main thread only, where Python handles signals."""
+    """Raises `_TooLong` in the `with` block after `limit_s`; only in the main thread, where Python handles signals."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -38,7 +38,7 @@ from sim.reading import Name, first_unprintable, printable, read_bytes, read_jso
 UNREACHABLE_FILE = "unreachable.json"
 LABELS_FILE = "labels.json"
 HOUSE_SUFFIXES = (".xml", ".mjcf")
-"""Endings of house files, in lower or upper case."""
+"""Suffixes of house files, in lower or upper case."""
 _MOST_BYTES = 256 << 20
 """Largest size of a house file."""
 FARTHEST_M = 10_000.0
@@ -276,10 +276,10 @@ def write_split(
 
 
 def house_files(folder: Path) -> dict[str, Path]:
-    """Returns the house files directly in a folder by name without the ending, in alphabetical order; {} without it.
+    """Returns the house files in a folder, by name without suffix, sorted; an empty dict if there is no such folder.
 
     Raises:
-        ConfigError: two files differ in their endings only.
+        ConfigError: the names of two files differ only in their suffix.
     """
     found = dict[str, Path]()
     for path in sorted(folder.iterdir()) if folder.is_dir() else ():

@@ -104,7 +104,7 @@ class Choices:
         Args:
             record: the run's `config.json`.
             line: the episode's result line.
-            driver: who drives the robot.
+            driver: the agent or a person, who drives the robot first.
 
         Raises:
             ConfigError: the server was started without a part of the run, or a field of the record is missing.

@@ -268,7 +268,7 @@ class TrackSeeker:
         result = set(tracks)
         for track in tracks:
             others = np.flatnonzero(self.probability >= self.config.part_share * self.probability[track])
-            result.update(self._of_episode().beside(track, others, self.config.part_gap_voxels).tolist())
+            result.update(self._of_episode().near(track, others, self.config.part_gap_voxels).tolist())
         return sorted(result)
 
     def _best_doubtful(self, tracks: list[int], pose: Pose) -> int:

@@ -118,7 +118,7 @@ def lines_of(
     else:
         run = RunDirectory(log, log_config(args, split), line_type)
         try:
-            _play(args, split, run, runner, nothing)
+            _run_episodes(args, split, run, runner, nothing)
             lines = run.lines
         finally:
             run.discard_if_empty()
@@ -155,7 +155,7 @@ def log_config(args: LogOptions, split: Split) -> dict[str, Any]:
 
 
 def _own_code(semantics: str) -> str:
-    """Returns "+" and a hash of the code of a segmentation of the user's; "" for those that ship."""
+    """Returns "+" and a hash of the code of a user's segmentation; "" for those that ship."""
     module, separator, _ = semantics.partition(":")
     return f"+{hash_of_own((module,))}" if separator else ""
 
@@ -166,7 +166,9 @@ def line_of(episode: Episode, steps: int, **found: Any) -> dict[str, Any]:
     return about | {"steps": steps} | found
 
 
-def _play(args: LogOptions, split: Split, run: RunDirectory, runner: RunnerSpec, nothing: Mapping[str, Any]) -> None:
+def _run_episodes(
+    args: LogOptions, split: Split, run: RunDirectory, runner: RunnerSpec, nothing: Mapping[str, Any]
+) -> None:
     """Runs the episodes that are not in the log yet, until the time is up."""
     done = {line["episode_id"] for line in run.lines}
     todo = [episode for episode in split.episodes[: args.episodes] if episode.episode_id not in done]

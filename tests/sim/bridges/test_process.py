@@ -89,7 +89,7 @@ FAULTS = {
     "map_pickle": "dtype",
     "map_missing": "arrays",
 }
-"""What an agent's process does at its first step, map or reset, and what the message says."""
+"""The behaviour of an agent's process at its first step, map or reset, and a part of the message."""
 
 
 def command(fault: str, folder: Path) -> list[str]:

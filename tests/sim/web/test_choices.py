@@ -1,4 +1,4 @@
-"""What can be started from the page: what ships, what the server was started with, and the episodes of its runs."""
+"""Choices on the page: the parts that ship, those with which the server was started, and the episodes of its runs."""
 
 from __future__ import annotations
 
