@@ -318,7 +318,7 @@ class TrackSeeker:
             self._pushes += 1
 
     def _look(self, navmap: NavMap, window: Window, pose: Pose, track: int) -> Approach | None:
-        """Returns the approach to a place to look at a track from; None: the track was decided on or set aside."""
+        """Returns the approach to a place with a view of a track; None: the track was decided on or set aside."""
         tracks, cells = self._of_episode(), self.cells_of(navmap, [track])
         seen_from, middle_xy_m = tracks.evidence.near_sectors(track), tracks.track(track).middle_xy_m
         looked_from = seen_from | self._hidden.get(track, False)
