@@ -115,7 +115,7 @@ class Split:
 
     def require_unchanged(self, name: str) -> None:
         """Raises HouseError if a house, its sidecar or a file that it uses has changed since this split was read."""
-        if name in self.house_sums and house_sum(self.house_file(name)) != self.house_sums[name]:
+        if name in self.house_sums and house_sum(self.house_file(name), root=self.root) != self.house_sums[name]:
             raise HouseError(f"House '{name}': its files have changed since this run was planned; start the run again.")
 
     def sidecar(self, house: str) -> Sidecar:
@@ -203,38 +203,39 @@ def split_of_files(
         HouseError: there is no such file.
     """
     labels_path = None if labels is None else Path(labels)
+    allowed = None if root is None else Path(root)
     files, sums = dict[str, Path](), dict[str, str]()
     for path in map(Path, paths):
         if not path.is_file():
             raise HouseError(f"House '{path}': there is no such file.")
         if path.stem in files:
             raise ConfigError(f"The houses '{files[path.stem]}' and '{path}' have one name; rename one of them.")
-        files[path.stem], sums[path.stem] = path, house_sum(path)
+        files[path.stem], sums[path.stem] = path, house_sum(path, root=allowed)
     rules = b""
     if labels_path is not None and labels_path.is_file():
         rules = read_bytes(labels_path, what="Label rules", error=HouseError)
-    allowed = None if root is None else Path(root)
     if len(files) > 1:
         digest = hashlib.sha256("".join(sums.values()).encode() + rules).hexdigest()
         return Split("houses", "houses", digest, files, (), labels_path, allowed, house_sums=sums)
     ((name, path),) = files.items()
-    digest = house_sum(path, with_also=rules) if rules else sums[name]
+    digest = house_sum(path, with_also=rules, root=allowed) if rules else sums[name]
     return Split(name, "one-house", digest, files, (), labels_path, allowed, house_sums=sums)
 
 
-def house_sum(path: Path, *, with_also: bytes = b"") -> str:
+def house_sum(path: Path, *, with_also: bytes = b"", root: Path | None = None) -> str:
     """Returns the checksum of a house file with its sidecar and the files that it uses (SHA-256, hexadecimal).
 
     Args:
         path: the house file.
         with_also: further content to include.
+        root: another folder whose files it may use.
 
     Raises:
         HouseError: a file cannot be read.
     """
     digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=_MOST_BYTES) + _sidecar_bytes(path))
     digest.update(with_also)
-    for file in files_of(path):  # a house in a single file keeps the checksum of version 0.1
+    for file in files_of(path, root):  # a house in a single file keeps the checksum of version 0.1
         name = os.path.relpath(file, path.resolve().parent)
         digest.update(name.encode(errors="replace"))
         digest.update(bytes.fromhex(sha256_of(file, what="File of a house", error=HouseError)))

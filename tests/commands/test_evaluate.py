@@ -23,6 +23,11 @@ from tests.commands.test_train_segmentation import write_views
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
 
 
+@pytest.fixture(autouse=True)
+def few_timed_frames(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(evaluate_rednet, "TIMED_FRAMES", 2)
+
+
 @pytest.fixture
 def weights(tmp_path: Path) -> Path:
     """Returns an overconfident network."""

@@ -292,8 +292,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     **{
         f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} --episodes 5": (
-            f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} {_SMALL} --episodes 1 "
-            "--out {tmp}/run",
+            f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} {_SMALL} task.max_steps=30 "
+            "--episodes 1 --out {tmp}/run",
         )
         for control in ("semantics=shuffled", "goal=wrong")
     },

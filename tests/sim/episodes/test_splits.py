@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim.episodes import habitat
-from sim.episodes.splits import Episode, house_files, load_split, one_house, shipped_splits, write_split
+from sim.episodes.splits import Episode, house_files, house_sum, load_split, one_house, shipped_splits, write_split
 from sim.errors import EpisodeError, HouseError
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError, wrap_angle
@@ -199,3 +199,16 @@ def test_two_houses_that_differ_in_their_endings_only_are_refused(tmp_path: Path
         house_files(tmp_path)
     (tmp_path / "flat.MJCF").unlink()
     assert list(house_files(tmp_path)) == ["flat", "other"]
+
+
+def test_a_file_that_a_house_may_not_read_does_not_count_in_its_checksum(tmp_path: Path) -> None:
+    secret = tmp_path / "elsewhere" / "secret.txt"
+    house = tmp_path / "split" / "house.xml"
+    for folder in (secret.parent, house.parent):
+        folder.mkdir()
+    house.write_text('<mujoco><include file="../elsewhere/secret.txt"/></mujoco>')
+    secret.write_text("one")
+    closed, opened = house_sum(house), house_sum(house, root=secret.parent)
+    secret.write_text("two")
+    assert house_sum(house) == closed
+    assert house_sum(house, root=secret.parent) != opened
