@@ -299,7 +299,7 @@ def _view_lengths(model: mujoco.MjModel, data: mujoco.MjData, room: Room, x: flo
 
 
 MARGIN_M = 1.0
-"""Of the floor around a scene without rooms."""
+"""Width of the floor that is shown around a scene without rooms."""
 
 
 def _extent(model: mujoco.MjModel, labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
