@@ -292,7 +292,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     **{
         f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} --episodes 5": (
-            f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} {_SMALL} task.max_steps=30 "
+            f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} task.max_steps=30 {_SMALL} "
             "--episodes 1 --out {tmp}/run",
         )
         for control in ("semantics=shuffled", "goal=wrong")
