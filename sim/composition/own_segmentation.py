@@ -171,12 +171,23 @@ class OwnSegmenter:
             named = (posteriors.argmax(axis=0) + 1).astype(np.uint8)
             return np.where(posteriors.max(axis=0) > 0.0, named, np.uint8(0))
         given = self._ask("categories", lambda: np.asarray(self._inner.categories(seen)))
-        if given.ndim != 2 or given.dtype.kind not in "iu" or not 0 <= given.min() <= given.max() < len(MPCAT40):
-            self._refuse("categories", f"{given.dtype} {given.shape}; it returns mpcat40 ids 0 to 40, (h, w)")
+        self._require_shape("categories", given, ())
+        if given.dtype.kind not in "iu" or not 0 <= given.min() <= given.max() < len(MPCAT40):
+            self._refuse("categories", f"an array of {given.dtype}; it holds mpcat40 ids, integers from 0 to 40")
         return given.astype(np.uint8)
 
     def _checked(self, method: str, given: NDArray, before: tuple[int, ...]) -> NDArray[np.float32]:
         """Returns an array (*before, h, w) as float32 after a check of shape and range."""
+        self._require_shape(method, given, before)
+        if given.dtype.kind not in "fiub":
+            self._refuse(method, f"an array of {given.dtype}; it is float32")
+        low, high = float(given.min()), float(given.max())
+        if not (low >= -1e-3 and high <= 1.001):  # also for nan
+            self._refuse(method, f"numbers from {low:g} to {high:g}; they are probabilities in [0, 1]")
+        return np.clip(given, 0.0, 1.0).astype(np.float32, copy=False)
+
+    def _require_shape(self, method: str, given: NDArray, before: tuple[int, ...]) -> None:
+        """Raises AgentError unless an array is (*before, h, w), with h x w the image's or a whole fraction of it."""
         height, width = self._shape
         rows, cols = given.shape[-2:] if given.ndim >= 2 else (0, 0)
         if given.shape[:-2] != before or not rows or not cols or height % rows or height // rows * cols != width:
@@ -186,12 +197,6 @@ class OwnSegmenter:
                 f"an array of shape {given.shape}; it is ({wanted}) with h x w the image's {height} x {width} or a "
                 "whole fraction of it",
             )
-        if given.dtype.kind not in "fiub":
-            self._refuse(method, f"an array of {given.dtype}; it is float32")
-        low, high = float(given.min()), float(given.max())
-        if not (low >= -1e-3 and high <= 1.001):  # also for nan
-            self._refuse(method, f"numbers from {low:g} to {high:g}; they are probabilities in [0, 1]")
-        return np.clip(given, 0.0, 1.0).astype(np.float32, copy=False)
 
     def _ask(self, method: str, call: Callable[[], Any]) -> Any:
         try:

@@ -8,7 +8,8 @@ from pathlib import Path
 from sim.errors import HouseError
 from sim.files import inside, write_together
 from sim.gl import mujoco
-from sim.houses.load import load_house
+from sim.houses.house import House
+from sim.houses.load import load_house, validate_house
 from sim.houses.references import SHARED_TEXTURES, asset_path
 from sim.reading import read_bytes, reason_of
 
@@ -52,9 +53,13 @@ def write_house(spec: mujoco.MjSpec, folder: str | Path, name: str | None = None
         raise HouseError(f"House '{name}' has meshes in files, which write_house does not copy.")
     path = inside(folder, f"{name}.xml", what="name of a house")
     try:
-        spec.compile()
+        model = spec.compile()
     except ValueError as error:
         raise HouseError(f"House '{name}' does not compile: {reason_of(error)}.") from None
+    try:
+        validate_house(House(name, spec), model)
+    except HouseError as error:
+        raise HouseError(f"House '{name}': {error}") from None
     files: dict[Path, bytes | str] = {path: house_text(spec, SHARED_TEXTURES)}
     for texture in spec.textures:
         for file in (each for each in (texture.file, *texture.cubefiles) if each):

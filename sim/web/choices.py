@@ -127,8 +127,8 @@ class Choices:
                 options = replace(options, **{name: record[name]})
         request = self._request(convert(asked, _Start, where="The run's config.json"), options)
         if file:  # the episodes are drawn again, so that all options on which they depend must be those of the run
-            drawn = {name: record.get(name) for name in ("goal", "start_deg")}
-            request = replace(request, options=replace(request.options, **drawn, episodes=record["episodes"]))
+            drawn = convert(dict(record), _Drawn, where="The run's config.json")
+            request = replace(request, options=replace(request.options, **msgspec.structs.asdict(drawn)))
         return replace(request, record=record)
 
     def _request(self, asked: _Start, options: RunOptions) -> EpisodeRequest:
@@ -181,6 +181,14 @@ class _Start(msgspec.Struct):
     explorer: str = ""
     episode: str = ""
     driver: Literal["agent", "person"] = "agent"
+
+
+class _Drawn(msgspec.Struct):
+    """The options of a run in one house on which its episodes depend."""
+
+    episodes: int
+    goal: str | None = None
+    start_deg: str | None = None
 
 
 def _split_name(name: str) -> str:

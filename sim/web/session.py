@@ -21,7 +21,7 @@ from sim.episodes.splits import Episode
 from sim.errors import EpisodeError, debug
 from sim.evaluation.config_fields import differing_fields, is_same_file
 from sim.evaluation.rollout import agent_seed, episode_seed, play_episode
-from sim.interface import Action, Agent, Observation, Overridable, StatesTarget
+from sim.interface import Action, Agent, Closable, Observation, Overridable, StatesTarget
 from sim.reading import printable
 from sim.task.explanations import ACTION_WORDS, explain_end, in_words, with_article
 from sim.viewers.viewer import Moment
@@ -166,6 +166,8 @@ class Session:
 
     def _free(self) -> None:
         if self._made is not None:
+            if isinstance(self._made.parts.agent, Closable):
+                self._made.parts.agent.close()
             self._made.pictures.close()
             self._made.parts.env.close()
         self._made = None

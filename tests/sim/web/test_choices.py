@@ -124,6 +124,13 @@ def test_an_episode_of_a_run_has_its_options_but_no_file_or_code_that_is_not_off
         choices.again(record | {"house": "/my/house.xml"}, line, "agent")
 
 
+def test_a_run_in_one_house_without_its_number_of_episodes_is_refused(own: Choices, house: Path) -> None:
+    record = {"agent": "random", "semantics": "gt", "house": str(house), "seed": 7}
+    line = {"episode_id": f"{house.stem}_0000", "house": house.stem, "goal": "sofa"}
+    with pytest.raises(ConfigError, match="episodes"):
+        own.again(record, line, "agent")
+
+
 def test_an_episode_of_a_run_is_repeated_exactly(own: Choices, house: Path, tmp_path: Path) -> None:
     options = ["--house", str(house), "--agent", "random", "--semantics", "gt", "--seed", "5", "--noise", "harsh"]
     options += ["--config", "task.max_steps=8", "--episodes", "2", "--record", "--out", str(tmp_path / "run")]
