@@ -16,6 +16,7 @@ from sim.housegen.floor_plan.rectangles import Rect, frame_around
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.item import Geom, Item, Look
 from sim.housegen.mjcf.builder import HouseBuilder
+from sim.housegen.mjcf.movables import as_movable
 from sim.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
 
 CEILING_M = 2.5
@@ -50,12 +51,30 @@ class TrapSite:
     """A builder of one scene; every object is labelled with its category and a number."""
 
     def __init__(
-        self, name: str, length_m: float, width_m: float, *, kind: str = "living_room", pit: Pit | None = None
+        self,
+        name: str,
+        length_m: float,
+        width_m: float,
+        *,
+        kind: str = "living_room",
+        pit: Pit | None = None,
+        seed: int = 0,
     ) -> None:
+        """Begins a hall with a floor, walls, a ceiling and daylight.
+
+        Args:
+            name: the model's name.
+            length_m: of the hall along x.
+            width_m: of the hall along y.
+            kind: of the room.
+            pit: a place where the floor is lower.
+            seed: of the furniture's style.
+        """
         self.rect = Rect(0.0, 0.0, length_m, width_m)
         self.pit = pit
         self._builder = HouseBuilder(name)
-        self._rng = np.random.default_rng(0)
+        self._rng = np.random.default_rng(seed)
+        self._hidden: list[str] = []
         around = self.rect.grown(WALL_M)
         for rect in frame_around(around, pit.rect) if pit else [around]:
             self._builder.add_ground(rect)
@@ -67,6 +86,28 @@ class TrapSite:
     def spec(self) -> mujoco.MjSpec:
         """The scene built so far."""
         return self._builder.spec
+
+    @property
+    def hidden(self) -> tuple[str, ...]:
+        """Names of the bodies that make the trap: what depth does not show, shows too late, or shows as passable."""
+        return tuple(self._hidden)
+
+    def without_hidden(self) -> mujoco.MjSpec:
+        """Returns the scene without its hidden bodies, and with a floor over its pit."""
+        spec = self.spec.copy()
+        for name in self._hidden:
+            spec.delete(spec.body(name))
+        if self.pit:
+            (x, y), rect = self.pit.rect.centre, self.pit.rect
+            half = [0.5 * rect.width_m, 0.5 * rect.depth_m, 0.05]
+            spec.worldbody.add_geom(name="floor_cover_00", type=mujoco.mjtGeom.mjGEOM_BOX, group=3, size=half,
+                                    pos=[x, y, -0.05])  # fmt: skip
+        return spec
+
+    def hide(self, body: mujoco.MjsBody) -> mujoco.MjsBody:
+        """Counts a body as a part of the trap; returns it."""
+        self._hidden.append(body.name)
+        return body
 
     def box(self, category: str, x: Span, y: Span, z: Span, look: Look, *, solid: bool = True) -> mujoco.MjsBody:
         """Adds a labelled box."""
@@ -88,7 +129,7 @@ class TrapSite:
 
     def invisible_box(self, category: str, x: Span, y: Span, z: Span = (0.0, 2.0), *, yaw_rad: float = 0.0) -> None:
         """Adds a box that collides and is not rendered, turned about its centre."""
-        for geom in self.add(category, [_box(x, y, z, GLASS, yaw_rad=yaw_rad)]).geoms:
+        for geom in self.hide(self.add(category, [_box(x, y, z, GLASS, yaw_rad=yaw_rad)])).geoms:
             geom.group = INVISIBLE_GROUP
 
     def pane(self, category: str, begin: tuple[float, float], end: tuple[float, float], z: Span = (0.0, 2.0)) -> None:
@@ -99,10 +140,12 @@ class TrapSite:
             category, (x - length / 2, x + length / 2), (y - GLASS_M / 2, y + GLASS_M / 2), z, yaw_rad=yaw
         )
 
-    def posts(self, category: str, places: list[tuple[float, float]], radius: float, z: Span, look: Look) -> None:
+    def posts(
+        self, category: str, places: list[tuple[float, float]], radius: float, z: Span, look: Look
+    ) -> mujoco.MjsBody:
         """Adds one labelled object of several upright round posts."""
         half, middle = 0.5 * (z[1] - z[0]), 0.5 * (z[0] + z[1])
-        self.add(category, [Geom("cylinder", (radius, half), (x, y, middle), look) for x, y in places])
+        return self.add(category, [Geom("cylinder", (radius, half), (x, y, middle), look) for x, y in places])
 
     def add(
         self, category: str, geoms: list[Geom], x: float = 0.0, y: float = 0.0, yaw_rad: float = 0.0
@@ -111,10 +154,26 @@ class TrapSite:
         item = Item(category, "trap", (0.0, 0.0, 0.0), tuple(geoms))
         return self.spec.body(self._builder.add(PlacedItem(item, x, y, 0.0, yaw_rad)))
 
+    def movable_box(
+        self, category: str, x: Span, y: Span, height_m: float, look: Look, *, mass_kg: float, friction: float
+    ) -> mujoco.MjsBody:
+        """Adds a box on the floor that the robot can push."""
+        (x0, x1), (y0, y1) = x, y
+        half = (0.5 * (x1 - x0), 0.5 * (y1 - y0), 0.5 * height_m)
+        geom = Geom("box", half, (0.0, 0.0, half[2]), look)
+        item = Item(category, "trap", (0.0, 0.0, 0.0), (geom,))
+        movable = as_movable(item, mass_kg, friction)
+        self._builder.add_movable_body(movable, PlacedItem(item, 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.0, 0.0))
+        return self.spec.bodies[-1]
+
     def furniture(self, category: str, x: float, y: float, yaw_rad: float, **hints: Any) -> None:
         """Adds an item of the houses' furniture; its front points along `yaw_rad`."""
         item = CATALOGUE.make_item(category, self._rng, pool="heldout", **hints)
         self._builder.add(PlacedItem(item, x, y, item.mount_height_m, yaw_rad))
+
+    def floor_slab(self, x: Span, y: Span, height_m: float, look: Look) -> mujoco.MjsBody:
+        """Adds a slab of floor, for example a rug or a low sill."""
+        return self.box("floor", x, y, (0.0, height_m), look)
 
     def slippery_floor(self, x: Span, y: Span, friction: float) -> None:
         """Adds a patch of floor, 1 mm thick, with its own friction."""
