@@ -100,7 +100,7 @@ class TrapSite:
         if self.pit:
             (x, y), rect = self.pit.rect.centre, self.pit.rect
             half = [0.5 * rect.width_m, 0.5 * rect.depth_m, 0.05]
-            spec.worldbody.add_geom(name="floor_cover_00", type=mujoco.mjtGeom.mjGEOM_BOX, group=3, size=half,
+            spec.worldbody.add_geom(name="floor_99", type=mujoco.mjtGeom.mjGEOM_BOX, group=3, size=half,
                                     pos=[x, y, -0.05])  # fmt: skip
         return spec
 

@@ -20,6 +20,7 @@ from sim.housegen.traps.site import TrapSite
 from sim.housegen.traps.trap import Trap
 from sim.houses.geoms import geom_polytope
 from sim.houses.house import House
+from sim.houses.labels import collidable_geoms
 from sim.houses.sidecar import Sidecar, TrapFacts
 from sim.task.objectnav import Task
 from sim.world.pose_search import PoseRoute, PoseSearch
@@ -102,14 +103,13 @@ def _distance_m(spec: mujoco.MjSpec, scene: Scene) -> tuple[Task, float | None]:
 
 
 def _extent(task: Task, site: TrapSite) -> tuple[float, int]:
-    """Returns total length in plan and number of the hidden geoms; of a pit the longer side, as one."""
-    world, hidden = task.world, set(site.hidden)
-    geoms = [geom for each in world.labels.instances if each.name in hidden for geom in each.geom_ids]
-    length_m = 0.0
-    for body in sorted(hidden):
-        (of_body,) = (each.geom_ids for each in world.labels.instances if each.name == body)
-        corners = np.concatenate([geom_polytope(world.model, world.data, geom).vertices_m[:, :2] for geom in of_body])
-        length_m += max(cv2.minAreaRect(corners.astype(np.float32))[1])
-    if site.pit:
-        return round(site.pit.rect.long_m, 3), 1
-    return round(float(length_m), 3), len(geoms)
+    """Returns total length in plan of the hidden bodies, and the number of their collision geoms; a pit counts as one."""
+    world, solid = task.world, collidable_geoms(task.world.model)
+    length_m, count = (site.pit.rect.long_m, 1) if site.pit else (0.0, 0)
+    for each in world.labels.instances:
+        geoms = [geom for geom in each.geom_ids if solid[geom]] if each.name in site.hidden else []
+        if geoms:
+            corners_m = [geom_polytope(world.model, world.data, geom).vertices_m[:, :2] for geom in geoms]
+            length_m += max(cv2.minAreaRect(np.concatenate(corners_m).astype(np.float32))[1])
+            count += len(geoms)
+    return round(float(length_m), 3), count
