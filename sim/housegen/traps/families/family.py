@@ -19,8 +19,9 @@ from sim.housegen.traps.site import Span, TrapSite
 Difficulty = Literal["easy", "medium", "hard"]
 DIFFICULTIES: tuple[Difficulty, ...] = get_args(Difficulty)
 
-CLIMBED_M = 0.010
-"""Solids up to this height are meant to be driven over, with room below the limit of the wheels (12 mm) ..."""
+CLIMBED_M = 0.006
+"""Solids up to this height are meant to be driven over, also where a turn or a forward begins against their edge. The
+wheels climb 12 mm ..."""
 BLOCKING_M = 0.040
 """... and solids from this height on are meant to block, with room above it. No solid has a height in between."""
 UNSEEN_M = (0.05, 0.085)

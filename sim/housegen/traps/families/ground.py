@@ -48,8 +48,8 @@ class WetFloor(Parameters):
         soft = chance.one_of((False, True))
         return cls(
             gap_m=gap_m, width_m=width_m, line_m=line_m, patch_m=chance.between((1.4, 1.8), (1.8, 2.4), (2.4, 3.0)),
-            friction=1.0 if soft else chance.between((0.14, 0.20), (0.10, 0.14), (0.06, 0.10)),
-            rolling_m=chance.between((0.003, 0.005), (0.005, 0.008), (0.008, 0.011)) if soft else 0.0,
+            friction=1.0 if soft else chance.between((0.15, 0.20), (0.11, 0.15), (0.08, 0.11)),
+            rolling_m=chance.between((0.002, 0.004), (0.004, 0.006), (0.006, 0.008)) if soft else 0.0,
             gap_low_m=gap_away_from(chance, width_m, gap_m, line_m, (0.8, 1.1, 1.5)[chance.level]),
             goal=chance.goal(), yaw_rad=chance.yaw_rad(),
         )  # fmt: skip

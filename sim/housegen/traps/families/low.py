@@ -83,7 +83,7 @@ class Sills(Parameters):
         return cls(
             gap_m=chance.gap_m(), doorways=doorways, doorway_m=chance.between((1.0, 1.1)),
             high_m=chance.between((0.075, UNSEEN_M[1]), (0.06, 0.075), (UNSEEN_M[0], 0.06)),
-            low_m=chance.between((0.004, CLIMBED_M)), way_out=out, towards=towards,
+            low_m=chance.between((0.003, CLIMBED_M)), way_out=out, towards=towards,
             goal=chance.goal(), yaw_rad=chance.yaw_rad(),
         )  # fmt: skip
 
