@@ -159,13 +159,21 @@ def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:
         raise ConfigError(_message_in_box(messages.getvalue())) from None
 
 
+_POSITIONAL = typing.get_args(tyro.conf.Positional[Any])[1]
+"""The mark of positional arguments, which several commands require."""
+
+
 def _without_empty_defaults(args_type: type[ArgsT]) -> type[ArgsT]:
-    """Returns a dataclass of the same options, whose help does not show "(default: None)".
+    """Returns a dataclass of the same options, whose help shows neither "(default: None)" nor "(default: )".
 
     The text of an option says what happens without it.
     """
     hints = typing.get_type_hints(args_type, include_extras=True)
-    empty = [field.name for field in dataclasses.fields(args_type) if field.default in (None, ())]  # type: ignore[arg-type]
+    empty = [
+        field.name
+        for field in dataclasses.fields(args_type)  # type: ignore[arg-type]
+        if field.default in (None, ()) or _POSITIONAL in getattr(hints[field.name], "__metadata__", ())
+    ]
     silent = {name: Annotated[hints[name], tyro.conf.arg(help_behavior_hint="")] for name in empty}
     names = {"__annotations__": silent, "__doc__": args_type.__doc__, "__module__": args_type.__module__}
     return typing.cast(type[ArgsT], type(args_type.__name__, (args_type,), names))

@@ -36,7 +36,7 @@ import numpy as np
 from sim import cli
 from sim.episodes.house_episodes import Ask, HouseAsks, StartDrawer, find_house_asks, turned_start
 from sim.episodes.recipes import DEFAULT_RECIPE, EPISODE_RECIPES, EpisodeRecipe
-from sim.episodes.splits import LABELS_FILE, Episode, house_sidecar, labels_of, write_split
+from sim.episodes.splits import LABELS_FILE, Episode, house_files, house_sidecar, labels_of, write_split
 from sim.errors import EpisodeError, HouseError
 from sim.evaluation.parallel import ordered_map
 from sim.files import inside, write_picture, write_together
@@ -96,7 +96,7 @@ def main(args: Args) -> int:
         ConfigError, EpisodeError, HouseError: there are no houses, or a house cannot be used.
     """
     args = with_split(args)
-    files, recipe = house_files(folder_of(args)), recipe_of(args)
+    files, recipe = house_names(folder_of(args)), recipe_of(args)
     if (args.episodes is not None and args.episodes < 1) or args.workers < 1:
         raise ConfigError("--episodes and --workers must be at least 1.")
     began_s = time.perf_counter()
@@ -146,7 +146,7 @@ def with_split(args: Args) -> Args:
         return args
     if args.split is not None or args.out is None:
         raise ConfigError("--house needs --out FOLDER, and excludes --split.")
-    others = [file.stem for file in args.out.glob("*.xml") if file.stem != args.house.stem]
+    others = [name for name in house_files(args.out) if name != args.house.stem]
     if others:
         raise ConfigError(f"--out '{args.out}' holds the house '{others[0]}' already; give a folder of its own.")
     house = load_house(args.house, labels_path=args.labels, root=args.root)
@@ -172,16 +172,13 @@ def _require_same(house: House, written: House) -> None:
         raise HouseError(f"House '{house.name}' changes when MuJoCo writes it as one file; use it with --house.")
 
 
-def house_files(folder: Path) -> tuple[str, ...]:
+def house_names(folder: Path) -> tuple[str, ...]:
     """Returns the names of the houses in the folder of a split.
 
     Raises:
         ConfigError: there are no houses.
     """
-    listed = has_house_list(folder)
-    names = (
-        tuple(read_house_list(folder).recipes) if listed else tuple(sorted(file.stem for file in folder.glob("*.xml")))
-    )
+    names = tuple(read_house_list(folder).recipes if has_house_list(folder) else house_files(folder))
     if not names:
         raise ConfigError(f"There is no house in '{folder}' (`{command('houses', 'generate')}` makes some).")
     return names
@@ -267,7 +264,7 @@ def draw_episodes(args: Args, order: Sequence[tuple[str, Ask]]) -> list[Episode]
 
 def _task(args: Args, house: str) -> Task:
     folder = folder_of(args)
-    path = read_house_list(folder).fetch(house) if has_house_list(folder) else folder / f"{house}.xml"
+    path = read_house_list(folder).fetch(house) if has_house_list(folder) else house_files(folder)[house]
     loaded = load_house(path, labels_path=labels_of(folder))
     return Task(World(loaded, rule=args.success), TaskConfig(success=args.success))
 
@@ -279,7 +276,7 @@ def _find_asks(args: Args, house: str) -> HouseAsks:
 def _sidecar(args: Args, house: str) -> Sidecar:
     """Returns the sidecar next to a house file of the split; empty if there is none."""
     folder = folder_of(args)
-    return EMPTY_SIDECAR if has_house_list(folder) else house_sidecar(folder / f"{house}.xml", labels_of(folder))
+    return EMPTY_SIDECAR if has_house_list(folder) else house_sidecar(house_files(folder)[house], labels_of(folder))
 
 
 def _draw(args: Args, digits: int, work: tuple[int, str, list[Turn]]) -> tuple[list[tuple[int, Episode]], int]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from sim.episodes.splits import Split, load_split, split_of_files
+from sim.episodes.splits import HOUSE_SUFFIXES, Split, load_split, split_of_files
 from sim.errors import ConfigError
 
 
@@ -60,4 +60,4 @@ def _with_houses(split: Split, names: Sequence[str]) -> Split:
 
 
 def _is_file_name(house: str | Path) -> bool:
-    return isinstance(house, Path) or Path(house).suffix.lower() in (".xml", ".mjcf") or Path(house).name != house
+    return isinstance(house, Path) or Path(house).suffix.lower() in HOUSE_SUFFIXES or Path(house).name != house

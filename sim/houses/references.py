@@ -62,6 +62,13 @@ class Allowed:
     error: type[ObjectNavError]
     """Class of the error: a HouseError is about a house, for which there is `--root`."""
 
+    @property
+    def folders(self) -> list[Path]:
+        """The folders, without symbolic links; what lies below them is allowed too."""
+        folder = self.file.parent
+        textures = [folder.parent / SHARED_TEXTURES, (assets_dir() / SHARED_TEXTURES).resolve()]
+        return [folder, *textures, *([] if self.root is None else [self.root.resolve()])]
+
     def require(self, reference: Reference) -> None:
         """Raises an error where another file must not be read.
 
@@ -83,10 +90,7 @@ class Allowed:
             is_special = target.exists() and not target.is_file()
         except (OSError, ValueError, RuntimeError):
             raise self.error(f"it uses '{name}', which is not the name of a file.") from None
-        folder = self.file.parent
-        textures = [folder.parent / SHARED_TEXTURES, (assets_dir() / SHARED_TEXTURES).resolve()]
-        allowed = [folder, *textures, *([] if self.root is None else [self.root.resolve()])]
-        if not any(target.is_relative_to(each) for each in allowed):
+        if not any(target.is_relative_to(each) for each in self.folders):
             where = "its folder" if self.root is None else f"its folder and '{self.root}'"
             raise self.error(f"it uses '{name}', which is outside of {where}. {self._remedy(target)}")
         if is_special:
@@ -141,13 +145,18 @@ def require_root(root: Path | None) -> None:
         raise HouseError(f"--root '{root}': there is no such folder.")
 
 
-def files_of(house_file: Path) -> list[Path]:
+def files_of(house_file: Path, root: Path | None = None) -> list[Path]:
     """Returns the files that an MJCF file uses, with those of its included files, sorted; shipped ones do not count.
 
-    The text is searched for names of files, and MuJoCo is not asked: the result may hold a file that is not used, and
-    what a file may not read (`Allowed`) is left out.
+    The text is searched for names of files, and MuJoCo is not asked: the result may hold a file that is not used.
+    Files that it may not read (`Allowed`) are left out and not opened.
+
+    Args:
+        house_file: the MJCF file.
+        root: another folder whose files it may use.
     """
     shipped, house_file = assets_dir().resolve(), house_file.resolve()
+    allowed = Allowed(house_file, root, HouseError).folders
     read: set[Path] = set()
     found = {house_file}
     names: dict[str, None] = {}
@@ -165,9 +174,14 @@ def files_of(house_file: Path) -> list[Path]:
                 for name in list(names)[:MOST_FILES]:
                     for each in {name, name.replace("\\", "/").rpartition("/")[2]}:
                         path = path_as_read(base, folder, each)
-                        if _is_plain(path) and not path.is_relative_to(shipped):
+                        if _is_plain(path) and not path.is_relative_to(shipped) and _is_below(path, allowed):
                             found.add(path)
     return sorted(found - {house_file})
+
+
+def _is_below(path: Path, folders: list[Path]) -> bool:
+    target = path.resolve()
+    return any(target.is_relative_to(each) for each in folders)
 
 
 def _content(file: Path) -> bytes:

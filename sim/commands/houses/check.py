@@ -25,7 +25,7 @@ import numpy as np
 
 from sim import cli
 from sim.env.scene import Scene
-from sim.episodes.splits import Split, load_split
+from sim.episodes.splits import Split, has_episodes, house_files, labels_of, load_split, split_of_files
 from sim.errors import ConfigError, HouseError
 from sim.evaluation.parallel import ordered_map
 from sim.geometry.pose import Pose
@@ -62,7 +62,7 @@ class Args:
     movable: bool = False
     """Whether light furniture can be pushed."""
     split: str | None = None
-    """Name or folder of a split; its houses are checked instead of fresh ones."""
+    """Name of a split, or a folder of houses with or without episodes, which are checked instead of fresh ones."""
     house: Path | None = None
     """One MJCF file, which is checked instead of fresh houses."""
     labels: Path | None = None
@@ -139,8 +139,12 @@ def _check_seeds(args: Args) -> Iterator[Checked]:
 
 
 def _check_split(args: Args, split: str) -> Iterator[Checked]:
-    """Checks the houses of a split."""
-    found = load_split(split)
+    """Checks the houses of a split, or those in a folder that has no episodes yet."""
+    folder = Path(split)
+    if (alone := house_files(folder)) and not has_episodes(folder):
+        found = split_of_files(tuple(alone.values()), labels=labels_of(folder))
+    else:
+        found = load_split(split)
     generated = args.furnished or _is_generated(found)
     check = functools.partial(_check_named, found, args.views, generated)
     return ordered_map(check, found.houses, workers=args.workers)

@@ -32,7 +32,7 @@ from tests.helpers.sampling import sample
 SEEDS = list(range(30))
 
 
-@pytest.mark.parametrize("seed", sample(SEEDS, 3))
+@pytest.mark.parametrize("seed", sample(SEEDS, 2))
 def test_any_seed_gives_a_house_in_the_format_that_passes_the_check(seed: int) -> None:
     house = generate_house(seed, HouseConfig(pool="heldout" if seed % 2 else "train"))
     model = house.spec.compile()
