@@ -19,7 +19,6 @@ from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES
 from sim.reading import Count, Metres, Name, read_json
 
-
 Parameter = float | int | str
 """Value of a parameter of a trap."""
 

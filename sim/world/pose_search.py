@@ -7,6 +7,7 @@ exact distances to the plan projections of the collision geoms, sampled on a gri
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -94,7 +95,7 @@ class PoseSearch:
         cells = self._frame.to_cells(path_m)
         inside = self._frame.inside(cells).all(axis=1)
         row, col = np.clip(cells, 0, np.array(self._frame.shape) - 1).transpose(2, 0, 1)
-        return inside & self._passable[row, col].all(axis=1)
+        return np.logical_and(inside, self._passable[row, col].all(axis=1))
 
 
 def _swept(yaw_rad: float) -> NDArray[np.float64]:
@@ -132,7 +133,7 @@ def _trace(end: int, parent: NDArray[np.int64], places: NDArray[np.float64], pla
     keys.reverse()
     headings = [key // plane for key in keys]
     actions = []
-    for before, after in zip(headings, headings[1:], strict=False):
+    for before, after in itertools.pairwise(headings):
         turned = (after - before) % HEADINGS
         actions.append({0: Action.MOVE_FORWARD, 1: Action.TURN_LEFT}.get(turned, Action.TURN_RIGHT))
     return PoseRoute(tuple(actions), places[keys])

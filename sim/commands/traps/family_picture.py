@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.commands.traps.picture import BOLD, END, HEIGHT_PX, INK, PAPER, PATH, START, TopView
+from sim.commands.traps.picture import BOLD, END, HEIGHT_PX, INK, PAPER, START, TopView
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.houses.hazards import steepest_path

@@ -4,9 +4,9 @@
     stubborn traps --split contact-val --out assets/mjcf_houses/contact-val
     stubborn traps --family pane_gap --seed 10 --count 5 --difficulty hard --out my_traps
 
-The scenes of the split `traps` are fixed, and each has three episodes: at the start of its sidecar, with three headings.
-A trap of a family (`sim.housegen.traps.families`) depends on a difficulty and a seed, and has one episode. The same code
-gives the same bytes.
+The scenes of the split `traps` are fixed, and each has three episodes: at the start of its sidecar, with three
+headings. A trap of a family (`sim.housegen.traps.families`) depends on a difficulty and a seed, and has one episode.
+The same code gives the same bytes.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def main(args: Args) -> int:
         if args.family not in FAMILIES:
             raise ConfigError(f"No family of traps '{args.family}'. Available: {', '.join(FAMILIES)}.")
         if args.family in HELD_OUT:
-            print(f"note: the family '{args.family}' is held out: use its traps to measure an agent, not to develop one")
+            print(f"note: '{args.family}' is held out: measure agents on its traps, but develop none on them")
         difficulties = DIFFICULTIES if args.difficulty is None else (args.difficulty,)
         keys = in_turns((args.family,), difficulties, range(args.seed, args.seed + args.count))
         return write_family_traps(args, list(keys))
@@ -88,7 +88,8 @@ def write_family_traps(args: Args, keys: Sequence[TrapKey]) -> int:
     """Writes traps of families, each with one episode."""
     episodes: list[Episode] = []
     goals: dict[str, dict[str, list[habitat.Json]]] = {}
-    for episode, listed, line in ordered_map(functools.partial(write_family_trap, args.out), keys, workers=args.workers):
+    write = functools.partial(write_family_trap, args.out)
+    for episode, listed, line in ordered_map(write, keys, workers=args.workers):
         episodes.append(episode)
         goals[episode.house] = listed
         print(line, flush=True)

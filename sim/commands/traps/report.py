@@ -2,8 +2,11 @@
 
     stubborn traps report --out runs/traps
 
+    stubborn traps report --split contact-val --agents oracle stubborn --out runs/contact
+
 Each agent runs every trap from the start headings of the split. An interrupted run is resumed. A picture shows the trap
 from above with the robot's true path (blue) and the contacts that stopped it (red), and the agent's map at the end.
+Traps of families also get curves with intervals and a picture of each family (`sim.commands.traps.family_report`).
 """
 
 from __future__ import annotations
@@ -23,11 +26,12 @@ from rich.table import Table
 
 from sim import cli
 from sim.analysis import display
+from sim.commands.traps.family_report import facts_of, require_matplotlib, write_family_report
 from sim.commands.traps.picture import draw_trial
 from sim.commands.traps.trial import Trial, run_trial
 from sim.composition.agents import build_agent, find_agent
 from sim.env.objectnav import ObjectNavEnv
-from sim.episodes.splits import Episode
+from sim.episodes.splits import Episode, load_split
 from sim.files import open_to_grow, write_together
 from sim.files import write_picture as save_picture
 from sim.interface import Agent, ConfigError
@@ -41,7 +45,7 @@ from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 DEFAULT_AGENTS = ("oracle", "stubborn-i", "stubborn-ii", "stubborn-iii", "stubborn-iv", "stubborn-v")
 COLUMNS: tuple[str, ...] = (
     "trap", "episode_id", "agent", "escaped", "steps", "steps_in_trap", "collisions", "trapped", "spl",
-    "forward_mean_m", "deepest_mm",
+    "forward_mean_m", "deepest_mm", "fell",
 )  # fmt: skip
 """Columns of the CSV, which has one row for each episode."""
 
@@ -51,7 +55,7 @@ class Args:
     """Report which agent escapes from which trap: a table, and pictures of the paths."""
 
     out: cli.OutFolder
-    """Folder for results.jsonl, traps.csv, traps.md and pictures/."""
+    """Folder for results.jsonl, traps.csv, traps.md and pictures/; for traps of families also tables and curves."""
     split: str = "traps"
     """The traps: a shipped split, or a folder of yours with episodes (`stubborn episodes --recipe traps`)."""
     agents: tuple[str, ...] = DEFAULT_AGENTS
@@ -63,13 +67,16 @@ class Args:
     max_steps: cli.Count = 500
     """Largest number of actions of an episode."""
     pictures: cli.OnUnlessNo = True
-    """Draw no paths; by default those of the first heading of each trap, and of every episode in which an agent did
-    not escape, are drawn."""
+    """Draw no paths and no families; by default the paths of every episode in which an agent did not escape are drawn,
+    and for traps of no family those of the first heading."""
 
 
 def main(args: Args) -> int:
     """Runs the missing episodes, then writes the table."""
     console = display.make_console()
+    facts = facts_of(load_split(args.split))
+    if facts:
+        require_matplotlib()
     results = args.out / "results.jsonl"
     found = read_lines(results, Row, what="Results")
     if found.torn:
@@ -86,6 +93,7 @@ def main(args: Args) -> int:
             outcome = "escaped" if trial.escaped else "stuck"
             console.print(f"{name} {trial.episode_id}: {outcome} after {len(trial.motions)} steps")
     write_together({args.out / "traps.csv": as_csv(rows), args.out / "traps.md": as_markdown(rows)})
+    write_family_report(args.out, rows, args.split, facts, pictures=args.pictures)
     console.print(as_table(rows))
     return 0
 
@@ -104,6 +112,7 @@ class Row(msgspec.Struct):
     spl: Number
     forward_mean_m: Number | None
     deepest_mm: Number
+    fell: bool = False
 
 
 def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:
@@ -115,12 +124,12 @@ def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:
     try:
         agent = make_agent(name, env)
         episodes = wanted(env, args)
-        firsts = {each.house: each.episode_id for each in reversed(episodes)}
+        firsts = {each.house: each.episode_id for each in reversed(episodes) if each.house not in facts_of(env.split)}
         for episode in episodes:
             if episode.episode_id in done:
                 continue
             trial = run_trial(env, agent, name, episode)
-            if args.pictures and (firsts[episode.house] == episode.episode_id or not trial.escaped):
+            if args.pictures and (firsts.get(episode.house) == episode.episode_id or not trial.escaped):
                 write_picture(args.out / "pictures", env, agent, trial)
             yield trial
     finally:
@@ -175,6 +184,7 @@ def row_of(trial: Trial) -> dict[str, Any]:
         "spl": round(float(trial.metrics["spl"]), 3),
         "forward_mean_m": round(float(np.mean(forwards_m)), 4) if forwards_m else None,
         "deepest_mm": round(1000 * trial.deepest_m, 2),
+        "fell": trial.metrics["end_reason"] == "fallen",
     }
 
 

@@ -15,7 +15,8 @@ FAMILIES: Mapping[str, type[Parameters]] = MappingProxyType(
     {
         family.family: family
         for family in (
-            PaneGap, PaneComb, Sills, LegForest, Channels, DeadEnds, ScanDoors, WetFloor, Jam, Ledge, TwoPanes, StoolRing,
+            PaneGap, PaneComb, Sills, LegForest, Channels, DeadEnds, ScanDoors, WetFloor, Jam, Ledge,
+            TwoPanes, StoolRing,
         )
     }
 )  # fmt: skip

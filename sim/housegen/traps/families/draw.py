@@ -6,7 +6,6 @@ route to the goal, or where what is hidden does not make the path longer.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import cv2
@@ -84,6 +83,7 @@ def solve(parameters: Parameters, name: str, difficulty: Difficulty, seed: int) 
     if route is None or len(route.actions) > MOST_ACTIONS:
         return None
     length_m, count = _extent(task, scene.site)
+    x0, y0, x1, y1 = (round(value, 3) for value in scene.zone_m)
     facts = TrapFacts(
         family=parameters.family, difficulty=difficulty, seed=seed, parameters=parameters.numbers(),
         gap_m=parameters.gap_m, hidden_length_m=length_m, hidden_objects=count, shortest_path_m=round(shortest_m, 3),
@@ -91,7 +91,7 @@ def solve(parameters: Parameters, name: str, difficulty: Difficulty, seed: int) 
     )  # fmt: skip
     sidecar = Sidecar(
         start=scene.start, goal=scene.goal, reason=parameters.summary, trap=facts,
-        zone_m=tuple(round(value, 3) for value in scene.zone_m),
+        zone_m=(x0, y0, x1, y1),
     )  # fmt: skip
     return FamilyTrap(Trap(scene.site, sidecar), parameters, route)
 
@@ -103,7 +103,7 @@ def _distance_m(spec: mujoco.MjSpec, scene: Scene) -> tuple[Task, float | None]:
 
 
 def _extent(task: Task, site: TrapSite) -> tuple[float, int]:
-    """Returns total length in plan of the hidden bodies, and the number of their collision geoms; a pit counts as one."""
+    """Returns the length in plan of all hidden bodies, and the number of their collision geoms; a pit is one."""
     world, solid = task.world, collidable_geoms(task.world.model)
     length_m, count = (site.pit.rect.long_m, 1) if site.pit else (0.0, 0)
     for each in world.labels.instances:

@@ -12,7 +12,6 @@ from typing import ClassVar, Literal, Self, TypeVar, get_args
 
 import numpy as np
 
-
 from sim.geometry.pose import Pose
 from sim.housegen.traps.site import Span, TrapSite
 
@@ -56,7 +55,7 @@ class Chance:
 
     def between(self, *spans: Span) -> float:
         """Returns a number from the span of the difficulty, or of the only span, in whole millimetres."""
-        low, high = spans[self.level] if len(spans) > 1 else spans[0]
+        low, high = spans[min(self.level, len(spans) - 1)]
         return round(float(self.rng.uniform(low, high)), 3)
 
     def gap_m(self) -> float:
@@ -65,7 +64,7 @@ class Chance:
 
     def count(self, *numbers: tuple[int, int]) -> int:
         """Returns a whole number from the (inclusive) span of the difficulty."""
-        low, high = numbers[self.level] if len(numbers) > 1 else numbers[0]
+        low, high = numbers[min(self.level, len(numbers) - 1)]
         return int(self.rng.integers(low, high + 1))
 
     def one_of(self, items: Sequence[ItemT]) -> ItemT:
@@ -91,6 +90,8 @@ class Parameters(abc.ABC):
     """One line on what the trap consists of."""
     held_out: ClassVar[bool] = False
     """True: no agent may be developed or tuned on traps of this family."""
+    of_panes: ClassVar[bool] = False
+    """True: all that is hidden are panes, so that their length is known."""
 
     gap_m: float
     """Width of the narrowest passage of the route that leads to the goal."""

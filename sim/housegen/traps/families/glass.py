@@ -6,8 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
-
-
 from sim.geometry.pose import Pose
 from sim.housegen.traps.families.family import Chance, Parameters, Scene, gap_away_from
 from sim.housegen.traps.site import TrapSite
@@ -19,6 +17,7 @@ class PaneGap(Parameters):
 
     family: ClassVar[str] = "pane_gap"
     summary: ClassVar[str] = "A glass pane stands across the corridor; a gap leads past it somewhere along it."
+    of_panes: ClassVar[bool] = True
 
     width_m: float
     """Width of the corridor."""
@@ -55,6 +54,7 @@ class TwoPanes(Parameters):
 
     family: ClassVar[str] = "two_panes"
     summary: ClassVar[str] = "Two glass panes stand across the corridor one after the other, with gaps apart."
+    of_panes: ClassVar[bool] = True
     held_out: ClassVar[bool] = True
 
     width_m: float
@@ -96,6 +96,7 @@ class PaneComb(Parameters):
 
     family: ClassVar[str] = "pane_comb"
     summary: ClassVar[str] = "Glass panes form a comb of pockets that open to the start; one pocket leads through."
+    of_panes: ClassVar[bool] = True
 
     pockets: int
     """Number of pockets."""
@@ -142,6 +143,7 @@ class DeadEnds(Parameters):
 
     family: ClassVar[str] = "dead_ends"
     summary: ClassVar[str] = "Corridors lead to the goal; invisible walls close all of them but one."
+    of_panes: ClassVar[bool] = True
 
     corridors: int
     """Number of corridors."""

@@ -26,6 +26,7 @@ class WetFloor(Parameters):
 
     family: ClassVar[str] = "wet_floor"
     summary: ClassVar[str] = "A slippery or soft floor makes moves short, and a glass pane with a gap stands on it."
+    of_panes: ClassVar[bool] = True
 
     width_m: float
     """Width of the hall."""

@@ -135,7 +135,8 @@ class LegForest(Parameters):
         low = gap_away_from(chance, width_m, gap_m, line_m, (0.8, 1.1, 1.4)[chance.level])
         shift = chance.between((0.0, 0.05), (0.05, 0.12), (0.10, 0.18)) * (1.0 if low < 0.5 * width_m else -1.0)
         return cls(
-            gap_m=gap_m, width_m=width_m, rows=rows, leg_m=chance.between((0.008, 0.011), (0.006, 0.008), (0.004, 0.006)),
+            gap_m=gap_m, width_m=width_m, rows=rows,
+            leg_m=chance.between((0.008, 0.011), (0.006, 0.008), (0.004, 0.006)),
             passage_low_m=low, shift_m=round(shift, 3), line_m=line_m, goal=chance.goal(), yaw_rad=chance.yaw_rad(),
         )  # fmt: skip
 

@@ -40,7 +40,8 @@ class ScanDoors(Parameters):
         doorways, out, towards = draw_row(chance)
         return cls(
             gap_m=chance.gap_m(), doorways=doorways, doorway_m=chance.between((1.05, 1.15)),
-            lump_m=chance.between((0.2, 0.5)), height_m=chance.between((0.3, 1.2)), before_m=chance.between((0.0, 0.15)),
+            lump_m=chance.between((0.2, 0.5)), height_m=chance.between((0.3, 1.2)),
+            before_m=chance.between((0.0, 0.15)),
             way_out=out, towards=towards, goal=chance.goal(), yaw_rad=chance.yaw_rad(),
         )  # fmt: skip
 
@@ -93,7 +94,8 @@ class Jam(Parameters):
         passages, out, towards = draw_row(chance)
         return cls(
             gap_m=chance.gap_m(), passages=passages, passage_m=chance.between((0.95, 1.05)),
-            crate_m=chance.between((0.70, 0.76)), height_m=chance.between(UNSEEN_M), friction=chance.between((0.25, 0.35)),
+            crate_m=chance.between((0.70, 0.76)), height_m=chance.between(UNSEEN_M),
+            friction=chance.between((0.25, 0.35)),
             mass_kg=chance.between((4.5, 5.5), (3.0, 4.5), (2.0, 3.0)), way_out=out, towards=towards,
             goal=chance.goal(), yaw_rad=chance.yaw_rad(),
         )  # fmt: skip
