@@ -23,9 +23,9 @@ from sim.interface import GOAL_CATEGORIES
 from sim.reading import convert
 from sim.web.controls import Driver, Wish
 
-NOT_OFFERED = ("test",)
-"""Splits for a last measurement; `--split test` offers it."""
-FIRST = ("val", "large", "hazards", "traps")
+NOT_OFFERED = ("test", "contact-test", "contact-heldout")
+"""Splits for a last measurement; `--split test` offers one."""
+FIRST = ("val", "large", "hazards", "traps", "contact-val")
 """The splits that come first."""
 Goals = Mapping[str, Mapping[str, list[str]]]
 """The ids of the episodes by house and goal; a house file has none, its episodes are drawn."""

@@ -19,6 +19,7 @@ import numpy as np
 from sim.analysis.report.figures import wilson
 from sim.commands.traps.curves import QUANTITIES, Point, Rows, curve
 from sim.commands.traps.family_picture import draw_family
+from sim.commands.traps.grid import markdown_of
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Split
 from sim.evaluation.bootstrap import estimate
@@ -62,15 +63,16 @@ def write_family_report(
     if not ours:
         return
     points = [point for quantity in QUANTITIES for point in curve(ours, facts, quantity)]
-    write_together({folder / "families.md": family_table(ours, facts), folder / "curves.csv": as_csv(points)})
+    table = markdown_of(*family_grid(ours, facts))
+    write_together({folder / "families.md": table, folder / "curves.csv": as_csv(points)})
     draw_curves(points).savefig(folder / "curves.png", dpi=DPI)
     draw_families(ours, facts).savefig(folder / "families.png", dpi=DPI)
     if pictures:
         draw_family_pictures(folder / "families", split, facts)
 
 
-def family_table(rows: Rows, facts: Mapping[str, TrapFacts]) -> str:
-    """Returns Markdown: successes and mean collisions of each agent, by family and by difficulty."""
+def family_grid(rows: Rows, facts: Mapping[str, TrapFacts]) -> tuple[list[str], list[list[str]]]:
+    """Returns header and lines: successes and mean collisions of each agent, by family and by difficulty."""
     agents = sorted({row["agent"] for row in rows})
     families = list(dict.fromkeys(facts[row["trap"]].family for row in rows))
     header = ["family", *agents]
@@ -80,8 +82,7 @@ def family_table(rows: Rows, facts: Mapping[str, TrapFacts]) -> str:
         for name in DIFFICULTIES
     ]
     lines.append(["**all**", *(_cell(_of(rows, facts, agent)) for agent in agents)])
-    rule = ["---", *("---:" for _ in agents)]
-    return "".join("| " + " | ".join(line) + " |\n" for line in (header, rule, *lines))
+    return header, lines
 
 
 def as_csv(points: Sequence[Point]) -> str:

@@ -18,6 +18,7 @@ from sim.housegen.furniture.item import Geom, Item, Look
 from sim.housegen.mjcf.builder import HouseBuilder
 from sim.housegen.mjcf.movables import as_movable
 from sim.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
+from sim.houses.house import House
 
 CEILING_M = 2.5
 WALL_M = 0.1
@@ -86,6 +87,11 @@ class TrapSite:
     def spec(self) -> mujoco.MjSpec:
         """The scene built so far."""
         return self._builder.spec
+
+    @property
+    def house(self) -> House:
+        """The scene built so far, as a house."""
+        return House(self.spec.modelname, self.spec)
 
     @property
     def hidden(self) -> tuple[str, ...]:
