@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from sim.commands.traps.make import Args, main, write_family_trap, write_scene
+from sim.commands.traps.make import Args, main, write_family_trap
 from sim.commands.traps.report import make_agent
 from sim.commands.traps.trial import run_trial
 from sim.env.objectnav import ObjectNavEnv
@@ -125,7 +125,7 @@ def test_a_harder_trap_has_a_narrower_gap():
         assert gaps_m[0] > gaps_m[1] > gaps_m[2], family
 
 
-@pytest.mark.parametrize("key", sample(CONTACT_SPLITS["contact-val"], 2))
+@pytest.mark.parametrize("key", sample(CONTACT_SPLITS["contact-val"], 1))
 def test_the_oracle_solves_a_trap(oracle_env: ObjectNavEnv, key: TrapKey):
     episode = oracle_env.split.episode(f"{name_of(key)}_0")
     trial = run_trial(oracle_env, make_agent("oracle", oracle_env), "oracle", episode)
@@ -147,10 +147,8 @@ def test_an_unknown_family_or_difficulty_is_an_error(tmp_path):
         draw_trap("pane_gap", "harder", 0)  # pyright: ignore[reportArgumentType]
 
 
-def test_without_what_is_hidden_a_scene_is_otherwise_the_same(tmp_path):
+def test_without_what_is_hidden_a_scene_is_another_one_and_the_scene_is_unchanged():
     made = draw_trap("ledge", "easy", 40)
     before = made.trap.site.spec.to_xml()
     assert made.trap.site.without_hidden().to_xml() != before
     assert made.trap.site.spec.to_xml() == before
-    write_scene(tmp_path / "ledge.xml", made.trap)
-    assert load_house(tmp_path / "ledge.xml").name == "ledge"
