@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from sim.errors import HouseError
 from sim.gl import mujoco
 from sim.housegen.floor_plan.rectangles import Rect, frame_around
 from sim.housegen.furniture import CATALOGUE
@@ -27,6 +28,8 @@ GLASS_M = 0.01
 """Thickness of panes."""
 INVISIBLE_GROUP = 3
 """Group of geoms that collide but are not rendered."""
+_FURNITURE_DRAWS, _WALL_GAP_M = 20, 0.01
+"""Number of draws of a goal that fits into the hall, and its gap to the walls."""
 
 PAINT = Look((0.86, 0.84, 0.79, 1.0))
 BOARDS = Look((0.62, 0.50, 0.38, 1.0))
@@ -176,6 +179,23 @@ class TrapSite:
         """Adds an item of the houses' furniture; its front points along `yaw_rad`."""
         item = CATALOGUE.make_item(category, self._rng, pool="heldout", **hints)
         self._builder.add(PlacedItem(item, x, y, item.mount_height_m, yaw_rad))
+
+    def goal_furniture(self, category: str, x: float, y: float) -> None:
+        """Adds an item that faces the near end of the hall, at a place or as near to it as the walls allow.
+
+        An item wider than the hall is drawn again.
+
+        Raises:
+            HouseError: no style of the category fits between the walls.
+        """
+        for _ in range(_FURNITURE_DRAWS):
+            item = CATALOGUE.make_item(category, self._rng, pool="heldout")
+            reach_x, reach_y = 0.5 * item.size_m[0] + _WALL_GAP_M, 0.5 * item.size_m[1] + _WALL_GAP_M
+            if 2.0 * reach_y <= self.rect.depth_m:
+                x, y = min(x, self.rect.x1 - reach_x), min(max(y, reach_y), self.rect.y1 - reach_y)
+                self._builder.add(PlacedItem(item, x, y, item.mount_height_m, math.pi))
+                return
+        raise HouseError(f"No '{category}' fits into a hall {self.rect.depth_m:.2f} m wide.")
 
     def floor_slab(self, x: Span, y: Span, height_m: float, look: Look) -> mujoco.MjsBody:
         """Adds a slab of floor, for example a rug or a low sill."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
@@ -43,7 +42,7 @@ class PaneGap(Parameters):
         """Builds the corridor."""
         site = TrapSite(name, 8.5, self.width_m, kind="hallway", seed=seed)
         pane_across(site, self.pane_x_m, (self.gap_low_m, self.gap_low_m + self.gap_m))
-        site.furniture(self.goal, 7.3, self.line_m, math.pi)
+        site.goal_furniture(self.goal, 7.3, self.line_m)
         zone_m = (self.pane_x_m - 1.0, 0.0, self.pane_x_m + 0.3, self.width_m)
         return Scene(site, Pose(1.2, self.line_m, self.yaw_rad), self.goal, zone_m)
 
@@ -85,7 +84,7 @@ class TwoPanes(Parameters):
         site = TrapSite(name, 9.0, self.width_m, kind="hallway", seed=seed)
         for x, low in ((3.2, self.first_low_m), (3.2 + self.apart_m, self.second_low_m)):
             pane_across(site, x, (low, low + self.gap_m))
-        site.furniture(self.goal, 7.8, self.line_m, math.pi)
+        site.goal_furniture(self.goal, 7.8, self.line_m)
         zone_m = (2.2, 0.0, 3.5 + self.apart_m, self.width_m)
         return Scene(site, Pose(1.2, self.line_m, self.yaw_rad), self.goal, zone_m)
 
@@ -131,7 +130,7 @@ class PaneComb(Parameters):
             y = tooth * self.pocket_m
             site.pane("window", (back_x - self.depth_m, y), (back_x, y))
         line_m = min(max((self.towards + 0.5) * self.pocket_m, 1.0), width_m - 1.0)
-        site.furniture(self.goal, 8.2, line_m, math.pi)
+        site.goal_furniture(self.goal, 8.2, line_m)
         start_y = (self.towards + 0.5) * self.pocket_m
         zone_m = (back_x - self.depth_m - 0.2, 0.0, back_x + 0.3, width_m)
         return Scene(site, Pose(1.6, start_y, self.yaw_rad), self.goal, zone_m)
@@ -183,7 +182,7 @@ class DeadEnds(Parameters):
             site.pane("wall", (end_x - 0.15, low), (end_x - 0.15, closed))
         line_m = self.towards * pitch + 0.5 * self.corridor_m
         goal_y = min(max(line_m, 1.0), width_m - 1.0)
-        site.furniture(self.goal, end_x + 3.2, goal_y, math.pi)
+        site.goal_furniture(self.goal, end_x + 3.2, goal_y)
         zone_m = (begin_x, 0.0, end_x + 0.2, width_m)
         return Scene(site, Pose(1.2, line_m, self.yaw_rad), self.goal, zone_m)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
@@ -68,7 +67,7 @@ class WetFloor(Parameters):
             if soft:
                 geom.condim, geom.solref = 6, [SOFT_TIME_S, 1.0]
         pane_across(site, x, (self.gap_low_m, self.gap_low_m + self.gap_m))
-        site.furniture(self.goal, 7.5, self.line_m, math.pi)
+        site.goal_furniture(self.goal, 7.5, self.line_m)
         zone_m = (span[0], 0.0, span[1], self.width_m)
         return Scene(site, Pose(1.2, self.line_m, self.yaw_rad), self.goal, zone_m)
 
@@ -109,6 +108,6 @@ class Ledge(Parameters):
         y = (self.gap_m, self.width_m) if self.side == 0 else (0.0, self.width_m - self.gap_m)
         pit = Pit(Rect(begin_x, y[0], end_x, y[1]), self.drop_m)
         site = TrapSite(name, end_x + 4.2, self.width_m, pit=pit, seed=seed)
-        site.furniture(self.goal, end_x + 3.0, self.line_m, math.pi)
+        site.goal_furniture(self.goal, end_x + 3.0, self.line_m)
         zone_m = (begin_x - 0.5, 0.0, end_x + 0.5, self.width_m)
         return Scene(site, Pose(1.2, self.line_m, self.yaw_rad), self.goal, zone_m)

@@ -51,7 +51,7 @@ class StoolRing(Parameters):
             stool = Geom("cylinder", (self.stool_m, 0.5 * self.height_m), (0.0, 0.0, 0.5 * self.height_m), FABRIC)
             at = (x + self.ring_m * math.cos(angle), y + self.ring_m * math.sin(angle))
             site.hide(site.add("stool", [stool], *at))
-        site.furniture(self.goal, 7.4, y, math.pi)
+        site.goal_furniture(self.goal, 7.4, y)
         reach = self.ring_m + self.stool_m
         return Scene(site, Pose(x, y, self.yaw_rad), self.goal, (x - reach, y - reach, x + reach, y + reach))
 
@@ -103,7 +103,7 @@ class Sills(Parameters):
             for y in ((low, low + plinth_m), (high - plinth_m, high)):
                 site.hide(site.box("door", (x - 0.12, x + 0.12), y, (0.0, self.high_m), WOOD))
         line_m = (self.towards + 0.5) * pitch
-        site.furniture(self.goal, 7.2, min(max(line_m, 1.0), width_m - 1.0), math.pi)
+        site.goal_furniture(self.goal, 7.2, min(max(line_m, 1.0), width_m - 1.0))
         return Scene(site, Pose(1.4, line_m, self.yaw_rad), self.goal, (x - 1.0, 0.0, x + 0.3, width_m))
 
 
@@ -149,7 +149,7 @@ class LegForest(Parameters):
             x, low = begin_x + apart_m * row, self.passage_low_m + self.shift_m * row
             for span in ((0.0, low), (low + self.gap_m, self.width_m)):
                 self._row(site, x, span)
-        site.furniture(self.goal, end_x + 3.4, self.line_m, math.pi)
+        site.goal_furniture(self.goal, end_x + 3.4, self.line_m)
         zone_m = (begin_x - 0.8, 0.0, end_x + 0.4, self.width_m)
         return Scene(site, Pose(1.1, self.line_m, self.yaw_rad), self.goal, zone_m)
 
@@ -208,7 +208,7 @@ class Channels(Parameters):
                 site.wall((begin_x, end_x), (low - 0.3, low))
             self._plinths(site, low, begin_x, self.gap_m if i == self.way_out else self.closed_m)
         line_m = self.towards * pitch + 0.5 * self.channel_m
-        site.furniture(self.goal, end_x + 3.2, min(max(line_m, 1.0), width_m - 1.0), math.pi)
+        site.goal_furniture(self.goal, end_x + 3.2, min(max(line_m, 1.0), width_m - 1.0))
         zone_m = (begin_x, 0.0, end_x + 0.2, width_m)
         return Scene(site, Pose(1.2, line_m, self.yaw_rad), self.goal, zone_m)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
@@ -60,7 +59,7 @@ class ScanDoors(Parameters):
                 end_x = x - 0.05 - self.before_m
                 site.invisible_box("misc", (end_x - self.lump_m, end_x), (low - 0.1, high + 0.1), (0.0, self.height_m))
         line_m = (self.towards + 0.5) * pitch
-        site.furniture(self.goal, 7.2, min(max(line_m, 1.0), width_m - 1.0), math.pi)
+        site.goal_furniture(self.goal, 7.2, min(max(line_m, 1.0), width_m - 1.0))
         return Scene(site, Pose(1.2, line_m, self.yaw_rad), self.goal, (x - 1.2, 0.0, x + 0.3, width_m))
 
 
@@ -117,6 +116,6 @@ class Jam(Parameters):
                 site.hide(site.movable_box("objects", (begin_x + 0.1, begin_x + 0.4), y, self.height_m, WOOD,
                                            mass_kg=self.mass_kg, friction=self.friction))  # fmt: skip
         line_m = self.towards * pitch + 0.5 * self.passage_m
-        site.furniture(self.goal, end_x + 3.2, min(max(line_m, 1.0), width_m - 1.0), math.pi)
+        site.goal_furniture(self.goal, end_x + 3.2, min(max(line_m, 1.0), width_m - 1.0))
         zone_m = (begin_x - 0.4, 0.0, end_x + 0.2, width_m)
         return Scene(site, Pose(1.2, line_m, self.yaw_rad), self.goal, zone_m)
