@@ -168,7 +168,19 @@ def build_agent(
         with marked(f"Agent '{name}', its factory", FACTORY_S):
             return spec.build(name, max_steps=env.task_config.max_steps, step_timeout_s=step_timeout_s, **parts)
     except BaseException as error:
+        if isinstance(error, ConfigError) and _resets_without_arguments(spec.make):
+            raise ConfigError(
+                f"{error} An agent with Habitat's interface is given as --agent habitat:{name}."
+            ) from None
         if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
             raise
         reason = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
         raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error
+
+
+def _resets_without_arguments(factory: Any) -> bool:
+    """Returns whether a class has the methods of a Habitat agent, `reset()` and `act(observations)`."""
+    if not inspect.isclass(factory) or not callable(getattr(factory, "act", None)):
+        return False
+    reset = getattr(factory, "reset", None)
+    return inspect.isfunction(reset) and len(inspect.signature(reset).parameters) == 1
