@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 DPI = 110
 MARKERS = "osD^vP*X"
+COUNTS = (1, 3, 10, 30)
+"""Ticks of the axis of hidden objects."""
 
 
 def facts_of(split: Split) -> dict[str, TrapFacts]:
@@ -111,6 +113,8 @@ def draw_curves(points: Sequence[Point]) -> Figure:
         if quantity.name == "hidden_objects":
             for row in (0, 1):
                 axes[row][column].set_xscale("log")
+                axes[row][column].set_xticks(COUNTS, map(str, COUNTS), minor=False)
+                axes[row][column].minorticks_off()
     _finish(axes[0].tolist(), axes[1].tolist())
     return figure
 
