@@ -24,6 +24,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Split
 from sim.evaluation.bootstrap import estimate
 from sim.files import write_picture, write_together
+from sim.housegen.traps.families.catalogue import FAMILIES
 from sim.housegen.traps.families.family import DIFFICULTIES
 from sim.houses.sidecar import TrapFacts
 from sim.interface import ConfigError
@@ -76,7 +77,7 @@ def write_family_report(
 def family_grid(rows: Rows, facts: Mapping[str, TrapFacts]) -> tuple[list[str], list[list[str]]]:
     """Returns header and lines: successes and mean collisions of each agent, by family and by difficulty."""
     agents = sorted({row["agent"] for row in rows})
-    families = list(dict.fromkeys(facts[row["trap"]].family for row in rows))
+    families = _families_of(rows, facts)
     header = ["family", *agents]
     lines = [[name, *(_cell(_of(rows, facts, agent, family=name)) for agent in agents)] for name in families]
     lines += [
@@ -121,7 +122,7 @@ def draw_curves(points: Sequence[Point]) -> Figure:
 
 def draw_families(rows: Rows, facts: Mapping[str, TrapFacts]) -> Figure:
     """Returns a figure: success above, collisions below, a place for each family, a marker for each agent."""
-    families = list(dict.fromkeys(facts[row["trap"]].family for row in rows))
+    families = _families_of(rows, facts)
     agents = sorted({row["agent"] for row in rows})
     figure = _figure(max(6.0, 1.1 * len(families) + 1.5), 6.6)
     axes = figure.subplots(2, 1, sharex=True)
@@ -150,6 +151,12 @@ def draw_family_pictures(folder: Path, name: str, facts: Mapping[str, TrapFacts]
                 write_picture(folder / f"{family}.png", draw_family(env, shown))
     finally:
         env.close()
+
+
+def _families_of(rows: Rows, facts: Mapping[str, TrapFacts]) -> list[str]:
+    """Returns the families of some rows in the order of the catalogue, then those that it lacks."""
+    found = {facts[row["trap"]].family for row in rows}
+    return [*(name for name in FAMILIES if name in found), *sorted(found - set(FAMILIES))]
 
 
 def _of(

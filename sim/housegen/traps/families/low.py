@@ -129,14 +129,17 @@ class LegForest(Parameters):
 
     @classmethod
     def draw(cls, chance: Chance) -> Self:
-        """Draws a forest; a harder one has more rows, thinner legs, and a narrower and slanting passage."""
+        """Draws a forest; a harder one has more rows, thinner legs, and a narrower and slanting passage.
+
+        At a distance of 2 m a pixel of the camera is 5 mm wide: medium and hard legs are thinner than that.
+        """
         width_m = chance.between((3.4, 4.0), (4.0, 4.8), (4.6, 5.4))
         gap_m, line_m, rows = chance.gap_m(), chance.between((1.0, width_m - 1.0)), chance.count((2, 2), (3, 3), (4, 4))
         low = gap_away_from(chance, width_m, gap_m, line_m, (0.8, 1.1, 1.4)[chance.level])
         shift = chance.between((0.0, 0.05), (0.05, 0.12), (0.10, 0.18)) * (1.0 if low < 0.5 * width_m else -1.0)
         return cls(
             gap_m=gap_m, width_m=width_m, rows=rows,
-            leg_m=chance.between((0.008, 0.011), (0.006, 0.008), (0.004, 0.006)),
+            leg_m=chance.between((0.004, 0.006), (0.002, 0.003), (0.001, 0.001)),
             passage_low_m=low, shift_m=round(shift, 3), line_m=line_m, goal=chance.goal(), yaw_rad=chance.yaw_rad(),
         )  # fmt: skip
 
