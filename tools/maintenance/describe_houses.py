@@ -74,10 +74,7 @@ folder.
 | `large` | houses of more than 300 m2, five of them with two storeys | 30 | 12 to 60 |
 | `hazards` | obstacles that depth misses or shows as passable | 30 | 2 to 30 |
 | `train` | training | 10 | 2 to 30 |
-| `traps` | obstacles that depth misses, in 21 fixed scenes | 3 | 3 to 11 |
-| `contact-val` | development and tuning: 15 traps of each of ten families | 1 | 2 to 11 |
-| `contact-test` | a final measurement on 15 other traps of each of these families | 1 | 2 to 11 |
-| `contact-heldout` | 30 traps of each of two families on which nothing is developed | 1 | 2 to 11 |
+| `contact-*` | traps, 30 a family: [val, test and heldout](../../docs/traps.md) | 1 | 2 to 11 |
 
 The distance is the length of the shortest path. In `large` it may be 6 m if the robot can reach only one instance, and
 no instance of the goal is visible from the start in any direction. In `hazards` the shortest path leads past a hazard
