@@ -67,8 +67,8 @@ class Args:
     max_steps: cli.Count = 500
     """Largest number of actions of an episode."""
     pictures: cli.OnUnlessNo = True
-    """Draw no paths and no families; by default the paths of every episode in which an agent did not escape are drawn,
-    and for traps of no family those of the first heading."""
+    """Do not draw paths and families; by default, the path of every episode in which the agent did not escape is drawn,
+    and for traps of no family that of the first heading."""
 
 
 def main(args: Args) -> int:
