@@ -26,6 +26,7 @@ ROOMS = (
     ("sim.env",),
     ("sim.detectors",),
     ("sim.datasets",),
+    ("sim.bridges.ros",),
     ("sim.viewers",),
     ("sim.evaluation",),
     ("sim.analysis",),

@@ -13,11 +13,11 @@ from sim.commands.traps.report import make_agent
 from sim.commands.traps.trial import run_trial
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import load_split
+from sim.episodes.trap_families import DETOUR_M, MARGIN_M, draw_trap
 from sim.errors import ConfigError
 from sim.gl import mujoco
 from sim.housegen.traps.families.catalogue import FAMILIES, HELD_OUT
 from sim.housegen.traps.families.contact_splits import CONTACT_SPLITS, TrapKey
-from sim.housegen.traps.families.draw import DETOUR_M, MARGIN_M, draw_trap
 from sim.housegen.traps.families.family import BLOCKING_M, CLIMBED_M, DIFFICULTIES, ROBOT_M, SPARE_M, Chance
 from sim.houses.geoms import geom_polytope
 from sim.houses.labels import collidable_geoms, read_labels

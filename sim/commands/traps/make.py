@@ -23,6 +23,7 @@ from sim.episodes import habitat
 from sim.episodes.reachable_goals import find_reachable_goals
 from sim.episodes.recipes import START_TURNS_RAD
 from sim.episodes.splits import Episode, write_split
+from sim.episodes.trap_families import draw_trap
 from sim.errors import HouseError
 from sim.evaluation.parallel import ordered_map
 from sim.files import write_atomically
@@ -31,7 +32,6 @@ from sim.housegen.splits.recipes import SPLIT_VERSION
 from sim.housegen.traps.catalogue import TRAPS
 from sim.housegen.traps.families.catalogue import HELD_OUT
 from sim.housegen.traps.families.contact_splits import CONTACT_SPLITS, TrapKey, in_turns
-from sim.housegen.traps.families.draw import draw_trap
 from sim.housegen.traps.families.family import DIFFICULTIES, Difficulty
 from sim.housegen.traps.trap import Trap
 from sim.houses.load import load_house
