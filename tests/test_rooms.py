@@ -29,6 +29,7 @@ ROOMS = (
     ("sim.viewers",),
     ("sim.evaluation",),
     ("sim.analysis",),
+    ("sim.submissions",),
     ("sim.bridges",),
     ("sim.composition", "sim.twin"),
     ("sim.web",),
