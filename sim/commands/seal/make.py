@@ -24,7 +24,15 @@ from sim.housegen.splits.house_list import copy_textures
 from sim.houses.references import SHARED_TEXTURES
 from sim.houses.writing import house_text
 from sim.submissions.sealing import (
-    LIKE, VERSION, new_secret, number_of, read_secret, recipes, seal_file, seal_of, write_seal,
+    LIKE,
+    VERSION,
+    new_secret,
+    number_of,
+    read_secret,
+    recipes,
+    seal_file,
+    seal_of,
+    write_seal,
 )  # fmt: skip
 
 
