@@ -47,6 +47,9 @@ class Row:
             return "its episodes were chosen by the authors; the first ones of the split are allowed"
         if self.report.nonstandard:
             return f"not the standard: {self.report.nonstandard[0]}"
+        inputs = self.submission.manifest.inputs
+        if ":" in inputs.agent and not inputs.isolated:
+            return "its agent did not run in a process of its own (--agent process:COMMAND)"
         return ""
 
 
