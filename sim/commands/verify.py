@@ -104,7 +104,7 @@ def _head(checked: Checked) -> Iterator[str]:
     split = manifest.split
     yield (
         f"'{manifest.name}' by {', '.join(manifest.authors) or 'nobody named'}: {checked.covers} of {split.name} "
-        f"{split.version} ({split.sha256[:12]}), seed {manifest.seed}, physics {manifest.versions['physics']}."
+        f"{split.version} ({split.sha256[:12]}), seed {manifest.seed}, physics {manifest.physics}."
     )
     here = {"processor": processor(), **{name: version(name) for name in ("mujoco", "numpy")}}
     for name, value in here.items():

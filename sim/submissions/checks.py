@@ -11,9 +11,9 @@ from typing import Any, Literal
 from sim.episodes.splits import Episode, Split
 from sim.errors import ConfigError
 from sim.interface import TRUE_IMAGES, Action
+from sim.robot.config import PHYSICS_VERSION
 from sim.submissions.contents import Entry, Inputs, Submission
 from sim.submissions.setting import Setting
-from sim.world.version import PHYSICS_VERSION
 
 Truth = Literal["none", "noisy", "yes"]
 """Whether ground truth reached the agent: `noisy` is the true segmentation with the errors of a simulated detector."""
@@ -65,11 +65,10 @@ def coverage(submission: Submission, split: Split) -> tuple[bool, str]:
 
 
 def _require_same_physics(submission: Submission, where: str) -> None:
-    recorded = submission.manifest.versions.get("physics")
-    if recorded != str(PHYSICS_VERSION):
-        of = f"version {recorded}" if recorded is not None else "no recorded version"
+    recorded = submission.manifest.physics
+    if recorded != PHYSICS_VERSION:
         raise ConfigError(
-            f"{where} was made with physics of {of}, this is version {PHYSICS_VERSION}: its actions lead elsewhere "
+            f"{where} was made with physics of version {recorded}, this is version {PHYSICS_VERSION}: its actions lead elsewhere "
             "here; verify it with the release that it was made with, or run the agent again."
         )
 

@@ -17,7 +17,7 @@ from msgspec import Meta
 from sim.errors import ConfigError
 from sim.evaluation.results import ResultLine, SplitIdentity
 from sim.files import write_atomically
-from sim.reading import Metres, Name, Seed, parse_json, read_bytes, read_gzip_json
+from sim.reading import Count, Metres, Name, Seed, parse_json, read_bytes, read_gzip_json
 
 FORMAT: Literal["stubborn-submission-1"] = "stubborn-submission-1"
 SUFFIX = ".json.gz"
@@ -63,9 +63,11 @@ class Manifest(msgspec.Struct, forbid_unknown_fields=True):
     links: Annotated[tuple[Link, ...], Meta(max_length=10)]
     split: SplitIdentity
     seed: Seed
+    physics: Count
+    """Version of the physics (`sim.robot.config.PHYSICS_VERSION`)."""
     inputs: Inputs
     versions: Annotated[dict[Short, Version], Meta(max_length=50)]
-    """Packages, processor, OpenGL renderer, code and version of the physics with which the run was made."""
+    """Packages, processor, OpenGL renderer and code with which the run was made."""
 
 
 class Result(ResultLine):

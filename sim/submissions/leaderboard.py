@@ -19,10 +19,10 @@ import msgspec
 from sim.analysis.metrics import COLLISIONS, SPL, SUCCESS
 from sim.analysis.tables import ResultTable
 from sim.errors import ConfigError
+from sim.robot.config import PHYSICS_VERSION
 from sim.submissions.checks import truth_of
 from sim.submissions.contents import SUFFIX, Submission
 from sim.submissions.report import Report
-from sim.world.version import PHYSICS_VERSION
 
 SUBMISSIONS, REPORTS = "submissions", "reports"
 HEADER = (
@@ -72,7 +72,7 @@ def report_file(folder: Path, submission: Path) -> Path:
 
 def is_current(report: Report, sha256: str) -> bool:
     """Returns whether a report is that of this file, by this version of the physics."""
-    return report.sha256 == sha256 and report.physics == str(PHYSICS_VERSION)
+    return report.sha256 == sha256 and report.physics == PHYSICS_VERSION
 
 
 def tables(rows: Sequence[Row]) -> list[ResultTable]:

@@ -14,6 +14,7 @@ from sim.analysis.comparison import Line, Run
 from sim.analysis.report.facts import command_of
 from sim.errors import ConfigError
 from sim.reading import convert
+from sim.robot.config import PHYSICS_VERSION
 from sim.submissions.contents import FORMAT, PLACE_EVERY, Entry, Manifest, Result, Submission
 from sim.submissions.setting import setting_of
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
@@ -48,9 +49,11 @@ def pack(run: Run, about: About) -> Submission:
             f"'{run.path}' is a run in one house (--house); a submission needs a split, which `stubborn episodes "
             "--house FILE --out FOLDER` makes of it."
         )
-    if "physics" not in run.recorded("versions"):
+    physics = config.get("physics", 1)  # runs of the first version do not have it
+    if physics != PHYSICS_VERSION:
         raise ConfigError(
-            f"'{run.path}' was made by a version that did not record its physics; run it again: {recording(run)}"
+            f"'{run.path}' was made with physics of version {physics}, this is version {PHYSICS_VERSION}; run it again: "
+            f"{recording(run)}"
         )
     if not run.lines:
         raise ConfigError(f"'{run.path}' holds no episode.")
@@ -63,6 +66,7 @@ def pack(run: Run, about: About) -> Submission:
         "links": list(about.links),
         "split": run.recorded("split_identity"),
         "seed": run.recorded("seed"),
+        "physics": physics,
         "inputs": {
             "agent": run.recorded("agent"),
             "semantics": run.recorded("semantics"),

@@ -10,9 +10,9 @@ import msgspec
 
 from sim.paths import processor
 from sim.reading import Count, Number, read_json
+from sim.robot.config import PHYSICS_VERSION
 from sim.submissions.verdicts import Verdict
 from sim.submissions.verification import Checked, Choices, counts
-from sim.world.version import PHYSICS_VERSION
 
 
 class Report(msgspec.Struct):
@@ -20,7 +20,7 @@ class Report(msgspec.Struct):
 
     sha256: Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{64}\Z")]
     """Of the submission."""
-    physics: Annotated[str, msgspec.Meta(max_length=20)]
+    physics: Count
     episodes: Count
     equal: Count
     within_tolerance: Count
@@ -36,7 +36,7 @@ def report_of(checked: Checked, choices: Choices, found: Sequence[Verdict], seco
     count = counts(found)
     return {
         "sha256": checked.sha256,
-        "physics": str(PHYSICS_VERSION),
+        "physics": PHYSICS_VERSION,
         "episodes": len(found),
         "equal": count["equal"],
         "within_tolerance": count["within tolerance"],

@@ -110,10 +110,6 @@ def _config(**changes: Any) -> Edit:
     return lambda content: content["config"].update(changes)
 
 
-def _versions(**changes: Any) -> Edit:
-    return lambda content: content["manifest"]["versions"].update(changes)
-
-
 def _actions(change: Callable[[str], str], *, counted: bool = False) -> Edit:
     def edit(content: dict[str, Any]) -> None:
         each = content["episodes"][0]
@@ -156,8 +152,8 @@ REFUSED: dict[str, tuple[Edit, str]] = {
     "actions after STOP": (_actions(lambda a: a + "11", counted=True), "has actions after STOP"),
     "too many actions": (_actions(lambda a: "1" * 26, counted=True), "has 26 actions; the task allows 25"),
     "fewer actions than counted": (_actions(lambda a: a[1:]), "actions, and its result counts"),
-    "another version of the physics": (_versions(physics="0"), "physics of version 0, this is version"),
-    "no version of the physics": (lambda c: c["manifest"]["versions"].pop("physics"), "no recorded version"),
+    "another version of the physics": (_manifest(physics=0), "physics of version 0, this is version"),
+    "no version of the physics": (lambda c: c["manifest"].pop("physics"), "missing required field physics"),
     "a script as link": (_manifest(links=["javascript:alert(1)"]), "links"),
     "a link that ends a Markdown link": (_manifest(links=["https://x.org/a)<b>"]), "links"),
     "a name with control characters": (_manifest(name="a\x1b[2J"), "name"),
@@ -425,10 +421,10 @@ def test_actions_of_another_run_are_not_packed(folder: Path, tmp_path: Path) -> 
         pack(read_run(tmp_path / "run"), About(name="x", authors=()))
 
 
-@pytest.mark.parametrize(("field", "value"), [("house", "a.xml"), ("versions", {"code": "a"})])
+@pytest.mark.parametrize(("field", "value"), [("house", "a.xml"), ("physics", 0)])
 def test_a_run_that_cannot_be_replayed_is_not_packed(folder: Path, field: str, value: Any) -> None:
     run = read_run(folder / "oracle")
-    with pytest.raises(ConfigError, match=r"a submission needs a split|did not record its physics"):
+    with pytest.raises(ConfigError, match=r"a submission needs a split|physics of version 0"):
         pack(replace(run, config={**run.config, field: value}), About(name="x", authors=()))
 
 

@@ -7,7 +7,7 @@ import pytest
 from sim.geometry.pose import Pose
 from sim.interface import Action
 from sim.robot.conditions import Conditions
-from sim.world.version import PHYSICS_VERSION
+from sim.robot.config import PHYSICS_VERSION
 from sim.world.world import World
 from tests.helpers.worlds import sofa_room
 
