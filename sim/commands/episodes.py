@@ -14,8 +14,8 @@ The folder's name selects the recipe (`sim.episodes.recipes`): how many episodes
 distance from start to goal, and which starts count; other folders use the default recipe, or the one of `--recipe`.
 
 The houses take turns; the next goal of a house is the one with the fewest episodes so far, so that the first N episodes
-are balanced for any N. In a house of two storeys, the episodes take turns on them, and a goal counts as reachable on
-the storey of the start only. A start is sampled uniformly from the free space that the recipe allows, and the robot has
+are balanced for any N. In a house of two storeys, the episodes alternate between them, and only goals on the storey of
+the start count as reachable. A start is sampled uniformly from the free space that the recipe allows, and the robot has
 no contact there. Goals are categories with an instance that can be reached; instances that cannot be reached are listed
 in `unreachable.json`. The same seed, houses, version and success rule give the same bytes.
 """
@@ -84,7 +84,7 @@ class Args:
     workers: cli.Count = 1
     """Number of processes."""
     pictures: cli.OnUnlessNo = True
-    """Write no map of the starts and goals of each house (pictures/ in the split's folder)."""
+    """Do not write a map of the starts and goals of each house (pictures/ in the split's folder)."""
     success: SuccessRule = field(default_factory=SuccessRule)
     """Conditions under which a STOP succeeds; distances, view points and unreachable goals depend on them."""
 
@@ -127,7 +127,7 @@ def main(args: Args) -> int:
 
 
 def folder_of(args: Args) -> Path:
-    """Returns the folder of the split; raises ConfigError where the options name none."""
+    """Returns the folder of the split; raises ConfigError if the options name none."""
     if args.split is None:
         raise ConfigError("episodes needs --split FOLDER, or --house FILE with --out FOLDER.")
     return args.split
@@ -162,7 +162,7 @@ def with_split(args: Args) -> Args:
 
 
 def _require_same(house: House, written: House) -> None:
-    """Raises HouseError where a house that was written as one file has other geoms or labels."""
+    """Raises HouseError if a house that was written as one file has other geoms or labels."""
     first, second = house.spec.copy().compile(), written.spec.copy().compile()
     same = first.ngeom == second.ngeom and np.allclose(first.geom_pos, second.geom_pos, atol=1e-4)
     if same:
@@ -202,15 +202,15 @@ def balanced_goals(
 ) -> list[tuple[str, Ask]]:
     """Returns house and goal of each episode: the houses in turn, and the goal with the fewest episodes so far.
 
-    The episodes of a house take turns on its storeys.
+    The episodes of a house alternate between its storeys.
 
     Args:
         asks_of: the goals of each house.
         count: number of episodes.
-        most: largest numbers of episodes of houses whose sidecar fixes the start.
+        most: largest number of episodes of each house whose sidecar fixes the start.
 
     Raises:
-        EpisodeError: a house has no goal that can be asked for, or the houses have fewer different episodes.
+        EpisodeError: a house has no goal, or there are fewer different episodes than `count`.
     """
     most = most or {}
     for house, asks in asks_of.items():

@@ -1,4 +1,4 @@
-"""Imports objects of users that options name as `package.module:NAME`."""
+"""Imports the users' objects that options name as `package.module:NAME`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from sim.evaluation.watch import FACTORY_S, is_stop
 
 
 class _TooLong(BaseException):
-    """An import took longer than the limit; not an `Exception`, so that the module's own handlers let it pass."""
+    """An import took longer than the limit; it is not an `Exception`, which handlers in the module could catch."""
 
     def __init__(self, limit_s: float) -> None:
         super().__init__(f"the import did not end within {limit_s:g} s")
@@ -27,7 +27,7 @@ class _TooLong(BaseException):
 
 @contextlib.contextmanager
 def _limited(limit_s: float) -> Iterator[None]:
-    """Raises `_TooLong` in the block after a time; in the main thread only, where Python handles signals."""
+    """Raises `_TooLong` in the `with` block after `limit_s`; only in the main thread, where Python handles signals."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -45,7 +45,7 @@ def _limited(limit_s: float) -> Iterator[None]:
 
 
 def _require_unhidden() -> None:
-    """Raises ConfigError where the current folder has modules that would hide this project's in spawned workers."""
+    """Raises ConfigError if the current folder has modules that would hide this project's in spawned workers."""
     ours = Path(__file__).resolve().parents[2]
     for name in ("sim", "stubborn"):
         for file in (Path(f"{name}.py"), Path(name) / "__init__.py"):
@@ -65,7 +65,7 @@ def import_attribute(
         name: as the user gave it, for messages.
         module_name: dotted name of the module.
         attribute: name of the object.
-        explain: returns a sentence about an error of the import, if it knows the cause.
+        explain: returns a sentence about an error of the import if it knows the cause, else None.
 
     Raises:
         ConfigError: the module cannot be imported, its import does not end within two minutes, or it has no such name.

@@ -18,14 +18,14 @@ def chosen_split(
     labels: str | Path | None = None,
     root: str | Path | None = None,
 ) -> Split:
-    """Returns the split that the options of an environment name; one of MJCF files has no episodes.
+    """Returns the split that the options of an environment name; a split of MJCF files has no episodes.
 
     Args:
         split: name of a shipped split, or a folder with the same layout.
-        house: one MJCF file in place of it.
-        houses: names of houses of the split, or several MJCF files in place of it.
-        labels: label rules of the files.
-        root: another folder whose files the files may use.
+        house: one MJCF file in place of the split.
+        houses: names of houses of the split, or several MJCF files in place of the split.
+        labels: label rules of the MJCF files.
+        root: another folder whose files the MJCF files may use.
 
     Raises:
         ConfigError: there is no such split or house, or the options contradict each other.

@@ -38,9 +38,9 @@ from sim.reading import Name, first_unprintable, printable, read_bytes, read_jso
 UNREACHABLE_FILE = "unreachable.json"
 LABELS_FILE = "labels.json"
 HOUSE_SUFFIXES = (".xml", ".mjcf")
-"""Endings of house files, in lower or upper case."""
+"""Suffixes of house files, in lower or upper case."""
 _MOST_BYTES = 256 << 20
-"""Largest house file."""
+"""Largest size of a house file."""
 FARTHEST_M = 10_000.0
 """Largest coordinate of a start."""
 
@@ -64,7 +64,7 @@ class Episode:
 
 
 def require_start(start: Pose) -> None:
-    """Raises EpisodeError where a number of a start is NaN, infinite or larger than `FARTHEST_M`."""
+    """Raises EpisodeError if a number of a start is NaN, infinite or larger than `FARTHEST_M`."""
     if not all(abs(value) <= FARTHEST_M for value in (start.x_m, start.y_m, start.yaw_rad, start.floor_z_m)):
         raise EpisodeError(f"The start {start} is not allowed: finite numbers of at most {FARTHEST_M:g} are.")
 
@@ -87,7 +87,7 @@ class Split:
     house_list: HouseList | None = None
     """Generates the houses of a split that is shipped as a list."""
     house_sums: Mapping[str, str] = field(default_factory=dict)
-    """Checksum of each house with its sidecar and the files that it uses; listed houses have theirs in the list."""
+    """Checksum of each house with its sidecar and the files that it uses; for a house list, the list has them."""
 
     @property
     def houses(self) -> tuple[str, ...]:
@@ -114,7 +114,7 @@ class Split:
         return load_house(self.house_file(name), labels_path=self.labels_path, root=self.root)
 
     def require_unchanged(self, name: str) -> None:
-        """Raises HouseError where a house, its sidecar or a file that it uses has changed since this split was read."""
+        """Raises HouseError if a house, its sidecar or a file that it uses has changed since this split was read."""
         if name in self.house_sums and house_sum(self.house_file(name), root=self.root) != self.house_sums[name]:
             raise HouseError(f"House '{name}': its files have changed since this run was planned; start the run again.")
 
@@ -191,7 +191,7 @@ def one_house(path: str | Path, *, labels: str | Path | None = None, root: str |
 def split_of_files(
     paths: Sequence[str | Path], *, labels: str | Path | None = None, root: str | Path | None = None
 ) -> Split:
-    """Returns a split of some house files, without episodes.
+    """Returns a split of the given house files, without episodes.
 
     Args:
         paths: the files; each name is that of one house.
@@ -227,7 +227,7 @@ def house_sum(path: Path, *, with_also: bytes = b"", root: Path | None = None) -
 
     Args:
         path: the house file.
-        with_also: further content that counts.
+        with_also: further content to include.
         root: another folder whose files it may use.
 
     Raises:
@@ -235,7 +235,7 @@ def house_sum(path: Path, *, with_also: bytes = b"", root: Path | None = None) -
     """
     digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=_MOST_BYTES) + _sidecar_bytes(path))
     digest.update(with_also)
-    for file in files_of(path, root):  # none for a file that stands alone, whose checksum is that of version 0.1
+    for file in files_of(path, root):  # a house in a single file keeps the checksum of version 0.1
         name = os.path.relpath(file, path.resolve().parent)
         digest.update(name.encode(errors="replace"))
         digest.update(bytes.fromhex(sha256_of(file, what="File of a house", error=HouseError)))
@@ -277,10 +277,10 @@ def write_split(
 
 
 def house_files(folder: Path) -> dict[str, Path]:
-    """Returns the house files directly in a folder by name without the ending, in alphabetical order; {} without it.
+    """Returns the house files in a folder, by name without suffix, sorted; an empty dict if there is no such folder.
 
     Raises:
-        ConfigError: two files differ in their endings only.
+        ConfigError: the names of two files differ only in their suffix.
     """
     found = dict[str, Path]()
     for path in sorted(folder.iterdir()) if folder.is_dir() else ():
@@ -293,7 +293,7 @@ def house_files(folder: Path) -> dict[str, Path]:
 
 
 def labels_of(folder: Path) -> Path | None:
-    """Returns the file of label rules in the folder of a split; None where its houses need none."""
+    """Returns the file of label rules in the folder of a split; None if its houses need none."""
     file = folder / LABELS_FILE
     return file if file.is_file() else None
 

@@ -25,7 +25,7 @@ ViewPose = tuple[float, float, float, float]
 """x, y, height of the floor (metres) and yaw (degrees)."""
 VIEW_PX = (640, 480)
 TITLE_PX = 44
-"""Height of the line of a title."""
+"""Height of the strip with a title."""
 TOP_PX = (1400, 1100)
 TOP_FOVY_DEG = 12.0
 """Field of view from above: small, so that walls hide little of the furniture that stands at them."""
@@ -54,7 +54,8 @@ LOOK_SIZES = 1.2
 """The best distance from the middle of an object: this many times its size, and `NEAREST_LOOK_M` more."""
 HIDDEN_GROUP = 3
 QUADS = 28
-"""Squares along an edge of a flat geom, at whose corners light is computed: with few, lamps draw diamonds on floors."""
+"""Number of squares along an edge of a flat geom, at whose corners light is computed. If there are few, lamps
+cause diamond shapes on floors."""
 CEILING_M = 2.5
 """Height of a storey without rooms."""
 _STRUCTURE = tuple(MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling", "door", "window"))
@@ -193,7 +194,7 @@ def storeys(house: House) -> list[House]:
 
 
 def draw_views(house: House, columns: int = 3) -> Picture | None:
-    """Renders what the robot sees, tiled, (h, w, 3) RGB; None where there is nothing to see.
+    """Renders what the robot sees, tiled, (h, w, 3) RGB; None if there is nothing to see.
 
     In each room it is where the view is longest. In a house without rooms it looks at an object of each category.
     """
@@ -298,7 +299,7 @@ def _view_lengths(model: mujoco.MjModel, data: mujoco.MjData, room: Room, x: flo
 
 
 MARGIN_M = 1.0
-"""Of the floor around a scene without rooms."""
+"""Width of the floor that is shown around a scene without rooms."""
 
 
 def _extent(model: mujoco.MjModel, labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -403,7 +404,7 @@ def tiled(tiles: list[Picture], columns: int) -> Picture:
 
 
 def titled(picture: Picture, title: str) -> Picture:
-    """Returns a picture (h, w, 3) below a line with its title."""
+    """Returns a picture (h, w, 3) with a strip above it that shows its title."""
     head = np.full((TITLE_PX, picture.shape[1], 3), 255, np.uint8)
     write(head, title, (12, round(0.7 * TITLE_PX)), picture.shape[1] - 24, round(0.55 * TITLE_PX), (20, 20, 20), BOLD)
     return np.vstack([head, picture])

@@ -229,7 +229,7 @@ class _Once:
         self._key, self._parts = "", set[str]()
 
     def require(self, key: str, part: str) -> None:
-        """Raises ConfigError where a member, which follows the earlier ones, is a second one of its kind."""
+        """Raises ConfigError if a member, which follows the earlier ones, is a second one of its kind."""
         if key != self._key or not self._keys:
             if key in self._keys:
                 raise ConfigError(f"Shard '{self._file}' holds the view '{key}' twice; a view is stored once.")

@@ -175,7 +175,7 @@ def unmarked_commands() -> dict[str, str]:
 
 
 def program_of(command: str) -> tuple[str, list[str]]:
-    """What a canonical command starts (`views show`, `tools.research.check_twin`, `examples/x.py`), and its options."""
+    """Returns the program of a command (such as `views show`, `examples/x.py`), and its options."""
     words = shlex.split(command)
     if words[0] == "stubborn":
         return split(words[1:])
@@ -298,7 +298,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     **{
         f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} --episodes 5": (
-            f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} {_SMALL} task.max_steps=30 "
+            f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} task.max_steps=30 {_SMALL} "
             "--episodes 1 --out {tmp}/run",
         )
         for control in ("semantics=shuffled", "goal=wrong")

@@ -47,6 +47,13 @@ class Wrong:
         return self.returned
 
 
+class WrongNames(Wrong):
+    """Returns what a test says as categories, too."""
+
+    def categories(self, observation: Observation) -> object:
+        return self.returned
+
+
 class Truth:
     """Reads the true segmentation in the environment, and declares it."""
 

@@ -1,4 +1,4 @@
-"""Evaluates a segmentation of the user's on labelled views: intersection over union, objects found, time per frame."""
+"""Evaluates a user's segmentation on labelled views: intersection over union, objects found, time per frame."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from stubborn.segmentation.evaluation import Iou, confusion
 from stubborn.segmentation.rednet import CLASSES
 
 NO_GOAL = MPCAT40_ID["misc"] - 1
-"""Channel of pixels in which a segmenter with `scores` only finds no goal category."""
+"""Channel of the pixels in which a segmenter that has only `scores` finds no goal category."""
 
 
 @dataclass(frozen=True)
 class _Settings:
-    """What `--config` sets: `detector.FIELD`."""
+    """The fields that `--config` sets: `detector.FIELD`."""
 
     detector: Any
 
 
 @dataclass
 class OwnMeasured:
-    """The results of a segmentation of the user's."""
+    """The results of a user's segmentation."""
 
     name: str
     matrix: Int64[np.ndarray, "classes classes"] = field(default_factory=lambda: np.zeros((CLASSES, CLASSES), np.int64))
@@ -42,21 +42,22 @@ class OwnMeasured:
     by_folder: dict[str, float] = field(default_factory=dict)
     """mIoU over the goal categories of each folder of views."""
     frames_ms: list[float] = field(default_factory=list)
-    """Time of each frame."""
+    """Time of each frame, milliseconds."""
 
 
 def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Sequence[str]) -> OwnMeasured:
-    """Returns the results of a segmentation of the user's on the views of some folders.
+    """Returns the results of a user's segmentation on the views of some folders.
 
     Args:
-        name: `package.module:NAME`, as `--semantics` of a run takes it.
-        folders: folders of shards of one size.
+        name: `package.module:NAME`, as in `--semantics` of a run.
+        folders: folders with shards of views.
         count: number of views of each folder; 0: all.
         config: `detector.FIELD=VALUE` for its configuration.
 
     Raises:
-        ConfigError: it reads what views do not have, cannot be built, or there are no such views or fields.
-        AgentError: its code failed on a view, or returned something else.
+        ConfigError: the segmentation reads sensors that views do not have or cannot be built, or there are no such
+            views or fields.
+        AgentError: the user's code failed on a view, or returned another type, shape or range.
     """
     measured, segmenter = OwnMeasured(name), None
     shape: tuple[int, ...] = ()

@@ -135,10 +135,10 @@ def main(args: Args) -> int:
 
 
 def _evaluate_own(args: Args, semantics: str) -> int:
-    """Evaluates a segmentation of the user's and prints the results; returns the exit status.
+    """Evaluates a user's segmentation and prints the results; returns the exit status.
 
     Raises:
-        ConfigError: an option is for networks of this project, or see `measure_own`.
+        ConfigError: an option is for networks of this project only, or as `measure_own`.
     """
     allowed = {"views", "semantics", "config", "count", "threads", "card"}
     for option in fields(args):
