@@ -68,8 +68,8 @@ def _require_same_physics(submission: Submission, where: str) -> None:
     recorded = submission.manifest.physics
     if recorded != PHYSICS_VERSION:
         raise ConfigError(
-            f"{where} was made with physics of version {recorded}, this is version {PHYSICS_VERSION}: its actions lead elsewhere "
-            "here; verify it with the release that it was made with, or run the agent again."
+            f"{where} was made with physics of version {recorded}, this is version {PHYSICS_VERSION}: its actions lead "
+            "elsewhere here; verify it with the release that it was made with, or run the agent again."
         )
 
 

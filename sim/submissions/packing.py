@@ -52,8 +52,8 @@ def pack(run: Run, about: About) -> Submission:
     physics = config.get("physics", 1)  # runs of the first version do not have it
     if physics != PHYSICS_VERSION:
         raise ConfigError(
-            f"'{run.path}' was made with physics of version {physics}, this is version {PHYSICS_VERSION}; run it again: "
-            f"{recording(run)}"
+            f"'{run.path}' was made with physics of version {physics}, this is version {PHYSICS_VERSION}; run it "
+            f"again: {recording(run)}"
         )
     if not run.lines:
         raise ConfigError(f"'{run.path}' holds no episode.")
