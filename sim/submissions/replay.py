@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -132,7 +132,7 @@ def _replay(
     return Replay(episode.episode_id, metrics, places, look is not None, fault, round(time.process_time() - began_s, 4))
 
 
-def _positions(world: World, task: Task, entry: Entry, look: Look | None) -> Any:
+def _positions(world: World, task: Task, entry: Entry, look: Look | None) -> Iterator[tuple[float, float]]:
     """Carries out the actions and yields the robot's position after each one."""
     for action in map(Action, map(int, entry.actions)):
         if action is Action.STOP and entry.result.stop_target_xy_m is not None:

@@ -8,7 +8,6 @@ whose spread is given by the correlation of two episodes in one house. The inter
 - `two-stage`: the bootstrap of `sim.evaluation.bootstrap`, houses and then the episodes of each;
 - `houses`: the bootstrap of houses with all their episodes;
 - `t`: mean and standard error of the means of the houses, with Student's t for H - 1 degrees of freedom.
-
 """
 
 from __future__ import annotations

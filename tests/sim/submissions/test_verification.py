@@ -18,7 +18,9 @@ import pytest
 
 from sim.analysis.comparison import read_run
 from sim.commands import leaderboard, submit, verify
+from sim.configuration import as_json
 from sim.errors import ConfigError
+from sim.sensors.actuation_noise import ActuationNoise
 from sim.submissions.contents import MAX_FILE_BYTES, read_submission
 from sim.submissions.packing import About, pack
 from sim.submissions.verdicts import Verdict
@@ -73,7 +75,7 @@ def test_a_submission_is_small_and_names_no_folder_of_the_user(folder: Path) -> 
     assert "out" not in content_of(file)["config"]
 
 
-# Contradictions and damage: refused before anything is replayed ------------------------------------------------------
+# Contradictions and damage: refused before anything is replayed
 
 
 def _manifest(**changes: Any) -> Edit:
@@ -286,7 +288,7 @@ def test_another_robot_or_camera_is_refused_unless_asked_for(folder: Path) -> No
         checked(folder, folder / "oracle.json.gz", nonstandard=False)
 
 
-# Lies that only a replay finds ---------------------------------------------------------------------------------------
+# Lies that only a replay finds
 
 
 def _swapped(content: dict[str, Any]) -> None:
@@ -299,7 +301,7 @@ def _swapped(content: dict[str, Any]) -> None:
 
 def _without_noise(content: dict[str, Any]) -> None:
     noise = content["config"]["config"]["noise"]
-    noise["actuation"] = {"floor_friction_scale": [1.0, 1.0], "motor_gain_scale": [1.0, 1.0]}
+    noise["actuation"] = as_json(ActuationNoise())
     content["manifest"]["inputs"]["noise"] = "own"
 
 
@@ -381,7 +383,7 @@ def test_an_episode_that_ended_with_an_error_is_a_failure_and_is_not_replayed(fo
     assert [each.judgement for each in judged(folder, written(tmp_path / "e.json.gz", content))] == ["error"]
 
 
-# The commands --------------------------------------------------------------------------------------------------------
+# The commands
 
 
 def test_the_exit_status_says_whether_the_results_hold(
