@@ -10,7 +10,6 @@ secret, give --from-secret.
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -99,10 +98,10 @@ def make_split(folder: Path, secret: str, *, houses: int, episode_count: int, wo
 
 def _house(secret: str, name: str, number: int) -> str:
     """Returns the text of a house."""
-    reasons: Sequence[str] = ()
+    reason = ""
     for recipe in recipes(secret, name, number):
         try:
             return house_text(recipe.make().spec, SHARED_TEXTURES)
         except HouseError as error:
-            reasons = (*reasons, str(error))
-    raise HouseError(f"No seed gives house {number} of the sealed split: {reasons[-1]}")
+            reason = str(error)
+    raise HouseError(f"No seed gives house {number} of the sealed split: {reason}")

@@ -65,11 +65,12 @@ def test_another_secret_or_another_name_is_refused_before_houses_are_made(tmp_pa
     publish.main(publish.Args(split=tiny_split(tmp_path)))
     seal, secret = tmp_path / "tiny.sealed.json", tmp_path / "secret"
     secret.write_text(SECRET)
-    for options, sentence in (
+    cases: tuple[tuple[dict[str, Any], str], ...] = (
         ({"secret_file": secret, "out": tmp_path / "other"}, "a folder named 'tiny'"),
         ({"secret_file": secret, "out": tmp_path / "made" / "tiny"}, "is not the sealed one"),
         ({}, "Give either"),
-    ):
+    )
+    for options, sentence in cases:
         with pytest.raises(ConfigError, match=sentence):
             reveal.main(reveal.Args(seal=seal, **options))
 
