@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any
 
 from sim.configuration import as_json, with_fields
@@ -13,6 +13,7 @@ from sim.robot.config import RobotConfig
 from sim.sensors.noise import NOISE_PRESETS, NoiseConfig
 from sim.task.config import TaskConfig
 
+PARTS = ("robot", "camera", "task", "noise")
 OWN_NOISE = "own"
 """Name of noise that is none of the presets."""
 LEAST_TIMESTEP_S = 1e-4
@@ -28,10 +29,8 @@ class Setting:
     task: TaskConfig = field(default_factory=TaskConfig)
     noise: NoiseConfig = field(default_factory=NoiseConfig)
 
-    @property
-    def noise_name(self) -> str:
-        """Name of the preset that the noise is equal to, whatever the run called it; `own` for any other."""
-        return next((name for name, preset in NOISE_PRESETS.items() if preset == self.noise), OWN_NOISE)
+    noise_name: str = "none"
+    """Name of the preset that the recorded fields are those of, whatever the run called it; `own` for any other."""
 
     def changes(self) -> list[str]:
         """Returns a text for each field that differs from the standard: name, value, standard value."""
@@ -55,17 +54,27 @@ def setting_of(config: Mapping[str, Any], *, where: str) -> Setting:
         where: names the file for the error message.
 
     Raises:
-        ConfigError: a part is missing, its fields are not exactly those of this version, or a value is not allowed.
+        ConfigError: a part is missing, has a field that this version does not know, or a value that is not allowed. A
+            field that it lacks has the standard value: with the same version of the physics, it did not exist.
     """
     tree = config.get("config")
     if not isinstance(tree, Mapping):
         raise ConfigError(f"{where}: its configuration has no field 'config'.")
-    parts = {each.name: _part(getattr(Setting(), each.name), tree.get(each.name), each.name, where)
-             for each in fields(Setting)}  # fmt: skip
-    setting = Setting(**parts)
+    parts = {name: _part(getattr(Setting(), name), tree.get(name), name, where) for name in PARTS}
+    setting = Setting(**parts, noise_name=_noise_name(tree["noise"]))
     if setting.robot.physics.timestep_s < LEAST_TIMESTEP_S:
         raise ConfigError(f"{where}: robot.physics.timestep_s is below {LEAST_TIMESTEP_S} s.")
     return setting
+
+
+def _noise_name(given: Mapping[str, Any]) -> str:
+    """Returns the preset with the recorded fields; a sensor that was added later has fields that a run may lack."""
+    recorded = dict(_flat(given, ""))
+    for name, preset in NOISE_PRESETS.items():
+        fields = dict(_flat(as_json(preset), ""))
+        if all(path in fields and fields[path] == value for path, value in recorded.items()):
+            return name
+    return OWN_NOISE
 
 
 def _part(default: Any, given: Any, name: str, where: str) -> Any:
@@ -75,9 +84,6 @@ def _part(default: Any, given: Any, name: str, where: str) -> Any:
     if given.get("file") is not None:
         raise ConfigError(f"{where}: the robot is that of a file (--robot), which a submission does not contain.")
     values = dict(_flat(given, ""))
-    lacking = [path for path, _ in _flat(as_json(default), "") if path not in values]
-    if lacking:
-        raise ConfigError(f"{where}: {name} lacks '{lacking[0]}'; it is of another version of the simulator.")
     try:
         return with_fields(default, {path: value for path, value in values.items() if path != "file"})
     except ConfigError as error:

@@ -85,10 +85,6 @@ REFUSED: dict[str, tuple[Edit, str]] = {
     "another seed": (together(in_manifest(seed=5), in_all_results(seed=5)), "the seed is 5, in its configuration 0"),
     "a robot of a file": (in_tree("robot", file={"path": "/etc/passwd"}), "the robot is that of a file"),
     "a robot with an unknown field": (in_tree("robot.drive", turbo=True), "There is no field"),
-    "a robot that lacks a field": (
-        lambda c: c["config"]["config"]["robot"]["drive"].pop("tick_s"),
-        "lacks 'drive.tick_s'; it is of another version",
-    ),
     "a robot that cannot be": (in_tree("robot.body", radius_m=-1.0), "radius_m"),
     "a time step for days": (in_tree("robot.physics", timestep_s=1e-5), "timestep_s is below"),
     "no task": (lambda c: c["config"]["config"].pop("task"), "has no field 'config.task'"),
