@@ -1,9 +1,10 @@
-"""The folder of shipped houses, in the repository or in the installed wheel, and the hash of the code."""
+"""The folder of shipped houses, in the repository or in the wheel, the hash of the code, and the processor's name."""
 
 from __future__ import annotations
 
 import functools
 import hashlib
+import platform
 from pathlib import Path
 
 from sim.errors import HouseError
@@ -48,3 +49,13 @@ def hash_of_packages(*packages: Path, parameters: bool = True) -> str:
             if name.parts[0] != "assets":
                 digest.update(f"{package.name}/{name}".encode() + file.read_bytes())
     return digest.hexdigest()[:12]
+
+
+@functools.cache
+def processor() -> str:
+    """Returns the processor's name as Linux knows it, elsewhere as Python does."""
+    file = Path("/proc/cpuinfo")
+    for line in file.read_text(errors="replace").splitlines() if file.is_file() else ():
+        if line.startswith("model name"):
+            return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()

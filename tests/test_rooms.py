@@ -30,6 +30,7 @@ ROOMS = (
     ("sim.viewers",),
     ("sim.evaluation",),
     ("sim.analysis",),
+    ("sim.submissions",),
     ("sim.bridges",),
     ("sim.composition", "sim.twin"),
     ("sim.web",),

@@ -101,4 +101,9 @@ def verdict(first: Run, second: Run) -> str:
             sentences.append(f"{metric.title}: B is {cell.verdict}")
         if cell.mean_text != "-":
             sentences[-1] += f", {' '.join(filter(None, (cell.mean_text, cell.interval_text)))}"
+        if (needed := cell.estimate.pairs_needed) is not None and needed > cell.estimate.count:
+            more = needed / cell.estimate.count
+            sentences[-1] += (
+                f" (to be significant, this difference needs about {needed} pairs in {more:.1f} times the houses)"
+            )
     return f"Verdict over {len(common)} episodes. {'. '.join(sentences)}."

@@ -17,7 +17,8 @@ from sim.configuration import as_json
 from sim.episodes.splits import Episode
 from sim.evaluation.own_code import hash_of_own
 from sim.evaluation.rollout import broken_metrics
-from sim.paths import code_hash
+from sim.paths import code_hash, processor
+from sim.robot.config import PHYSICS_VERSION
 from sim.robot.foreign import robot_sha256
 from sim.sensors.opengl import describe_gl
 
@@ -31,6 +32,7 @@ def record_of(setup: Setup, split: dict[str, Any]) -> dict[str, Any]:
     return flat | {
         "settings": as_json(setup.settings),
         "config": as_json(setup.config),
+        "physics": PHYSICS_VERSION,
         "segmentation": _segmentation_of(setup),
         "files_sha256": _checksums(setup),
         "split_identity": split,
@@ -39,9 +41,10 @@ def record_of(setup: Setup, split: dict[str, Any]) -> dict[str, Any]:
 
 
 def versions(options: RunOptions) -> dict[str, str]:
-    """Returns the versions that a result depends on: packages, the GL renderer, and what `code_of` gives."""
+    """Returns the versions that a result depends on: packages, processor, GL renderer, and `code_of`."""
     packages = ("stubborn-objectnav", "mujoco", "numpy")
-    return {name: version(name) for name in packages} | {"gl_renderer": describe_gl(), "code": code_of(options)}
+    here = {"processor": processor(), "gl_renderer": describe_gl(), "code": code_of(options)}
+    return {name: version(name) for name in packages} | here
 
 
 def code_of(options: RunOptions) -> str:

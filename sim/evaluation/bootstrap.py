@@ -54,6 +54,21 @@ class Estimate:
             return False
         return not self.low <= self.neutral <= self.high
 
+    @property
+    def pairs_needed(self) -> int | None:
+        """The number of pairs with which this difference, if it is the true one, would be about significant.
+
+        The width of an interval falls with the square root of the number of pairs, if the houses become more in the
+        same proportion: more episodes in the same houses do less. None: the comparison is significant, or its value
+        is the neutral one, or its houses are one.
+        """
+        if self.mean is None or self.low is None or self.high is None or self.houses < 2 or self.significant:
+            return None
+        off = abs(self.mean - self.neutral)
+        if off == 0.0:
+            return None
+        return max(MIN_PAIRS, math.ceil(self.count * (0.5 * (self.high - self.low) / off) ** 2))
+
 
 def estimate(values: Sequence[Value], houses: Sequence[str]) -> Estimate:
     """Returns the mean of the values that are not None, and its interval.

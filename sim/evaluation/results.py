@@ -136,6 +136,7 @@ class RunRecord(msgspec.Struct):
     versions: dict[str, str] = {}
     codes: list[str] | None = None
     config: dict[str, Any] = {}
+    physics: Count | None = None
     files_sha256: dict[str, str] = {}
 
 
@@ -355,6 +356,8 @@ class RunDirectory:
             _write_json(file, config)  # it is on the disk before the first line
             return
         existing = read_record(file)
+        if "physics" in config:
+            existing.setdefault("physics", 1)  # runs of the first version do not have it
         for path, before, now in differing_fields(existing, config):
             unset = all(value is None or value is ABSENT for value in (before, now))
             if path.partition(".")[0] not in NOT_COMPARED and not unset and not is_same_file(path, existing, config):

@@ -12,6 +12,10 @@ from typing import Literal, get_args
 
 from sim.interface import FORWARD_M, TURN_RAD, ConfigError, RobotModel
 
+PHYSICS_VERSION = 1
+"""Results of different versions of the physics are not comparable, and recorded actions are replayed by the same
+version only. It is increased when the same actions in the same house lead to other motions, collisions or scores."""
+
 Base = Literal["planar", "free"]
 """`planar`: three slides and a vertical hinge keep the body upright; `free`: only its wheels and casters carry it."""
 

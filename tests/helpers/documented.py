@@ -242,6 +242,12 @@ _UNSEEN = (
 _SHARDS = tuple(f"{_RUN} {_SMALL} --agent oracle --episodes 2 --shard {i}/2 --out {{tmp}}/big" for i in (1, 2))
 
 _PUBLISHED = "needs a repository of others, which is not part of this project"
+_ENTRY = (
+    f"{_RUN} --agent 'process:{sys.executable} tests/helpers/client_agent.py' --split val --episodes 1 --record"
+    " --out {tmp}/entry"
+)
+_SUBMIT = "stubborn submit {tmp}/entry --name 'My agent' --authors 'A. Author' --out {tmp}/my_agent.json.gz"
+_SEAL = "stubborn seal make --out {tmp}/sealed2027 --secret-file {tmp}/secret --houses 1 --episodes 2"
 TRIALS: dict[str, tuple[str, ...] | Only] = {
     "make run": _NEEDS_SETUP,
     "make test": _NEEDS_SETUP,
@@ -407,6 +413,20 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn evaluate mistakes runs/looked --out runs/false.png": (
         f"{_RUN} {_SMALL} --agent tests.helpers.runners:make_quitter --episodes 1 --record --out {{tmp}}/looked",
         "stubborn evaluate mistakes {tmp}/looked --out {tmp}/false.png",
+    ),
+    # docs/leaderboard.md
+    f"{_RUN} --agent 'process:python my_agent.py' --split val --episodes 200 --record --out runs/entry": (_ENTRY,),
+    "stubborn submit runs/entry --name 'My agent' --authors 'A. Author' --out my_agent.json.gz": (_ENTRY, _SUBMIT),
+    "stubborn verify my_agent.json.gz": (_ENTRY, _SUBMIT, "stubborn verify {tmp}/my_agent.json.gz"),
+    "stubborn seal make --out challenge/sealed2027 --secret-file secret.txt --houses 20 --episodes 400": (_SEAL,),
+    "stubborn seal reveal challenge/sealed2027.sealed.json --secret-file secret.txt --out revealed/sealed2027": (
+        _SEAL,
+        "stubborn seal reveal {tmp}/sealed2027.sealed.json --secret-file {tmp}/secret --out {tmp}/revealed/sealed2027",
+    ),
+    "stubborn leaderboard leaderboard": (
+        _ENTRY,
+        _SUBMIT.replace("{tmp}/my", "{tmp}/submissions/my"),
+        "stubborn leaderboard {tmp}",
     ),
     # docs/traps.md
     f"{_RUN} --split traps --semantics gt --episodes 21": (
@@ -585,6 +605,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
 """
 
 STAND_INS = (
+    "leaderboard",
+    "secret.txt",
     "my_traps",
     "my_models",
     "/usr/share/sweethome3d/furniture",

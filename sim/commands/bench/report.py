@@ -18,7 +18,7 @@ from sim.commands.bench.calibration import Calibration
 from sim.commands.bench.figures import Figure
 from sim.files import write_atomically
 from sim.interface import ConfigError
-from sim.paths import code_hash
+from sim.paths import code_hash, processor
 from sim.reading import read_text
 from sim.sensors.opengl import describe_gl
 
@@ -32,7 +32,7 @@ def machine() -> dict[str, Any]:
     """Returns processor, system, load and versions."""
     packages = ("mujoco", "numpy", "opencv-python-headless", "scikit-fmm", "numba")
     return {
-        "processor": _processor(),
+        "processor": processor(),
         "cores": len(os.sched_getaffinity(0)),
         "system": f"{platform.system()} {platform.machine()}",
         "load": round(os.getloadavg()[0], 2),
@@ -125,11 +125,3 @@ def around_marks(page: Path) -> tuple[str, str]:
 def _quantity(value: float, unit: str) -> str:
     digits = 0 if abs(value) >= 100 else 1 if abs(value) >= 10 else 2
     return f"{value:.{digits}f} {unit}"
-
-
-def _processor() -> str:
-    """The processor's name as Linux knows it."""
-    for line in Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.partition(":")[2].strip()
-    return platform.processor() or platform.machine()

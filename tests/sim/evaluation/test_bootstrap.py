@@ -33,6 +33,32 @@ def test_episodes_that_agree_within_each_house_count_as_one() -> None:
     assert width(episodes, houses_of(20, 30)) == pytest.approx(np.sqrt(30) * naive, rel=0.1)
 
 
+@pytest.mark.parametrize("off", [0.08, 0.11])
+def test_a_difference_becomes_significant_with_about_the_number_of_pairs_that_it_needs(off: float) -> None:
+    one = np.random.default_rng(3).normal(0.0, 1.0, 200)
+    one += off - one.mean()
+    first = estimate(list(one), each_in_its_house(200))
+    assert first.mean is not None
+    needed = first.pairs_needed
+    assert needed is not None
+    assert needed > 200
+    centred = np.random.default_rng(4).normal(0.0, 1.0, needed)
+    for factor, significant in ((1.3, True), (0.7, False)):
+        count = int(factor * needed)
+        values = np.resize(centred, count)
+        values = values - values.mean() + first.mean
+        assert estimate(list(values), each_in_its_house(count)).significant == significant
+
+
+def test_what_is_significant_equal_or_of_one_house_needs_no_more_pairs() -> None:
+    for each in (
+        Estimate(0.2, 0.1, 0.3, 50, 10), Estimate(0.0, -0.1, 0.1, 50, 10), Estimate(0.1, -0.1, 0.3, 50, 1),
+        Estimate(None, None, None, 0, 0),
+    ):  # fmt: skip
+        assert each.pairs_needed is None
+    assert Estimate(0.1, -0.1, 0.3, 50, 10).pairs_needed == 200
+
+
 def test_the_width_for_houses_that_succeed_or_fail_as_a_whole_is_that_of_a_coin() -> None:
     episodes = np.repeat([0.0, 1.0], 100)  # 20 houses of 10 episodes
     low, high = bootstrap_interval(episodes, houses_of(20, 10))

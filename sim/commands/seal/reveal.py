@@ -1,0 +1,61 @@
+"""Checks a revealed split against its seal; from a secret, the split is made again first.
+
+    stubborn seal reveal sealed2027.sealed.json --secret-file secret.txt --out sealed2027 --workers 4
+    stubborn seal reveal homes.sealed.json --split homes
+
+The organiser publishes the secret after the deadline. Everybody can then make the split, see that it is the one that
+was sealed, and verify the submissions on it: `stubborn verify FILE --split sealed2027`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from sim import cli
+from sim.commands.seal.make import make_split, require_empty
+from sim.episodes.splits import Split, load_split
+from sim.errors import ConfigError
+from sim.submissions.sealing import Seal, digest_of, read_seal, read_secret, require_sealed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Check a revealed split against its seal."""
+
+    seal: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="SEAL")]
+    """The published file, NAME.sealed.json."""
+    split: Path | None = None
+    """Folder of the revealed split."""
+    secret_file: Path | None = None
+    """In its place: file with the revealed secret, from which the split is made."""
+    out: cli.OutFolder | None = None
+    """With --secret-file: folder of the split, which has the name in the seal."""
+    workers: cli.Count = 1
+    """Number of processes."""
+
+
+def main(args: Args) -> int:
+    """Checks the split and prints the outcome; returns the exit status."""
+    seal = read_seal(args.seal)
+    if (args.split is None) == (args.secret_file is None):
+        raise ConfigError("Give either --split FOLDER or --secret-file FILE.")
+    split = _made(args, seal) if args.split is None else load_split(args.split)
+    require_sealed(split, seal)
+    print(f"'{split.name}' is the sealed split: {seal.houses} houses, {seal.episodes} episodes.")
+    return 0
+
+
+def _made(args: Args, seal: Seal) -> Split:
+    """Returns the split of the secret."""
+    assert args.secret_file is not None
+    if args.out is None or args.out.resolve().name != seal.name:
+        raise ConfigError(f"With --secret-file, give --out with a folder named '{seal.name}', as the seal says.")
+    secret = read_secret(args.secret_file)
+    if digest_of(secret) != seal.secret_sha256:
+        raise ConfigError(f"The secret in '{args.secret_file}' is not the sealed one.")
+    require_empty(args.out)
+    return make_split(args.out, secret, houses=seal.houses, episode_count=seal.episodes, workers=args.workers)

@@ -1,0 +1,134 @@
+"""Checks of a submission against itself and against its split, before anything is replayed.
+
+A contradiction is refused by one sentence. What passes is consistent; whether it is true is for the replay to say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+from sim.episodes.splits import Episode, Split
+from sim.errors import ConfigError
+from sim.interface import TRUE_IMAGES, Action
+from sim.robot.config import PHYSICS_VERSION
+from sim.submissions.contents import Entry, Inputs, Submission
+from sim.submissions.setting import Setting
+
+Truth = Literal["none", "noisy", "yes"]
+"""Whether ground truth reached the agent: `noisy` is the true segmentation with the errors of a simulated detector."""
+STOP = str(int(Action.STOP))
+
+
+def require_consistent(
+    submission: Submission, config: Mapping[str, Any], setting: Setting, split: Split, *, where: str
+) -> None:
+    """Raises ConfigError where a submission contradicts itself, its split, or this version of the simulator.
+
+    Args:
+        submission: from a file.
+        config: its configuration.
+        setting: its setting.
+        split: the split on which it will be replayed.
+        where: names the file for the error message.
+    """
+    _require_same_physics(submission, where)
+    _require_same_split(submission, split, where)
+    _require_declared(submission, config, setting, where)
+    known = {episode.episode_id: episode for episode in split.episodes}
+    for entry in submission.episodes:
+        episode_id = entry.result.episode_id
+        if episode_id not in known:
+            raise ConfigError(f"{where}, episode '{episode_id}': the split '{split.name}' has no such episode.")
+        _require_entry(entry, known[episode_id], submission, setting, f"{where}, episode '{episode_id}'")
+
+
+def truth_of(inputs: Inputs) -> Truth:
+    """Returns whether ground truth reached the agent, as the authors declare it."""
+    if inputs.uses_ground_truth or inputs.semantics == "gt":
+        return "yes"
+    return "noisy" if inputs.semantics == "noisy" else "none"
+
+
+def coverage(submission: Submission, split: Split) -> tuple[bool, str]:
+    """Returns whether the episodes are the first ones of the split, and which they are as text.
+
+    The order of a split is balanced over houses and goals, so that its first N episodes are no choice of the authors.
+    """
+    there = {entry.result.episode_id for entry in submission.episodes}
+    count, total = len(there), len(split.episodes)
+    if count == total:
+        return True, f"all {total} episodes"
+    if there == {episode.episode_id for episode in split.episodes[:count]}:
+        return True, f"the first {count} of {total} episodes"
+    return False, f"{count} of {total} episodes, chosen by the authors"
+
+
+def _require_same_physics(submission: Submission, where: str) -> None:
+    recorded = submission.manifest.physics
+    if recorded != PHYSICS_VERSION:
+        raise ConfigError(
+            f"{where} was made with physics of version {recorded}, this is version {PHYSICS_VERSION}: its actions lead "
+            "elsewhere here; verify it with the release that it was made with, or run the agent again."
+        )
+
+
+def _require_same_split(submission: Submission, split: Split, where: str) -> None:
+    made_on = submission.manifest.split
+    if made_on.sha256 != split.sha256:
+        raise ConfigError(
+            f"{where} was made on the split '{made_on.name}' {made_on.version} with sha256 {made_on.sha256[:12]}, and "
+            f"'{split.name}' {split.version} here has {split.sha256[:12]}; name the folder of its split with --split."
+        )
+
+
+def _require_declared(submission: Submission, config: Mapping[str, Any], setting: Setting, where: str) -> None:
+    """Raises ConfigError where the declared inputs are not those of the configuration or of the result lines."""
+    inputs, tree = submission.manifest.inputs, config.get("config") or {}
+    recorded = {
+        "agent": config.get("agent"),
+        "semantics": config.get("semantics"),
+        "noise": setting.noise_name,
+        "sensors": tuple(tree.get("sensors") or ()),
+    }
+    for name, value in recorded.items():
+        declared = getattr(inputs, name)
+        if declared != value:
+            raise ConfigError(f"{where} declares {name} {declared!r}, and its configuration has {value!r}.")
+    if inputs.isolated != inputs.agent.startswith("process:"):
+        raise ConfigError(f"{where} declares isolated {inputs.isolated} for the agent '{inputs.agent}'.")
+    segmentation = config.get("segmentation") or {}
+    true_images = TRUE_IMAGES & {*inputs.sensors, *(segmentation.get("truth") or ())}
+    if segmentation.get("name") == "ground truth":
+        true_images |= {"semantic"}
+    if true_images and truth_of(inputs) == "none":
+        raise ConfigError(
+            f"{where} declares no ground truth, and its configuration gives the agent '{min(true_images)}', which is."
+        )
+    if config.get("seed") != submission.manifest.seed:
+        raise ConfigError(
+            f"{where}: the seed is {submission.manifest.seed}, in its configuration {config.get('seed')}."
+        )
+
+
+def _require_entry(entry: Entry, known: Episode, submission: Submission, setting: Setting, where: str) -> None:
+    """Raises ConfigError where an episode is not one of the split, or its actions cannot be those of its result."""
+    result, inputs, actions = entry.result, submission.manifest.inputs, entry.actions
+    declared = {
+        "house": known.house, "goal": known.goal, "agent": inputs.agent, "semantics": inputs.semantics,
+        "seed": submission.manifest.seed, "uses_ground_truth": inputs.uses_ground_truth, "isolated": inputs.isolated,
+    }  # fmt: skip
+    for name, value in declared.items():
+        if getattr(result, name) != value:
+            of = "the split" if name in ("house", "goal") else "the manifest"
+            raise ConfigError(f"{where}: its result has {name} {getattr(result, name)!r}, {of} has {value!r}.")
+    if result.end_reason == "error":
+        if result.success or result.spl or result.soft_spl:
+            raise ConfigError(f"{where} ended with an error and cannot be a success.")
+        return
+    if result.num_steps != len(actions):
+        raise ConfigError(f"{where} has {len(actions)} actions, and its result counts {result.num_steps}.")
+    if len(actions) > setting.task.max_steps:
+        raise ConfigError(f"{where} has {len(actions)} actions; the task allows {setting.task.max_steps}.")
+    if STOP in actions[:-1]:
+        raise ConfigError(f"{where} has actions after STOP, which ends an episode.")

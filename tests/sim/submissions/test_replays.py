@@ -1,0 +1,143 @@
+"""Recorded runs are verified equal, and what no check can see a replay finds."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sim.configuration import as_json
+from sim.sensors.actuation_noise import ActuationNoise
+from sim.submissions.contents import read_submission
+from tests.helpers.submissions import (
+    RUNS,
+    Edit,
+    content_of,
+    in_actions,
+    in_all_results,
+    in_config,
+    in_first_result,
+    in_manifest,
+    in_tree,
+    judged,
+    together,
+    written,
+)
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_a_recorded_run_is_verified_equal_with_its_frames(folder: Path, name: str) -> None:
+    found = judged(folder, folder / f"{name}.json.gz", frames=1.0)
+    assert [(each.judgement, each.framed, each.text) for each in found] == [("equal", True, "")] * 3
+    assert {each.result.end_reason for each in read_submission(folder / f"{name}.json.gz").episodes} <= {
+        "stop", "max_steps",
+    }  # fmt: skip
+
+
+def test_the_runs_have_successes_failures_and_collisions(folder: Path) -> None:
+    """Else equal numbers would say little."""
+    results = [each.result for name in RUNS for each in read_submission(folder / f"{name}.json.gz").episodes]
+    assert {bool(each.success) for each in results} == {True, False}
+    assert sum(float(each.collisions or 0) for each in results) > 0
+
+
+def test_a_submission_is_small_and_names_no_folder_of_the_user(folder: Path) -> None:
+    file = folder / "random.json.gz"
+    assert file.stat().st_size < 6_000
+    assert str(folder) not in json.dumps(content_of(file)["manifest"])
+    assert "out" not in content_of(file)["config"]
+
+
+def _swapped(content: dict[str, Any]) -> None:
+    first, second = content["episodes"][:2]
+    for name in ("actions", "places_m"):
+        first[name], second[name] = second[name], first[name]
+    for each in (first, second):
+        each["result"]["num_steps"] = len(each["actions"])
+
+
+def _without_noise(content: dict[str, Any]) -> None:
+    noise = content["config"]["config"]["noise"]
+    noise["actuation"] = as_json(ActuationNoise())
+    content["manifest"]["inputs"]["noise"] = "own"
+
+
+def _turned(actions: str) -> str:
+    return actions.replace("2", "3", 1) if "2" in actions else actions.replace("3", "2", 1)
+
+
+LIES: dict[str, tuple[str, Edit, str]] = {
+    "a success": ("random", in_first_result(success=1.0, end_reason="stop"), "success 1, in the replay 0"),
+    "a failure": ("oracle", in_first_result(success=0.0), "success 0, in the replay 1"),
+    "a higher SPL": ("oracle", in_first_result(spl=0.999999, path_length=1.0), "spl"),
+    "fewer collisions": ("random", in_first_result(collisions=-1), "collisions -1"),
+    "a shorter distance": ("random", in_first_result(distance_to_goal=0.1), "distance_to_goal 0.1, in the replay"),
+    "no shortest path": ("oracle", in_first_result(shortest_path=None), "shortest_path None"),
+    "another end": ("oracle", in_first_result(end_reason="max_steps"), "end_reason max_steps, in the replay stop"),
+    "other actions": ("oracle", in_actions(_turned), "The replay leaves the recorded path before action"),
+    "actions of another episode": ("oracle", _swapped, "in the replay"),
+    "no STOP": ("oracle", in_actions(lambda a: a[:-1], counted=True), "the episode has not ended after its"),
+    "another robot": ("oracle", in_tree("robot.drive", forward_m=0.2), "leaves the recorded path"),
+    "another success rule": ("oracle", in_tree("task.success", distance_m=0.3), "shortest_path"),
+    "another seed": (
+        "random",
+        together(in_manifest(seed=5), in_all_results(seed=5), in_config(seed=5)),
+        "leaves the recorded path|path_length",
+    ),
+    "noise that was there": ("random", _without_noise, "leaves the recorded path|path_length"),
+}
+
+
+@pytest.mark.parametrize("lie", LIES)
+def test_a_replay_finds_a_lie(folder: Path, tmp_path: Path, lie: str) -> None:
+    name, edit, sentence = LIES[lie]
+    content = content_of(folder / f"{name}.json.gz")
+    edit(content)
+    content["episodes"] = content["episodes"][:2]
+    first, *_ = judged(folder, written(tmp_path / "forged.json.gz", content))
+    assert first.judgement == "different"
+    assert re.search(sentence, first.text), first.text
+
+
+def test_a_result_that_no_action_can_have_made_is_told_from_changed_actions(folder: Path, tmp_path: Path) -> None:
+    content = content_of(folder / "oracle.json.gz")
+    in_first_result(spl=0.5)(content)
+    first, second, third = judged(folder, written(tmp_path / "forged.json.gz", content))
+    assert "The actions lead along the recorded path, so the result itself was changed" in first.text
+    assert (second.judgement, third.judgement) == ("equal", "equal")
+
+
+@pytest.mark.parametrize(
+    ("off_m", "judgement"), [(1e-4, "within tolerance"), (0.008, "within tolerance"), (0.02, "different")]
+)
+def test_lengths_may_differ_by_the_tolerance(folder: Path, tmp_path: Path, off_m: float, judgement: str) -> None:
+    content = content_of(folder / "random.json.gz")
+    content["episodes"] = content["episodes"][:1]
+    content["episodes"][0]["result"]["path_length"] += off_m
+    (found,) = judged(folder, written(tmp_path / "near.json.gz", content))
+    assert found.judgement == judgement
+    assert found.largest == pytest.approx(off_m)
+
+
+@pytest.mark.parametrize(
+    "change", [{"gt_explored": False, "first_seen_step": None}, {"first_seen_step": 20}, {"area_seen_m2": 99.0}]
+)
+def test_what_was_seen_is_checked_where_frames_are_rendered(
+    folder: Path, tmp_path: Path, change: dict[str, Any]
+) -> None:
+    content = content_of(folder / "oracle.json.gz")
+    content["episodes"] = content["episodes"][:1]
+    in_first_result(**change)(content)
+    file = written(tmp_path / "forged.json.gz", content)
+    assert [each.judgement for each in judged(folder, file, frames=1.0)] == ["different"]
+    assert [each.judgement for each in judged(folder, file, frames=0.0)] == ["equal"]
+
+
+def test_an_episode_that_ended_with_an_error_is_a_failure_and_is_not_replayed(folder: Path, tmp_path: Path) -> None:
+    content = content_of(folder / "random.json.gz")
+    content["episodes"] = content["episodes"][:1]
+    together(in_first_result(end_reason="error", success=0.0, spl=0.0, soft_spl=0.0), in_actions(lambda a: ""))(content)
+    assert [each.judgement for each in judged(folder, written(tmp_path / "e.json.gz", content))] == ["error"]

@@ -1,0 +1,97 @@
+"""`submit`, `verify` and `leaderboard` as a user calls them."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sim.analysis.comparison import read_run
+from sim.commands import leaderboard, verify
+from sim.errors import ConfigError
+from sim.submissions.packing import About, pack
+from tests.helpers.submissions import (
+    content_of,
+    written,
+)
+
+
+def test_the_exit_status_says_whether_the_results_hold(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options: dict[str, Any] = {"split": folder / "tiny", "nonstandard": True, "draw_seed": 3}
+    report = tmp_path / "report.json"
+    assert verify.main(verify.Args(file=folder / "oracle.json.gz", report=report, **options)) == 0
+    printed = capsys.readouterr().out
+    for part in (
+        "all 3 episodes of tiny",
+        "3 equal",
+        "Frames of 1",
+        "an hour a core",
+        "Verified: ",
+        "proved by no replay",
+    ):
+        assert part in printed
+    assert json.loads(report.read_text())["equal"] == 3
+    content = content_of(folder / "oracle.json.gz")
+    content["episodes"][1]["result"]["success"] = 0.0
+    assert verify.main(verify.Args(file=written(tmp_path / "forged.json.gz", content), **options)) == 1
+    assert "NOT VERIFIED: 1 episodes are different" in capsys.readouterr().out
+
+
+def test_a_run_without_its_actions_is_refused_with_the_command_that_records(folder: Path, tmp_path: Path) -> None:
+    shutil.copytree(folder / "oracle", tmp_path / "run")
+    shutil.rmtree(tmp_path / "run" / "trajectories")
+    with pytest.raises(ConfigError, match=r"Record them: stubborn run --agent oracle .*--record --out .*run_recorded"):
+        pack(read_run(tmp_path / "run"), About(name="x", authors=()))
+
+
+def test_actions_of_another_run_are_not_packed(folder: Path, tmp_path: Path) -> None:
+    shutil.copytree(folder / "oracle", tmp_path / "run")
+    shutil.copy(folder / "random" / "trajectories" / "tiny_0000.npz", tmp_path / "run" / "trajectories")
+    with pytest.raises(ConfigError, match="is of another result than its line"):
+        pack(read_run(tmp_path / "run"), About(name="x", authors=()))
+
+
+@pytest.mark.parametrize(("field", "value"), [("house", "a.xml"), ("physics", 0)])
+def test_a_run_that_cannot_be_replayed_is_not_packed(folder: Path, field: str, value: Any) -> None:
+    run = read_run(folder / "oracle")
+    with pytest.raises(ConfigError, match=r"a submission needs a split|physics of version 0"):
+        pack(replace(run, config={**run.config, field: value}), About(name="x", authors=()))
+
+
+def test_the_leaderboard_has_the_rows_that_hold(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sim.submissions.setting.Setting.changes", lambda setting: [])  # the images are small
+    (tmp_path / "submissions").mkdir()
+    content = content_of(folder / "random.json.gz")
+    content["manifest"] |= {"name": "Our <b>agent</b> [x](y) | z", "authors": ["A. *Author*"]}
+    written(tmp_path / "submissions" / "good.json.gz", content)
+    content["episodes"][0]["result"]["success"] = 1.0
+    written(tmp_path / "submissions" / "forged.json.gz", content)
+    content = content_of(folder / "oracle.json.gz")
+    content["episodes"] = content["episodes"][1:]
+    written(tmp_path / "submissions" / "chosen.json.gz", content)
+    (tmp_path / "submissions" / "broken.json.gz").write_bytes(b"x")
+    args = leaderboard.Args(folder=tmp_path, splits=(folder / "tiny",))
+    assert leaderboard.main(args) == 1
+    printed = capsys.readouterr().out
+    for part in (
+        "forged.json.gz: 1 episodes are different", "chosen.json.gz: its episodes were chosen by the authors",
+        "broken.json.gz: Submission ",
+    ):  # fmt: skip
+        assert f"Left out: {part}" in printed
+    table = (tmp_path / "table.md").read_text()
+    assert r"Our &lt;b&gt;agent&lt;/b&gt; \[x\]\(y\)" in table
+    assert "| equal |" in table
+    assert len([line for line in table.splitlines() if line.startswith("| ")]) == 3
+    assert "success" in (tmp_path / "table.csv").read_text()
+    monkeypatch.setattr(leaderboard, "verify", lambda file, choices: pytest.fail("a current report was made again"))
+    for name in ("forged", "chosen", "broken"):
+        (tmp_path / "submissions" / f"{name}.json.gz").unlink()
+    assert leaderboard.main(args) == 0
