@@ -48,7 +48,7 @@ def write_house(spec: mujoco.MjSpec, folder: str | Path, name: str | None = None
         HouseError: the specification has files other than textures, or violates the house format.
         ConfigError: the name is not that of a file, or the folder cannot be written.
     """
-    folder, name = Path(folder), name or spec.modelname
+    folder, name = Path(folder), str(name or spec.modelname)
     if any(asset.file for asset in (*spec.meshes, *spec.hfields, *spec.skins)):
         raise HouseError(f"House '{name}' has meshes in files, which write_house does not copy.")
     path = inside(folder, f"{name}.xml", what="name of a house")

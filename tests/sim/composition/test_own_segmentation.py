@@ -86,7 +86,7 @@ def test_categories_of_a_wrong_size_or_number_are_named(
     segmenter = find_segmentation("tests.helpers.segmentations:WrongNames", None).make(env, None)
     observation, _ = env.reset(seed=0)
     with pytest.raises(AgentError, match="categories returned an array of"):
-        segmenter.categories(observation)
+        segmenter.categories(observation)  # pyright: ignore[reportAttributeAccessIssue]
     env.close()
 
 
