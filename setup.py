@@ -9,6 +9,7 @@ setup(
         "sim.assets": ["mjcf_houses/**/*"],
         "sim.analysis.report": ["page/*"],
         "sim.web": ["page/*"],
+        "sim.houses": ["*.csv"],
         "stubborn": ["**/*.json", "**/*.npz", "**/*.safetensors"],
     },
 )

@@ -11,6 +11,7 @@ import codecs
 import csv
 import gzip
 import hashlib
+import itertools
 import json
 import os
 import re
@@ -20,7 +21,7 @@ import tarfile
 import unicodedata
 import zipfile
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Any, BinaryIO, NamedTuple, TypeVar
 
@@ -242,6 +243,33 @@ def read_lines(file: Path, kind: type, *, what: str, error: type[ObjectNavError]
         values.append(value)
     torn = f"{what} '{file}': the incomplete line {len(values) + 1} was dropped ({len(rest)} bytes)." if rest else ""
     return Lines(values, len(whole), torn)
+
+
+def json_lines(
+    file: Path, *, what: str, error: type[ObjectNavError] = ConfigError
+) -> Iterator[tuple[int, bytes]]:
+    """Yields the numbers (from 1) and the texts of the lines of a file, which may be gzipped; empty lines are left out.
+
+    The file is read line by line, so that it may be of any size; a line has at most `MAX_BYTES`.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read, or a line is too long.
+    """
+    with open_plain(file, what=what, error=error) as packed:
+        zipped = packed.read(2) == b"\x1f\x8b"
+        packed.seek(0)
+        stream = gzip.GzipFile(fileobj=packed) if zipped else packed
+        for number in itertools.count(1):
+            try:
+                line = stream.readline(MAX_BYTES + 1)
+            except (OSError, EOFError, zlib.error, struct.error, ValueError) as fault:
+                raise error(f"{what} '{file}', line {number} cannot be read: {reason_of(fault)}.") from None
+            if len(line) > MAX_BYTES:
+                raise error(f"{what} '{file}', line {number} is longer than {MAX_BYTES >> 20} MB.")
+            if not line:
+                return
+            if line.strip():
+                yield number, line
 
 
 def parse_json(

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from sim.gl import mujoco
 from sim.houses.labels import VOID, Labels, collidable_geoms, names_of_geom, rendered_geoms
+from sim.houses.taxonomies import category_of_ending, words_of
 from sim.interface import MPCAT40
 
 WORDS: Mapping[str, tuple[str, ...]] = {
@@ -25,7 +26,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     "ceiling": ("roof",),
     "chair": ("armchair", "seat"),
     "table": ("desk", "workbench"),
-    "door": ("gate", "doorway"),
+    "door": ("gate", "doorway", "doorframe"),
     "picture": ("painting", "poster", "photo"),
     "cabinet": ("cupboard", "wardrobe", "closet", "sideboard", "locker"),
     "cushion": ("pillow",),
@@ -33,7 +34,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     "bed": ("bunk", "mattress"),
     "curtain": ("drape",),
     "chest_of_drawers": ("dresser", "commode", "drawers", "nightstand"),
-    "plant": ("tree", "bush", "flower", "vase", "flowerpot"),
+    "plant": ("tree", "bush", "flower", "flowerpot"),
     "sink": ("basin", "washbasin"),
     "stairs": ("stair", "stairway", "steps"),
     "toilet": ("wc",),
@@ -54,7 +55,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     "clothes": ("coat", "jacket", "shirt"),
     "objects": (
         "ball", "book", "bottle", "bread", "can", "cereal", "cup", "kettle", "laptop", "lemon", "milk", "mug",
-        "plate", "pot", "basket", "bin", "crate", "bag", "lid", "toy",
+        "plate", "pot", "basket", "bin", "crate", "bag", "lid", "toy", "clock", "vase",
     ),
 }  # fmt: skip
 """For each category, words that name it, in addition to the category's own name."""
@@ -145,14 +146,14 @@ def void_objects(model: mujoco.MjModel, labels: Labels) -> dict[str, list[int]]:
 
 
 def category_of_name(name: str) -> str | None:
-    """Returns the category that a name says, by its last word of `WORDS`; None when there is none."""
-    words = [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", name)]
+    """Returns the category that a name says: by its last word of `WORDS`, or its last AI2-THOR type; None without one."""
+    words = words_of(name)
     joined = "_".join(words)
     for category in MPCAT40:
         if "_" in category and category in joined:
             return category
-    for word in reversed(words):
-        if category := _category_of_word(word):
+    for end in range(len(words), 0, -1):
+        if category := category_of_ending(words[:end]) or _category_of_word(words[end - 1]):
             return category
     return None
 

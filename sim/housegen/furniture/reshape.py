@@ -70,8 +70,35 @@ def may_reshape(item: Item) -> bool:
 def reshaped(item: Item, rng: np.random.Generator, hints: Mapping[str, Any]) -> Item:
     """Returns the item in other proportions; sides that a hint determines keep their length."""
     warp = _draw(item, rng, hints)
+    return _warped(item, warp, tuple(_child(child, warp) for child in item.children))
+
+
+def fitted(item: Item, size_m: tuple[float, float, float]) -> Item:
+    """Returns the item with the sides of its bounding box stretched to `size_m`: depth, width, height in metres.
+
+    Its children are stretched with it, so that a sink still fills its hole. Round parts stay round: where depth and
+    width are stretched by different factors, the size is met to within a few centimetres.
+    """
+    x, y, z = (max(new, 1e-3) / max(old, 1e-3) for new, old in zip(size_m, item.size_m, strict=True))
+    return _scaled(item, x, y, z)
+
+
+def _scaled(item: Item, x: float, y: float, z: float) -> Item:
+    """Returns an item whose depth, width and height are multiplied by factors, with its children."""
+    knots = max(item.size_m[2], 1e-3) * np.array([0.0, 0.3, 0.6, 1.0])
+    warp = Warp(x, y, knots, z * knots, mirrored=False)
+    children = []
+    for child in item.children:
+        along, across = abs(math.cos(child.yaw_rad)), abs(math.sin(child.yaw_rad))
+        own = _scaled(child.item, math.hypot(x * along, y * across), math.hypot(x * across, y * along), z)
+        children.append(dataclasses.replace(_child(child, warp), item=own))
+    return _warped(item, warp, tuple(children))
+
+
+def _warped(item: Item, warp: Warp, children: tuple[Child, ...]) -> Item:
+    """Returns the item with its geoms and surfaces mapped, and the children that it is given."""
     geoms = tuple(_geom(geom, warp) for geom in item.geoms)
-    children = tuple(_child(child, warp) for child in item.children)
+    hits = tuple(_geom(geom, warp) for geom in item.collision_geoms)
     low, high = bounds(geoms, children)
     shift = -0.5 * (low + high)
     shift[0] = 0.0 if item.mount == "wall" else shift[0]
@@ -81,6 +108,7 @@ def reshaped(item: Item, rng: np.random.Generator, hints: Mapping[str, Any]) -> 
         item, size_m=size, geoms=tuple(dataclasses.replace(g, pos_m=_moved(g.pos_m, shift)) for g in geoms),
         children=tuple(dataclasses.replace(c, pos_m=_moved(c.pos_m, shift)) for c in children),
         surfaces=tuple(_surface(s, warp, shift) for s in item.surfaces),
+        collision_geoms=tuple(dataclasses.replace(g, pos_m=_moved(g.pos_m, shift)) for g in hits),
     )  # fmt: skip
 
 
@@ -165,6 +193,8 @@ def _mesh_geom(
     faces = mesh.faces[:, ::-1] if warp.mirrored and len(mesh.faces) else mesh.faces
     kind = mesh.name.rsplit("_", 1)[0]
     made = named_mesh(kind, vertices, faces if len(faces) else ())
+    if mesh.texture_uv is not None:
+        made = dataclasses.replace(made, name=f"{made.name}_{mesh.name.rsplit('_', 1)[1]}", texture_uv=mesh.texture_uv)
     return dataclasses.replace(
         geom, mesh=made, euler_rad=(0.0, 0.0, 0.0), pos_m=(float(at[0]), float(at[1]), float(at[2]))
     )

@@ -33,7 +33,7 @@ class OpeningItems:
 
     def frame(self, hole: Opening) -> Item:
         """Returns the door frame of an opening, in the frame of `place_in_wall`."""
-        key = ("frame", _width(hole), hole.kind)
+        key = ("frame", _width(hole), hole.top_m, hole.kind)
         return self._once(key, lambda: _frame(_width(hole), hole.top_m, hole.kind == "entry", self._looks))
 
     def leaf(self, width_m: float, high_m: float, gap_m: float) -> Item:
@@ -77,9 +77,14 @@ def place_door(hole: Opening, items: OpeningItems) -> list[PlacedItem]:
         x, y = (lo, hole.line_m) if level else (hole.line_m, lo)  # at the end of the floor: nothing is visible below it
         placed.append(PlacedItem(leaf, x, y, 0.0, 0.0 if level else math.pi / 2))
     elif hole.leaf is not None:
-        leaf = items.leaf(round(hi - lo - 0.004, 4), hole.top_m - JAMB_M - 0.006, 0.01)
-        placed.append(_ajar(leaf, hole))
+        placed.append(place_leaf(hole, items))
     return placed
+
+
+def place_leaf(hole: Opening, items: OpeningItems) -> PlacedItem:
+    """Returns the leaf of an inner door, `hole.leaf`, at the angle to which it is open."""
+    lo, hi = hole.clear_span()
+    return _ajar(items.leaf(round(hi - lo - 0.004, 4), hole.top_m - JAMB_M - 0.006, 0.01), hole)
 
 
 def _frame(width_m: float, top: float, outside: bool, looks: StructureLooks) -> Item:

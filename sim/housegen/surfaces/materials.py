@@ -266,6 +266,11 @@ def floor_look(room_kind: str, rng: np.random.Generator, pool: Pool) -> Look:
     return _draw(_FLOORS[kinds[int(rng.integers(len(kinds)))]], rng, pool)
 
 
+def floor_look_of(kind: str, rng: np.random.Generator, pool: Pool) -> Look:
+    """Returns the look of a floor of boards, tiles, wet (small tiles), carpet, stone or rubber."""
+    return _draw(_FLOORS[kind], rng, pool)
+
+
 def ceiling_look(rng: np.random.Generator, pool: Pool) -> Look:
     """Returns the look of a ceiling: light plaster."""
     return _draw(_CEILINGS, rng, pool)
