@@ -20,6 +20,7 @@ ROOMS = (
     ("sim.sensors",),
     ("sim.world",),
     ("sim.housegen",),
+    ("sim.importers",),
     ("sim.task",),
     ("sim.episodes",),
     ("sim.plans",),

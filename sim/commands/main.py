@@ -46,6 +46,7 @@ COMMANDS: Mapping[str, Command] = {
     "traps report": Command("sim.commands.traps.report", "Report which agent escapes from which trap"),
     "label": Command("sim.commands.label", "Propose and check label rules for a scene from elsewhere"),
     "import furniture": Command("sim.commands.importing.furniture", "Import models of furniture for generated houses"),
+    "import procthor": Command("sim.commands.importing.procthor", "Import houses of ProcTHOR"),
     "views": Command("sim.commands.views.generate", "Generate labelled views for training segmentation"),
     "views show": Command("sim.commands.views.show", "Draw a sheet of views"),
     "views unpack": Command("sim.commands.views.unpack", "Unpack views into PNG files"),
