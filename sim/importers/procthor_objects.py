@@ -133,7 +133,7 @@ class ObjectPlacer:
             at = PlacedItem(fit.item, thing.position.x, thing.position.z, thing.position.y - size_m[2] / 2, yaw)
             placed = _on_top(at, parents, taken)
             if placed is None:
-                self._leave_out([thing], "no free top of our furniture near its place")
+                self._leave_out([thing], f"our {below} has no free top near its place")
                 continue
             (self.losses.furniture if fit.is_furniture else self.losses.boxes)[kind] += 1
             self.losses.moved_m = max(self.losses.moved_m, math.hypot(placed.x_m - at.x_m, placed.y_m - at.y_m))

@@ -15,6 +15,8 @@ from sim.housegen.floor_plan.rectangles import SIDES, Interval, Rect
 Point = tuple[float, float]
 TOLERANCE_M = 0.02
 """Coordinates nearer to each other than this become equal."""
+MOST_TRIANGLES, MOST_LINES = 20_000, 200
+"""A floor of more triangles is cut off, and one of more different coordinates along an axis has no rectangles."""
 
 
 @dataclass(frozen=True)
@@ -112,3 +114,24 @@ def _runs(column: NDArray[np.bool_], vs: Sequence[float]) -> list[tuple[float, f
     """Returns the intervals of the successive cells that are True."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], column, [False]])))
     return [(vs[a], vs[b]) for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)]
+
+
+def rectangles_of_triangles(triangles_m: NDArray[np.float64]) -> list[Rect]:
+    """Returns rectangles that cover a floor of triangles (n, 3, 2), the largest first.
+
+    The floor is divided at the coordinates of its corners; cells whose middle is in a triangle belong to it.
+    """
+    triangles_m = triangles_m[:MOST_TRIANGLES]
+    xs, ys = (sorted(set(snapped(triangles_m[..., axis].ravel().tolist()).values())) for axis in (0, 1))
+    if len(xs) < 2 or len(ys) < 2 or max(len(xs), len(ys)) > MOST_LINES:
+        return []
+    x, y = (0.5 * (np.array(values[:-1]) + np.array(values[1:])) for values in (xs, ys))
+    inside = np.zeros((len(x), len(y)), dtype=np.bool_)
+    for a, b, c in triangles_m:
+        signs = [
+            (q[0] - p[0]) * (y[None, :] - p[1]) - (q[1] - p[1]) * (x[:, None] - p[0]) for p, q in ((a, b), (b, c), (c, a))
+        ]
+        least, most = np.minimum.reduce(signs), np.maximum.reduce(signs)
+        inside |= (least >= -1e-9) | (most <= 1e-9)
+    found = [Rect(x0, y0, x1, y1) for x0, x1, y0, y1 in _slabs(inside, xs, ys)]
+    return sorted(found, key=lambda rect: -rect.area_m2)

@@ -1,0 +1,279 @@
+"""Reads houses of MolmoSpaces (https://github.com/allenai/molmospaces): MJCF files with metadata of their objects.
+
+A house is `<name>.xml`, with `<name>_metadata.json`, and meshes next to it; `<name>_ceiling.xml`, where it exists, is
+the same house with ceilings and is used in its place. The metadata names the category of each object by its root body,
+`<word>_<hash>_<count>_<body>_<room>`. Geometry is not interpreted but for the floors of the rooms, which become sites.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from msgspec import Meta, Struct
+from numpy.typing import NDArray
+
+from sim.errors import ConfigError, HouseError
+from sim.gl import mujoco
+from sim.housegen.floor_plan.rectangles import Rect
+from sim.houses.foreign import remove_unsupported
+from sim.houses.house import House
+from sim.houses.labels import read_labels
+from sim.houses.mjcf import read_spec
+from sim.houses.packing import packed
+from sim.houses.proposals import category_of_name, geom_box, void_objects
+from sim.houses.taxonomies import entries
+from sim.importers.rectilinear import rectangles_of_triangles
+from sim.reading import Name, read_json, reason_of
+
+METADATA = "_metadata.json"
+CEILING = "_ceiling"
+MAX_HOUSES = 100_000
+STRUCTURE = {r"^floor$": "floor", r"^room_\d+$": "floor", r"^wall_[\d_]+$": "wall", r"(?i)ceiling": "ceiling"}
+"""Label rules for the names of all houses."""
+CEILING_M = 2.5
+"""Height of rooms without walls."""
+OPEN_RAD = math.pi / 2
+"""Largest angle by which a door is opened."""
+_OBJECT = re.compile(r"(?P<word>.+?)_(?P<hash>[0-9a-f]+)_\d+_(?P<body>\d+)_\d+")
+_ROOM_BODY = re.compile(r"room_\d+")
+_WALL_BODY = re.compile(r"wall_[\d_]+")
+
+
+class _Object(Struct):
+    category: Name
+    room_id: int | str | None = None
+
+
+class _Metadata(Struct):
+    objects: Annotated[dict[str, _Object], Meta(max_length=100_000)]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A house of MolmoSpaces, ready to be written."""
+
+    files: Mapping[str, bytes | str]
+    """Content by name in the folder of the split."""
+    rules: Mapping[str, str]
+    report: Mapping[str, Any]
+
+
+def find_houses(path: Path) -> list[Path]:
+    """Returns the house files of a folder that have metadata, or the one file that is given, sorted.
+
+    Raises:
+        ConfigError: there are none.
+    """
+    if path.suffix == ".xml":
+        found = [path]
+    else:
+        names = sorted(path.glob(f"*{METADATA}"))[:MAX_HOUSES]
+        stems = [file.name.removesuffix(METADATA) for file in names]
+        found = [path / f"{stem}.xml" for stem in stems if (path / f"{stem}.xml").is_file()]
+    if not found:
+        raise ConfigError(f"'{path}' has no house of MolmoSpaces: <name>.xml with <name>{METADATA}.")
+    return [_with_ceiling(file) for file in found]
+
+
+def name_of(file: Path) -> str:
+    """Returns the name of the house of a file."""
+    return file.stem.removesuffix(CEILING)
+
+
+def metadata_file(file: Path) -> Path:
+    """Returns the path of the metadata of a house file."""
+    return file.with_name(f"{name_of(file)}{METADATA}")
+
+
+def import_scene(file: Path, *, doors: str, root: Path | None = None) -> Scene:
+    """Returns the files of a house for a split, its label rules and its report.
+
+    Args:
+        file: the house file.
+        doors: "open": hinged doors are turned to the end of their range, at most to a right angle; "as-is".
+        root: another folder whose files the house may use.
+
+    Raises:
+        HouseError: the house or its metadata are missing or broken; the message names the file.
+    """
+    objects = read_json(metadata_file(file), _Metadata, what="Metadata", error=HouseError).objects
+    name, changes = name_of(file), Counter[str]()
+    try:
+        spec = read_spec(file, root=root)
+        categories = _categories(objects, changes)
+        if doors == "open":
+            _open_doors(spec, {name for name, category in categories.items() if category == "door"}, changes)
+        changes.update(remove_unsupported(spec))
+        rules = {**rules_of(categories), **STRUCTURE}
+        model = _compiled(spec)
+        raised_m = _floor_height(model)
+        if raised_m:
+            _lower(spec, raised_m)
+            changes[f"The floor was at z = {raised_m:.3f} m; the house was moved to z = 0."] += 1
+            model = _compiled(spec)
+        rooms = _add_rooms(spec, model)
+        rules |= _rules_of_others(model, rules, changes)
+        house = House(name, spec, rules, file)
+        files = packed(house, file)
+    except HouseError as error:
+        raise HouseError(f"House '{file}': {error}") from None
+    found = Counter(each.category for each in objects.values())
+    report = {
+        "house": name, "source": str(file), "rooms": len(rooms), "area_m2": round(sum(rooms), 2),
+        "furniture": dict(found.most_common()), "boxes": {}, "left_out": {}, "changes": dict(changes), "moved_m": 0.0,
+    }  # fmt: skip
+    return Scene(files, rules, report)
+
+
+def rules_of(categories: Mapping[str, str]) -> dict[str, str]:
+    """Returns label rules for objects: one for all houses where the name says the type, else one for the name.
+
+    Args:
+        categories: mpcat40 category by name of the root body.
+    """
+    rules: dict[str, str] = {}
+    by_word = {kind.lower(): entry.category for kind, entry in entries("ai2thor").items()}
+    for name, category in categories.items():
+        match = _OBJECT.fullmatch(name)
+        if match is not None and by_word.get(match["word"]) == category:
+            rules[rf"^{re.escape(match['word'])}_[0-9a-f]+_\d+_{match['body']}_\d+$"] = category
+        else:
+            rules[f"^{re.escape(name)}$"] = category
+    return dict(sorted(rules.items(), key=lambda rule: r"[0-9a-f]+" in rule[0]))
+
+
+def _categories(objects: Mapping[str, _Object], changes: Counter[str]) -> dict[str, str]:
+    """Returns the mpcat40 category of each object."""
+    categories = {}
+    for name, each in objects.items():
+        entry = entries("ai2thor").get(each.category)
+        category = entry.category if entry is not None else category_of_name(each.category)
+        if category is None:
+            category = "objects"
+            changes[f"The type {each.category} is not in the table; it became objects."] += 1
+        categories[name] = category
+    return categories
+
+
+def _open_doors(spec: mujoco.MjSpec, doors: set[str], changes: Counter[str]) -> None:
+    """Turns the leaves of doors about their hinges."""
+    for joint in spec.joints:
+        if joint.type != mujoco.mjtJoint.mjJNT_HINGE or not doors & set(_names_above(joint.parent)):
+            continue
+        angles = np.asarray(joint.range, dtype=np.float64)
+        if spec.compiler.degree:
+            angles = np.radians(angles)
+        angle = float(np.clip(angles[np.argmax(np.abs(angles))], -OPEN_RAD, OPEN_RAD))
+        axis = np.asarray(joint.axis, dtype=np.float64)
+        if abs(angle) < 0.1 or not np.linalg.norm(axis):
+            changes["A door has a hinge without a range; it stays closed."] += 1
+            continue
+        _turn(joint.parent, np.asarray(joint.pos), axis / np.linalg.norm(axis), angle)
+        changes["A hinged door was opened."] += 1
+
+
+def _names_above(body: mujoco.MjsBody) -> Iterator[str]:
+    """Yields the names of a body and of those that it is in."""
+    while body is not None and body.name != "world":
+        yield body.name
+        body = body.parent
+
+
+def _turn(body: mujoco.MjsBody, pivot: NDArray[np.float64], axis: NDArray[np.float64], angle: float) -> None:
+    """Turns a body about an axis through a point, both in its own frame."""
+    turn, turned, moved, total = np.empty(4), np.empty(3), np.empty(3), np.empty(4)
+    mujoco.mju_axisAngle2Quat(turn, axis, angle)
+    own = np.asarray(body.quat, dtype=np.float64)
+    mujoco.mju_rotVecQuat(turned, pivot.astype(np.float64), turn)
+    mujoco.mju_rotVecQuat(moved, pivot - turned, own)
+    mujoco.mju_mulQuat(total, own, turn)
+    body.pos, body.quat = (np.asarray(body.pos) + moved).tolist(), total.tolist()
+
+
+def _floor_height(model: mujoco.MjModel) -> float:
+    """Returns the height of the floor that collides, a plane or a box named `floor`; 0 without one, or within 1 mm."""
+    geom = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, "floor")
+    if geom < 0:
+        return 0.0
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    plane = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE
+    top = float(data.geom_xpos[geom, 2]) if plane else float(geom_box(model, data, geom)[1][2])
+    return top if abs(top) > 1e-3 else 0.0
+
+
+def _lower(spec: mujoco.MjSpec, by_m: float) -> None:
+    """Moves everything in the world down."""
+    world = spec.worldbody
+    for element in (*world.bodies, *world.geoms, *world.sites, *world.lights, *world.frames):
+        if getattr(element, "frame", None) is None:
+            element.pos = [element.pos[0], element.pos[1], element.pos[2] - by_m]
+
+
+def _add_rooms(spec: mujoco.MjSpec, model: mujoco.MjModel) -> list[float]:
+    """Adds the sites of the rooms, from the meshes of their floors; returns the area of each in m2."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    walls = [geom for geom in range(model.ngeom) if _WALL_BODY.fullmatch(model.body(model.geom_bodyid[geom]).name)]
+    top_m = max((float(geom_box(model, data, geom)[1][2]) for geom in walls), default=CEILING_M)
+    areas = []
+    for body in range(1, model.nbody):
+        if not _ROOM_BODY.fullmatch(model.body(body).name):
+            continue
+        geoms = np.flatnonzero((model.geom_bodyid == body) & (model.geom_type == mujoco.mjtGeom.mjGEOM_MESH))
+        rects = rectangles_of_triangles(np.vstack([_triangles(model, data, int(geom)) for geom in geoms])) if len(
+            geoms
+        ) else []
+        for part, rect in enumerate(rects):
+            name = f"room_room_{len(areas):02d}" + (f"_{part}" if part else "")
+            _add_site(spec, name, rect, top_m)
+        if rects:
+            areas.append(sum(rect.area_m2 for rect in rects))
+    return areas
+
+
+def _add_site(spec: mujoco.MjSpec, name: str, rect: Rect, top_m: float) -> None:
+    x, y = rect.centre
+    spec.worldbody.add_site(
+        name=name, type=mujoco.mjtGeom.mjGEOM_BOX, group=4, pos=[x, y, top_m / 2],
+        size=[rect.width_m / 2, rect.depth_m / 2, top_m / 2],
+    )  # fmt: skip
+
+
+def _triangles(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> NDArray[np.float64]:
+    """Returns the corners (n, 3, 2) in plan of the triangles of a mesh, metres."""
+    mesh = model.geom_dataid[geom]
+    first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
+    points = model.mesh_vert[first : first + count] @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
+    first, count = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
+    return points[model.mesh_face[first : first + count]][:, :, :2]
+
+
+def _rules_of_others(model: mujoco.MjModel, rules: Mapping[str, str], changes: Counter[str]) -> dict[str, str]:
+    """Returns rules for visible objects that the metadata does not name, from the words in their names."""
+    labels, found = read_labels(model, rules=rules, ignore_prefix=""), {}
+    for name in void_objects(model, labels):
+        category = category_of_name(name)
+        if category is not None:
+            found[f"^{re.escape(name)}$"] = category
+        changes[f"An object is not in the metadata; its name says {category or 'nothing'}."] += 1
+    return found
+
+
+def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    try:
+        return spec.compile()
+    except (ValueError, OSError, MemoryError) as error:
+        raise HouseError(f"it is not an MJCF file that MuJoCo can read: {reason_of(error)}") from None
+
+
+def _with_ceiling(file: Path) -> Path:
+    other = file.with_name(f"{file.stem}{CEILING}.xml")
+    return other if other.is_file() else file
