@@ -245,9 +245,7 @@ def read_lines(file: Path, kind: type, *, what: str, error: type[ObjectNavError]
     return Lines(values, len(whole), torn)
 
 
-def json_lines(
-    file: Path, *, what: str, error: type[ObjectNavError] = ConfigError
-) -> Iterator[tuple[int, bytes]]:
+def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> Iterator[tuple[int, bytes]]:
     """Yields the numbers (from 1) and the texts of the lines of a file, which may be gzipped; empty lines are left out.
 
     The file is read line by line, so that it may be of any size; a line has at most `MAX_BYTES`.

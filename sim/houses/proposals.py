@@ -146,7 +146,7 @@ def void_objects(model: mujoco.MjModel, labels: Labels) -> dict[str, list[int]]:
 
 
 def category_of_name(name: str) -> str | None:
-    """Returns the category that a name says: by its last word of `WORDS`, or its last AI2-THOR type; None without one."""
+    """Returns the category that a name says by its last word of `WORDS` or its last AI2-THOR type, or None."""
     words = words_of(name)
     joined = "_".join(words)
     for category in MPCAT40:

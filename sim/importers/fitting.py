@@ -117,4 +117,6 @@ def tinted(look: Look, rgb: tuple[float, float, float]) -> Look:
 
 
 def _stretch(item: Item, size_m: tuple[float, float, float]) -> float:
-    return max(math.exp(abs(math.log(max(new, 1e-3) / max(old, 1e-3)))) for new, old in zip(size_m, item.size_m, strict=True))
+    return max(
+        math.exp(abs(math.log(max(new, 1e-3) / max(old, 1e-3)))) for new, old in zip(size_m, item.size_m, strict=True)
+    )

@@ -228,9 +228,11 @@ def _add_rooms(spec: mujoco.MjSpec, model: mujoco.MjModel) -> list[float]:
         if not _ROOM_BODY.fullmatch(model.body(body).name):
             continue
         geoms = np.flatnonzero((model.geom_bodyid == body) & (model.geom_type == mujoco.mjtGeom.mjGEOM_MESH))
-        rects = rectangles_of_triangles(np.vstack([_triangles(model, data, int(geom)) for geom in geoms])) if len(
-            geoms
-        ) else []
+        rects = (
+            rectangles_of_triangles(np.vstack([_triangles(model, data, int(geom)) for geom in geoms]))
+            if len(geoms)
+            else []
+        )
         for part, rect in enumerate(rects):
             name = f"room_room_{len(areas):02d}" + (f"_{part}" if part else "")
             _add_site(spec, name, rect, top_m)

@@ -165,9 +165,7 @@ def _doors(
     return openings, leaves
 
 
-def _leaf_openings(
-    door: DoorHole, openness: float, layout: Layout, standing: Sequence[Standing]
-) -> list[Opening]:
+def _leaf_openings(door: DoorHole, openness: float, layout: Layout, standing: Sequence[Standing]) -> list[Opening]:
     """Returns an opening for each leaf of a door, which swings to the side where it meets least furniture."""
     hole = door.opening
     lo, hi = hole.clear_span()

@@ -243,9 +243,7 @@ def _arms(
     ]
 
 
-def _on_top(
-    at: PlacedItem, parents: Sequence[PlacedItem], taken: Sequence[tuple[float, Rect]]
-) -> PlacedItem | None:
+def _on_top(at: PlacedItem, parents: Sequence[PlacedItem], taken: Sequence[tuple[float, Rect]]) -> PlacedItem | None:
     """Returns an item on the top of one of the parents that is nearest to its place and has room; None without one."""
     found: list[tuple[float, PlacedItem]] = []
     for parent in parents:
@@ -286,7 +284,9 @@ def _clamped(
     box = footprint(0.0, 0.0, at.item.size_m[0], at.item.size_m[1], at.yaw_rad - yaw)
     c, s = math.cos(yaw), math.sin(yaw)
     dx, dy = at.x_m - x0, at.y_m - y0
-    spare = [max(half - side / 2, 0.0) for half, side in zip(surface.half_size_m, (box.width_m, box.depth_m), strict=True)]
+    spare = [
+        max(half - side / 2, 0.0) for half, side in zip(surface.half_size_m, (box.width_m, box.depth_m), strict=True)
+    ]
     u = float(np.clip(c * dx + s * dy, -spare[0], spare[0]))
     v = float(np.clip(-s * dx + c * dy, -spare[1], spare[1]))
     return replace(at, x_m=x0 + c * u - s * v, y_m=y0 + s * u + c * v)

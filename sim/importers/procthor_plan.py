@@ -104,9 +104,7 @@ class _Grid:
         return self.at(first.x, first.z), self.at(second.x, second.z)
 
 
-def _rooms(
-    house: SourceHouse, grid: _Grid, holes: Sequence[Stretch], where: str
-) -> tuple[list[Room], list[int]]:
+def _rooms(house: SourceHouse, grid: _Grid, holes: Sequence[Stretch], where: str) -> tuple[list[Room], list[int]]:
     """Returns the rectangles of all rooms, and the index of the room of each.
 
     Raises:
@@ -145,9 +143,7 @@ def _between_parts(plan: FloorPlan, room_of: Sequence[int]) -> Iterator[Opening]
                 yield from _wide_open(a, b, shared[0], first.rect, shared[1])
 
 
-def _missing_walls(
-    house: SourceHouse, plan: FloorPlan, room_of: Sequence[int], grid: _Grid
-) -> Iterator[Opening]:
+def _missing_walls(house: SourceHouse, plan: FloorPlan, room_of: Sequence[int], grid: _Grid) -> Iterator[Opening]:
     """Yields the openings where the source has an empty wall between two rooms."""
     rooms = {room.id: index for index, room in enumerate(house.rooms)}
     for wall in house.walls:

@@ -129,7 +129,8 @@ def rectangles_of_triangles(triangles_m: NDArray[np.float64]) -> list[Rect]:
     inside = np.zeros((len(x), len(y)), dtype=np.bool_)
     for a, b, c in triangles_m:
         signs = [
-            (q[0] - p[0]) * (y[None, :] - p[1]) - (q[1] - p[1]) * (x[:, None] - p[0]) for p, q in ((a, b), (b, c), (c, a))
+            (q[0] - p[0]) * (y[None, :] - p[1]) - (q[1] - p[1]) * (x[:, None] - p[0])
+            for p, q in ((a, b), (b, c), (c, a))
         ]
         least, most = np.minimum.reduce(signs), np.maximum.reduce(signs)
         inside |= (least >= -1e-9) | (most <= 1e-9)

@@ -571,6 +571,14 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         " --explorers corners poni:goal=wrong",
     ),
     "stubborn import furniture --source my_models --out runs/models": _MODELS,
+    "stubborn import procthor train.jsonl.gz --out runs/procthor": (
+        _FOREIGN.replace("foreign", "procthor") + 'write_small_house(Path("{tmp}/source"))\'',
+        "stubborn import procthor {tmp}/source/houses.jsonl.gz --out {tmp}/houses",
+    ),
+    "stubborn import molmospaces scenes --out runs/molmospaces": (
+        _FOREIGN.replace("foreign", "molmospaces") + 'write_scene(Path("{tmp}/scenes"))\'',
+        "stubborn import molmospaces {tmp}/scenes --out {tmp}/houses",
+    ),
     "stubborn houses check --house runs/mine/houses/house_00000.xml": (
         _HOUSES,
         "stubborn houses check --house {tmp}/houses/house_00000.xml --views 2",
@@ -609,6 +617,8 @@ STAND_INS = (
     "secret.txt",
     "my_traps",
     "my_models",
+    "train.jsonl.gz",
+    "scenes",
     "/usr/share/sweethome3d/furniture",
     "my_house.xml",
     "my_settings.toml",

@@ -118,7 +118,9 @@ def _run(
     """Yields each house with its key and its result; houses that are there already are not made again."""
     todo = iter(works)
     while chunk := list(itertools.islice(todo, CHUNK)):
-        keys = [hashlib.sha256(f"{VERSION} {options} {work.name} ".encode() + work.content).hexdigest() for work in chunk]
+        keys = [
+            hashlib.sha256(f"{VERSION} {options} {work.name} ".encode() + work.content).hexdigest() for work in chunk
+        ]
         there = [
             before.get(work.name, {}).get("key") == key and (out / f"{work.name}.xml").is_file()
             for work, key in zip(chunk, keys, strict=True)
