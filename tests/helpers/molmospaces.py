@@ -62,7 +62,8 @@ def write_scene(folder: Path, *, name: str = "train_1", objects: Any = None) -> 
     (folder / f"{name}.xml").write_text(
         '<mujoco><compiler angle="radian"/><default>'
         '<default class="seen"><geom contype="0" conaffinity="0"/></default>'
-        f'<default class="hit"><geom contype="8" conaffinity="15" group="4"/></default></default><asset>{meshes}</asset>'
+        '<default class="hit"><geom contype="8" conaffinity="15" group="4"/></default></default>'
+        f"<asset>{meshes}</asset>"
         f'<worldbody><geom name="floor" class="hit" type="plane" size="0 0 .01" pos="0 0 {FLOOR_M}"/>'
         '<light pos="1 1 2"/>'
         f"{rooms}{''.join(bodies)}</worldbody></mujoco>"

@@ -167,7 +167,7 @@ def _print_result(console: Console, reports: Sequence[Mapping[str, Any]], failed
     rooms, area_m2 = (sum(report[name] for report in reports) for name in ("rooms", "area_m2"))
     lines = [f"{len(reports)} houses with {rooms} rooms, {area_m2:.0f} m2, in {out}; {failed} could not be imported."]
     for title, counts in (
-        ("furniture", total.furniture), ("labelled boxes", total.boxes), ("left out", total.left_out),
+        ("furniture" if total.boxes else "objects with a category", total.furniture), ("labelled boxes", total.boxes), ("left out", total.left_out),
     ):  # fmt: skip
         most = ", ".join(f"{name} {count}" for name, count in counts.most_common(MOST_TYPES))
         more = f" and {len(counts) - MOST_TYPES} more" if len(counts) > MOST_TYPES else ""
