@@ -18,11 +18,13 @@ from numpy.typing import NDArray
 from sim.errors import HouseError
 from sim.housegen.floor_plan.rectangles import SIDES, Rect, Side, footprint
 from sim.housegen.furniture.item import Item, Surface
+from sim.housegen.furniture.reshape import fitted
+from sim.housegen.furniture.transforms import geom_bounds
 from sim.housegen.mjcf.placed import PlacedItem
 from sim.housegen.structure.openings import HALF_WALL_M
 from sim.houses.proposals import category_of_name
 from sim.houses.taxonomies import Entry, entries
-from sim.importers.fitting import Fitter, Place
+from sim.importers.fitting import Fitted, Fitter, Place
 from sim.importers.losses import Losses
 from sim.importers.procthor_files import Asset, Thing
 from sim.importers.procthor_plan import Layout
@@ -35,6 +37,9 @@ MOST_INTO_WALL_M = 0.2
 """What reaches further into a wall is not moved out of it."""
 SURFACE_REACH_M = 0.45
 """Largest difference in height from the place of an object in the source to a top of our furniture."""
+GEOM_COST_M, LEAST_REST = 0.03, 0.5
+"""An object may also rest on a part of our furniture, at the place that it has in the source: one that is at least half
+as large in plan. A top that is meant for objects is taken instead if it differs by so much less."""
 ARM_M = 0.61
 """Depth of the arms of L- and C-shaped counters: two feet, as the names of the assets say."""
 CLOSED = frozenset(("Fridge", "Microwave", "Safe", "Cabinet", "Drawer", "GarbageCan", "Box"))
@@ -102,8 +107,11 @@ class ObjectPlacer:
         """Yields the items of an object that is in no other one: one, but for counters with arms."""
         x, y = thing.position.x, thing.position.z
         arms = _arms(thing.assetId, size_m, lambda side: self._wall_gap(x, y, size_m, yaw, side))
-        for number, (name, part_m, (along, across), turn) in enumerate(arms):
-            fit = self.fitter.fit(f"{thing.assetId}{name}", entry, part_m, place)
+        first = self.fitter.fit(thing.assetId, entry, arms[0][0], place)
+        for number, (part_m, (along, across), turn) in enumerate(arms):
+            fit = self.fitter.fit(thing.assetId, entry, part_m, place)
+            if number and first.is_furniture:
+                fit = Fitted(fitted(first.item, part_m), is_furniture=True)  # the arms look the same
             at = PlacedItem(fit.item, x, y, bottom_m, yaw)
             px, py = at.to_world(along, across)
             if fit.item.mount == "wall":
@@ -223,8 +231,8 @@ class ObjectPlacer:
 
 def _arms(
     asset: str, size_m: tuple[float, float, float], gap_m: Callable[[float], float]
-) -> list[tuple[str, tuple[float, float, float], tuple[float, float], float]]:
-    """Returns the parts of an object: name, size, offset of its middle (forward, left) and turn of its front.
+) -> list[tuple[tuple[float, float, float], tuple[float, float], float]]:
+    """Returns the parts of an object: size, offset of its middle (forward, left) and turn of its front.
 
     All but counters have one. An L has an arm along its back and one on the side that is nearer to a wall; a C has one
     on both sides.
@@ -232,14 +240,13 @@ def _arms(
     depth, width, height = size_m
     kind = next((kind for kind in ("L", "C") if f"ountertop_{kind}_" in asset), "")
     if not kind or min(depth, width) < 1.5 * ARM_M:
-        return [("", size_m, (0.0, 0.0), 0.0)]
-    back = ("_back", (ARM_M, width, height), ((ARM_M - depth) / 2, 0.0), 0.0)
+        return [(size_m, (0.0, 0.0), 0.0)]
+    back = ((ARM_M, width, height), ((ARM_M - depth) / 2, 0.0), 0.0)
     left, right = (gap_m(side) for side in (1.0, -1.0))
     sides = (1.0, -1.0) if kind == "C" else (1.0,) if left < right else (-1.0,)
     long_m = depth - ARM_M
     return [back] + [
-        ("_side", (ARM_M, long_m, height), (ARM_M / 2, side * (width - ARM_M) / 2), -side * math.pi / 2)
-        for side in sides
+        ((ARM_M, long_m, height), (ARM_M / 2, side * (width - ARM_M) / 2), -side * math.pi / 2) for side in sides
     ]
 
 
@@ -254,12 +261,27 @@ def _on_top(at: PlacedItem, parents: Sequence[PlacedItem], taken: Sequence[tuple
             moved = _clamped(at, parent, surface, (ox, oy), turn)
             cost = abs(height - at.z_m) + 2.0 * math.hypot(moved.x_m - at.x_m, moved.y_m - at.y_m)
             found.append((cost, replace(moved, z_m=height + 0.001)))
+        for height in _heights_below(parent, at):
+            if abs(height - at.z_m) <= SURFACE_REACH_M:
+                found.append((abs(height - at.z_m) + GEOM_COST_M, replace(at, z_m=height + 0.001)))
     for cost, placed in sorted(found, key=lambda each: each[0]):
         box = _footprint(placed)
         free = not any(abs(z - placed.z_m) < 0.05 and other.overlaps(box, 0.01) for z, other in taken)
         if free and cost < 2.0 * SURFACE_REACH_M:
             return placed
     return None
+
+
+def _heights_below(parent: PlacedItem, at: PlacedItem) -> Iterator[float]:
+    """Yields the heights of the parts of an item on which another one could rest without being moved in plan."""
+    c, s = math.cos(parent.yaw_rad), math.sin(parent.yaw_rad)
+    dx, dy = at.x_m - parent.x_m, at.y_m - parent.y_m
+    x, y = c * dx + s * dy, -s * dx + c * dy
+    least_m2 = LEAST_REST * at.item.size_m[0] * at.item.size_m[1]
+    for geom in parent.item.geoms:
+        (x0, y0, _), (x1, y1, z) = (corner.tolist() for corner in geom_bounds(geom))
+        if x0 <= x <= x1 and y0 <= y <= y1 and (x1 - x0) * (y1 - y0) >= least_m2:
+            yield parent.z_m + z
 
 
 def _surfaces(item: Item) -> Iterator[tuple[Surface, tuple[float, float, float], float]]:
