@@ -158,7 +158,9 @@ def _write(
     if rules:
         file = labels_of(out)
         old = read_json(file, dict[str, str], what="Label rules") if file is not None else {}
-        write_atomically(out / LABELS_FILE, json.dumps({**rules, **old}, indent=1, ensure_ascii=False) + "\n")
+        # Rules for one name come before those for all names with other numbers.
+        both = dict(sorted({**old, **rules}.items(), key=lambda rule: r"\d" in rule[0]))
+        write_atomically(out / LABELS_FILE, json.dumps(both, indent=1, ensure_ascii=False) + "\n")
 
 
 def _print_result(console: Console, reports: Sequence[Mapping[str, Any]], failed: int, out: Path) -> None:
@@ -166,9 +168,8 @@ def _print_result(console: Console, reports: Sequence[Mapping[str, Any]], failed
     total = added(reports)
     rooms, area_m2 = (sum(report[name] for report in reports) for name in ("rooms", "area_m2"))
     lines = [f"{len(reports)} houses with {rooms} rooms, {area_m2:.0f} m2, in {out}; {failed} could not be imported."]
-    for title, counts in (
-        ("furniture" if total.boxes else "objects with a category", total.furniture), ("labelled boxes", total.boxes), ("left out", total.left_out),
-    ):  # fmt: skip
+    found = "furniture" if total.boxes else "objects with a category"
+    for title, counts in ((found, total.furniture), ("labelled boxes", total.boxes), ("left out", total.left_out)):
         most = ", ".join(f"{name} {count}" for name, count in counts.most_common(MOST_TYPES))
         more = f" and {len(counts) - MOST_TYPES} more" if len(counts) > MOST_TYPES else ""
         if counts:
