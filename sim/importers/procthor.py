@@ -7,7 +7,7 @@ furniture of the same category in the size of its asset, or a labelled box (`sim
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from sim.gl import mujoco
 from sim.housegen.floor_plan.plan import FloorPlan
+from sim.housegen.floor_plan.rectangles import Rect
 from sim.housegen.furniture.item import Look, Pool
 from sim.housegen.mjcf.builder import HouseBuilder
 from sim.housegen.mjcf.placed import PlacedItem, RoomBox
@@ -37,6 +38,8 @@ LAMP_CEILING_M = 2.8
 LEAST_LAMP_M2 = 5.0
 """Smaller rectangles of a room get no lamp of their own."""
 OPEN_RAD = math.pi / 2
+PASSAGE_M = 0.75
+"""Length of the floor in front of a door that no other leaf should cover."""
 FLOORS = {
     "carpet": ("carpet", "rug", "fabric"), "tiles": ("tile", "brick", "concrete", "grey", "ceramic"),
     "stone": ("marble", "stone", "granite"), "boards": ("wood", "parquet", "plank", "bedroomfloor", "floor"),
@@ -152,7 +155,9 @@ def _doors(
     layout: Layout, standing: Sequence[Standing], doors: Doors, items: OpeningItems, losses: Losses
 ) -> tuple[list[Opening], list[PlacedItem]]:
     """Returns the openings of the doors, and the leaves of those that have any, which are not part of the openings."""
-    openings, leaves = [], []
+    openings: list[Opening] = []
+    leaves: list[PlacedItem] = []
+    swept: list[Rect] = []
     for door in layout.doors:
         openings.append(door.opening)
         if door.opening.kind == "entry" or not door.leaves:
@@ -161,12 +166,33 @@ def _doors(
         if doors == "open" and openness < 1.0:
             losses.changes["A door that was not fully open was opened."] += 1
             openness = 1.0
-        leaves += [place_leaf(half, items) for half in _leaf_openings(door, openness, layout, standing)]
+        halves = _leaf_openings(door, openness, layout, standing, [*swept, *_passages(layout, door)])
+        swept += [leaf_keep_out(half, layout.plan.rooms[half.leaf.room].rect) for half in halves if half.leaf]
+        leaves += [place_leaf(half, items) for half in halves]
     return openings, leaves
 
 
-def _leaf_openings(door: DoorHole, openness: float, layout: Layout, standing: Sequence[Standing]) -> list[Opening]:
-    """Returns an opening for each leaf of a door, which swings to the side where it meets least furniture."""
+def _passages(layout: Layout, door: DoorHole) -> Iterator[Rect]:
+    """Yields the floor in front of all other doors, on both sides."""
+    for other in layout.doors:
+        for room in (other.opening.a, other.opening.b) if other is not door else ():
+            if room is not None:
+                rect = layout.plan.rooms[room].rect
+                yield rect.strip(other.opening.side_of(room), other.opening.span, PASSAGE_M)
+
+
+def _leaf_openings(
+    door: DoorHole, openness: float, layout: Layout, standing: Sequence[Standing], keep_free: Sequence[Rect]
+) -> list[Opening]:
+    """Returns an opening for each leaf of a door, which swings to the side where it meets least furniture.
+
+    Args:
+        door: a door with leaves.
+        openness: 0 is closed, 1 a right angle.
+        layout: of the house.
+        standing: all objects.
+        keep_free: places that count more than furniture: other leaves, and the floor in front of other doors.
+    """
     hole = door.opening
     lo, hi = hole.clear_span()
     middle = 0.5 * (lo + hi)
@@ -186,7 +212,8 @@ def _leaf_openings(door: DoorHole, openness: float, layout: Layout, standing: Se
             side = hole.side_of(room)
             short = layout.plan.rooms[room].rect
             depth = short.depth_m if side in ("north", "south") else short.width_m
-            choices.append((met + 10 * (depth < hi - lo + HALF_WALL_M), len(choices), made))
+            met += 3 * sum(zone.overlaps(each) for zone in zones for each in keep_free)
+            choices.append((met + 10 * (depth < (hi - lo) / door.leaves + HALF_WALL_M), len(choices), made))
     return min(choices, key=lambda choice: choice[:2])[2]
 
 
