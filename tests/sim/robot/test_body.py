@@ -72,6 +72,6 @@ def test_all_the_weight_is_on_the_wheels_at_rest(base):
     world = World(open_floor(), robot=RobotConfig(base=base))
     data = world.data
     mujoco.mj_step(world.model, data, nstep=250)
-    tyres = {world.model.geom(f"robot/{name}_tyre").id for name in ("left", "right")}
+    tyres = {world.model.geom(f"stubborn_robot/{name}_tyre").id for name in ("left", "right")}
     assert data.ncon == 2
     assert all(not tyres.isdisjoint(pair) for pair in data.contact.geom.tolist())
