@@ -352,6 +352,14 @@ def views_with(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
     return counts / max(total, 1)
 
 
+def stored_views(shards: Sequence[Path]) -> int | None:
+    """Returns the number of views of some shards, from the JSON notes next to them; None if one has no note."""
+    notes = [shard.with_suffix(".json") for shard in shards]
+    if not all(note.is_file() for note in notes):
+        return None
+    return sum(read_json(note, _ViewNote, what="Note of a shard").views for note in notes)
+
+
 @dataclass(frozen=True)
 class RareObjectRepeats:
     """A function that returns how often a view is used: views that show rare goal categories are used more often.
