@@ -246,3 +246,12 @@ def test_views_of_different_sizes_are_refused(tmp_path: Path) -> None:
             shard.with_suffix(".json").write_text(json.dumps(note))
     with pytest.raises(ConfigError, match=r"train', '.*val' were shrunk by different factors: \[1, 2\]"):
         main(options(tmp_path))
+
+
+def test_too_few_views_are_refused_before_anything_is_written(tmp_path: Path) -> None:
+    write_views(tmp_path / "train", 3)
+    write_views(tmp_path / "val", 2)
+    (tmp_path / "train" / "views-000000.json").write_text('{"views": 3, "pixels": {}}')
+    with pytest.raises(ConfigError, match="fewer views than one batch of 4"):
+        main(options(tmp_path, batch=4))
+    assert not (tmp_path / "out").exists()
