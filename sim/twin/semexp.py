@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,8 +16,9 @@ from sim.interface import GOAL_CATEGORIES
 from sim.plans.plan import Plan
 from sim.plans.sight import SightConfig
 from sim.twin.env import TwinConfig, TwinEnv, require_reset
-from stubborn.exploration.semexp import SemExpConfig
-from stubborn.exploration.semexp_input import GEOMETRY, PolicyInput, ViewConfig, observe
+from stubborn.exploration.semexp import SemExpConfig, sigmoid
+from stubborn.exploration.semexp_input import CELLS, GEOMETRY, HEADINGS, PolicyInput, observe
+from stubborn.exploration.semexp_net import as_arrays
 
 FAST = TwinConfig(
     actions="goal",
@@ -37,28 +38,22 @@ class RewardConfig:
     """The reward of `SemExpEnv`."""
 
     per_metre: float = 0.1
-    """Reward for each metre by which the path to the target became shorter."""
-    per_m2: float = 0.05
-    """Reward for each square metre of floor that was never in view before; the published code has such a term, too."""
-    per_25_steps: float = -0.2
-    """Reward for 25 primitive actions: about minus what a random policy gets for new floor meanwhile."""
+    """Reward for each metre by which the path to the target became shorter, with the published weight."""
+    per_m2: float = 0.02
+    """Reward for each square metre that was never in view before, with the published weight."""
     rest_at_sight: bool = True
     """True: the step that sees the target is also given the rest of the path, which the agent then drives by itself."""
-    at_sight: float = 0.5
-    """Reward for seeing the target."""
 
 
 class SemExpEnv(TwinEnv):
     """The twin with the input, the goals and the reward of the global policy of `semexp`.
 
     ## Actions
-    `Discrete(goal_cells ** 2)`: a cell of the grid of long-term goals, row by row.
+    `Box(2)` in [-10, 10]: its sigmoid is a point of the local map, as shares of its rows and columns.
 
     ## Observations
-    A dict of float32: `near`, `far` (cells, cells) and `near_goals`, `far_goals` (goal_cells, goal_cells), whole
-    numbers whose bits are layers; `heading` (2,); `goal` (1,), the index of the goal category. They are those of
-    `stubborn.exploration.semexp_input.PolicyInput`. Only for the critic of a training: `truth` (3,), as
-    `stubborn.exploration.semexp_net.TRUTH` says.
+    A dict of float32: `geometry` and `goals` (cells, cells), whole numbers whose bits are layers; `heading` (1,) and
+    `goal` (1,), indices. They are those of `stubborn.exploration.semexp_input.PolicyInput`.
 
     ## Reward, end, info
     As `RewardConfig` says; the episode ends at first sight of the target or after `max_steps`. The rest is as in
@@ -67,7 +62,7 @@ class SemExpEnv(TwinEnv):
     Args:
         plans: plan files, or a folder of them.
         config: of the twin, with `actions="goal"`.
-        view: sizes of the input.
+        cells: edge of the maps of the input.
         reward: the reward.
         read: see `TwinEnv`.
 
@@ -80,49 +75,32 @@ class SemExpEnv(TwinEnv):
         plans: Path | Sequence[Path],
         config: TwinConfig = FAST,
         *,
-        view: ViewConfig = ViewConfig(),  # noqa: B008 - frozen
+        cells: int = CELLS,
         reward: RewardConfig = RewardConfig(),
         read: Callable[[Path], Plan] | None = None,
     ) -> None:
         super().__init__(plans, config, read=read)
-        self.view, self.reward = view, reward
-        cells, blocks = (view.cells,) * 2, (view.goal_cells,) * 2
-        geometry = spaces.Box(0, 2 ** len(GEOMETRY) - 1, cells, np.float32)
-        goals = spaces.Box(0, 2 ** len(GOAL_CATEGORIES) - 1, blocks, np.float32)
+        self.cells, self.reward = cells, reward
         self.observation_space = spaces.Dict(
             {
-                **{"near": geometry, "near_goals": goals, "far": geometry, "far_goals": goals},
-                "heading": spaces.Box(-1.0, 1.0, (2,), np.float32),
+                "geometry": spaces.Box(0, 4 ** len(GEOMETRY) - 1, (cells, cells), np.float32),
+                "goals": spaces.Box(0, 2 ** len(GOAL_CATEGORIES) - 1, (cells, cells), np.float32),
+                "heading": spaces.Box(0, HEADINGS - 1, (1,), np.float32),
                 "goal": spaces.Box(0, len(GOAL_CATEGORIES) - 1, (1,), np.float32),
-                "truth": spaces.Box(0.0, np.inf, (3,), np.float32),
             }
         )
-        self.action_space = spaces.Discrete(view.goal_cells**2)
+        self.action_space = spaces.Box(-10.0, 10.0, (2,), np.float32)
         self._given: PolicyInput | None = None
-        self._floor_m2 = 0.0
-        """Area of the plan's floor; 0 until it is known."""
-
-    def reset(
-        self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
-    ) -> tuple[dict[str, NDArray], dict[str, Any]]:
-        """Starts an episode; see `TwinEnv`."""
-        self._floor_m2 = 0.0
-        observation, info = super().reset(seed=seed, options=options)
-        plan = self.episode.plan
-        self._floor_m2 = float(np.count_nonzero(plan.floor)) * plan.frame.cell_m**2
-        return {**observation, "truth": self._truth()}, info
 
     def step(self, action: Any) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
         """Drives towards a goal cell; see the class."""
-        before_m2, before_steps = self.episode.camera.area_seen_m2, self.episode.num_steps
+        before_m2 = self.episode.camera.area_seen_m2
         observation, progress_m, terminated, truncated, info = super().step(action)
         rest_m = self.episode.distance_m()
         if terminated and self.reward.rest_at_sight and math.isfinite(rest_m):
             progress_m += rest_m
         shown_m2 = self.episode.camera.area_seen_m2 - before_m2
-        spent = (self.episode.num_steps - before_steps) / 25.0
-        reward = self.reward.per_metre * progress_m + self.reward.per_m2 * shown_m2 + self.reward.per_25_steps * spent
-        reward += self.reward.at_sight * terminated
+        reward = self.reward.per_metre * progress_m + self.reward.per_m2 * shown_m2
         return observation, reward, terminated, truncated, info
 
     @property
@@ -131,25 +109,9 @@ class SemExpEnv(TwinEnv):
         return require_reset(self._given)
 
     def _act(self, action: Any) -> None:
-        self._head_for(self.given.place_xy_m(int(action)))
+        self._head_for(self.given.place_xy_m(sigmoid(np.asarray(action, np.float64).reshape(2))))
 
     def _observe(self) -> dict[str, NDArray]:
-        self._given = given = observe(self.navmap, self._pose, self.episode.goal, self.view)
-        return {
-            "near": given.near.geometry.astype(np.float32),
-            "near_goals": given.near.goals.astype(np.float32),
-            "far": given.far.geometry.astype(np.float32),
-            "far_goals": given.far.goals.astype(np.float32),
-            "heading": given.heading,
-            "goal": np.array([given.goal], np.float32),
-            "truth": self._truth(),
-        }
-
-    def _truth(self) -> NDArray[np.float32]:
-        episode = self.episode
-        path_m = episode.distance_m()
-        unseen_m2 = max(self._floor_m2, episode.camera.area_seen_m2) - episode.camera.area_seen_m2
-        left = 1.0 - episode.num_steps / episode.max_steps
-        return np.array(
-            [path_m / 10.0 if math.isfinite(path_m) else 0.0, math.log1p(unseen_m2 / 20.0), left], np.float32
-        )
+        goal = GOAL_CATEGORIES.index(self.episode.goal)
+        self._given = given = observe(self.navmap, self._pose, goal, cells=self.cells)
+        return as_arrays(given)

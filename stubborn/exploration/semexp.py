@@ -1,14 +1,15 @@
 """Goal-oriented semantic exploration: a learned global policy chooses long-term goals on the semantic map.
 
 Reference: Chaplot, Gandhi, Gupta, Salakhutdinov (2020), "Object Goal Navigation using Goal-Oriented Semantic
-Exploration", NeurIPS, arXiv 2007.00643. The policy is a small network of our own, trained in house plans by
-`stubborn train semexp` (docs/explorers.md lists the differences). The two controls of Luo et al. (2022, Section
-"Analysis of SemExp Agent") are options: the semantic layers shuffled, and a wrong goal given to the policy.
+Exploration", NeurIPS, arXiv 2007.00643. The policy has the inputs, layers and outputs of the published code and loads
+its weights; the weights that ship were trained in house plans by `stubborn train semexp`, from random ones. The two
+controls of Luo et al. (2022, Section "Analysis of SemExp Agent") are options: the semantic layers shuffled, and a wrong
+goal given to the policy.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -19,14 +20,14 @@ from jaxtyping import Float
 from sim.geometry.grid import cells_near_segment
 from sim.interface import GOAL_CATEGORIES, CameraModel, ConfigError
 from stubborn.exploration.explorer import Exploration, Ground, Search
-from stubborn.exploration.semexp_input import PolicyInput, ViewConfig, observe
+from stubborn.exploration.semexp_input import CELLS, PolicyInput, observe
 from stubborn.planning.planner import FreeSpace, Goal
 
 SHIPPED = Path(__file__).with_name("weights") / "semexp.safetensors"
 """The shipped weights."""
 
-Score = Callable[[PolicyInput], Float[np.ndarray, " goals"]]
-"""A function that returns the logit of each goal cell, row by row."""
+Policy = Callable[[PolicyInput], tuple[Float[np.ndarray, " 2"], Float[np.ndarray, " 2"]]]
+"""A function that returns means and standard deviations of an action, whose sigmoid is a point of the local map."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +35,7 @@ class SemExpConfig:
     """The weights, the duration of a long-term goal, and the controls."""
 
     weights: str | None = None
-    """File of weights; None: the shipped weights."""
+    """File of weights, also a published checkpoint (`.pth`); None: the shipped weights."""
     goal_steps: int = 25
     """A new long-term goal is chosen after this many steps, and when a goal is reached."""
     goal_radius_m: float = 0.5
@@ -42,7 +43,7 @@ class SemExpConfig:
     arrived_m: float = 0.35
     """A long-term goal counts as reached within this path length."""
     sampled: bool = True
-    """True: goals are sampled from the policy; False: its best goal is taken."""
+    """True: goals are sampled from the policy, as its published evaluation does; False: its mean is taken."""
     semantics: Literal["seen", "shuffled", "none"] = "seen"
     """The goal categories on the map that the policy gets: all of them, all of them exchanged at random in each episode
     (the first control), or none."""
@@ -61,10 +62,11 @@ class SemExpConfig:
         Raises:
             ConfigError: the file of weights does not exist, or does not hold a network of `semexp`.
         """
-        from stubborn.exploration.semexp_net import FILES, scores  # imports PyTorch
+        from stubborn.exploration.semexp_net import action_of, load  # imports PyTorch
 
-        net = FILES.load(SHIPPED if self.weights is None else Path(self.weights))[0]
-        return SemExpExplorer(self, net.config.view, lambda given: scores(net, given))
+        net = load(SHIPPED if self.weights is None else Path(self.weights))
+        config = net.config
+        return SemExpExplorer(self, lambda given: action_of(net, given), config.channels, cells=config.cells)
 
 
 class SemExpExplorer:
@@ -72,19 +74,27 @@ class SemExpExplorer:
 
     reads_semantics: Literal[True] = True
 
-    def __init__(self, config: SemExpConfig, view: ViewConfig, score: Score) -> None:
-        """`score` is the policy, `view` the sizes of its input."""
+    def __init__(
+        self,
+        config: SemExpConfig,
+        policy: Policy,
+        channels: Sequence[str | None] = GOAL_CATEGORIES,
+        *,
+        cells: int = CELLS,
+    ) -> None:
+        """`channels` and `cells` are those of `observe`."""
         self.config = config
-        self.view = view
-        self.score = score
+        self.policy = policy
+        self.channels = tuple(channels)
+        self.cells = cells
         self.reset()
 
     def reset(self, seed: int = 0) -> None:
         """Forgets the last episode; the random choices of this one come from `seed`."""
         self._rng = np.random.default_rng(seed)
-        self.order = self._rng.permutation(len(GOAL_CATEGORIES)).tolist()
-        """The category that each semantic layer shows in the control `shuffled`."""
-        self._other = int(self._rng.integers(1, len(GOAL_CATEGORIES)))  # how far the wrong goal is in the list
+        self.shuffled = tuple(self.channels[i] for i in self._rng.permutation(len(self.channels)))
+        """The category that each semantic channel shows in the control `shuffled`."""
+        self._other = int(self._rng.integers(1, len(self._known)))  # how far the wrong goal is in the list
         self.place_xy_m: tuple[float, float] | None = None
         """The long-term goal."""
         self._age_steps = 0
@@ -107,26 +117,36 @@ class SemExpExplorer:
                 return route
         return None
 
+    @property
+    def _known(self) -> list[str]:
+        """The categories that have a channel."""
+        return [name for name in self.channels if name]
+
     def told_goal(self, goal: str) -> str:
-        """Returns the goal category that the policy gets."""
+        """Returns the goal category that the policy gets.
+
+        Raises:
+            ConfigError: the policy has no channel of the goal category.
+        """
+        if goal not in self._known:
+            raise ConfigError(f"The policy of semexp has no category '{goal}', only {', '.join(self._known)}.")
         if self.config.goal == "true":
             return goal
-        return GOAL_CATEGORIES[(GOAL_CATEGORIES.index(goal) + self._other) % len(GOAL_CATEGORIES)]
+        return self._known[(self._known.index(goal) + self._other) % len(self._known)]
 
     def _chosen_xy_m(self, ground: Ground) -> tuple[float, float]:
         """Returns the next long-term goal of the policy."""
-        given = observe(
-            ground.navmap,
-            ground.pose,
-            self.told_goal(ground.goal),
-            self.view,
-            order=self.order if self.config.semantics == "shuffled" else None,
-            semantics=self.config.semantics != "none",
-        )
-        logits = self.score(given)
-        if self.config.sampled:
-            logits = logits + self._rng.gumbel(size=logits.shape)  # the largest of these is a sample of the softmax
-        return given.place_xy_m(int(np.argmax(logits)))
+        shown = {"seen": self.channels, "shuffled": self.shuffled, "none": ()}[self.config.semantics]
+        goal = self.channels.index(self.told_goal(ground.goal))
+        given = observe(ground.navmap, ground.pose, goal, shown, cells=self.cells)
+        mean, deviation = self.policy(given)
+        action = self._rng.normal(mean, deviation) if self.config.sampled else mean
+        return given.place_xy_m(sigmoid(action))
+
+
+def sigmoid(action: Float[np.ndarray, " 2"]) -> Float[np.ndarray, " 2"]:
+    """Returns the point of the local map that an action means, as shares of its rows and columns."""
+    return 1.0 / (1.0 + np.exp(-np.clip(action, -30.0, 30.0)))
 
 
 def head_for(place_xy_m: tuple[float, float], free: FreeSpace, radius_m: float) -> Search:

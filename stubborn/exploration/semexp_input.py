@@ -1,7 +1,8 @@
-"""The input of the global policy of `semexp`, and the places that it can choose, in episodes and in training.
+"""The input of the global policy of `semexp`, as its published code makes it, in episodes and in training.
 
-The policy gets two squares around the robot, the local window at a fine resolution and a larger part of the map at a
-coarse one, both with the axes of the start frame. It chooses a cell of a coarse grid over the local window.
+The policy gets two squares of the map with the axes of the start frame: the local map, 12 m around the robot, and the
+global map, 24 m around the start. The published network begins with a max-pooling of 2 x 2 cells of 5 cm, which is
+done here, so that an input has a quarter of the size.
 """
 
 from __future__ import annotations
@@ -10,122 +11,80 @@ import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float32, Int32, UInt8
+from jaxtyping import Float, Int32, UInt8
 
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, ConfigError
-from stubborn.exploration.frontiers import frontier_cells
-from stubborn.exploration.patches import MapPatch, or_of_blocks, patch_around
+from sim.interface import GOAL_CATEGORIES
+from stubborn.exploration.patches import MapPatch, patch_around
 from stubborn.mapping.navmap import NavMap
 
-GEOMETRY = ("obstacle", "seen", "trail", "frontier")
-"""The layers of `Square.geometry`, bit by bit: those of `MapPatch`, and the free cells next to a cell that was never
-seen. The robot has no layer: it is always in the middle."""
-_BLOCK = 4
-"""Cells along the edge of a block. A goal cell of the local square is such a block, and so is a cell of
-`Square.goals`."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class ViewConfig:
-    """Sizes of the squares that the policy gets. Weights fit only the sizes that they were trained with."""
-
-    goal_cells: int = 15
-    """Edge of the grid of long-term goals over the local square; both squares have four times as many cells."""
-    local_pool: int = 4
-    """Map cells along the edge of a cell of the local square: 20 cm, 12 m in all."""
-    global_pool: int = 16
-    """The same for the global square: 80 cm, 48 m in all."""
-
-    def __post_init__(self) -> None:
-        if min(self.local_pool, self.global_pool, self.goal_cells) < 1 or self.global_pool % self.local_pool:
-            raise ConfigError(
-                "ViewConfig needs sizes >= 1 and a global_pool that local_pool divides, got goal_cells "
-                f"{self.goal_cells}, local_pool {self.local_pool} and global_pool {self.global_pool}."
-            )
-
-    @property
-    def cells(self) -> int:
-        """Edge of both squares."""
-        return _BLOCK * self.goal_cells
-
-
-class Square(NamedTuple):
-    """A square of the map around the robot; each number is a set of bits."""
-
-    geometry: UInt8[np.ndarray, "cells cells"]
-    """Bit i is set where the layer `GEOMETRY[i]` is."""
-    goals: Int32[np.ndarray, "blocks blocks"]
-    """Bit g is set where goal category g was seen in a block of 4 x 4 cells. Its 21 bits fit into a float32."""
+GEOMETRY = ("obstacle", "seen", "robot", "trail")
+"""The layers of the local map in their published order; those of the global map follow."""
+CELLS = 120
+"""Edge of both maps after the max-pooling: cells of 10 cm in the local one, of 20 cm in the global one."""
+HEADINGS = 72
+"""Number of headings, 5 degrees each."""
+GIBSON = ("chair", "sofa", "plant", "bed", "toilet", "tv_monitor", "table", None, "sink", *[None] * 7)
+"""The categories of the published network's semantic channels, by our names; None: no goal category."""
+_LOCAL_POOL, _GLOBAL_POOL = 2, 4
+"""Map cells of 5 cm along the edge of a cell."""
 
 
 @dataclass(frozen=True, eq=False)
 class PolicyInput:
-    """The input of the policy at one step."""
+    """The input of the policy at one step; each number of a map is a set of bits."""
 
-    near: Square
-    """The local square."""
-    far: Square
-    """The global square."""
-    heading: Float32[np.ndarray, " 2"]
-    """Cosine and sine of the heading."""
+    geometry: UInt8[np.ndarray, "cells cells"]
+    """Bit i is set where layer i is: those of `GEOMETRY` in the local map, then in the global map."""
+    goals: Int32[np.ndarray, "cells cells"]
+    """Bit c is set where the category of channel c was seen, in the local map. Its 21 bits fit into a float32."""
+    heading: int
+    """The heading plus 180 degrees in steps of 5 degrees, rounded: turns of 30 degrees are then never between two."""
     goal: int
-    """Index of the goal category in `GOAL_CATEGORIES`."""
+    """The channel of the goal category."""
     frame: GridFrame
-    """The grid of long-term goals."""
+    """The grid of the local map."""
 
-    def place_xy_m(self, choice: int) -> tuple[float, float]:
-        """Returns the middle of the goal cell with this row-major number."""
-        x_m, y_m = self.frame.centres(*divmod(choice, self.frame.shape[1]))
-        return float(x_m), float(y_m)
+    def place_xy_m(self, share: Float[np.ndarray, " 2"]) -> tuple[float, float]:
+        """Returns the point of the local map at these shares of its rows and columns, each from 0 to 1."""
+        (x_m, y_m), edge_m = self.frame.origin_xy_m, self.frame.shape[0] * self.frame.cell_m
+        return x_m + float(share[1]) * edge_m, y_m + float(share[0]) * edge_m
 
 
 def observe(
-    navmap: NavMap,
-    pose: Pose,
-    goal: str,
-    view: ViewConfig,
-    *,
-    order: Sequence[int] | None = None,
-    semantics: bool = True,
+    navmap: NavMap, pose: Pose, goal: int, channels: Sequence[str | None] = GOAL_CATEGORIES, *, cells: int = CELLS
 ) -> PolicyInput:
     """Returns the input of the policy for a map.
 
     Args:
         navmap: the map, with `goals_seen`.
         pose: pose of the robot in the map's frame.
-        goal: the goal category that the policy gets.
-        view: sizes of the squares.
-        order: the goal category that each bit shows; by default bit g shows category g.
-        semantics: False: no category is shown anywhere.
+        goal: the channel of the goal category that the policy gets.
+        channels: the category that each semantic channel shows; None: the channel is empty.
+        cells: edge of both maps.
     """
-    pools = (view.local_pool, view.global_pool)
-    near, far = (patch_around(navmap, pose, cells=view.cells, pool=pool) for pool in pools)
-    edge_m = near.frame.cell_m * _BLOCK
+    near = patch_around(navmap, pose, cells=cells, pool=_LOCAL_POOL)
+    far = patch_around(navmap, Pose(0.0, 0.0, 0.0), cells=cells, pool=_GLOBAL_POOL)
+    layers = (*_geometry(near, pose), *_geometry(far, pose))
+    shown = (
+        (near.goals >> GOAL_CATEGORIES.index(name) & 1) << channel for channel, name in enumerate(channels) if name
+    )
+    goals = functools.reduce(np.bitwise_or, shown, np.zeros_like(near.goals)).astype(np.int32)
     return PolicyInput(
-        near=_square(near, order, semantics),
-        far=_square(far, order, semantics),
-        heading=np.array([math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)], np.float32),
-        goal=GOAL_CATEGORIES.index(goal),
-        frame=GridFrame(origin_xy_m=near.frame.origin_xy_m, shape=(view.goal_cells, view.goal_cells), cell_m=edge_m),
+        geometry=functools.reduce(np.bitwise_or, (layer.view(np.uint8) << bit for bit, layer in enumerate(layers))),
+        goals=goals,
+        heading=round((math.degrees(pose.yaw_rad) + 180.0) / (360.0 / HEADINGS)) % HEADINGS,
+        goal=goal,
+        frame=near.frame,
     )
 
 
-def _square(patch: MapPatch, order: Sequence[int] | None, semantics: bool) -> Square:
-    """Returns the layers of a patch as bits."""
-    frontier = frontier_cells(patch.seen & ~patch.obstacle, ~patch.seen)
-    layers = (
-        layer.view(np.uint8) << bit for bit, layer in enumerate((patch.obstacle, patch.seen, patch.trail, frontier))
-    )
-    goals = or_of_blocks(patch.goals, _BLOCK).astype(np.int32) if semantics else None
-    if goals is None:
-        shown = np.zeros((patch.frame.shape[0] // _BLOCK,) * 2, np.int32)
-    elif order is None:
-        shown = goals
-    else:
-        shown = functools.reduce(np.bitwise_or, ((goals >> g & 1) << bit for bit, g in enumerate(order)))
-    return Square(functools.reduce(np.bitwise_or, layers), shown)
+def _geometry(patch: MapPatch, pose: Pose) -> tuple[np.ndarray, ...]:
+    """Returns the layers of `GEOMETRY`; the robot takes 3 x 3 cells, and none where it is outside of the patch."""
+    robot = np.zeros(patch.frame.shape, np.bool_)
+    row, col = patch.frame.cell(pose.x_m, pose.y_m)
+    robot[max(row - 1, 0) : max(row + 2, 0), max(col - 1, 0) : max(col + 2, 0)] = True
+    return patch.obstacle, patch.seen, robot, patch.trail

@@ -36,10 +36,11 @@ from stubborn.agent import AgentConfig
 from stubborn.agents import EXPLORERS
 from stubborn.exploration.explorer import ExplorerConfig
 from stubborn.exploration.semexp import SemExpConfig, SemExpExplorer
-from stubborn.exploration.semexp_input import ViewConfig
 
 RANDOM = "random-goals"
-"""The explorer that draws long-term goals as `semexp` does, all places of the window being equally likely."""
+"""The explorer that draws long-term goals as `semexp` does, everywhere in the local map."""
+_UNIFORM = 1.7
+"""Standard deviation at which the sigmoid of a normal variable is nearly uniform (the logistic one has 1.8)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,8 +71,7 @@ class RandomGoals:
 
     def make(self, camera: CameraModel) -> SemExpExplorer:
         """Returns a new explorer."""
-        view = ViewConfig()
-        return SemExpExplorer(SemExpConfig(sampled=True), view, lambda _: np.zeros(view.goal_cells**2, np.float32))
+        return SemExpExplorer(SemExpConfig(), lambda _: (np.zeros(2), np.full(2, _UNIFORM)))
 
 
 def main(args: Args) -> int:

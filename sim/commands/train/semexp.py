@@ -83,15 +83,15 @@ class Args:
     """Folders of other runs to draw into the curve."""
     envs: cli.Count = 8
     """Number of environments, all in this process."""
-    rollout: cli.Count = 128
+    rollout: cli.Count = 20
     """Long-term goals of each environment between two updates."""
-    batch: cli.Count = 256
+    batch: cli.Count = 40
     """Long-term goals in a minibatch."""
     epochs: cli.Count = 4
     """Passes over the goals of an update."""
-    rate: cli.Positive = 1e-3
-    """Learning rate of Adam at the start; it falls to a tenth."""
-    discount: cli.Share = 0.9
+    rate: cli.Positive = 2.5e-4
+    """Learning rate of Adam at the start; it falls to a tenth. The published one is a tenth of it."""
+    discount: cli.Share = 0.99
     """Discount from one long-term goal to the next."""
     entropy: cli.NotNegative = 0.001
     """Weight of the entropy of the policy in the loss."""
@@ -149,7 +149,7 @@ class Run:
         self.options = options_of(args, may_change=MAY_CHANGE, files={"plans": plans})
         self.net_config = NetConfig()
         read = functools.lru_cache(PLANS_IN_MEMORY)(read_plan)
-        self.envs = DummyVecEnv([lambda: SemExpEnv(plans, view=self.net_config.view, read=read)] * args.envs)
+        self.envs = DummyVecEnv([lambda: SemExpEnv(plans, cells=self.net_config.cells, read=read)] * args.envs)
         self.goals = self.steps = 0
         """Long-term goals and primitive steps so far."""
         self.trained = (0, 0)
@@ -158,7 +158,7 @@ class Run:
         args.out.mkdir(parents=True, exist_ok=True)
         self.ppo = PPO(
             SemExpPolicy, self.envs, n_steps=args.rollout, batch_size=args.batch, n_epochs=args.epochs,
-            learning_rate=self._rate, gamma=args.discount, gae_lambda=0.8, ent_coef=args.entropy, clip_range=0.2,
+            learning_rate=self._rate, gamma=args.discount, gae_lambda=0.95, ent_coef=args.entropy, clip_range=0.2,
             vf_coef=0.5, max_grad_norm=0.5, seed=args.seed, device="cpu", policy_kwargs={"config": self.net_config},
         )  # fmt: skip
         if not self._resumed():

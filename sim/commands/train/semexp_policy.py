@@ -11,7 +11,7 @@ from torch.optim import Adam
 from stubborn.exploration.semexp_net import NetConfig, SemExpNet
 
 try:
-    from stable_baselines3.common.distributions import Distribution
+    from stable_baselines3.common.distributions import DiagGaussianDistribution, Distribution
     from stable_baselines3.common.policies import ActorCriticPolicy
     from stable_baselines3.common.type_aliases import PyTorchObs, Schedule
 except ImportError as error:
@@ -36,9 +36,9 @@ class SemExpPolicy(ActorCriticPolicy):
 
     def _outputs(self, obs: PyTorchObs) -> tuple[Distribution, Tensor]:
         assert isinstance(obs, dict)
-        names = ("near", "near_goals", "far", "far_goals", "heading", "goal", "truth")
-        logits, values = self.net(*(obs[name] for name in names))
-        return self.action_dist.proba_distribution(logits), values[:, None]  # pyright: ignore[reportCallIssue]
+        mean, logstd, values = self.net(*(obs[name] for name in ("geometry", "goals", "heading", "goal")))
+        assert isinstance(self.action_dist, DiagGaussianDistribution)
+        return self.action_dist.proba_distribution(mean, logstd.expand_as(mean)), values[:, None]
 
     def forward(self, obs: PyTorchObs, deterministic: bool = False) -> tuple[Tensor, Tensor, Tensor]:
         """Returns actions, values and the logarithms of the actions' probabilities."""

@@ -21,7 +21,7 @@ from sim.twin.env import TwinConfig, TwinEnv
 from sim.twin.semexp import FAST, RewardConfig, SemExpEnv
 from stubborn.agent import AgentConfig
 from stubborn.exploration.semexp import SemExpConfig, SemExpExplorer
-from stubborn.exploration.semexp_input import PolicyInput, ViewConfig
+from stubborn.exploration.semexp_input import PolicyInput
 from tests.helpers.worlds import bed_behind_a_wall, with_box
 
 
@@ -36,8 +36,14 @@ def plans(tmp_path_factory) -> Path:
 
 
 START = {"plan": 0, "goal": "bed", "start": Pose(-3.0, 1.0, 0.0)}
-CELLS = (7 * 15 + 14, 4 * 15 + 6, 8 * 15 + 9)
-"""Goal cells: 5.5 m ahead of the start, behind it on the right, and near."""
+PLACES = ((0.5, 0.96), (0.3, 0.43), (0.57, 0.63))
+"""Goals as shares of the local map: 5.5 m ahead of the start, behind it on the right, and near."""
+
+
+def action(place: tuple[float, float]) -> np.ndarray:
+    """Returns the action whose sigmoid is a goal."""
+    share = np.array(place)
+    return np.log(share / (1.0 - share)).astype(np.float32)
 
 
 def test_the_environment_keeps_gymnasiums_contract(plans: Path):
@@ -53,7 +59,7 @@ def test_the_reward_of_an_episode_is_the_path_to_the_target_and_the_floor_seen(p
     env = SemExpEnv(plans)
     env.reset(seed=0, options=START)
     first_m, before_m2 = env.episode.distance_m(), env.episode.camera.area_seen_m2
-    total, terminated, cell, info = 0.0, False, 2 * 15 + 13, {}
+    total, terminated, cell, info = 0.0, False, action((0.17, 0.9)), {}
     for _ in range(12):
         _, reward, terminated, _, info = env.step(cell)
         total += reward
@@ -62,8 +68,8 @@ def test_the_reward_of_an_episode_is_the_path_to_the_target_and_the_floor_seen(p
     assert terminated
     assert info["first_seen_step"] == info["num_steps"] > 0
     seen_m2 = env.episode.camera.area_seen_m2 - before_m2
-    assert total == pytest.approx(0.1 * first_m + 0.05 * seen_m2 - 0.2 * info["num_steps"] / 25 + 0.5)
-    plain = SemExpEnv(plans, reward=RewardConfig(per_m2=0.0, per_25_steps=0.0, rest_at_sight=False, at_sight=0.0))
+    assert total == pytest.approx(0.1 * first_m + 0.02 * seen_m2)
+    plain = SemExpEnv(plans, reward=RewardConfig(per_m2=0.0, rest_at_sight=False))
     plain.reset(seed=0, options=START)
     before = plain.episode.distance_m()
     assert plain.step(cell)[1] == pytest.approx(0.1 * (before - plain.episode.distance_m()))
@@ -74,12 +80,12 @@ def test_the_policy_gets_the_same_input_in_training_and_in_episodes(plans: Path)
     """The agent follows the first goal of a policy, then the environment gets the same goal; both see the same map."""
     given: list[PolicyInput] = []
 
-    def policy(seen: PolicyInput) -> np.ndarray:
+    def policy(seen: PolicyInput) -> tuple[np.ndarray, np.ndarray]:
         given.append(seen)
-        return np.where(np.arange(225) == CELLS[len(given) % 3], np.float32(50.0), np.float32(0.0))
+        return action(PLACES[len(given) % 3]), np.zeros(2)
 
     exact = replace(FAST, plan_every=1, plan_pool=1, sight=TwinConfig().sight, goal_steps=4)
-    explorer = SemExpExplorer(SemExpConfig(goal_steps=4), ViewConfig(), policy)
+    explorer = SemExpExplorer(SemExpConfig(goal_steps=4), policy)
     agent = TwinAgent(twin_config(AgentConfig()))
     agent.explorer = explorer
     start = Pose(-3.0, 1.0, 3.0)  # looks away from the bed
@@ -87,15 +93,14 @@ def test_the_policy_gets_the_same_input_in_training_and_in_episodes(plans: Path)
     env = SemExpEnv(plans, exact)
     seen, _ = env.reset(seed=0, options={**START, "start": start})
     for number, expected in enumerate(given[:6], 1):
-        for name, square in (("near", expected.near), ("far", expected.far)):
-            np.testing.assert_array_equal(seen[name], square.geometry)
-            np.testing.assert_array_equal(seen[f"{name}_goals"], square.goals)
-        np.testing.assert_allclose(seen["heading"], expected.heading, atol=1e-6)
+        np.testing.assert_array_equal(seen["geometry"], expected.geometry)
+        np.testing.assert_array_equal(seen["goals"], expected.goals)
+        assert seen["heading"] == expected.heading
         assert seen["goal"] == expected.goal == GOAL_CATEGORIES.index("bed")
         assert env.given.frame == expected.frame
-        seen = env.step(CELLS[number % 3])[0]
+        seen = env.step(action(PLACES[number % 3]))[0]
     assert len(given) >= 6
-    assert seen["near_goals"].any()
+    assert seen["goals"].any()
 
 
 def test_a_step_ends_where_the_goal_is_reached(plans: Path):
