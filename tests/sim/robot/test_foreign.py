@@ -43,8 +43,9 @@ def test_a_robot_keeps_its_own_masses_and_shapes(carrier: Path, capfd: pytest.Ca
     np.testing.assert_allclose(world.data.geom("robot/file/deck").xpos, (1.0, 2.02, 0.135), atol=1e-3)
     np.testing.assert_allclose(_tyres(world), [(0.85, 2.0, 0.075), (1.15, 2.0, 0.075)], atol=1e-3)
     ours, hull = World(open_floor()).model.geom("robot/lower_hull"), world.model.geom("robot/file/hull_1")
-    for field in ("friction", "condim", "solref", "margin", "priority", "contype", "conaffinity", "group"):
+    for field in ("friction", "condim", "solref", "priority", "contype", "conaffinity", "group"):
         np.testing.assert_array_equal(getattr(hull, field), getattr(ours, field))
+    assert hull.margin[0] == world.config.body.skin_m == 0.005
     assert capfd.readouterr().err == ""  # MuJoCo gave no warning
 
 
