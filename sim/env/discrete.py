@@ -9,7 +9,6 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from sim.env.velocity import ObjectNavVelocityEnv
 from sim.errors import ConfigError
 from sim.interface import FORWARD_M, TURN_RAD, Action, wrap_angle
 
@@ -41,6 +40,8 @@ class DiscreteActions(gymnasium.Wrapper[Any, Any, Any, Any]):
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
+        from sim.env.velocity import ObjectNavVelocityEnv  # loads MuJoCo, which `import sim.gym` need not
+
         super().__init__(env)
         base = env.unwrapped
         if not isinstance(base, ObjectNavVelocityEnv):

@@ -44,6 +44,8 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
         ConfigError: see `ObjectNavEnv`; or a period, a limit or an action that is not allowed.
     """
 
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 - declared by Gymnasium
+
     def __init__(self, *, period_s: float = 0.1, time_limit_s: float = MAX_STEPS * ACTION_S, **options: Any) -> None:
         if options.get("max_steps") is not None:
             raise ConfigError("The limit of an episode driven by velocities is time_limit_s, in place of max_steps.")
