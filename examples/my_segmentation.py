@@ -1,4 +1,4 @@
-"""A segmentation of your own, from PyTorch.
+"""A segmentation of your own, with a PyTorch network.
 
 stubborn run --semantics examples.my_segmentation:SEGMENTATION --config detector.weights=my_network.pt
 """
@@ -22,13 +22,13 @@ class MyNetwork(nn.Sequential):
 
 @dataclass(frozen=True)
 class MyConfig:
-    """Options."""
+    """The options."""
 
     weights: Path = Path("my_network.pt")
 
 
 class MySegmenter:
-    """The softmax."""
+    """Computes probabilities."""
 
     def __init__(self, camera: CameraModel, config: MyConfig) -> None:
         self.network = MyNetwork().eval()

@@ -2,8 +2,8 @@
 
 stubborn run --agent examples.ppo_agent:AGENT --config-file runs/ppo/run.toml --house examples/my_house.xml --goal sofa
 
-It sees the direction of the sofa of one room, which is ground truth, the depth in sixteen directions and whether it
-collided.
+It observes the direction of the sofa in one room, which is ground truth, the depth in sixteen directions, and whether
+the last action was stopped by a contact.
 """
 
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ class GoalVector:
 
 
 class Scan:
-    """Smallest depth in each of some columns of the image's middle rows, in units of its largest value."""
+    """Smallest depth in each of `RAYS` groups of columns of the image's middle rows, relative to the largest depth."""
 
     name, images, noise = "scan", ("depth",), None
 
@@ -47,7 +47,7 @@ class Scan:
         return spaces.Box(0.0, 1.0, (RAYS,), np.float32)
 
     def read(self, context: SensorContext) -> NDArray:
-        """Returns the scan from left to right; a larger image is read at the pixels of the training's size."""
+        """Returns the scan from left to right; a larger image is sampled at the resolution of the training."""
         depth_m = context.images["depth"]
         block = max(1, depth_m.shape[1] // CAMERA.width_px)
         depth_m = depth_m[block // 2 :: block, block // 2 :: block]
@@ -65,13 +65,13 @@ class Bumper:
         return spaces.Box(0.0, 1.0, (1,), np.float32)
 
     def read(self, context: SensorContext) -> NDArray:
-        """Returns the reading."""
+        """Returns whether the last action was stopped, float32 (1,)."""
         return np.array([context.collided], np.float32)
 
 
 SENSORS = (GoalVector(), Scan(), Bumper())
 SPACE = spaces.Dict({sensor.name: sensor.space(CAMERA) for sensor in SENSORS})
-"""What the policy sees, flattened in this order."""
+"""Space of the policy's observations, which are flattened in this order."""
 
 
 @dataclass(frozen=True)
@@ -79,11 +79,11 @@ class PolicyConfig:
     """The agent's options."""
 
     policy: Path = Path("runs/ppo/policy.zip")
-    """File that `examples/train_ppo.py` writes."""
+    """The file that `examples/train_ppo.py` writes."""
 
 
 class PolicyAgent:
-    """Takes the action that the policy prefers."""
+    """An agent that takes the most probable action of the policy."""
 
     def __init__(self, config: PolicyConfig) -> None:
         try:

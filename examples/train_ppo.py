@@ -48,7 +48,7 @@ class Args:
     """Trains an agent with PPO to drive to the sofa of a room."""
 
     minutes: cli.Positive = 30.0
-    """Time of the training; the trials at the end take theirs in addition."""
+    """Time of the training; the trials at the end need additional time."""
     steps: cli.Count = 10_000_000
     """Most steps of the training, all environments together."""
     envs: cli.Count = 2

@@ -57,13 +57,13 @@ Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 Positive = Annotated[float, Meta(gt=0.0, le=1e9)]
 NotNegative = Annotated[float, Meta(ge=0.0, le=1e9)]
 OnUnlessNo = Annotated[bool, tyro.conf.arg(help_behavior_hint="")]
-"""A switch that is on by default. Its option is `--no-NAME`, so its help text says what that option does."""
+"""A switch that is on by default. Its option is `--no-NAME`, and its help text describes that option."""
 OutFile = Annotated[Path, Written(folder=False)]
 OutFolder = Annotated[Path, Written(folder=True)]
 
 
 LAST_WORDS_S = 10.0
-"""Time that threads and exit handlers have after the last line of a command."""
+"""Longest time in which threads and exit handlers may end after a command has returned."""
 
 
 class Terminated(KeyboardInterrupt):
@@ -120,9 +120,9 @@ def run(
 
 
 def leave_soon(status: int) -> int:
-    """Returns the exit status of the process, which then ends after at most `LAST_WORDS_S` seconds.
+    """Ensures that the process ends within `LAST_WORDS_S`; returns its exit status.
 
-    Threads and exit handlers that code of a user started would otherwise keep it alive.
+    Threads and exit handlers of a user's code could otherwise keep it running.
     """
 
     def leave() -> None:
@@ -159,13 +159,21 @@ def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:
         raise ConfigError(_message_in_box(messages.getvalue())) from None
 
 
-def _without_empty_defaults(args_type: type[ArgsT]) -> type[ArgsT]:
-    """Returns a dataclass of the same options, whose help does not show "(default: None)".
+_POSITIONAL = typing.get_args(tyro.conf.Positional[Any])[1]
+"""The mark of positional arguments, which several commands require."""
 
-    The text of an option says what happens without it.
+
+def _without_empty_defaults(args_type: type[ArgsT]) -> type[ArgsT]:
+    """Returns a dataclass with the same options, whose help text shows neither "(default: None)" nor "(default: )".
+
+    The help text of such an option describes what happens if it is not given.
     """
     hints = typing.get_type_hints(args_type, include_extras=True)
-    empty = [field.name for field in dataclasses.fields(args_type) if field.default in (None, ())]  # type: ignore[arg-type]
+    empty = [
+        field.name
+        for field in dataclasses.fields(args_type)  # type: ignore[arg-type]
+        if field.default in (None, ()) or _POSITIONAL in getattr(hints[field.name], "__metadata__", ())
+    ]
     silent = {name: Annotated[hints[name], tyro.conf.arg(help_behavior_hint="")] for name in empty}
     names = {"__annotations__": silent, "__doc__": args_type.__doc__, "__module__": args_type.__module__}
     return typing.cast(type[ArgsT], type(args_type.__name__, (args_type,), names))
@@ -183,7 +191,7 @@ def check(args: Any) -> None:
 
 
 def _check_value(name: str, value: Any, hint: Any) -> None:
-    """Raises ConfigError where a value is not in the range of its type."""
+    """Raises ConfigError if a value is not in the range of its type."""
     if value is None:
         return
     if dataclasses.is_dataclass(value):
@@ -205,7 +213,7 @@ def _check_value(name: str, value: Any, hint: Any) -> None:
 
 
 def _require_range(name: str, value: float, mark: Meta) -> None:
-    """Raises ConfigError where a number is beyond the bounds of its type."""
+    """Raises ConfigError if a number is beyond the bounds of its type."""
     bounds = (
         ("at least", mark.ge, lambda low: value >= low),
         ("more than", mark.gt, lambda low: value > low),

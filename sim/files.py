@@ -157,14 +157,14 @@ def write_picture(file: Path, picture: NDArray[np.uint8]) -> None:
 
 
 def open_to_grow(file: Path, mode: str = "ab") -> IO[Any]:
-    """Returns a file that grows line by line, or that is cut, open in a mode of `open`; text is UTF-8.
+    """Opens a plain file to append lines to it or to truncate it; text is UTF-8.
 
     Args:
         file: it is created unless the mode begins with "r".
-        mode: of `open`.
+        mode: mode of `open`.
 
     Raises:
-        OSError: the file cannot be opened, or is no plain file; a pipe is refused without waiting for its reader.
+        OSError: the file cannot be opened, or is not a plain file; a pipe is refused without waiting for its reader.
     """
     return open(file, mode, encoding=None if "b" in mode else "utf-8", opener=_plain)
 
@@ -206,7 +206,7 @@ def _reason(error: OSError | ValueError) -> str:
 
 
 def _require_short(path: Path, name: str) -> None:
-    """Raises ConfigError where a part of a path is longer than file systems allow."""
+    """Raises ConfigError if a part of a path is longer than file systems allow."""
     for part in path.parts:
         if len(part.encode(errors="surrogateescape")) > 255:
             raise ConfigError(f"{name} has a name of {len(part)} letters, which is too long: at most 255 bytes.")

@@ -20,7 +20,7 @@ INSTALL_HINT = "apt-get install -y libegl1 libegl-mesa0 libgl1-mesa-dri"
 
 _REMEDY = f"Unset MUJOCO_GL and PYOPENGL_PLATFORM, or install OpenGL: {INSTALL_HINT}"
 _LIBRARIES = {"egl": ("libEGL.so.1",), "osmesa": ("libOSMesa.so.8", "libOSMesa.so.6")}
-"""Libraries of a backend, of which one must be installed."""
+"""The libraries of each backend, of which one must be installed."""
 
 
 def _is_installed(backend: str) -> bool:
@@ -36,20 +36,20 @@ def _loads(library: str) -> bool:
 
 
 _DEFAULT = ("", "enable", "enabled", "on", "true", "1")
-"""Values of `MUJOCO_GL` that leave the choice to MuJoCo, and here to this module."""
+"""Values of `MUJOCO_GL` that name no backend, so that `choose_backend` selects one."""
 _BACKENDS = {
     "linux": {"egl": "egl", "osmesa": "osmesa", "glfw": "glfw", "glx": "glfw"},
     "darwin": {"cgl": "cgl", "glfw": "glfw"},
     "win32": {"wgl": "glfw", "glfw": "glfw"},
 }
-"""The backends of each system, and the package of `mujoco` that makes their contexts."""
+"""The backends of each operating system, and the package of `mujoco` that makes their contexts."""
 
 
 def choose_backend() -> str:
     """Returns the OpenGL backend: the user's `MUJOCO_GL` if set, else one that is installed.
 
-    On Linux that is `egl`, else `osmesa`; on macOS `cgl`. `make_context` refuses a name that does not exist and a
-    library that is missing, so that commands without pictures run on every machine.
+    On Linux, this is `egl` or, if only that is installed, `osmesa`; on macOS `cgl`. A backend that does not exist or is
+    not installed is refused by `make_context` only, so that commands without pictures run on every machine.
     """
     chosen = os.environ.get("MUJOCO_GL", "").strip().lower()
     if chosen not in _DEFAULT:
@@ -62,7 +62,7 @@ def choose_backend() -> str:
 
 
 def make_context(width_px: int, height_px: int) -> Any:
-    """Returns a new OpenGL context of the chosen backend, also if the user imported MuJoCo before.
+    """Returns a new OpenGL context of the chosen backend, even if the user has imported MuJoCo before this module.
 
     Raises:
         RenderError: there is no such backend, its library is missing, or this process was forked from one that had
@@ -81,7 +81,8 @@ def make_context(width_px: int, height_px: int) -> Any:
     except Exception as error:  # EGL, OSMesa and GLFW raise different classes
         reason = " ".join(str(error).split())[:200]
         raise RenderError(
-            f"OpenGL did not start with MUJOCO_GL={BACKEND} ({reason}). Import no other OpenGL before. {_REMEDY}"
+            f"OpenGL did not start with MUJOCO_GL={BACKEND} ({reason}). Import sim before any other OpenGL code. "
+            f"{_REMEDY}"
         ) from None
 
 
@@ -111,9 +112,9 @@ def begin_rendering() -> None:
 
 
 BACKEND = choose_backend()
-"""The chosen backend, or the user's name that is refused when something is rendered."""
+"""The chosen backend; a name that cannot be used is refused when an image is rendered."""
 _IS_USABLE = BACKEND in _BACKENDS.get(sys.platform, {}) and (BACKEND not in _LIBRARIES or _is_installed(BACKEND))
-# MuJoCo does not import with a name that it does not know, or without the library of the backend.
+# The import of MuJoCo fails if it does not know the name, or if the library of the backend is missing.
 os.environ["MUJOCO_GL"] = BACKEND if _IS_USABLE else ""
 if _IS_USABLE and BACKEND in _LIBRARIES:
     os.environ.setdefault("PYOPENGL_PLATFORM", BACKEND)
@@ -126,7 +127,7 @@ os.environ.setdefault("GOMP_SPINCOUNT", "30000")
 import mujoco  # noqa: E402
 
 if not _IS_USABLE:
-    os.environ["MUJOCO_GL"] = BACKEND  # spawned workers refuse the same name
+    os.environ["MUJOCO_GL"] = BACKEND  # so that spawned workers refuse the same name
 
 
 def _disable_log_file() -> None:

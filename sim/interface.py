@@ -180,9 +180,9 @@ SENSORS: tuple[str, ...] = ("rgb", "depth", "semantic")
 POSE_SENSORS: tuple[str, ...] = ("gps", "compass", "objectgoal")
 """Always present."""
 CONTEXT_FIELDS: tuple[str, ...] = ("goal", "collided", "pose", "start", "motion", "model", "data")
-"""Fields of `sim.sensors.sensor.SensorContext` that a sensor of the user's may declare in `reads`."""
+"""Fields of `sim.sensors.sensor.SensorContext` that a user's sensor may declare in `reads`."""
 TRUE_FIELDS = frozenset({"pose", "start", "motion", "model", "data"})
-"""Those that hold ground truth: a robot cannot measure them."""
+"""The fields that hold ground truth, which a robot cannot measure."""
 TRUE_IMAGES = frozenset({"semantic", "geom"})
 """Rendered images that hold ground truth."""
 
@@ -219,7 +219,7 @@ class SegmenterSpec:
     """The declaration of a segmenter: its inputs and how exact it is."""
 
     sensors: tuple[Any, ...] = ("rgb",)
-    """Sensors that it reads in the observation, in addition to `depth`: names of `SENSORS`, or objects of the user's
+    """Sensors that it reads in the observation, in addition to `depth`: names of `SENSORS`, or a user's objects
     (`sim.sensors.sensor.Sensor`)."""
     truth: tuple[str, ...] = ()
     """Ground-truth images that it reads in the environment and that the agent does not get (`semantic`, `geom`)."""
@@ -230,7 +230,7 @@ class SegmenterSpec:
     """False: its scores are the truth, so that an agent need not verify a candidate before it stops."""
     kind: str = "rednet"
     """Name of the fitted parameters that describe its errors best (`stubborn/detection/verifiers/<kind>.json`). A kind
-    without parameters of its own gets those of `rednet`, and the run says so."""
+    without parameters of its own gets those of `rednet`, and the run prints a note."""
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}", self.kind):
@@ -244,7 +244,7 @@ class SegmenterSpec:
 
     @property
     def uses_ground_truth(self) -> bool:
-        """True: it reads true images, or a sensor that declares the truth."""
+        """True: it reads true images, or a sensor that declares ground truth."""
         return bool(self.truth) or any(reads_truth(each) for each in self.sensors)
 
 
@@ -283,30 +283,30 @@ class NamesCategories(Protocol):
 
 
 SegmenterFactory = Callable[..., Any]
-"""Builds a segmenter of the user's from keyword arguments:
+"""Builds a user's segmenter from keyword arguments:
 
 | argument | type | meaning |
 |---|---|---|
 | camera | `CameraModel` | camera of the images |
 | config | type of `SegmentationSpec.config` | the segmentation's configuration |
-| truth | `sim.env.objectnav.ObjectNavEnv` | only where the specification's `truth` names images: the environment |
+| truth | `sim.env.objectnav.ObjectNavEnv` | only if the specification's `truth` names images: the environment |
 
-Arguments for which the factory has no parameter are left out. The object needs a method `scores`; for agents that read
-them `posteriors`, and for videos `categories` (`NamesCategories`).
+Arguments for which the factory has no parameter are left out. The object needs a method `scores` or `posteriors`. Some
+agents also read `posteriors`, and videos show `categories` (`NamesCategories`).
 """
 
 
 @dataclass(frozen=True, kw_only=True)
 class SegmentationSpec:
-    """The declaration of a segmentation of the user's. `--semantics package.module:NAME` takes one."""
+    """The declaration of a user's segmentation, for `--semantics package.module:NAME`."""
 
     make: SegmenterFactory
     spec: SegmenterSpec = SegmenterSpec(kind="own")
-    """What it reads, its kind, and whether its outlines are exact."""
+    """The declaration of its inputs, its kind, and whether its outlines are exact."""
     description: str = ""
     """One line for lists."""
     config: Any = None
-    """Default configuration, a frozen dataclass whose fields `--config detector.FIELD=VALUE` sets; None: none."""
+    """Default configuration, a frozen dataclass whose fields `--config detector.FIELD=VALUE` sets, or None."""
 
     def __post_init__(self) -> None:
         if not callable(self.make):
@@ -321,7 +321,7 @@ class Perceived(NamedTuple):
     scores: Scores | None = None
     """Scores of the goal; None: the agent did not ask for them."""
     categories: NDArray[np.uint8] | None = None
-    """mpcat40 ids (h, w) at any size; None: it does not name them."""
+    """mpcat40 ids (h, w) at any size; None: the segmentation does not compute them."""
 
 
 @runtime_checkable
@@ -329,7 +329,7 @@ class StatesSegmentation(Protocol):
     """An agent with a segmentation of its own that viewers may show (`AgentSpec.own_segmentation`)."""
 
     def stated_segmentation(self) -> Perceived | None:
-        """Returns the segmentation of the frame that `act` got last; None: there is none. Called after `act`."""
+        """Returns the segmentation of the frame that `act` got last, or None; it is called after `act`."""
         ...
 
 
@@ -356,10 +356,10 @@ class Overridable(Protocol):
 
 @runtime_checkable
 class Closable(Protocol):
-    """An agent that holds something that must be freed, such as a process."""
+    """An agent with resources that must be freed, such as a process."""
 
     def close(self) -> None:
-        """Called after the last episode."""
+        """Frees the resources; called after the last episode."""
         ...
 
 
@@ -416,8 +416,8 @@ class AgentSpec:
     uses_segmentation: bool = True
     """False: its results do not depend on `--semantics`."""
     own_segmentation: str = ""
-    """Name of the segmentation that the agent brings itself, for reports and videos; `--semantics` is then not used.
-    Videos show it if the agent has the method of `StatesSegmentation`."""
+    """Name of the segmentation that the agent contains, for reports and videos; `--semantics` is then not used. Videos
+    show it if the agent has the method of `StatesSegmentation`."""
     uses_ground_truth: bool = False
     """True: it may read the `semantic` sensor and gets the running environment as `truth`; its results say so."""
     goals: Callable[[Any], tuple[str, ...]] | None = None

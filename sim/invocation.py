@@ -91,7 +91,7 @@ def _script() -> str:
 
 
 def beside_python(name: str) -> str:
-    """Returns an installed program of this environment as the user would type it; its name where it is on the path."""
+    """Returns an installed program of this environment as the user would type it: its name, or its path if needed."""
     program = Path(sys.executable or "python").with_name(name)
     found = shutil.which(name)
     if not program.is_file() or (found is not None and Path(found) == program):

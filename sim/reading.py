@@ -1,4 +1,4 @@
-"""Reads files that people, other programs or earlier runs wrote: with declared types, bounded, one message per fault.
+"""Reads files that users, other programs or earlier runs wrote: it checks types and sizes, and names each fault.
 
 The types are those of msgspec: a `msgspec.Struct` names the fields that a file must have and their types, and the
 aliases below bound numbers and names. JSON has no NaN and no infinity here, nesting and size are limited, and a
@@ -39,7 +39,7 @@ MAX_LINES_BYTES = 512 << 20
 MAX_PIXELS = 64_000_000
 """Pixels of the largest image that is decoded."""
 MAX_TAR_HEADER_BYTES = 2048
-"""Largest extended header of a member of a tar file; `tarfile` takes a time that grows with the square of its size."""
+"""Largest extended header of a member of a tar file; the time of `tarfile` grows with the square of its size."""
 _TAR_EXTENSIONS = (
     tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE, tarfile.GNUTYPE_LONGNAME, tarfile.GNUTYPE_LONGLINK
 )  # fmt: skip
@@ -58,7 +58,7 @@ Number = Annotated[float, Meta(ge=-1e12, le=1e12)]
 Count = Annotated[int, Meta(ge=0, le=10**12)]
 Seed = Annotated[int, Meta(ge=0, le=2**63 - 1)]
 Name = Annotated[str, Meta(min_length=1, max_length=1000, pattern=r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*\Z")]
-"""An id or a name: text without control characters, which a terminal would obey."""
+"""An id or a name: text without control characters, which a terminal would interpret."""
 
 
 class Lines(NamedTuple):
@@ -68,11 +68,11 @@ class Lines(NamedTuple):
     whole_bytes: int
     """Length of the complete lines."""
     torn: str
-    """A sentence on an incomplete last line that was left out; "" if every line is complete."""
+    """A sentence on an incomplete last line, which was left out; "" if every line is complete."""
 
 
 def open_plain(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> BinaryIO:
-    """Returns a plain file, open for reading. A pipe, a device or a folder in its place is refused, without waiting.
+    """Returns a plain file, open for reading. It refuses a pipe, a device or a folder, and does not wait for a pipe.
 
     Every file that a user or data names is opened by this function.
 
@@ -82,7 +82,7 @@ def open_plain(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErr
         error: class of the error.
 
     Raises:
-        ObjectNavError: of class `error`; the file does not exist, cannot be opened or is no plain file.
+        ObjectNavError: of class `error`; the file does not exist, cannot be opened or is not a plain file.
     """
     try:
         return _open_plain(file)
@@ -126,7 +126,7 @@ def read_text(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErro
     """Returns the text of a file in UTF-8, or in the encoding of its byte order mark, as lines that end with "\\n".
 
     Raises:
-        ObjectNavError: of class `error`; the file cannot be read, is too large or is no such text.
+        ObjectNavError: of class `error`; the file cannot be read, is too large or is not text in this encoding.
     """
     content = read_bytes(file, what=what, error=error, most=most)
     try:
@@ -137,7 +137,7 @@ def read_text(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErro
 
 
 def read_csv(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> list[dict[str, str]]:
-    """Returns the rows of a CSV file by the names of its columns; a row that is too short has "" there.
+    """Returns the rows of a CSV file by the names of its columns; the missing fields of a short row are "".
 
     Raises:
         ObjectNavError: of class `error`; the file cannot be read or is not a table.
@@ -169,7 +169,7 @@ def without_mark(content: bytes) -> bytes:
     """Returns a text as UTF-8 without a byte order mark; text with the mark of UTF-16 is converted.
 
     Raises:
-        UnicodeError: it is not what its mark says.
+        UnicodeError: the text is not in the encoding of its mark.
     """
     for mark, encoding in _MARKS:
         if content.startswith(mark):
@@ -186,7 +186,7 @@ class PlainMember(tarfile.TarInfo):
         """Returns the member of a header of 512 bytes.
 
         Raises:
-            tarfile.TarError: it is no header, or it announces an extended header of more than `MAX_TAR_HEADER_BYTES`.
+            tarfile.TarError: it is not a header, or announces an extended header of more than `MAX_TAR_HEADER_BYTES`.
         """
         member = super().frombuf(buf, encoding, errors)
         if member.type in _TAR_EXTENSIONS and member.size > MAX_TAR_HEADER_BYTES:
@@ -280,7 +280,7 @@ def convert(
         kind: any type that msgspec knows.
         where: the file and line for the error message.
         error: class of the error.
-        strict: False also takes numbers that are written as text, as in CSV.
+        strict: False: numbers that are written as text, as in CSV, are allowed, too.
 
     Raises:
         ObjectNavError: of class `error`; it is of another type.
@@ -316,7 +316,7 @@ def read_npz(
 
     Args:
         file: the file.
-        names: the arrays to read, all of which the file must have; None: all that it has.
+        names: the arrays to read, all of which the file must have; None: all arrays of the file.
         what: kind of the file for the error message, for example "trajectory".
         most_bytes: largest size of all its arrays together.
         error: class of the error.
@@ -335,12 +335,12 @@ def read_npz(
             if missing is not None:
                 raise ValueError(f"it has no '{missing}'")
             return {name: _read_member(archive, name) for name in wanted}
-    except Exception as fault:  # damaged bytes raise more kinds of errors in zipfile and NumPy than a list could name
+    except Exception as fault:  # damaged files raise many kinds of errors in zipfile and NumPy
         raise error(f"'{file}' is not a {what}: {reason_of(fault)}.") from None
 
 
 def image_size_px(content: bytes) -> tuple[int, int] | None:
-    """Returns width and height of a PNG or JPEG image from its header; None where it is neither."""
+    """Returns width and height of a PNG or JPEG image from its header; None if it is neither."""
     if content[:8] == b"\x89PNG\r\n\x1a\n" and len(content) >= 24:
         width, height = struct.unpack(">II", content[16:24])
         return width, height
@@ -349,7 +349,7 @@ def image_size_px(content: bytes) -> tuple[int, int] | None:
         while position + 10 <= len(content) and content[position + 1] == 0xFF:
             position += 1  # a marker may follow any number of fill bytes
         marker, length = content[position + 1], int.from_bytes(content[position + 2 : position + 4], "big")
-        if marker == 0x01 or 0xD0 <= marker <= 0xD7:  # these stand alone
+        if marker == 0x01 or 0xD0 <= marker <= 0xD7:  # these markers have no length
             position += 2
             continue
         if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
@@ -360,7 +360,7 @@ def image_size_px(content: bytes) -> tuple[int, int] | None:
 
 
 def require_small_image(content: bytes, *, where: str, error: type[ObjectNavError] = ConfigError) -> None:
-    """Raises an error where an image is not a PNG or JPEG, or has more than `MAX_PIXELS` pixels."""
+    """Raises an error if an image is not a PNG or JPEG, or has more than `MAX_PIXELS` pixels."""
     size = image_size_px(content)
     if size is None:
         raise error(f"{where} is neither a PNG nor a JPEG image.")
@@ -382,7 +382,7 @@ def first_unprintable(words: Iterable[str]) -> str | None:
 
 
 def reason_of(fault: Exception) -> str:
-    """Returns the reason of an error in a few words: that of the operating system, else the error's message."""
+    """Returns the reason of an error in a few words: the operating system's text, else the error's message."""
     if isinstance(fault, OSError) and fault.strerror:
         return fault.strerror
     return " ".join(str(fault).split()).rstrip(".") or type(fault).__name__
@@ -395,7 +395,7 @@ def _without_lone_surrogates(line: bytes) -> bytes:
     try:
         return json.dumps(json.loads(line), ensure_ascii=False).encode("utf-8", errors="replace")
     except (ValueError, RecursionError):
-        return line  # the parser says what is wrong with it
+        return line  # the parser reports the fault
 
 
 def _read_member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:

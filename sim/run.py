@@ -44,7 +44,7 @@ def _run(options: RunOptions, console: Console) -> int:
 
     setup = resolve(options)
     if options.house is None and options.split == "test":
-        print("Split test is for a last measurement: do not base choices on its results.", file=sys.stderr)
+        print("The split test is for a last measurement: do not base choices on its results.", file=sys.stderr)
     episodes, split = episodes_of(setup)
     report_house(options, console)
     out = options.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S")

@@ -78,6 +78,11 @@ def imports(module: str, *, at_import_time: bool = False) -> Iterator[str]:
                 yield full if full in FILES else node.module
 
 
+def pairs_of(package: str) -> Iterator[tuple[str, str]]:
+    """Yields each module of a package with each module that it imports."""
+    yield from ((name, imported) for name in FILES if within(name, package) for imported in IMPORTS[name])
+
+
 def top_level(tree: ast.Module) -> Iterator[ast.stmt]:
     for node in tree.body:
         if isinstance(node, (ast.Import, ast.ImportFrom)):
@@ -95,31 +100,35 @@ def rank(module: str, rooms: tuple[tuple[str, ...], ...]) -> int:
     raise AssertionError(f"'{module}' is in no room: put it into one, or add its room to this table.")
 
 
-@pytest.mark.parametrize("module", sorted(set(FILES) - {"sim", "stubborn"}))
-def test_a_module_imports_its_own_room_and_those_below(module: str) -> None:
-    package = module.split(".")[0]
-    rooms = ROOMS if package == "sim" else AGENT_ROOMS
-    for imported in imports(module):
-        if within(imported, package):
-            assert rank(imported, rooms) <= rank(module, rooms), f"{module} imports {imported}, which is above it."
+IMPORTS = {name: tuple(imports(name)) for name in FILES}
 
 
-@pytest.mark.parametrize("module", sorted(name for name in FILES if within(name, "stubborn")))
-def test_the_agent_knows_of_the_world_only_its_interface(module: str) -> None:
-    for imported in imports(module):
+@pytest.mark.parametrize(("package", "rooms"), [("sim", ROOMS), ("stubborn", AGENT_ROOMS)])
+def test_a_module_imports_its_own_room_and_those_below(package: str, rooms: tuple[tuple[str, ...], ...]) -> None:
+    modules = [name for name in FILES if within(name, package) and name != package]
+    above = [
+        f"{module} imports {imported}, which is above it."
+        for module in modules
+        for imported in IMPORTS[module]
+        if within(imported, package) and rank(imported, rooms) > rank(module, rooms)
+    ]
+    assert above == []
+
+
+def test_the_agent_knows_of_the_world_only_its_interface() -> None:
+    for module, imported in pairs_of("stubborn"):
         assert not within(imported, "mujoco"), f"{module} imports {imported}."
         if within(imported, "sim"):
             assert any(within(imported, known) for known in KNOWN_TO_THE_AGENT), f"{module} imports {imported}."
 
 
-@pytest.mark.parametrize("module", sorted(name for name in FILES if within(name, "sim")))
-def test_only_the_composition_roots_know_the_agent_and_only_gl_imports_mujoco(module: str) -> None:
-    for imported in imports(module):
+def test_only_the_composition_roots_know_the_agent_and_only_gl_imports_mujoco() -> None:
+    for module, imported in pairs_of("sim"):
         if within(imported, "stubborn"):
             assert any(within(module, root) for root in COMPOSITION_ROOTS), f"{module} imports {imported}."
         assert not within(imported, "mujoco") or module == "sim.gl", f"{module} imports {imported}."
-        assert not within(imported, "tools")
-        assert not within(imported, "tests")
+        assert not within(imported, "tools"), f"{module} imports {imported}."
+        assert not within(imported, "tests"), f"{module} imports {imported}."
 
 
 def test_no_modules_import_each_other_in_a_circle() -> None:

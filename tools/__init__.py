@@ -1,1 +1,1 @@
-"""What makers of this project need, run as `python -m tools.research.NAME` from the root of the repository."""
+"""Tools for developers of this project, run as `python -m tools.research.NAME` from the root of the repository."""

@@ -40,7 +40,7 @@ class Run:
     """Result lines by `episode_id`."""
 
     def recorded(self, name: str) -> Any:
-        """Returns a field of config.json; raises ConfigError where a run of an older version does not have it."""
+        """Returns a field of config.json; raises ConfigError if a run of an older version does not have it."""
         value = self.config.get(name)
         if value is None:
             raise ConfigError(f"'{self.path / 'config.json'}' has no field '{name}', which this command needs.")
@@ -95,7 +95,7 @@ def differences_table(first: Run, *others: Run) -> ResultTable:
 
 
 def _short_text(value: Any) -> str:
-    """Returns a value as JSON; of an object that the other run does not have, only its number of fields."""
+    """Returns a value as JSON; for an object that the other run does not have, only its number of fields."""
     return f"{len(value)} fields" if isinstance(value, Mapping) else field_text(value)
 
 

@@ -1,4 +1,4 @@
-"""Prints the results of a run in the terminal; `sim.analysis.progress` says what happens while it runs."""
+"""Prints the results of a run in the terminal; `sim.analysis.progress` reports its progress."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def _is_error(line: Line) -> bool:
 
 
 def _cause(line: Line) -> str | None:
-    """Returns the cause of a failure, `error` where the episode broke; None where none was recorded, as for a success.
+    """Returns the cause of a failure, `error` where the episode broke; None if none was recorded, as for a success.
 
     `results.jsonl` has `misc` for an error, because the causes are those of the paper.
     """

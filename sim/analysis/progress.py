@@ -17,15 +17,15 @@ from sim.analysis.display import describe
 from sim.evaluation.watch import Steps
 
 QUIET_S = 5.0
-"""Output that is not a terminal is first silent for about this while an episode runs; each silence is longer ..."""
+"""First interval between two lines on a running episode, if the output is not a terminal; the interval then grows."""
 LONGEST_QUIET_S = 60.0
-"""... until it reaches this, so that the log of a long episode stays short."""
+"""Longest interval between two such lines: the log of a long episode stays short."""
 MOST_NAMED = 3
-"""Most running episodes that are named at a time."""
+"""Largest number of running episodes that a line names."""
 
 
 class Started(Protocol):
-    """An episode that begins."""
+    """The fields of an episode that are reported when it begins."""
 
     @property
     def episode_id(self) -> str: ...  # noqa: D102
@@ -44,13 +44,13 @@ class _Running:
 
 
 class ProgressReport:
-    """Says which episodes begin, run and end: with a bar in a terminal, else with lines of text.
+    """Reports which episodes begin, run and end: with a progress bar in a terminal, else with lines of text.
 
-    A line is printed when an episode begins and when it ends, and after silences of `QUIET_S` to `LONGEST_QUIET_S` in
-    between, so that a log or a pipe shows that the run goes on.
+    A line is printed when an episode begins, when it ends, and in between at intervals of `QUIET_S` to
+    `LONGEST_QUIET_S`, so that a log or a pipe shows that the run continues.
 
     Args:
-        console: prints.
+        console: prints the lines.
         total: number of episodes.
         max_steps: largest number of steps of an episode.
         quiet_s: see `QUIET_S`.
@@ -64,20 +64,20 @@ class ProgressReport:
         self._wait_s = quiet_s
         self._printed_s = time.monotonic()
         self._first: tuple[float, int] | None = None
-        """Time and number of steps when steps were seen for the first time, after house and kernels were loaded."""
+        """Time and number of steps at the first report with steps, when house and kernels were loaded."""
         self._done = self._steps_done = 0
         self._bar = _bar(console) if console.is_terminal else None
 
     def started(self, episode: Started, steps: Steps) -> None:
-        """Says that an episode begins; `steps` is asked for its progress."""
+        """Reports that an episode begins; `steps` returns its number of steps so far."""
         with self._lock:
             self._running[episode.episode_id] = _Running(steps, time.monotonic())
             goal = episode.goal.replace("_", " ")
             self._print(f"{episode.episode_id} begins: looking for {goal} in house {episode.house}")
 
     def over(self, lines: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-        """Yields the result lines, and says what happens until the last one."""
-        watch = threading.Thread(target=self._say_that_it_runs, daemon=True, name="progress")
+        """Yields the result lines, and reports the progress until the last one."""
+        watch = threading.Thread(target=self._report_running, daemon=True, name="progress")
         with contextlib.ExitStack() as stack:
             if self._bar is not None:
                 stack.enter_context(self._bar)
@@ -99,7 +99,7 @@ class ProgressReport:
                 self._bar.update(self._task, completed=self._done)
             self._print(f"[{self._done}/{self._total}] {describe(line)}")
 
-    def _say_that_it_runs(self) -> None:
+    def _report_running(self) -> None:
         while not self._over.wait(min(0.5, self._quiet_s)):
             with self._lock:
                 due = self._bar is not None or time.monotonic() - self._printed_s >= self._wait_s
@@ -127,10 +127,10 @@ class ProgressReport:
             self._print(f"{'; '.join(named)}{others}{pace}")
 
     def _pace(self, counts: list[int], now_s: float) -> str:
-        """Returns the steps per second since the first steps and the time left; "" before them.
+        """Returns a text with the steps per second since the first steps and the time left; "" before the first steps.
 
-        An episode is expected to have as many steps as those that ended have on average, and the most steps before the
-        first end.
+        An episode is expected to have the mean number of steps of those that have ended; before the first has ended, it
+        is expected to have the largest number of steps.
         """
         made = self._steps_done + sum(counts)
         if self._first is None and made > 0:

@@ -1,1 +1,1 @@
-"""Connects agents and scripts of other interfaces: those of Habitat, and agents in a process of their own."""
+"""Connects agents that run in a process of their own, and agents and scripts that are written for Habitat."""

@@ -1,8 +1,9 @@
 """Agents in a process of their own: `--agent process:COMMAND` runs them in another Python, environment or container.
 
 The agent's side is one file that users copy, `stubborn_client`, which describes the protocol. This side is an `Agent`
-like any other: it sends observations and nothing else. When the process crashes, hangs or sends something else than an
-answer, the episode ends as an error with the last lines of its standard error, and the next one starts it anew.
+like any other: it sends observations and nothing else. When the process crashes, hangs or sends anything other than an
+answer, the episode ends as an error with the last lines of its standard error, and the next episode starts the process
+again.
 """
 
 from __future__ import annotations
@@ -85,12 +86,12 @@ class ProcessAgent:
 
     Args:
         command: program and arguments, relative to the current folder.
-        camera, robot, success, max_steps: the task, of which the agent gets a description.
-        config: its options.
+        camera, robot, success, max_steps: the task, whose description is sent to the agent.
+        config: the options of the agent.
         step_timeout_s: longest time of a call; 0: no limit.
 
     Raises:
-        ConfigError: the process cannot be started, or does not answer.
+        ConfigError: the process cannot be started or does not answer.
     """
 
     def __init__(
@@ -106,7 +107,7 @@ class ProcessAgent:
         **others: object,
     ) -> None:
         self.name = f"{PREFIX}{shlex.join(command)}"
-        """As `--agent` has it."""
+        """The name as it is given to `--agent`."""
         self._command, self._config, self._limit_s = list(command), config, step_timeout_s or float("inf")
         self._setup = {
             "camera": as_json(camera),
@@ -118,14 +119,14 @@ class ProcessAgent:
         self._process: AgentProcess | None = None
         self._chosen = _Chosen(action=0)
         self.draws_map = False
-        """Whether the agent has a map to show."""
+        """Whether the agent draws a map."""
         try:
             self._start()
         except AgentError as error:
             raise ConfigError(f"Agent '{self.name}' cannot be started: {error}.") from None
 
     def reset(self, goal: str, seed: int) -> None:
-        """Starts a new episode, in a new process where the last one has failed."""
+        """Starts a new episode; if the last process has failed, in a new process."""
         process = self._process or self._start()
         process.new_episode()
         self._ask({"type": "reset", "goal": goal, "seed": seed}, _Done)
@@ -137,15 +138,15 @@ class ProcessAgent:
         return Action(self._chosen.action)
 
     def stop_confidence(self) -> float | None:
-        """Returns what the agent stated with its STOP."""
+        """Returns the confidence that the agent stated with its STOP; None if it stated none."""
         return self._chosen.stop_confidence
 
     def stop_target_xy_m(self) -> tuple[float, float] | None:
-        """Returns what the agent stated with its STOP."""
+        """Returns the place of the target that the agent stated with its STOP; None if it stated none."""
         return self._chosen.stop_target_xy_m
 
     def map_image(self) -> tuple[NDArray[np.uint8], str]:
-        """Returns the agent's map, uint8 RGB (h, w, 3), and its words about what it does."""
+        """Returns the agent's map, uint8 RGB (h, w, 3), and a few words on what the agent is doing."""
         drawn, answer = self._ask({"type": "map"}, _Map)
         described = [msgspec.to_builtins(each) for each in drawn.arrays]
         try:
@@ -182,10 +183,10 @@ class ProcessAgent:
         *,
         within_s: float | None = None,
     ) -> tuple[T, Answer]:
-        """Returns the header of the answer to a request, and the answer.
+        """Returns the checked header of the answer to a request, and the whole answer.
 
         Raises:
-            AgentError: there is no valid answer; the process has been ended.
+            AgentError: no valid answer arrived; the process has been ended.
         """
         if self._process is None:
             raise AgentError("its process has ended")
@@ -194,10 +195,10 @@ class ProcessAgent:
             header = answer.parsed(kind | _Failed)  # type: ignore[operator]
         except AgentError as error:
             raise self._failure(error) from None
-        except BaseException:  # Ctrl-C leaves an answer behind
+        except BaseException:  # after Ctrl-C, the answer to this request would arrive as that to the next one
             self.close()
             raise
-        if isinstance(header, _Failed):  # an error in Python, whose traceback the terminal has
+        if isinstance(header, _Failed):  # the agent raised an error; its process has printed the traceback
             self.close()
             raise AgentError(one_line(header.error))
         return header, answer
@@ -215,7 +216,7 @@ class ProcessPainter:
     """Draws the map that the agent sends, for viewers (`sim.viewers.viewer.MapPainter`)."""
 
     legend: tuple[tuple[str, Colour], ...] = ()
-    """Name and colour of each item: the agent's own image has none."""
+    """Name and colour of each item; it is empty, because the agent's image has no known colours."""
 
     def __init__(self, agent: ProcessAgent) -> None:
         self._agent = agent
@@ -232,7 +233,7 @@ class ProcessPainter:
         return paper
 
     def words(self) -> str:
-        """Returns the agent's words about what it does, of its last image."""
+        """Returns the words on what the agent is doing that came with its last image."""
         return self._words
 
 

@@ -1,4 +1,4 @@
-"""Names of agents in a process of their own, `process:COMMAND`: the words and the files of the command, the options."""
+"""Reads names of agents in a process of their own, `process:COMMAND`: the words and files of the command."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PREFIX = "process:"
 
 @dataclass(frozen=True, kw_only=True)
 class ProcessConfig:
-    """The options of an agent in a process of its own. `--step-timeout` limits its calls."""
+    """The options of an agent in a process of its own. `--step-timeout` limits each of its calls."""
 
     start_timeout_s: float = 120.0
     """Longest time from the start of the command to its first answer."""
@@ -44,12 +44,12 @@ def command_of(name: str) -> list[str]:
 
 
 def is_process(name: str) -> bool:
-    """Returns whether a name of `--agent` is that of an agent in a process of its own."""
+    """Returns whether a name given to `--agent` names an agent in a process of its own."""
     return name.startswith(PREFIX)
 
 
 def files_of(name: str) -> list[Path]:
-    """Returns the files that the command of an agent names, and the module after `-m`, where they are plain files."""
+    """Returns the plain files that the command of an agent names, and the file of the module after `-m`."""
     words = command_of(name)
     modules = [word.replace(".", "/") for before, word in itertools.pairwise(words) if before == "-m"]
     paths = [Path(word) for word in words]

@@ -1,12 +1,12 @@
-"""Starts an agent's command and ends it, with all processes that it has started, as soon as the simulator is gone.
+"""Starts an agent's command and ends it, with all processes that it has started, as soon as the simulator has ended.
 
-A program of its own between the simulator and the agent: it needs nothing but Python, and is alive when either of the
-two is killed. It learns that the simulator is gone from the end of the control socket.
+The guard is a program of its own between the simulator and the agent, so that it still runs if either of the two is
+killed. It needs nothing but Python. When the simulator has ended, the control socket is closed.
 
     python process_guard.py CONTROL COMMAND ...
 
-CONTROL is the number of an open socket to the simulator. The guard writes one line to it: `ended STATUS`, `killed
-SIGNAL` or `failed REASON`, once the command has ended or could not be started.
+CONTROL is the number of an open socket to the simulator. When the command has ended or could not be started, the guard
+writes one line to it: `ended STATUS`, `killed SIGNAL` or `failed REASON`.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ import time
 from collections.abc import Iterator
 
 TICK_S = 0.02
-"""Interval at which the command is looked at where the kernel has no file descriptors for processes."""
+"""Interval at which the command is checked if the kernel has no file descriptors for processes."""
 ENDING_S = 3.0
-"""Longest time for which processes are ended; those of a fork bomb may come faster than they go."""
+"""Longest time for which processes are killed; a fork bomb may start them faster than they can be killed."""
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36  # sys/prctl.h
 
 
 def main(control: socket.socket, command: list[str]) -> None:
-    """Runs the command until it ends or the simulator is gone, then ends all that is left of it."""
+    """Runs the command until it or the simulator has ended, then kills all processes of the command that remain."""
     _prctl(_PR_SET_CHILD_SUBREAPER, 1)  # processes whose parent has ended become children of this one
     try:
-        # A session of its own, so that Ctrl-C does not reach it.
+        # The command gets a session of its own, so that Ctrl-C does not reach it.
         agent = subprocess.Popen(command, start_new_session=True, preexec_fn=_end_with_guard)
     except (OSError, ValueError, subprocess.SubprocessError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         _say(control, f"failed {reason}: '{command[0]}'")
         return
     nothing = os.open(os.devnull, os.O_RDWR)
-    for number in (0, 1, 2):  # the pipes belong to the agent alone, whose end closes them
+    for number in (0, 1, 2):  # only the agent holds the pipes from here on, so that they are closed when it ends
         os.dup2(nothing, number)
     _wait(agent, control)
     status = agent.poll()
@@ -50,10 +50,10 @@ def main(control: socket.socket, command: list[str]) -> None:
 
 
 def _wait(agent: subprocess.Popen[bytes], control: socket.socket) -> None:
-    """Returns when the agent has ended or the simulator is gone."""
+    """Waits until the agent or the simulator has ended."""
     watch, tick_ms = select.poll(), TICK_S * 1e3
     watch.register(control, select.POLLIN)
-    with contextlib.suppress(OSError, AttributeError):  # neither old kernels nor macOS have it
+    with contextlib.suppress(OSError, AttributeError):  # old kernels and macOS do not have it
         watch.register(os.pidfd_open(agent.pid), select.POLLIN)
         tick_ms = None
     while agent.poll() is None:
@@ -73,7 +73,7 @@ def _end_all(agent: subprocess.Popen[bytes]) -> None:
         with contextlib.suppress(ChildProcessError):
             while os.waitpid(-1, os.WNOHANG)[0]:
                 pass
-            time.sleep(0.002)  # some are still ending
+            time.sleep(0.002)  # some processes have not ended yet
             continue
         return
 
@@ -91,7 +91,7 @@ def _descendants() -> Iterator[int]:
 
 
 def _end_with_guard() -> None:
-    """Has Linux end the agent where the guard itself is killed; runs in the agent's process before its program."""
+    """Makes Linux kill the agent if the guard is killed; it runs in the agent's process before the command."""
     _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
@@ -101,7 +101,7 @@ def _prctl(option: int, value: int) -> None:
 
 
 def _say(control: socket.socket, line: str) -> None:
-    with contextlib.suppress(OSError):  # the simulator is gone
+    with contextlib.suppress(OSError):  # the simulator has ended
         control.sendall(line.encode(errors="replace") + b"\n")
 
 

@@ -1,8 +1,8 @@
 """Starts the process of an agent and exchanges messages with it: one answer for each request, within a time limit.
 
-The process is ended with all that it has started when an exchange fails, when it is closed, and when this process is
-gone (`process_guard`). Nothing waits without a limit and no queue grows: what the agent prints is read while an
-exchange runs, and only its end is kept.
+The process and all processes that it has started are ended when an exchange fails, when `close` is called, and when
+the simulator has ended (`process_guard`). Nothing waits without a limit and no queue grows: what the agent prints is
+read while an exchange runs, and only its end is kept.
 """
 
 from __future__ import annotations
@@ -35,28 +35,28 @@ T = TypeVar("T")
 MOST_ANSWER_BYTES = 64 << 20
 """Largest size of the arrays of an answer: a map of 4600 x 4600 pixels."""
 TAIL_LINES, TAIL_BYTES = 6, 2000
-"""The last lines of standard error that an error message repeats."""
+"""Number of the last lines of standard error that an error message repeats, and of the bytes that are kept."""
 PRINTED_BYTES = 1 << 16
-"""What an agent prints appears in the terminal up to this size for each episode."""
+"""Largest number of bytes of an agent's output that the terminal shows in each episode."""
 CLOSING_S = 2.0
-"""Time that the agent has to end after its pipe was closed."""
+"""Longest time in which the agent may end by itself after its pipe was closed."""
 GUARD_S = 5.0
-"""Time that the guard has to end all processes of the agent."""
+"""Longest time in which the guard may end all processes of the agent."""
 _PIPE_BYTES = 1 << 20
 """Size of the pipes, the largest that Linux allows without privileges."""
 _CHUNK_BYTES = 1 << 20
 
 
 class Answer(NamedTuple):
-    """A message of the agent."""
+    """An answer of the agent."""
 
     header: bytes
-    """JSON."""
+    """The header of the message, JSON."""
     content: memoryview
     """The bytes of its arrays."""
 
     def parsed(self, kind: type[T]) -> T:
-        """Returns the header as the declared type; raises AgentError where it is of another one."""
+        """Returns the header as the declared type; raises AgentError if it has another type."""
         return parse_json(self.header, kind, where="its answer", error=AgentError)
 
 
@@ -67,7 +67,7 @@ class AgentProcess:
         command: program and arguments.
 
     Raises:
-        AgentError: this process cannot start another one.
+        AgentError: the operating system does not start another process.
     """
 
     def __init__(self, command: Sequence[str]) -> None:
@@ -103,13 +103,13 @@ class AgentProcess:
         self._received, self._tail, self._begun = bytearray(), bytearray(), False
         self._printed_bytes = 0
         self._end = ""
-        """How the process has ended; "": it runs."""
+        """A text on how the process has ended, for messages; "" while it runs."""
         self._memory = _SharedMemory.make()
         self._number = 0
 
     @property
     def memory(self) -> dict[str, str] | None:
-        """The description of the shared memory for the agent; None where the system has none."""
+        """The description of the shared memory for the agent; None if the operating system does not provide any."""
         return None if self._memory is None else self._memory.description
 
     def share_no_memory(self) -> None:
@@ -122,12 +122,12 @@ class AgentProcess:
         """Sends a request and returns its answer.
 
         Args:
-            request: its header, JSON types, with `type`.
-            arrays: by name.
-            within_s: longest time.
+            request: header of the message, JSON types; it has the key `type`.
+            arrays: arrays of the message by name; None: it has none.
+            within_s: longest time until the whole answer has arrived.
 
         Raises:
-            AgentError: no answer came; the process is of no more use and must be closed.
+            AgentError: no valid answer arrived; the process cannot be used any more and must be closed.
         """
         self._number += 1
         shared = arrays is not None and self._memory is not None
@@ -146,7 +146,7 @@ class AgentProcess:
         return answer
 
     def close(self, *, at_once: bool = False) -> None:
-        """Ends the process with all that it has started; unless `at_once`, it has `CLOSING_S` to end by itself."""
+        """Ends the process and all that it has started; unless `at_once`, it may first end by itself in `CLOSING_S`."""
         if self._finalizer.detach() is None:
             return
         _end(self._guard, self._control, 0.0 if at_once else CLOSING_S)
@@ -156,13 +156,13 @@ class AgentProcess:
                 stream.close()
 
     def new_episode(self) -> None:
-        """Lets the agent print as much as before."""
+        """Begins to count the printed bytes again; see `PRINTED_BYTES`."""
         self._printed_bytes = 0
 
     def last_lines(self) -> str:
-        """Returns the last lines of the agent's standard error, in one line; "" where it printed nothing.
+        """Returns the last lines of the agent's standard error, in one line; "" if it printed nothing.
 
-        Called after `close`, so that all is there.
+        Call it after `close`, when all output has been read.
         """
         text = self._tail[-TAIL_BYTES:].decode("utf-8", errors="replace")
         lines = [line.strip() for line in text.splitlines() if line.strip()][-TAIL_LINES:]
@@ -188,11 +188,11 @@ class AgentProcess:
                     pending = self._write(pending)
                 else:
                     self._read(number, hung_up=not event & select.POLLIN)
-            now_s = time.monotonic()  # time in which this process was stopped does not count, for example by Ctrl-Z
+            now_s = time.monotonic()  # time in which this process was stopped, for example by Ctrl-Z, does not count
             waited_s, looked_s = waited_s + min(now_s - looked_s, 2.0 * TICK_S), now_s
 
     def _write(self, pending: list[memoryview]) -> list[memoryview]:
-        """Writes what the pipe takes; returns what is left."""
+        """Writes as much as the pipe accepts; returns the rest."""
         try:
             done = os.writev(self._source, pending) if pending else 0
         except BlockingIOError:
@@ -229,21 +229,21 @@ class AgentProcess:
             self._drain()
 
     def _wait_for_end(self) -> None:
-        """Waits a moment for the guard's line: a closed pipe mostly means that the process has ended."""
+        """Waits up to `TICK_S` for the line of the guard: a closed pipe usually means that the process has ended."""
         if not self._end and select.select([self._control], [], [], TICK_S)[0]:
             with contextlib.suppress(OSError):
                 self._end = _end_in_words(self._control.recv(_CHUNK_BYTES))
             self._drain()
 
     def _drain(self) -> None:
-        """Reads what an agent that has ended had written before."""
+        """Reads all output that an agent had written before it ended."""
         for number, keep in ((self._sink, self._received.extend), (self._printed, self._keep)):
-            with contextlib.suppress(OSError):  # nothing is left, and it is open elsewhere
+            with contextlib.suppress(OSError):  # the pipe is empty, and another process still holds it open
                 while content := os.read(number, _CHUNK_BYTES):
                     keep(content)
 
     def _keep(self, printed: bytes) -> None:
-        """Keeps the end of what the agent prints, and shows its beginning."""
+        """Keeps the end of the agent's output for messages, and prints the beginning of it."""
         self._tail = (self._tail + printed)[-TAIL_BYTES:]
         before = self._printed_bytes
         self._printed_bytes += len(printed)
@@ -255,12 +255,12 @@ class AgentProcess:
                 sys.stderr.write(shown)
 
     def _next_message(self) -> Answer | None:
-        """Removes the next whole message from what was received; None: it is not complete.
+        """Removes the next message from the received bytes and returns it; None while it is not complete.
 
         Raises:
-            ProtocolError: something else came.
+            ProtocolError: the bytes are not a message.
         """
-        if not self._begun:  # what modules print before `serve` is called
+        if not self._begun:  # modules of the agent may print before `serve` is called
             begin = self._received.find(MARK)
             keep = len(MARK) - 1 if begin < 0 else len(self._received) - begin
             text = self._received[: max(0, len(self._received) - keep)]
@@ -281,7 +281,7 @@ class AgentProcess:
 
 
 class _SharedMemory:
-    """Memory in which observations are written, which another process can open by its path."""
+    """Memory for observations, which the process of the agent opens by its path."""
 
     def __init__(self, handle: int) -> None:
         self._stream = os.fdopen(handle, "r+b", buffering=0)
@@ -292,7 +292,7 @@ class _SharedMemory:
 
     @classmethod
     def make(cls) -> _SharedMemory | None:
-        """Returns new memory; None where the system has none."""
+        """Returns new memory; None if the operating system does not provide any."""
         if not hasattr(os, "memfd_create"):
             return None
         try:
@@ -313,7 +313,7 @@ class _SharedMemory:
 
 
 def _end_in_words(line: bytes) -> str:
-    """Returns how the process has ended, from the line of its guard."""
+    """Returns the words for a message on how the process has ended, from the line that its guard wrote."""
     kind, _, value = line.decode(errors="replace").strip().partition(" ")
     if kind == "ended":
         return f"ended with status {value}"
@@ -330,7 +330,7 @@ def _signal_name(number: int) -> str:
 
 
 def _end(guard: subprocess.Popen[bytes], control: socket.socket, within_s: float) -> None:
-    """Closes the pipe of an agent, waits for its end, and has its guard end what is left."""
+    """Closes the pipe of an agent and waits for its end; then its guard ends all processes that remain."""
     assert guard.stdin is not None
     guard.stdin.close()
     with contextlib.suppress(OSError, ValueError):

@@ -6,24 +6,24 @@ Copy this file next to your agent; it needs Python 3.6 or newer, and NumPy. The 
 
     serve(MyAgent())
 
-An agent has two methods. `reset(goal, seed)` starts an episode; `goal` is a category such as "chair". The other one,
-`act(observation)`, returns 0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT or 3 TURN_RIGHT. The observation is a dict of arrays:
-`rgb` uint8 (h, w, 3), `depth` float32 (h, w) in metres, `gps` float32 (2,), `compass` float32 (1,) and `objectgoal`
-int64 (1,).
+An agent has two methods. `reset(goal, seed)` starts an episode; `goal` is a category such as "chair".
+`act(observation)` returns the next action: 0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT or 3 TURN_RIGHT. The observation is a
+dict of arrays: `rgb` uint8 (h, w, 3), `depth` float32 (h, w) in metres, `gps` float32 (2,), `compass` float32 (1,) and
+`objectgoal` int64 (1,).
 
-Further methods are optional. `stop_confidence()` and `stop_target_xy_m()` are asked after STOP. `map_image()` returns
-the agent's map for videos, uint8 RGB (h, w, 3), and `state()` a few words about what it does.
+Further methods are optional. `stop_confidence()` and `stop_target_xy_m()` are called after STOP. `map_image()` returns
+the agent's map for videos, uint8 RGB (h, w, 3), and `state()` returns a few words on what the agent is doing.
 
 `serve` also takes a class or a function that gets the description of the task and returns the agent:
 `make(setup)` with `setup.camera.width_px`, `height_px`, `hfov_rad`, `height_m`, `min_depth_m`, `max_depth_m`,
 `setup.robot.radius_m`, `height_m`, `setup.success.distance_m`, `setup.max_steps` and `setup.goals`, the categories in
 the order of `objectgoal`.
 
-Protocol: messages pass through standard input and output, so that any program which forwards these can stand between
-the two (ssh, docker run -i). What the agent prints goes to standard error. A message is `PREFIX` (mark, version, bytes
-of the header, bytes of the arrays), a header in JSON, then the arrays, little-endian in C order, one after the other.
-Arrays of observations pass through shared memory where both sides can open it. Each request has a number, which its
-answer repeats.
+Protocol: messages pass through standard input and output, so that any program which forwards these (ssh, docker run -i)
+can connect the two processes. What the agent prints goes to standard error. A message consists of `PREFIX` (mark,
+version, number of bytes of the header and of the arrays), a header in JSON, and the arrays, little-endian in C order,
+one after the other. The arrays of observations pass through shared memory if both sides can open it. Each request has
+a number, which its answer repeats.
 """
 
 import json
@@ -50,17 +50,17 @@ MOST_HEADER_BYTES = 1 << 16
 MOST_ARRAY_BYTES = 1 << 29
 """Largest size of the arrays of a message."""
 SHARED_START = 4096
-"""Place of the arrays in shared memory; before it is the key."""
+"""Offset of the arrays in shared memory, in bytes; the key is stored before them."""
 DTYPES = ("|b1", "|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f2", "<f4", "<f8")
-"""Types of the elements of arrays, as NumPy writes them."""
+"""Allowed types of array elements, in NumPy's notation."""
 LAST_WORDS_S = 5.0
-"""Time that the agent has to end after the simulator has."""
+"""Longest time in which the agent may end by itself after the simulator has ended."""
 STOP, MOVE_FORWARD, TURN_LEFT, TURN_RIGHT = range(4)
 ACTIONS = "0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT, 3 TURN_RIGHT"
 
 
 class ProtocolError(Exception):
-    """The other side sent something else than a message."""
+    """The other side sent bytes that are not a valid message."""
 
 
 def pack(header, arrays=None, shared=False):
@@ -86,12 +86,12 @@ def pack(header, arrays=None, shared=False):
 
 
 def sizes_of(prefix):
-    """Returns the bytes of header and arrays that a prefix announces; raises ProtocolError where it is not valid."""
+    """Returns the bytes of header and arrays that a prefix announces; raises ProtocolError if it is not valid."""
     mark, version, header_bytes, array_bytes = PREFIX.unpack(prefix)
     if mark != MARK:
-        raise ProtocolError(f"no message begins with {prefix!r}")
+        raise ProtocolError(f"a message does not begin with {prefix!r}")
     if version != VERSION:
-        raise ProtocolError(f"version {version} of the protocol, not {VERSION}: copy stubborn_client.py anew")
+        raise ProtocolError(f"version {version} of the protocol, not {VERSION}: copy stubborn_client.py again")
     if header_bytes > MOST_HEADER_BYTES or array_bytes > MOST_ARRAY_BYTES:
         most = f"{MOST_HEADER_BYTES} + {MOST_ARRAY_BYTES}"
         raise ProtocolError(f"a message of {header_bytes} + {array_bytes} bytes is too large, at most {most}")
@@ -102,7 +102,7 @@ def unpack_arrays(described, content):
     """Returns the arrays of a message by name, as views of its content.
 
     Args:
-        described: a dict with `name`, `dtype` and `shape` of each array.
+        described: a list of dicts, each with `name`, `dtype` and `shape` of an array.
         content: the bytes of the arrays.
 
     Raises:
@@ -141,7 +141,7 @@ def serve(agent):
             return
         try:
             answer, arrays = client.answer(request, content)
-        except Exception as error:  # of the agent; the simulator ends the episode
+        except Exception as error:  # the agent raised it; the simulator ends the episode
             traceback.print_exc()
             answer, arrays = {"type": "error", "error": _text_of(error)}, {}
         for buffer in pack(dict(answer, id=request["id"]), arrays):
@@ -199,7 +199,7 @@ class _Client:
 
 
 class _SharedMemory:
-    """The memory in which the simulator writes observations, if this process can open it."""
+    """The memory into which the simulator writes observations, if this process can open it."""
 
     def __init__(self):
         self._file, self._view = -1, None
@@ -232,7 +232,7 @@ class _SharedMemory:
 
 
 def _take_pipes():
-    """Returns copies of standard input and output for the protocol; what the agent prints goes to standard error."""
+    """Returns copies of standard input and output for the protocol; from here on, `print` writes to standard error."""
     sys.stdout.flush()
     source, sink = os.dup(0), os.dup(1)
     nothing = os.open(os.devnull, os.O_RDONLY)
@@ -245,7 +245,7 @@ def _take_pipes():
 def _end_with_simulator(source):
     """Ends this process soon after the simulator has closed its pipe, also in the middle of a call."""
     watch = select.poll()
-    watch.register(source, 0)  # reports only that the other side is gone
+    watch.register(source, 0)  # reports only that the other side has closed the pipe
     while not any(event & (select.POLLHUP | select.POLLERR | select.POLLNVAL) for _, event in watch.poll()):
         pass
     time.sleep(LAST_WORDS_S)
@@ -265,7 +265,7 @@ def _receive(source):
 
 
 def _read(source, count):
-    """Returns this number of bytes; None where the pipe ends before."""
+    """Returns this number of bytes; None if the pipe is closed before they have arrived."""
     content, done = np.empty(count, np.uint8), 0
     view = content.data
     while done < count:
@@ -291,7 +291,7 @@ def _map_of(agent):
 
 
 def _number(value):
-    """Returns a number of the agent as a float that JSON has, or None."""
+    """Returns a number of the agent as a Python float; None if it is None."""
     return None if value is None else float(value)
 
 
@@ -303,7 +303,7 @@ def _as_namespace(value):
 
 
 def _text_of(error):
-    """Returns an error in one line, with the place in the agent's code."""
+    """Returns an error in one line, with file and line of the agent's code."""
     text = " ".join(f"{type(error).__name__}: {error}".split())[:2000]
     frames = traceback.extract_tb(error.__traceback__)
     frame = next((each for each in reversed(frames) if each[0] != __file__), None)

@@ -1,7 +1,7 @@
 """Writes the client file for agents in a process of their own, which users copy next to their agent.
 
 stubborn agent-client --out stubborn_client.py
-stubborn agent-client > stubborn_client.py          # the same
+stubborn agent-client > stubborn_client.py          # does the same
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class Args:
     """Write the client file for agents that run with --agent process:COMMAND; it needs Python 3.6 and NumPy."""
 
     out: cli.OutFile | None = None
-    """The file; by default it is printed."""
+    """The file to write; by default its content is printed."""
 
 
 def main(args: Args) -> int:

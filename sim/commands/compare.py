@@ -82,7 +82,7 @@ def compare(first: Run, second: Run) -> ResultTable:
 
 
 def verdict(first: Run, second: Run) -> str:
-    """Returns one or two sentences: whether success and SPL differ significantly between two runs.
+    """Returns sentences on whether success and SPL differ significantly between two runs.
 
     Raises:
         ConfigError: the runs are of different splits, or share no episode.

@@ -14,8 +14,8 @@ The folder's name selects the recipe (`sim.episodes.recipes`): how many episodes
 distance from start to goal, and which starts count; other folders use the default recipe, or the one of `--recipe`.
 
 The houses take turns; the next goal of a house is the one with the fewest episodes so far, so that the first N episodes
-are balanced for any N. In a house of two storeys, the episodes take turns on them, and a goal counts as reachable on
-the storey of the start only. A start is sampled uniformly from the free space that the recipe allows, and the robot has
+are balanced for any N. In a house of two storeys, the episodes alternate between them, and only goals on the storey of
+the start count as reachable. A start is sampled uniformly from the free space that the recipe allows, and the robot has
 no contact there. Goals are categories with an instance that can be reached; instances that cannot be reached are listed
 in `unreachable.json`. The same seed, houses, version and success rule give the same bytes.
 """
@@ -36,7 +36,7 @@ import numpy as np
 from sim import cli
 from sim.episodes.house_episodes import Ask, HouseAsks, StartDrawer, find_house_asks, turned_start
 from sim.episodes.recipes import DEFAULT_RECIPE, EPISODE_RECIPES, EpisodeRecipe
-from sim.episodes.splits import LABELS_FILE, Episode, house_sidecar, labels_of, write_split
+from sim.episodes.splits import LABELS_FILE, Episode, house_files, house_sidecar, labels_of, write_split
 from sim.errors import EpisodeError, HouseError
 from sim.evaluation.parallel import ordered_map
 from sim.files import inside, write_picture, write_together
@@ -84,7 +84,7 @@ class Args:
     workers: cli.Count = 1
     """Number of processes."""
     pictures: cli.OnUnlessNo = True
-    """Write no map of the starts and goals of each house (pictures/ in the split's folder)."""
+    """Do not write a map of the starts and goals of each house (pictures/ in the split's folder)."""
     success: SuccessRule = field(default_factory=SuccessRule)
     """Conditions under which a STOP succeeds; distances, view points and unreachable goals depend on them."""
 
@@ -96,7 +96,7 @@ def main(args: Args) -> int:
         ConfigError, EpisodeError, HouseError: there are no houses, or a house cannot be used.
     """
     args = with_split(args)
-    files, recipe = house_files(folder_of(args)), recipe_of(args)
+    files, recipe = house_names(folder_of(args)), recipe_of(args)
     if (args.episodes is not None and args.episodes < 1) or args.workers < 1:
         raise ConfigError("--episodes and --workers must be at least 1.")
     began_s = time.perf_counter()
@@ -127,7 +127,7 @@ def main(args: Args) -> int:
 
 
 def folder_of(args: Args) -> Path:
-    """Returns the folder of the split; raises ConfigError where the options name none."""
+    """Returns the folder of the split; raises ConfigError if the options name none."""
     if args.split is None:
         raise ConfigError("episodes needs --split FOLDER, or --house FILE with --out FOLDER.")
     return args.split
@@ -146,7 +146,7 @@ def with_split(args: Args) -> Args:
         return args
     if args.split is not None or args.out is None:
         raise ConfigError("--house needs --out FOLDER, and excludes --split.")
-    others = [file.stem for file in args.out.glob("*.xml") if file.stem != args.house.stem]
+    others = [name for name in house_files(args.out) if name != args.house.stem]
     if others:
         raise ConfigError(f"--out '{args.out}' holds the house '{others[0]}' already; give a folder of its own.")
     house = load_house(args.house, labels_path=args.labels, root=args.root)
@@ -162,7 +162,7 @@ def with_split(args: Args) -> Args:
 
 
 def _require_same(house: House, written: House) -> None:
-    """Raises HouseError where a house that was written as one file has other geoms or labels."""
+    """Raises HouseError if a house that was written as one file has other geoms or labels."""
     first, second = house.spec.copy().compile(), written.spec.copy().compile()
     same = first.ngeom == second.ngeom and np.allclose(first.geom_pos, second.geom_pos, atol=1e-4)
     if same:
@@ -172,16 +172,13 @@ def _require_same(house: House, written: House) -> None:
         raise HouseError(f"House '{house.name}' changes when MuJoCo writes it as one file; use it with --house.")
 
 
-def house_files(folder: Path) -> tuple[str, ...]:
+def house_names(folder: Path) -> tuple[str, ...]:
     """Returns the names of the houses in the folder of a split.
 
     Raises:
         ConfigError: there are no houses.
     """
-    listed = has_house_list(folder)
-    names = (
-        tuple(read_house_list(folder).recipes) if listed else tuple(sorted(file.stem for file in folder.glob("*.xml")))
-    )
+    names = tuple(read_house_list(folder).recipes if has_house_list(folder) else house_files(folder))
     if not names:
         raise ConfigError(f"There is no house in '{folder}' (`{command('houses', 'generate')}` makes some).")
     return names
@@ -205,15 +202,15 @@ def balanced_goals(
 ) -> list[tuple[str, Ask]]:
     """Returns house and goal of each episode: the houses in turn, and the goal with the fewest episodes so far.
 
-    The episodes of a house take turns on its storeys.
+    The episodes of a house alternate between its storeys.
 
     Args:
         asks_of: the goals of each house.
         count: number of episodes.
-        most: largest numbers of episodes of houses whose sidecar fixes the start.
+        most: largest number of episodes of each house whose sidecar fixes the start.
 
     Raises:
-        EpisodeError: a house has no goal that can be asked for, or the houses have fewer different episodes.
+        EpisodeError: a house has no goal, or there are fewer different episodes than `count`.
     """
     most = most or {}
     for house, asks in asks_of.items():
@@ -267,7 +264,7 @@ def draw_episodes(args: Args, order: Sequence[tuple[str, Ask]]) -> list[Episode]
 
 def _task(args: Args, house: str) -> Task:
     folder = folder_of(args)
-    path = read_house_list(folder).fetch(house) if has_house_list(folder) else folder / f"{house}.xml"
+    path = read_house_list(folder).fetch(house) if has_house_list(folder) else house_files(folder)[house]
     loaded = load_house(path, labels_path=labels_of(folder))
     return Task(World(loaded, rule=args.success), TaskConfig(success=args.success))
 
@@ -279,7 +276,7 @@ def _find_asks(args: Args, house: str) -> HouseAsks:
 def _sidecar(args: Args, house: str) -> Sidecar:
     """Returns the sidecar next to a house file of the split; empty if there is none."""
     folder = folder_of(args)
-    return EMPTY_SIDECAR if has_house_list(folder) else house_sidecar(folder / f"{house}.xml", labels_of(folder))
+    return EMPTY_SIDECAR if has_house_list(folder) else house_sidecar(house_files(folder)[house], labels_of(folder))
 
 
 def _draw(args: Args, digits: int, work: tuple[int, str, list[Turn]]) -> tuple[list[tuple[int, Episode]], int]:

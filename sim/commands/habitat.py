@@ -28,13 +28,13 @@ class Args:
     """Run an evaluation script that is written for Habitat."""
 
     script: Annotated[tyro.conf.Positional[str], tyro.conf.arg(metavar='"SCRIPT ARGUMENTS"')]
-    """The script and its arguments, in quotation marks."""
+    """The script and its arguments, together in quotation marks."""
     split: str | None = None
     """A shipped split, or a folder laid out like one; by default that of the script's configuration, or val."""
     house: Path | None = None
     """One MJCF file in place of a split."""
     episodes: cli.Count | None = None
-    """The first N episodes; by default all of the split."""
+    """Number of episodes, the first of the split; by default all."""
     seed: cli.Seed = 0
     """Seed of sensor noise and, with --house, of starts and goals."""
     categories: str = "mp3d"

@@ -1,12 +1,13 @@
-"""Proposes category labels for a scene from elsewhere, or shows the labels that a file of rules gives it.
+"""Proposes category labels for a scene from another source, or shows the labels that a file of rules gives it.
 
     stubborn label --house kitchen.xml --out labels.json --picture labels.png
     stubborn label --house kitchen.xml --labels labels.json --picture labels.png
 
 The first command writes rules for the names in the scene, from the words in them and from sizes
 (`sim.houses.proposals`); names without a known word get `void`. Edit the categories in the file, then check it with the
-second command. Both print a table of the instances: name, category, number of geoms, size and height above the floor,
-and doubts about the label. The picture shows the scene from above, in its own colours and in those of the categories.
+second command. Both print a table of the instances: name, category, number of geoms, size, height above the floor, and
+a note if the label is doubtful. The picture shows the scene from above, in its own colours and in those of the
+categories.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ from sim.reading import read_bytes
 
 SHARDS = "shard_*_of_*"
 MAX_FILE_BYTES = 4 << 30
-"""Largest file of an episode, a video, that is copied."""
+"""Largest file of an episode that is copied; videos are the largest."""
 COPIED = ("trajectories", "pictures", "videos", "rerun")
 """Folders of a run with files of single episodes."""
 
@@ -58,7 +58,7 @@ def main(args: Args) -> int:
         existing = {line["episode_id"]: line for line in merged.lines}
         for episode_id, line in lines.items():
             before = existing.get(episode_id)
-            if before is None or (before["end_reason"] == "error" and before != line):  # run again in a shard
+            if before is None or (before["end_reason"] == "error" and before != line):  # a shard has run it again
                 merged.append(line)
             elif line["end_reason"] != "error" and without_times(before) != without_times(line):
                 raise _conflict(episode_id, out, line)
@@ -97,7 +97,7 @@ def sources(args: Args) -> tuple[list[Path], Path]:
 
 
 def require_same_options(first: Run, other: Run) -> None:
-    """Raises ConfigError where two runs differ in an option that changes results."""
+    """Raises ConfigError if two runs differ in an option that changes results."""
     for path, a, b in differing_fields(first.config, other.config):
         if path.partition(".")[0] not in NOT_COMPARED and not is_same_file(path, first.config, other.config):
             raise ConfigError(

@@ -57,9 +57,9 @@ def find_agent(name: str) -> AgentSpec:
 
     Args:
         name: one of `SPECS`, or `package.module:NAME`, where NAME is an `AgentSpec` or a factory. A plain factory
-            declares nothing, so its agent gets RGB and depth and no ground truth; neither does `process:COMMAND`. After
-            `habitat:`, a class, factory or `AgentSpec` of agents with Habitat's interface
-            (`sim.bridges.habitat.agents`).
+            declares nothing, so that its agent gets RGB and depth and no ground truth; the same holds for
+            `process:COMMAND`. After `habitat:`, NAME is a class, a factory or an `AgentSpec` of agents with Habitat's
+            interface (`sim.bridges.habitat.agents`).
 
     Raises:
         ConfigError: the name is unknown.
@@ -103,7 +103,7 @@ def _find_habitat_agent(name: str) -> AgentSpec:
 
 
 def notes_on(name: str) -> tuple[str, ...]:
-    """Returns sentences about an agent that has been found, which the header of a run prints."""
+    """Returns sentences about an agent after `find_agent`; a run prints them in its header."""
     if not name.startswith(HABITAT):
         return ()
     from sim.bridges.habitat import stand_in
@@ -135,7 +135,7 @@ def find_explorer(name: str) -> ExplorerConfig:
 
 
 def takes_explorer(spec: AgentSpec) -> bool:
-    """Returns whether an agent explores with the explorer of `--explorer`."""
+    """Returns whether an agent explores with the explorer that `--explorer` names."""
     return isinstance(spec.config, AgentConfig)
 
 
@@ -149,7 +149,7 @@ def build_agent(
     config: Any,
     step_timeout_s: float = 0.0,
 ) -> Agent:
-    """Returns the agent of a specification, for an environment; `step_timeout_s` limits its calls, 0: no limit.
+    """Returns a new agent for an environment; `step_timeout_s` limits the time of its calls (0: no limit).
 
     Raises:
         ConfigError: the factory does not take the arguments of `sim.interface.AgentFactory`.
@@ -168,7 +168,19 @@ def build_agent(
         with marked(f"Agent '{name}', its factory", FACTORY_S):
             return spec.build(name, max_steps=env.task_config.max_steps, step_timeout_s=step_timeout_s, **parts)
     except BaseException as error:
+        if isinstance(error, ConfigError) and _resets_without_arguments(spec.make):
+            raise ConfigError(
+                f"{error} An agent with Habitat's interface is given as --agent habitat:{name}."
+            ) from None
         if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
             raise
         reason = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
         raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error
+
+
+def _resets_without_arguments(factory: Any) -> bool:
+    """Returns whether a class has the methods of a Habitat agent, `reset()` and `act(observations)`."""
+    if not inspect.isclass(factory) or not callable(getattr(factory, "act", None)):
+        return False
+    reset = getattr(factory, "reset", None)
+    return inspect.isfunction(reset) and len(inspect.signature(reset).parameters) == 1

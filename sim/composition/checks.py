@@ -8,11 +8,11 @@ from sim.evaluation.parallel import Shard
 from sim.viewers import selection
 
 MOST_KEY_LETTERS = 200
-"""Longest `--seed-key`."""
+"""Largest length of `--seed-key`."""
 
 
 def check_options(options: RunOptions) -> None:
-    """Raises ConfigError where options contradict each other or are out of range."""
+    """Raises ConfigError if options contradict each other or are out of range."""
     for name, smallest in (("episodes", 1), ("workers", 1), ("seed", 0)):
         value = getattr(options, name)
         if value < smallest:

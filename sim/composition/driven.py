@@ -1,4 +1,4 @@
-"""Records an episode that a person drove, in the format of `--record`: for `stubborn teleop` and the page."""
+"""Records an episode that a person drove, in the format of `--record`, for `stubborn teleop` and `stubborn web`."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from sim.evaluation.last_view import write_last_view
 from sim.evaluation.rollout import record_episode
 
 _OF_THE_WORLD = ("robot", "camera", "profile", "noise", "task")
-"""Fields of the configuration that hold for a person as for an agent."""
+"""Fields of the configuration that apply to a person as well as to an agent."""
 
 
 def setup_of_person(setup: Setup, out: Path | None, *, with_agent: bool = False) -> Setup:
-    """Returns the setup that describes a person in the world of another setup.
+    """Returns the setup of a person that has the world of an agent's setup.
 
     Args:
-        setup: of the agent that could have driven.
+        setup: the setup of the agent that could have driven.
         out: folder of the record.
-        with_agent: whether the agent drove a part of the episode; its results are not those of a person.
+        with_agent: whether the agent drove a part of the episode, so that the results are not those of a person alone.
     """
     options = setup.options
     name = f"{HUMAN_NAME}+agent" if with_agent else HUMAN_NAME
@@ -53,11 +53,11 @@ def record_driven(
     """Writes trajectory and last picture of the episode that has just ended; returns its result line.
 
     Args:
-        setup: of the person.
+        setup: the setup of the person.
         env: the environment of the episode.
         episode: the episode.
-        metrics: what `play_episode` returned.
-        content: of the record's `config.json`.
+        metrics: the entries that `play_episode` returned.
+        content: content of the record's `config.json`.
 
     Raises:
         ConfigError: the folder is not writable.

@@ -74,14 +74,14 @@ def known_goals(setup: Setup) -> tuple[str, ...]:
 
 
 MAX_REPEATS = 60
-"""Draws in a row that give an episode that is there already, until there is no other one."""
+"""Number of consecutive draws without a new episode after which the search for further ones ends."""
 
 
 def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
-    """Returns new episodes in the one house of a run; without noise they are all different.
+    """Returns new episodes in the only house of a run; without noise they are all different.
 
     Raises:
-        ConfigError: start and goal are fixed, or the start reaches too few goals, so that there are fewer episodes.
+        ConfigError: there are too few different episodes: start and goal are fixed, or few goals can be reached.
     """
     options, (house,) = setup.options, env.split.houses
     known = known_goals(setup)

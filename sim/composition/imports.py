@@ -1,21 +1,51 @@
-"""Imports objects of users that options name as `package.module:NAME`."""
+"""Imports the users' objects that options name as `package.module:NAME`."""
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import os
+import signal
 import sys
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 from sim.errors import ConfigError
 from sim.evaluation.own_code import place_of, text_of
-from sim.evaluation.watch import is_stop
+from sim.evaluation.watch import FACTORY_S, is_stop
+
+
+class _TooLong(BaseException):
+    """An import took longer than the limit; it is not an `Exception`, which handlers in the module could catch."""
+
+    def __init__(self, limit_s: float) -> None:
+        super().__init__(f"the import did not end within {limit_s:g} s")
+
+
+@contextlib.contextmanager
+def _limited(limit_s: float) -> Iterator[None]:
+    """Raises `_TooLong` in the `with` block after `limit_s`; only in the main thread, where Python handles signals."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise _TooLong(limit_s)
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, limit_s)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def _require_unhidden() -> None:
-    """Raises ConfigError where the current folder has modules that would hide this project's in spawned workers."""
+    """Raises ConfigError if the current folder has modules that would hide this project's in spawned workers."""
     ours = Path(__file__).resolve().parents[2]
     for name in ("sim", "stubborn"):
         for file in (Path(f"{name}.py"), Path(name) / "__init__.py"):
@@ -35,17 +65,18 @@ def import_attribute(
         name: as the user gave it, for messages.
         module_name: dotted name of the module.
         attribute: name of the object.
-        explain: returns a sentence about an error of the import, if it knows the cause.
+        explain: returns a sentence about an error of the import if it knows the cause, else None.
 
     Raises:
-        ConfigError: the module cannot be imported, or has no such name.
+        ConfigError: the module cannot be imported, its import does not end within two minutes, or it has no such name.
     """
     if "" not in sys.path:
         _require_unhidden()
         sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
     folder = os.getcwd()
     try:
-        module = importlib.import_module(module_name)
+        with _limited(FACTORY_S):
+            module = importlib.import_module(module_name)
     except ModuleNotFoundError as error:
         reason = explain(error) or f"no module '{error.name}' can be imported from here."
         raise ConfigError(f"'{name}': {reason}") from None

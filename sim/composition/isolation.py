@@ -1,4 +1,4 @@
-"""Finds the code of the user that a run uses, and whether it needs a process of its own."""
+"""Finds the modules of the user that a run imports, and whether they need a process of their own."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from sim.evaluation.executors import Isolation
 HABITAT = "habitat:"
 """Prefix of the name of an agent with Habitat's interface."""
 STEP_TIMEOUT_S = 600.0
-"""Longest time of a call of the agent where `--step-timeout` is not given."""
+"""Longest time of a call of the agent if `--step-timeout` is not given."""
 RUNNER = "sim.composition.runner"
-"""Module of the runner of episodes, which a worker imports."""
+"""The module that runs episodes, which a worker imports."""
 
 
 def own_modules(options: RunOptions) -> list[str]:
@@ -29,8 +29,8 @@ def step_limit_s(options: RunOptions) -> float:
 def isolation_of(options: RunOptions) -> Isolation:
     """Returns whether the episodes of a run need a process of their own, and how long a call of the agent may take.
 
-    Code of a user does: it may hang, crash, or change the state of its process. An agent `process:COMMAND` has one
-    already, and `ProcessAgent` ends a call that takes too long without the loss of the loaded house.
+    A user's code needs one: it may hang, crash, or change the state of its process. An agent `process:COMMAND` has a
+    process already, and `ProcessAgent` ends a call that takes too long, so that the loaded house is not lost.
     """
     if is_process(options.agent):
         return Isolation()

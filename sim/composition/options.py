@@ -52,7 +52,7 @@ class RunOptions:
     seed: cli.Seed = 0
     """Seed of agents, noise and, with --house, starts and goals."""
     seed_key: str | None = None
-    """Key with which agents' seeds are drawn from --seed; by default a new one for each run, kept in config.json."""
+    """Key with which agents' seeds are computed from --seed; by default a new one for each run, kept in config.json."""
     workers: cli.Count = 1
     """Number of processes, on this machine or over the cluster."""
     executor: str = "local"
@@ -62,8 +62,8 @@ class RunOptions:
     shard: str | None = None
     """i/n, from 1/n to n/n: every n-th episode from the i-th on, into <out>/shard_i_of_n; see `stubborn merge`."""
     step_timeout: cli.NotNegative | None = None
-    """Seconds after which a call of the agent ends its episode as an error; by default 600, and agents and other code
-    of your own run in a process apart. 0: no limit, and with one worker all runs in this process, for a debugger."""
+    """Longest time of a call of the agent, seconds; a longer call ends its episode as an error. By default it is 600,
+    and your own code runs in a separate process. 0: no limit, and with one worker all code runs in this process."""
     profile: str = "fast"
     """Rendering quality: fast or good."""
     noise: str = "none"
@@ -87,7 +87,7 @@ class RunOptions:
     retry_errors: bool = False
     """Run the episodes again that ended with an error in an earlier start of this run."""
     keep_results: bool = False
-    """Resume although the code of your agent has changed: results of the earlier code are kept."""
+    """Resume although the code of your agent has changed, and keep the results of the earlier code."""
     list_agents: bool = False
     """Print the agents with a description of each, and exit."""
 

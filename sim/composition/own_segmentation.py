@@ -1,4 +1,4 @@
-"""Segmentations of users: `--semantics package.module:NAME`, checked at each frame, so that errors name causes."""
+"""Users' segmentations (`--semantics package.module:NAME`): each result is checked, so that errors name their cause."""
 
 from __future__ import annotations
 
@@ -32,14 +32,15 @@ _METHODS = ("scores", "posteriors", "categories")
 
 
 def load_specification(name: str) -> SegmentationSpec:
-    """Returns the specification of a segmentation of the user's.
+    """Returns the specification of a user's segmentation.
 
     Args:
-        name: `package.module:NAME`, where NAME is a `SegmentationSpec` or a factory. A factory with an attribute `spec`
-            that is a `SegmenterSpec`, such as a class, declares this; any other reads `rgb` and `depth`.
+        name: `package.module:NAME`, where NAME is a `SegmentationSpec` or a factory. A factory, such as a class, may
+            have an attribute `spec`, a `SegmenterSpec`, which is its declaration; without it, it reads `rgb` and
+            `depth`.
 
     Raises:
-        ConfigError: there is no such module or name, or it is something else.
+        ConfigError: there is no such module or name, or its object has another type.
     """
     module_name, _, attribute = name.partition(":")
     found = import_attribute(name, module_name, attribute)
@@ -67,7 +68,11 @@ def make_own(name: str, own: SegmentationSpec, env: ObjectNavEnv, config: Any) -
 
 
 def built(name: str, own: SegmentationSpec, given: Mapping[str, Any]) -> OwnSegmenter:
-    """Returns the segmenter that a factory builds from those of some arguments that it takes; see `make_own`."""
+    """Returns the segmenter that a factory builds; it gets those of the given arguments that it takes.
+
+    Raises:
+        ConfigError: as `make_own`.
+    """
     try:
         parameters = inspect.signature(own.make).parameters
         takes_all = any(each.kind is inspect.Parameter.VAR_KEYWORD for each in parameters.values())
@@ -83,10 +88,10 @@ def built(name: str, own: SegmentationSpec, given: Mapping[str, Any]) -> OwnSegm
 
 
 class OwnSegmenter:
-    """A segmenter of the user's with its declaration: it gets what it declares, and its results are checked.
+    """A user's segmenter with its declaration: it gets only the sensors that it declares, and its results are checked.
 
-    Each result of a frame is computed once, so that viewers change nothing. Scores and categories are taken from the
-    posteriors where it has no methods of its own for them.
+    Each result of a frame is computed once, so that viewers change nothing. If the segmenter has no methods of its own
+    for scores or categories, they are computed from the posteriors.
     """
 
     def __init__(self, name: str, segmenter: Any, spec: SegmenterSpec, camera: CameraModel) -> None:
@@ -97,9 +102,9 @@ class OwnSegmenter:
         names = [each if isinstance(each, str) else each.name for each in spec.sensors]
         self._reads = frozenset(("depth", *names, *POSE_SENSORS))
         self._arrays: tuple[NDArray, ...] = ()
-        """Of the frame; an agent may put them into a dictionary of its own."""
+        """Arrays of the present frame: they identify it, because an agent may put them into another dictionary."""
         self._done: dict[str, Any] = {}
-        """Results of the frame by method and goal."""
+        """Results of the present frame by method and goal."""
 
     @property
     def names(self) -> bool:
@@ -110,7 +115,7 @@ class OwnSegmenter:
         """Returns the scores of one frame, float32 (h, w) at any whole fraction of the image's resolution.
 
         Raises:
-            AgentError: the user's code failed, or returned something else.
+            AgentError: the user's code failed, or returned another type, shape or range.
         """
         return self._once(observation, f"scores {goal}", lambda seen: self._scores(observation, seen, goal))
 
@@ -118,12 +123,12 @@ class OwnSegmenter:
         """Returns the posteriors of one frame, float32 (40, h, w), at any whole fraction of the image's resolution.
 
         Raises:
-            AgentError: the user's code failed, returned something else, or has no method `posteriors`.
+            AgentError: the user's code failed, returned another type, shape or range, or has no method `posteriors`.
         """
         return self._once(observation, "posteriors", self._posteriors)
 
     def categories(self, observation: Observation) -> NDArray[np.uint8] | None:
-        """Returns the mpcat40 id of each pixel, uint8 (h, w); None: the user's segmenter does not name them.
+        """Returns the mpcat40 id of each pixel, uint8 (h, w); None: the user's segmenter does not compute them.
 
         Raises:
             AgentError: as `posteriors`.
@@ -131,7 +136,7 @@ class OwnSegmenter:
         return self._once(observation, "categories", lambda seen: self._categories(observation, seen))
 
     def _once(self, observation: Observation, key: str, compute: Callable[[Observation], Any]) -> Any:
-        """Returns a result of a frame, computed from what the segmenter declares at the first request."""
+        """Returns a result of a frame; it is computed at the first request, from the sensors that are declared."""
         arrays = tuple(observation.values())
         if len(arrays) != len(self._arrays) or any(map(operator.is_not, arrays, self._arrays)):
             self._arrays, self._done = arrays, {}
@@ -166,12 +171,23 @@ class OwnSegmenter:
             named = (posteriors.argmax(axis=0) + 1).astype(np.uint8)
             return np.where(posteriors.max(axis=0) > 0.0, named, np.uint8(0))
         given = self._ask("categories", lambda: np.asarray(self._inner.categories(seen)))
-        if given.ndim != 2 or given.dtype.kind not in "iu" or not 0 <= given.min() <= given.max() < len(MPCAT40):
-            self._refuse("categories", f"{given.dtype} {given.shape}; it returns mpcat40 ids 0 to 40, (h, w)")
+        self._require_shape("categories", given, ())
+        if given.dtype.kind not in "iu" or not 0 <= given.min() <= given.max() < len(MPCAT40):
+            self._refuse("categories", f"an array of {given.dtype}; it holds mpcat40 ids, integers from 0 to 40")
         return given.astype(np.uint8)
 
     def _checked(self, method: str, given: NDArray, before: tuple[int, ...]) -> NDArray[np.float32]:
         """Returns an array (*before, h, w) as float32 after a check of shape and range."""
+        self._require_shape(method, given, before)
+        if given.dtype.kind not in "fiub":
+            self._refuse(method, f"an array of {given.dtype}; it is float32")
+        low, high = float(given.min()), float(given.max())
+        if not (low >= -1e-3 and high <= 1.001):  # also for nan
+            self._refuse(method, f"numbers from {low:g} to {high:g}; they are probabilities in [0, 1]")
+        return np.clip(given, 0.0, 1.0).astype(np.float32, copy=False)
+
+    def _require_shape(self, method: str, given: NDArray, before: tuple[int, ...]) -> None:
+        """Raises AgentError unless an array is (*before, h, w), with h x w the image's or a whole fraction of it."""
         height, width = self._shape
         rows, cols = given.shape[-2:] if given.ndim >= 2 else (0, 0)
         if given.shape[:-2] != before or not rows or not cols or height % rows or height // rows * cols != width:
@@ -181,12 +197,6 @@ class OwnSegmenter:
                 f"an array of shape {given.shape}; it is ({wanted}) with h x w the image's {height} x {width} or a "
                 "whole fraction of it",
             )
-        if given.dtype.kind not in "fiub":
-            self._refuse(method, f"an array of {given.dtype}; it is float32")
-        low, high = float(given.min()), float(given.max())
-        if not (low >= -1e-3 and high <= 1.001):  # also for nan
-            self._refuse(method, f"numbers from {low:g} to {high:g}; they are probabilities in [0, 1]")
-        return np.clip(given, 0.0, 1.0).astype(np.float32, copy=False)
 
     def _ask(self, method: str, call: Callable[[], Any]) -> Any:
         try:

@@ -1,4 +1,4 @@
-"""The segmentation that an agent acts on, as viewers show it: what the agent asked for, never more than that."""
+"""Gives viewers the segmentation that an agent acts on: only the results that the agent has asked for."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from sim.viewers.viewer import SeesFrames
 
 
 class AskedSegmenter:
-    """A segmenter that remembers which frame the agent asked for; its results are those of the segmenter inside.
+    """A segmenter that forwards each call to another one and remembers for which frame the agent called it.
 
-    Scores of a frame do not change when they are asked for again, so that viewers change no result.
+    The scores of a frame are the same at each call, so that viewers change no result.
     """
 
     def __init__(self, inner: Segmenter, name: str) -> None:
         self.name = name
         self._inner = inner
         self._arrays: tuple[NDArray, ...] = ()
-        """The arrays of the frame that the agent asked for last."""
+        """The arrays of the frame for which the agent called the segmenter last."""
 
     @property
     def names(self) -> bool:
@@ -56,7 +56,7 @@ class AskedSegmenter:
         return self._inner.posteriors(observation)
 
     def perceived(self, observation: Observation, goal: str) -> Perceived | None:
-        """Returns scores and categories of a frame; None where the agent did not ask for it."""
+        """Returns scores and categories of a frame; None if the agent did not call the segmenter for it."""
         if not any(array is other for array in _arrays_of(observation) for other in self._arrays):
             return None
         inner = self._inner
@@ -68,7 +68,7 @@ class AskedSegmenter:
 
 
 class StatedByAgent:
-    """The segmentation that an agent brings itself and states (`StatesSegmentation`)."""
+    """The segmentation of an agent that has its own and states it (`StatesSegmentation`)."""
 
     def __init__(self, agent: StatesSegmentation, name: str, agent_name: str) -> None:
         self.name = name
@@ -76,10 +76,10 @@ class StatedByAgent:
         self._agent, self._agent_name = agent, agent_name
 
     def perceived(self, observation: Observation, goal: str) -> Perceived | None:
-        """Returns what the agent states of the frame.
+        """Returns the segmentation that the agent states for the frame.
 
         Raises:
-            AgentError: `stated_segmentation` failed, or returned something else.
+            AgentError: `stated_segmentation` failed, or returned another type or shape.
         """
         del observation, goal
         where = f"Agent '{self._agent_name}', stated_segmentation"
@@ -91,9 +91,9 @@ def seen_by(setup: Setup, agent: Agent, segmenter: Segmenter | None) -> SeesFram
     """Returns the segmentation that viewers show; None: the agent has none, or does not state its own.
 
     Args:
-        setup: of the run.
+        setup: the setup of the run.
         agent: the agent.
-        segmenter: the segmenter that it got; None: it got none.
+        segmenter: the segmenter that the agent got; None: it got none.
     """
     if isinstance(segmenter, AskedSegmenter):
         return segmenter
@@ -107,7 +107,7 @@ def _arrays_of(observation: Observation) -> tuple[NDArray, ...]:
 
 
 def _checked(given: Perceived) -> Perceived:
-    """Returns what an agent states, as arrays; raises ValueError where it is something else."""
+    """Returns the segmentation that an agent states, as arrays; raises ValueError if a shape or value is wrong."""
     scores, categories = given
     if scores is not None:
         target, best_other = (np.asarray(each, np.float32) for each in scores)

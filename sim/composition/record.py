@@ -49,9 +49,9 @@ def versions(options: RunOptions) -> dict[str, str]:
 def code_of(options: RunOptions) -> str:
     """Returns a hash of the code of a run, such as "3353e768d2c2".
 
-    With an agent, explorer or segmentation of the user, whose modules are imported by now, "+" and a hash of these
-    follow; with an agent in a process of its own, that of the files which its command names and of what these import
-    from their folder.
+    If an agent, explorer or segmentation is a user's, "+" and a hash of its modules follow, which must be imported
+    already. For an agent in a process of its own, it is a hash of the files that its command names and of the modules
+    that they import from their folder.
     """
     own = hash_of_own(own_modules(options), files_of(options.agent) if is_process(options.agent) else ())
     return f"{code_hash()}+{own}" if own else code_hash()
@@ -72,7 +72,7 @@ def _checksums(setup: Setup) -> dict[str, str]:
 
 
 def _segmentation_of(setup: Setup) -> dict[str, Any]:
-    """Returns what the agent acts on: the name, and for its segmentation what it declares."""
+    """Returns the name of the segmentation that the agent acts on and, if `--semantics` names it, its declaration."""
     if not setup.spec.uses_segmentation:
         return {"name": setup.segmentation_name or None}
     spec, verified = setup.segmentation.spec, not setup.borrowed_parameters

@@ -1,4 +1,4 @@
-"""The episode runner of a worker process: one environment and one agent that run episode after episode."""
+"""Runs the episodes of a worker process with one environment and one agent."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def build_parts(setup: Setup, *, watched: bool) -> Parts:
     """Returns environment and agent of a run.
 
     Args:
-        setup: of the run.
+        setup: the setup of the run.
         watched: whether viewers need all images.
     """
     spec, config = setup.spec, setup.config
@@ -112,9 +112,9 @@ class EpisodeRunner:
         return line
 
     def _require_same_house(self, house: str) -> None:
-        """Raises HouseError where the file of a house, or one that it uses, is not as it was when the run was planned.
+        """Raises HouseError if a file of a house has changed since the run was planned.
 
-        It is looked at when the house is loaded.
+        The files are checked each time that the house is loaded.
         """
         if house != self._house:
             self._env.split.require_unchanged(house)

@@ -76,7 +76,7 @@ def run_missing(
         if todo and must_compile():
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
             if (cache := choose_cache()) is not None:
-                console.print(f"Neither the installation nor a home folder can be written: it is kept in {cache}.")
+                console.print(f"Neither the installation nor a home folder can be written: {cache} keeps the result.")
         spec = RunnerSpec(f"{RUNNER}:EpisodeRunner", setup)
         progress = ProgressReport(console, total=len(todo), max_steps=setup.config.task.max_steps)
 
@@ -85,7 +85,7 @@ def run_missing(
 
         def written() -> Iterator[dict[str, Any]]:
             for line in executor.run(spec, todo, on_death=lost, on_start=progress.started):
-                run.append(line)  # before anything is printed, which may fail
+                run.append(line)  # before anything is printed, because printing may fail
                 yield line
 
         for _ in progress.over(written()) if todo else ():
@@ -97,7 +97,7 @@ def run_missing(
 
 
 def _require_own_lines(options: RunOptions, run: RunDirectory, episodes: Sequence[Episode]) -> None:
-    """Raises ConfigError where the folder holds a line of another split, or one that contradicts its episode."""
+    """Raises ConfigError if the folder holds a line of another split, or one that contradicts its episode."""
     known = {episode.episode_id: (episode.house, episode.goal) for episode in episodes}
     others = [line for line in run.lines if line["episode_id"] not in known]
     if others and options.house is None:  # of the same split, but not asked for now

@@ -1,4 +1,4 @@
-"""Finds the key of a run, with which the seeds of its agents are drawn (`sim.evaluation.rollout.agent_seed`)."""
+"""Finds the key of a run, from which the seeds of its agents are computed (`sim.evaluation.rollout.agent_seed`)."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ KEY_FILE = "seed_key"
 
 
 def seed_key_of(options: RunOptions) -> str:
-    """Returns the key of a run: the given one, else that of its folder or of its shards, else a new one.
+    """Returns the key of a run: that of `--seed-key`, else that of its folder or of its shards, else a new one.
 
     Raises:
-        ConfigError: the folder has another key than the given one.
+        ConfigError: the key of the folder differs from that of `--seed-key`.
     """
     assert options.out is not None
     config = options.out / "config.json"
@@ -40,16 +40,16 @@ def seed_key_of(options: RunOptions) -> str:
 
 
 def _shared_key(file: Path, *, make: bool) -> str | None:
-    """Returns the key in the file that all shards of a run share; None where there is none.
+    """Returns the key in the file that all shards of a run share; None if there is none.
 
     Args:
-        file: holds the key.
-        make: whether to make the file, with a new key, if it does not exist.
+        file: the file with the key.
+        make: whether to create the file with a new key if it does not exist.
     """
     if make:
         file.parent.mkdir(parents=True, exist_ok=True)
         with open_to_grow(file, "a+") as stream:
-            fcntl.flock(stream, fcntl.LOCK_EX)  # shards begin at the same time
+            fcntl.flock(stream, fcntl.LOCK_EX)  # shards may begin at the same time
             if stream.seek(0, os.SEEK_END) == 0:  # another shard may have written after the file was opened
                 stream.write(secrets.token_hex(8))
     if not file.exists():

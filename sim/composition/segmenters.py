@@ -1,4 +1,4 @@
-"""Segmentation by name: `gt`, `noisy`, `rednet` and anybody's own as `package.module:NAME`.
+"""Finds segmentations by name: `gt`, `noisy`, `rednet`, and users' own as `package.module:NAME`.
 
 `rednet` imports PyTorch only on use: a process without a network stays small and starts fast.
 """
@@ -105,7 +105,7 @@ def _make_network(env: ObjectNavEnv, config: NetworkConfig) -> Segmenter:
 
 
 def require_size(segmenter: Segmenter, camera: CameraModel) -> None:
-    """Raises ConfigError where a network cannot take the images of a camera; it is given one black image."""
+    """Raises ConfigError if a network cannot process the images of a camera; it is tried on one black image."""
     height, width = camera.height_px, camera.width_px
     black = {"rgb": np.zeros((height, width, 3), np.uint8), "depth": np.zeros((height, width), np.float32)}
     try:

@@ -91,14 +91,14 @@ class Setup:
     start: Pose | None
     """With `--house`, the start of every episode; None: starts are sampled."""
     planned: str | None = None
-    """Checksum of the split or house from which the episodes were planned; None: nothing is compared with it."""
+    """Checksum of the split or house from which the episodes were planned; None: it is not checked."""
 
     def __reduce__(self) -> tuple[Callable[..., Setup], tuple[Any, ...]]:
         """Pickles the setup as its options."""
         return _resolve_planned, (self.options, self.planned)
 
     def with_absolute_paths(self) -> Setup:
-        """Returns this setup with paths that have the same meaning after a change of the current folder."""
+        """Returns this setup with absolute paths, which stay valid if the current folder changes."""
         options = self.options
         named = {name: getattr(options, name) for name in ("out", "house", "labels", "root")}
         paths = {name: path.absolute() for name, path in named.items() if path is not None}
@@ -108,7 +108,7 @@ class Setup:
         return replace(self, options=replace(options, **paths), config=replace(self.config, robot=robot))
 
     def require_planned(self, split: Split) -> None:
-        """Raises ConfigError where a split is not the one from which the episodes were planned."""
+        """Raises ConfigError if a split is not the one from which the episodes were planned."""
         if self.planned not in (None, split.sha256):
             raise ConfigError(
                 f"The houses or episodes of '{split.name}' have changed since this run was planned; start it again."
@@ -127,23 +127,23 @@ class Setup:
 
     @property
     def uses_ground_truth(self) -> bool:
-        """True: the agent, one of its sensors or a segmentation of the user's declares ground truth.
+        """True: the agent, one of its sensors or a user's segmentation declares ground truth.
 
-        The segmentations that ship do not count here: `semantics` names them.
+        The segmentations that ship do not count here, because `semantics` names them.
         """
         own = self.segmentation.own if self.spec.uses_segmentation else None
         return self.spec.uses_ground_truth or (own is not None and own.spec.uses_ground_truth)
 
     @property
     def segmentation_name(self) -> str:
-        """The segmentation that the agent acts on, for people; "": none."""
+        """Name of the segmentation that the agent acts on, as it is shown to users; "" if it has none."""
         if not self.spec.uses_segmentation:
             return self.spec.own_segmentation
         return "ground truth" if self.options.semantics == "gt" else self.options.semantics
 
     @property
     def borrowed_parameters(self) -> str:
-        """The sentence that verifier and fusion have no parameters for this kind of segmentation; "": they have."""
+        """A sentence if no parameters are fitted to this kind of segmentation, so that others are used; else ""."""
         spec, chosen = self.segmentation.spec, self.config.verification
         if not self.spec.uses_segmentation or not spec.needs_verification or has_parameters(spec.kind):
             return ""
@@ -171,7 +171,7 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
     settings = {} if options.config_file is None else read_settings(options.config_file)
     settings |= parse_assignments(options.config)
     config = with_fields(_presets(options, spec, segmentation), settings)
-    if isinstance(spec.config, ProcessConfig):  # its program cannot declare: --config sensors=... does
+    if isinstance(spec.config, ProcessConfig):  # its program cannot declare sensors: --config sensors=... does
         spec = replace(spec, sensors=config.sensors, uses_ground_truth="semantic" in config.sensors)
     verifier = _verifier(options, segmentation, config.verification)
     config = replace(config, verification=_with_least_probability(config.verification, verifier))
@@ -224,7 +224,7 @@ def _sensor_names(spec: AgentSpec, segmentation: SegmentationKind) -> tuple[str,
 
 
 def _own_sensors(spec: AgentSpec, segmentation: SegmentationKind) -> list[Sensor]:
-    """Returns the sensors that are objects of the agent's and of its segmentation."""
+    """Returns the sensors of an agent and of its segmentation that are objects, and not names of standard sensors."""
     read = (*spec.sensors, *(segmentation.spec.sensors if spec.uses_segmentation else ()))
     return [each for each in read if not isinstance(each, str)]
 
@@ -232,14 +232,14 @@ def _own_sensors(spec: AgentSpec, segmentation: SegmentationKind) -> list[Sensor
 def _check_sensors(
     options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind, sensors: tuple[str, ...]
 ) -> None:
-    """Raises ConfigError where a sensor is missing, or shows the truth to an agent that does not declare it."""
+    """Raises ConfigError if a sensor is missing, or shows the truth to an agent that does not declare it."""
     missing = [name for name in _sensor_names(spec, segmentation) if name not in sensors]
     if missing:
         raise ConfigError(f"sensors: agent '{options.agent}' with {options.semantics} needs {', '.join(missing)}.")
     own = _own_sensors(spec, segmentation)
     for each in own:
-        twins = [other for other in own if other.name == each.name and other is not each]
-        if twins and twins[0] != each:
+        same_name = [other for other in own if other.name == each.name and other is not each]
+        if same_name and same_name[0] != each:
             raise ConfigError(f"Agent '{options.agent}' and {options.semantics} have two sensors named '{each.name}'.")
         if not spec.uses_ground_truth and each in spec.sensors and _noise_reads_truth(each):
             raise ConfigError(
@@ -258,7 +258,7 @@ def _check_sensors(
 
 
 def _noise_reads_truth(sensor: Sensor) -> bool:
-    """Returns whether the noise of a sensor, of a class of the user's, declares true images."""
+    """Returns whether the noise of a sensor is of a user's class and declares true images."""
     shipped = {type(getattr(NoiseConfig(), each.name)) for each in fields(NoiseConfig)}
     if sensor.noise is None or type(sensor.noise) in shipped:
         return False
@@ -267,7 +267,7 @@ def _noise_reads_truth(sensor: Sensor) -> bool:
 
 
 def _verifier(options: RunOptions, segmentation: SegmentationKind, config: VerificationConfig) -> Verifier:
-    """Returns the verifier of a run; raises ConfigError where there are no such parameters, or no such method."""
+    """Returns the verifier of a run; raises ConfigError if there are no such parameters, or no such method."""
     verifier = verifier_for(segmentation.spec, config.parameters, config.method)
     if isinstance(verifier, FittedVerifier) and config.least_probability is not None:
         return replace(verifier, least_probability=config.least_probability)

@@ -25,7 +25,7 @@ RARE: Mapping[str, float] = MappingProxyType(
 )  # fmt: skip
 """Goal categories of which other views show too few objects, and how often they are drawn relative to each other."""
 AIMS: Mapping[str, Mapping[str, float]] = MappingProxyType({"rare": RARE})
-"""What a camera can be aimed at."""
+"""The objects at which a camera can be aimed."""
 DISTANCE_M = (1.0, 3.5)
 """Horizontal distance of the camera from the point of the object that it is aimed at."""
 OFF_AXIS_RAD = 0.45

@@ -82,10 +82,10 @@ def encode_mask(mask: NDArray[np.bool_]) -> dict[str, list[int]]:
 
 
 def decode_mask(segmentation: Mapping[str, Sequence[int]]) -> NDArray[np.bool_]:
-    """Returns the mask (h, w) of the runs that `encode_mask` gives.
+    """Returns the mask (h, w) from the run lengths that `encode_mask` returns.
 
     Raises:
-        ConfigError: `size` or `counts` are missing, are no whole numbers from 0, or do not belong together.
+        ConfigError: `size` or `counts` is missing, is not a list of whole numbers from 0 on, or they contradict.
     """
     runs = convert(dict(segmentation), _Runs, where="The mask of an object")
     (height, width), total = runs.size, sum(runs.counts)

@@ -151,7 +151,7 @@ def list_demonstrations(folders: Sequence[Path]) -> list[Path]:
 
 
 def _check(arrays: Mapping[str, NDArray[Any]], goal: str) -> None:
-    """Raises ValueError where the arrays do not fit each other, or hold numbers without meaning."""
+    """Raises ValueError if the arrays do not fit each other, or hold numbers without meaning."""
     count = len(arrays["actions"]) if arrays["actions"].ndim else 0
     for name, (kind, axes) in _ARRAYS.items():
         array = arrays[name]

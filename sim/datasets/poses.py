@@ -72,7 +72,7 @@ def path_poses(space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generat
 
 
 def _step(space: FreeSpace, left_m: NDArray[np.float32], here: Pose, first_yaw: float) -> Pose | None:
-    """Returns the pose after the forward that comes nearest to the goal; None where no forward comes nearer."""
+    """Returns the pose after the forward that comes nearest to the goal; None if no forward comes nearer."""
     yaws = first_yaw + TURN_RAD * np.arange(round(math.tau / TURN_RAD))
     ends = np.stack([here.x_m + FORWARD_M * np.cos(yaws), here.y_m + FORWARD_M * np.sin(yaws)], axis=1)
     cells = space.frame.to_cells(ends)

@@ -109,7 +109,7 @@ def write_shard(
 
 
 def read_note(folder: Path, name: str, *, verify: bool) -> ShardNote | None:
-    """Returns the note of a shard; None where the shard is missing or broken.
+    """Returns the note of a shard; None if the shard is missing or broken.
 
     Args:
         folder: folder of the shards.

@@ -307,7 +307,7 @@ class LabelledObjects:
         )
 
     def similar(self, draw: NDArray[np.float64]) -> NDArray[np.intp]:
-        """Returns (objects,) a category of each object's row for a number in [0, 1); 0 where it has no row."""
+        """Returns (objects,) a category of each object's row for a number in [0, 1); 0 if it has no row."""
         category = (draw[:, None] >= self.rows - 1e-12).sum(axis=1)
         return np.where(self.error_scale > 0, np.minimum(category, len(MPCAT40) - 1), 0)
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from sim.episodes.splits import Split, load_split, split_of_files
+from sim.episodes.splits import HOUSE_SUFFIXES, Split, load_split, split_of_files
 from sim.errors import ConfigError
 
 
@@ -18,14 +18,14 @@ def chosen_split(
     labels: str | Path | None = None,
     root: str | Path | None = None,
 ) -> Split:
-    """Returns the split that the options of an environment name; one of MJCF files has no episodes.
+    """Returns the split that the options of an environment name; a split of MJCF files has no episodes.
 
     Args:
         split: name of a shipped split, or a folder with the same layout.
-        house: one MJCF file in place of it.
-        houses: names of houses of the split, or several MJCF files in place of it.
-        labels: label rules of the files.
-        root: another folder whose files the files may use.
+        house: one MJCF file in place of the split.
+        houses: names of houses of the split, or several MJCF files in place of the split.
+        labels: label rules of the MJCF files.
+        root: another folder whose files the MJCF files may use.
 
     Raises:
         ConfigError: there is no such split or house, or the options contradict each other.
@@ -60,4 +60,4 @@ def _with_houses(split: Split, names: Sequence[str]) -> Split:
 
 
 def _is_file_name(house: str | Path) -> bool:
-    return isinstance(house, Path) or Path(house).suffix.lower() in (".xml", ".mjcf") or Path(house).name != house
+    return isinstance(house, Path) or Path(house).suffix.lower() in HOUSE_SUFFIXES or Path(house).name != house

@@ -1,8 +1,8 @@
 """The oracle: an agent that follows the true shortest path with the same four actions and the same body.
 
-It is an upper bound: if it fails, the task, the free space or the robot is wrong. It searches its route by weighted A*
-over steps of "turn, then drive 0.25 m" on the 12 headings, with the geodesic distance as heuristic. It searches again
-when the robot is not where the route expects it; a step that was blocked is not tried again.
+The oracle is an upper bound: if it fails, the task, the free space or the robot is wrong. It finds its route by
+weighted A* over steps of "turn, then drive 0.25 m" on the 12 headings, with the geodesic distance as heuristic. It
+searches again if the robot is not where the route expects it; a step that was blocked is not tried again.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ MARGIN_M = 0.05
 TIGHT_COST_M = 0.25
 """Additional cost of such a step, in metres of path."""
 NODE_M = 0.05
-"""Nodes with one heading and the same multiple of this in x and y are one node of a route."""
+"""Nodes with the same heading and the same multiples of this length in x and y are one node of a route."""
 DRIFT_M = 0.03
 """The oracle searches a new route when the robot is farther than this from its position on the route."""
 MAX_EXPANSIONS = 30_000

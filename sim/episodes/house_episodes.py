@@ -45,9 +45,9 @@ class HouseAsks:
     unreachable: tuple[str, ...]
     """Names of goal instances that cannot be reached from the largest free space of their storey."""
     asks: tuple[Ask, ...]
-    """Goals with enough starts by the rule of the recipe, or those that the sidecar and its start allow."""
+    """Goals with enough starts by the rule of the recipe, or the goals that the sidecar and its start allow."""
     most: int | None = None
-    """Number of different episodes that it can have; None: any number."""
+    """Largest number of different episodes that the house can have; None: no limit."""
 
 
 class DrawnStart(NamedTuple):
@@ -64,9 +64,9 @@ def find_house_asks(task: Task, recipe: EpisodeRecipe, fixed: Sidecar = EMPTY_SI
     Where no goal of a house with the rule `hazard` has enough starts, all goals can be asked for.
 
     Args:
-        task: of the house.
-        recipe: of the split.
-        fixed: its goal is the only one; its start replaces the rule of the recipe.
+        task: the task in the house.
+        recipe: the recipe of the split.
+        fixed: the sidecar of the house. Its goal is the only one; its start replaces the rule of the recipe.
 
     Raises:
         EpisodeError: the goal or the start of the sidecar is not possible.
@@ -98,22 +98,29 @@ def find_house_asks(task: Task, recipe: EpisodeRecipe, fixed: Sidecar = EMPTY_SI
 
 
 def _leads_to(task: Task, ask: Ask, start: Pose) -> bool:
-    """Returns whether there is a path from a start to a goal of its storey."""
+    """Returns whether there is a path from a start to a goal on the same storey."""
     same_storey = abs(ask.floor_z_m - start.floor_z_m) < task.config.success.same_storey_m
     return same_storey and task.distance_from(ask.goal, start) is not None
 
 
 def _require(asks: Sequence[Ask], task: Task, fault: str) -> None:
-    """Raises EpisodeError where the sidecar of a house leaves no goal."""
+    """Raises EpisodeError if the sidecar of a house leaves no goal."""
     if not asks:
         raise EpisodeError(f"House '{task.world.house.name}': its sidecar {fault}.")
 
 
 def turned_start(task: Task, ask: Ask, start: Pose, number: int, recipe: EpisodeRecipe) -> DrawnStart:
-    """Returns the start that a sidecar fixes, turned for the episode with this number of those with its goal.
+    """Returns the start that a sidecar fixes, with the heading of an episode.
+
+    Args:
+        task: the task in the house.
+        ask: the goal of the episode.
+        start: the start that the sidecar fixes.
+        number: number of the episode among those with this goal; it selects one of the recipe's turns.
+        recipe: the recipe of the split.
 
     Raises:
-        EpisodeError: the robot does not fit there.
+        EpisodeError: the robot has a contact at the start.
     """
     yaw_rad = round(wrap_angle(start.yaw_rad + recipe.turns_rad[number % len(recipe.turns_rad)]), 4)
     pose = replace(start, yaw_rad=yaw_rad)

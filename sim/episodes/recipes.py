@@ -17,7 +17,7 @@ from types import MappingProxyType
 from typing import Literal
 
 START_TURNS_RAD = (0.0, 1.8, -2.3)
-"""Headings of the episodes of a trap relative to its sidecar's: towards the goal, to the left, back to the right."""
+"""Headings of the episodes of a trap, relative to that of its sidecar: towards the goal, to the left, back right."""
 Rule = Literal["any", "hidden", "hazard"]
 """The starts that a split allows, in addition to the limits of the distance:
 
@@ -44,7 +44,7 @@ class EpisodeRecipe:
     view_points: int = 8
     """Largest number of view points of a goal instance in the files."""
     turns_rad: tuple[float, ...] = (0.0,)
-    """Turns of a start that the sidecar of a house fixes; each is an episode of its own."""
+    """Turns of a start that the sidecar of a house fixes; there is one episode for each."""
 
     def min_distance_for(self, instances: int) -> float:
         """Returns the least distance to a goal with this number of reachable instances."""

@@ -37,8 +37,10 @@ from sim.reading import Name, first_unprintable, printable, read_bytes, read_jso
 
 UNREACHABLE_FILE = "unreachable.json"
 LABELS_FILE = "labels.json"
+HOUSE_SUFFIXES = (".xml", ".mjcf")
+"""Suffixes of house files, in lower or upper case."""
 _MOST_BYTES = 256 << 20
-"""Largest house file."""
+"""Largest size of a house file."""
 FARTHEST_M = 10_000.0
 """Largest coordinate of a start."""
 
@@ -62,7 +64,7 @@ class Episode:
 
 
 def require_start(start: Pose) -> None:
-    """Raises EpisodeError where a number of a start is NaN, infinite or larger than `FARTHEST_M`."""
+    """Raises EpisodeError if a number of a start is NaN, infinite or larger than `FARTHEST_M`."""
     if not all(abs(value) <= FARTHEST_M for value in (start.x_m, start.y_m, start.yaw_rad, start.floor_z_m)):
         raise EpisodeError(f"The start {start} is not allowed: finite numbers of at most {FARTHEST_M:g} are.")
 
@@ -85,7 +87,7 @@ class Split:
     house_list: HouseList | None = None
     """Generates the houses of a split that is shipped as a list."""
     house_sums: Mapping[str, str] = field(default_factory=dict)
-    """Checksum of each house with its sidecar and the files that it uses; listed houses have theirs in the list."""
+    """Checksum of each house with its sidecar and the files that it uses; for a house list, the list has them."""
 
     @property
     def houses(self) -> tuple[str, ...]:
@@ -112,8 +114,8 @@ class Split:
         return load_house(self.house_file(name), labels_path=self.labels_path, root=self.root)
 
     def require_unchanged(self, name: str) -> None:
-        """Raises HouseError where a house, its sidecar or a file that it uses has changed since this split was read."""
-        if name in self.house_sums and house_sum(self.house_file(name)) != self.house_sums[name]:
+        """Raises HouseError if a house, its sidecar or a file that it uses has changed since this split was read."""
+        if name in self.house_sums and house_sum(self.house_file(name), root=self.root) != self.house_sums[name]:
             raise HouseError(f"House '{name}': its files have changed since this run was planned; start the run again.")
 
     def sidecar(self, house: str) -> Sidecar:
@@ -189,7 +191,7 @@ def one_house(path: str | Path, *, labels: str | Path | None = None, root: str |
 def split_of_files(
     paths: Sequence[str | Path], *, labels: str | Path | None = None, root: str | Path | None = None
 ) -> Split:
-    """Returns a split of some house files, without episodes.
+    """Returns a split of the given house files, without episodes.
 
     Args:
         paths: the files; each name is that of one house.
@@ -201,38 +203,39 @@ def split_of_files(
         HouseError: there is no such file.
     """
     labels_path = None if labels is None else Path(labels)
+    allowed = None if root is None else Path(root)
     files, sums = dict[str, Path](), dict[str, str]()
     for path in map(Path, paths):
         if not path.is_file():
             raise HouseError(f"House '{path}': there is no such file.")
         if path.stem in files:
             raise ConfigError(f"The houses '{files[path.stem]}' and '{path}' have one name; rename one of them.")
-        files[path.stem], sums[path.stem] = path, house_sum(path)
+        files[path.stem], sums[path.stem] = path, house_sum(path, root=allowed)
     rules = b""
     if labels_path is not None and labels_path.is_file():
         rules = read_bytes(labels_path, what="Label rules", error=HouseError)
-    allowed = None if root is None else Path(root)
     if len(files) > 1:
         digest = hashlib.sha256("".join(sums.values()).encode() + rules).hexdigest()
         return Split("houses", "houses", digest, files, (), labels_path, allowed, house_sums=sums)
     ((name, path),) = files.items()
-    digest = house_sum(path, with_also=rules) if rules else sums[name]
+    digest = house_sum(path, with_also=rules, root=allowed) if rules else sums[name]
     return Split(name, "one-house", digest, files, (), labels_path, allowed, house_sums=sums)
 
 
-def house_sum(path: Path, *, with_also: bytes = b"") -> str:
+def house_sum(path: Path, *, with_also: bytes = b"", root: Path | None = None) -> str:
     """Returns the checksum of a house file with its sidecar and the files that it uses (SHA-256, hexadecimal).
 
     Args:
         path: the house file.
-        with_also: further content that counts.
+        with_also: further content to include.
+        root: another folder whose files it may use.
 
     Raises:
         HouseError: a file cannot be read.
     """
     digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=_MOST_BYTES) + _sidecar_bytes(path))
     digest.update(with_also)
-    for file in files_of(path):  # none for a file that stands alone, whose checksum is that of version 0.1
+    for file in files_of(path, root):  # a house in a single file keeps the checksum of version 0.1
         name = os.path.relpath(file, path.resolve().parent)
         digest.update(name.encode(errors="replace"))
         digest.update(bytes.fromhex(sha256_of(file, what="File of a house", error=HouseError)))
@@ -273,8 +276,24 @@ def write_split(
         file.unlink()
 
 
+def house_files(folder: Path) -> dict[str, Path]:
+    """Returns the house files in a folder, by name without suffix, sorted; an empty dict if there is no such folder.
+
+    Raises:
+        ConfigError: the names of two files differ only in their suffix.
+    """
+    found = dict[str, Path]()
+    for path in sorted(folder.iterdir()) if folder.is_dir() else ():
+        if path.suffix.lower() not in HOUSE_SUFFIXES:
+            continue
+        if path.stem in found:
+            raise ConfigError(f"The houses '{found[path.stem]}' and '{path}' have one name; rename one of them.")
+        found[path.stem] = path
+    return found
+
+
 def labels_of(folder: Path) -> Path | None:
-    """Returns the file of label rules in the folder of a split; None where its houses need none."""
+    """Returns the file of label rules in the folder of a split; None if its houses need none."""
     file = folder / LABELS_FILE
     return file if file.is_file() else None
 
@@ -303,6 +322,11 @@ def _index_of(folder: Path) -> Path:
     return folder / f"{folder.name}.json.gz"
 
 
+def has_episodes(folder: Path) -> bool:
+    """Returns whether a folder holds the episodes of a split."""
+    return _index_of(folder.resolve()).is_file()
+
+
 def _read_split(folder: Path) -> Split:
     """Returns the split in a folder that has an index."""
     index_file = _index_of(folder)
@@ -321,9 +345,9 @@ def _read_split(folder: Path) -> Split:
         raise ConfigError(f"Episode file '{index_file}', field 'order': an episode is listed twice.")
     ordered = tuple(episodes[each] for each in order)
     house_list = read_house_list(folder) if has_house_list(folder) else None
-    houses = house_list.paths if house_list else {path.stem: path for path in sorted(folder.glob("*.xml"))}
+    houses = house_list.paths if house_list else house_files(folder)
     if (bad := first_unprintable(houses)) is not None:
-        raise ConfigError(f"Split '{folder}': the name of the house '{printable(bad)}.xml' is not plain text.")
+        raise ConfigError(f"Split '{folder}': the name of the house '{printable(bad)}' is not plain text.")
     missing = sorted({episode.house for episode in ordered} - set(houses))
     if missing:
         where = "no such house in its list" if house_list else f"no {missing[0]}.xml"

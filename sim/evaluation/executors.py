@@ -28,7 +28,7 @@ from sim.evaluation.workers import ItemRunner, ItemT, OnStart, RunnerSpec, Worke
 EXECUTORS = ("local", "ray")
 """Names of `--executor`."""
 LAST_WORDS_S = 5.0
-"""Time that a process has to end, with its threads and exit handlers; then it is killed."""
+"""Longest time in which a process may end with its threads and exit handlers; then it is killed."""
 _PR_SET_PDEATHSIG = 1  # sys/prctl.h
 
 
@@ -48,7 +48,7 @@ class Executor(Protocol):
         Args:
             spec: how each worker builds its runner.
             items: the work.
-            on_death: returns the line of an item that its workers did not survive, from the item and the reason.
+            on_death: returns the line of an item whose workers died, from the item and the reason.
             on_start: called in this process when an item begins, with the item and the number of its steps so far.
 
         Raises:
@@ -67,10 +67,10 @@ def make_executor(
         name: `local` or `ray`.
         workers: number of processes, on this machine or over the cluster.
         address: of the Ray cluster; None: the cluster that this machine belongs to.
-        isolation: which code needs a process of its own; None: none does.
+        isolation: whether the items need a process of their own; None: they do not.
 
     Raises:
-        ConfigError: an unknown name, options that contradict each other, no `ray` installed, or no cluster there.
+        ConfigError: the name is unknown, options contradict each other, `ray` is not installed, or no cluster answers.
     """
     if name not in EXECUTORS:
         raise ConfigError(f"Unknown --executor '{name}'. Available: {', '.join(EXECUTORS)}.")
@@ -81,7 +81,7 @@ def make_executor(
         if address is not None:
             raise ConfigError(f"--address '{address}' needs --executor ray.")
         return Processes(workers, isolation)
-    from sim.evaluation.executors_ray import RayCluster  # an extra
+    from sim.evaluation.executors_ray import RayCluster  # needs the extra `ray`
 
     return RayCluster.connect(address, workers=workers, isolation=isolation)
 
@@ -91,16 +91,17 @@ class Isolation:
     """Whether items need a process other than this one, and how long a call of the agent may take there."""
 
     needed: bool = False
-    """True: also a single worker is a process of its own, which can crash or hang without harm to this one."""
+    """True: a single worker is a process of its own, too, which can crash or hang without harm to this process."""
     limit_s: float = 0.0
     """Longest time of a call of the agent (`sim.evaluation.watch`); 0: no limit."""
 
 
 @dataclass(frozen=True)
 class Processes:
-    """Processes of this machine; they are spawned, because OpenGL does not survive a fork. 1: this process."""
+    """Runs items in processes of this machine, which are spawned, because OpenGL does not survive a fork."""
 
     workers: int = 1
+    """Number of processes; 1: items are run in this process, unless `isolation` needs another."""
     isolation: Isolation = Isolation()
 
     def run(
@@ -121,11 +122,11 @@ class Processes:
 
 
 class _Process:
-    """A spawned process at the other end of a pipe; see `sim.evaluation.workers.Worker`.
+    """A spawned process with a pipe to it; see `sim.evaluation.workers.Worker`.
 
     Args:
         threads: see `ProcessPool`.
-        preload: a module that it imports at once.
+        preload: a module that the process imports at its start.
     """
 
     def __init__(self, *, threads: int, preload: str) -> None:
@@ -135,15 +136,15 @@ class _Process:
         from_main_thread = threading.current_thread() is threading.main_thread()
         args = (child_connection, self.calls, preload, from_main_thread)
         self.process = context.Process(target=_worker_main, args=args, daemon=True)
-        with _environment(OMP_NUM_THREADS=str(threads)):  # libraries read it when they are imported
+        with _environment(OMP_NUM_THREADS=str(threads)):  # libraries read this variable when they are imported
             self.process.start()
         self.busy = True
         self.loss = ""
-        """Why this process was killed; "": it was not."""
+        """The reason why this process was killed; "" if it was not."""
         child_connection.close()
 
     def begin(self, spec: RunnerSpec, *, limit_s: float) -> None:
-        """Sends it the recipe of its runner; it then reports that it is ready."""
+        """Sends the process the specification of its runner; it then reports that it is ready."""
         self.calls.limit_s = limit_s
         self.calls.rest()
         self.connection.send(spec)
@@ -151,7 +152,7 @@ class _Process:
     def send(self, item: Any) -> None:
         self.busy = True
         self.calls.rest()
-        with contextlib.suppress(OSError):  # it died while idle: `receive` finds the pipe closed
+        with contextlib.suppress(OSError):  # the process died while it was idle: `receive` finds the pipe closed
             self.connection.send(item)
 
     def steps(self) -> int:
@@ -159,10 +160,10 @@ class _Process:
 
     def receive(self) -> Any:
         try:
-            if self.loss:  # it was killed, and a process that it forked may keep the pipe open
+            if self.loss:  # the process was killed, but a process that it forked may keep the pipe open
                 raise EOFError
             message = self.connection.recv()
-        except Exception:  # the pipe was closed, or code of a user wrote to it
+        except Exception:  # the pipe was closed, or a user's code wrote to it
             where, killed = self.calls.where, self.loss
             self.end(within_s=LAST_WORDS_S)
             at = f"{where}: its process" if where else "The process of the worker"
@@ -172,7 +173,7 @@ class _Process:
         return message
 
     def is_overdue(self) -> bool:
-        """Kills the process if it has been silent for too long; returns whether it was."""
+        """Kills the process if it has shown no activity for too long; returns whether it was killed."""
         self.loss = self.loss or (self.calls.overdue() if self.busy else "")
         if self.loss:
             self.process.kill()
@@ -188,12 +189,12 @@ class _Process:
 
 
 _spare: _Process | None = None
-"""A process that was started before its work is known."""
+"""A process that was started before its work is known; None: there is none."""
 
 
 @contextlib.contextmanager
 def started_early(preload: str | None) -> Iterator[None]:
-    """Starts one process, which a `ProcessPool` inside the `with` block uses; it imports modules in the meantime.
+    """Starts one process, which imports a module and is then used by a `ProcessPool` inside the `with` block.
 
     Args:
         preload: the module that it imports; None: no process is started.
@@ -228,19 +229,19 @@ class ProcessPool:
         global _spare
         early, _spare = _spare if self._threads == _processors() else None, None
         started = early or _Process(threads=self._threads, preload=self._spec.entry.partition(":")[0])
-        with contextlib.suppress(OSError):  # it died: `receive` finds the pipe closed
+        with contextlib.suppress(OSError):  # the process died: `receive` finds the pipe closed
             started.begin(self._spec, limit_s=self._limit_s)
         return started
 
     def wait(self, workers: Sequence[_Process]) -> list[_Process]:
-        """Returns the workers with a message in their pipe, whose pipe is closed, or that were killed as too slow."""
+        """Returns the workers that sent a message, closed their pipe, or were killed because they were too slow."""
         while True:
             ready = wait([worker.connection for worker in workers], TICK_S if self._limit_s else None)
             if found := [worker for worker in workers if worker.connection in ready or worker.is_overdue()]:
                 return found
 
     def stop(self, workers: Sequence[_Process]) -> None:
-        """Terminates busy workers and lets idle ones exit, since they may hold a renderer; kills those that do not."""
+        """Terminates busy workers and lets idle ones exit, which may hold a renderer; kills those that do not end."""
         for worker in workers:
             worker.process.terminate() if worker.busy else worker.send(None)
         until_s = time.monotonic() + LAST_WORDS_S
@@ -261,7 +262,7 @@ class Supervisor:
         self._process: _Process | None = None
 
     def run(self, item: Any) -> Any:
-        """Returns the item's line, the exception that it raised, or a `WorkerLost` where the process ended."""
+        """Returns the item's line, the exception that it raised, or a `WorkerLost` if the process ended."""
         try:
             if self._process is None:
                 self._process = self._pool.start()
@@ -301,12 +302,12 @@ def _environment(**defaults: str) -> Iterator[None]:
 
 
 def _end_with_parent(*, by_kernel: bool) -> None:
-    """Ends this worker as soon as the process that started it is gone, also in the middle of an episode.
+    """Ends this worker as soon as the process that started it has ended, even in the middle of an episode.
 
-    A thread sees to it. A worker that has stopped runs no thread, so that Linux ends it.
+    A thread waits for that end. A worker that was stopped (SIGSTOP) runs no thread; on Linux the kernel kills it.
 
     Args:
-        by_kernel: whether Linux may; it would also end the worker with the thread that started it.
+        by_kernel: whether the kernel may kill the worker. It does so as soon as the thread that started it has ended.
     """
     if by_kernel:
         with contextlib.suppress(OSError, AttributeError):  # not Linux
@@ -322,13 +323,13 @@ def _end_with_parent(*, by_kernel: bool) -> None:
 
 
 def _worker_main(connection: Connection, calls: Calls, preload: str, from_main_thread: bool) -> None:
-    """Reports that the worker is ready and runs items until None arrives or the parent process is gone."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes; the one that started them ends them
+    """Reports that the worker is ready and runs items until None arrives or the parent process has ended."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes; the parent process ends the workers
     _end_with_parent(by_kernel=from_main_thread)
     watched_as(calls)
     if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(line_buffering=True)  # what an agent prints is not lost if it is killed
-    with contextlib.suppress(Exception):  # `ItemRunner` reports it
+        sys.stdout.reconfigure(line_buffering=True)  # an agent's output is not lost if the process is killed
+    with contextlib.suppress(Exception):  # `ItemRunner` reports the error
         importlib.import_module(preload)
     runner: ItemRunner | None = None
     try:

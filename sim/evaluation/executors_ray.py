@@ -47,7 +47,7 @@ class RayCluster:
         Args:
             address: `HOST:PORT` of its head; None: the cluster that this machine belongs to.
             workers: largest number of workers; those without a free processor do not start.
-            isolation: whether code of a user needs a process of its own on each machine; None: it does not.
+            isolation: whether a user's code needs a process of its own on each machine; None: it does not.
 
         Raises:
             ConfigError: there is no cluster.
@@ -153,7 +153,7 @@ class _ActorPool:
 
 
 def _check_port(address: str | None) -> None:
-    """Raises OSError or ValueError where no process listens; Ray itself takes two minutes to report that."""
+    """Raises OSError or ValueError if no process listens; Ray itself takes two minutes to report that."""
     host, colon, port = (address or "").rpartition(":")
     if colon and "://" not in host:
         socket.create_connection((host, int(port)), timeout=CONNECT_TIMEOUT_S).close()
@@ -164,7 +164,7 @@ def _versions() -> dict[str, str]:
 
 
 def _require_same(remote: dict[str, str]) -> None:
-    """Raises WorkersError where the versions of another machine differ from those of this one."""
+    """Raises WorkersError if the versions of another machine differ from those of this one."""
     for name, here in _versions().items():
         if remote[name] != here:
             raise WorkersError(

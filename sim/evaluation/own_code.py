@@ -25,11 +25,11 @@ def place_of(error: BaseException, *, below: str) -> str:
     of a wrong shape, the message names the line of the call and not one inside of PyTorch.
 
     Args:
-        error: it has been raised.
-        below: file of the function that called the code; its own frames do not count.
+        error: an error that was raised.
+        below: file of the function that called the code; frames of this file do not count.
 
     Returns:
-        The place in brackets after a blank; "" where there is no frame.
+        The place in brackets after a space; "" if there is no frame.
     """
     frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename != below]
     for tier in (_is_users, _is_not_library, lambda file: True):
@@ -40,7 +40,7 @@ def place_of(error: BaseException, *, below: str) -> str:
 
 
 def text_of(error: BaseException) -> str:
-    """Returns an error's message in one line of at most `MOST_LETTERS`, whatever the class of the error does."""
+    """Returns an error's message in one line of at most `MOST_LETTERS`, even if the error's class cannot print it."""
     try:
         text = str(error)
     except BaseException as fault:
@@ -49,22 +49,22 @@ def text_of(error: BaseException) -> str:
 
 
 def one_line(text: str, most: int = MOST_LETTERS) -> str:
-    """Returns a text in one line that a terminal, JSON and UTF-8 can hold; of a long text the beginning."""
+    """Returns a text in one line that a terminal, JSON and UTF-8 can hold; a long text is truncated."""
     cut = f" ... ({len(text)} letters)" if len(text) > most else ""
     return printable(" ".join(text[:most].split())) + cut
 
 
 def hash_of_own(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
-    """Returns 12 hex digits, a hash of modules of a user and of all that they import from the same source folder.
+    """Returns a hash (12 hex digits) of a user's modules and of all that they import from the same source folder.
 
-    Imports are read from the source, so that those inside of functions count too, whether they have run or not.
+    Imports are read from the source, so that imports inside functions count, whether they have run or not.
 
     Args:
         modules: names of imported modules; those of this project and of libraries do not count.
-        files: further files, each with what it imports from its folder where it is a Python file.
+        files: further files; if one is a Python file, the modules that it imports from its folder count, too.
 
     Returns:
-        The hash; "" where no module is the user's.
+        The hash; "" if no module is a user's and there are no files.
     """
     contents: dict[Path, tuple[str, bytes]] = {}
     for name in modules:
@@ -84,7 +84,7 @@ def hash_of_own(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
 
 
 def _read_with_imports(file: Path, root: Path, contents: dict[Path, tuple[str, bytes]]) -> None:
-    """Adds a file and what it imports from below `root` to the contents, with their paths relative to it."""
+    """Adds a file and the files below `root` that it imports to the contents, with their paths relative to `root`."""
     if file in contents:
         return
     source = read_bytes(file, what="Module")
@@ -97,7 +97,7 @@ def _read_with_imports(file: Path, root: Path, contents: dict[Path, tuple[str, b
 
 
 def _imported(source: bytes, file: Path, root: Path) -> Iterator[str]:
-    """Yields the names of modules that a source may import, with their packages; nothing where it cannot be parsed."""
+    """Yields the names of the modules that a source may import, with their packages; none if it cannot be parsed."""
     try:
         nodes = list(ast.walk(ast.parse(source)))
     except (SyntaxError, ValueError):
@@ -127,7 +127,7 @@ def _is_not_library(file: Path) -> bool:
 
 
 def _short(file: Path) -> str:
-    """Returns a path relative to the current folder where the file is below it, else its last two names."""
+    """Returns a path relative to the current folder if the file is below it, else its last two names."""
     try:
         return str(file.resolve().relative_to(Path.cwd().resolve()))
     except ValueError:

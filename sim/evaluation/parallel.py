@@ -18,10 +18,10 @@ ResultT = TypeVar("ResultT")
 
 @dataclass(frozen=True)
 class Shard:
-    """Every `count`-th item from item `index` on: the part of the work that one of several machines processes."""
+    """The part of the work that one of several machines processes: every `count`-th item, from item `index` on."""
 
     index: int = 0
-    """From 0 on; users and names of folders number shards from 1 on."""
+    """Number of the shard, from 0 on; options and names of folders count from 1."""
     count: int = 1
 
     @classmethod
@@ -42,7 +42,7 @@ class Shard:
         return f"shard_{self.index + 1}_of_{self.count}"
 
     def require_own_numbers(self, whole: Path) -> None:
-        """Raises ConfigError where the folder of the whole run holds shards that are numbered from 0."""
+        """Raises ConfigError if the folder of the whole run holds shards that are numbered from 0."""
         if (whole / f"shard_0_of_{self.count}").exists():
             raise ConfigError(
                 f"--out '{whole}' holds shards of version 0.1, which are numbered from 0 to {self.count - 1}; give "

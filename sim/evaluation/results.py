@@ -54,7 +54,7 @@ PLACEMENT_OPTIONS = ("executor", "address", "shard")
 VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save")
 """Options that start viewers; they change no result."""
 WITHOUT_EFFECT = frozenset({"workers", "out", "record", "seed_key", *PLACEMENT_OPTIONS, *VIEWER_OPTIONS})
-"""Entries of the config that change no result, or differ between all runs by chance (`seed_key`)."""
+"""Entries of the config that change no result, or that are random in each run (`seed_key`)."""
 NOT_COMPARED = WITHOUT_EFFECT | {"versions", "codes", "episodes", "only", "settings", "segmentation"}
 """Entries of the config in which a resumed run may differ; with more episodes it runs the additional ones.
 
@@ -167,7 +167,7 @@ class RunDirectory:
             raise ConfigError(f"Another process is writing to --out '{self.path}'.") from None
         self._created = [self.path / ".lock", *([] if existed else [self.path])]
         self.healed = ""
-        """A sentence on an incomplete last line that was dropped; "" if every line was complete."""
+        """A sentence on an incomplete last line that was removed; "" if every line was complete."""
         try:
             self._write_or_compare_config()
             self.lines: list[dict[str, Any]] = self._read_and_heal()
@@ -188,14 +188,14 @@ class RunDirectory:
                 folder.rmdir()
 
     def errors(self, episode_ids: Collection[str]) -> set[str]:
-        """Returns those of the episodes whose line here is an error. `append` replaces it, so that no line is lost."""
+        """Returns the ids of the given episodes whose line is an error; `append` replaces such a line."""
         return {line["episode_id"] for line in self.lines if line.get("end_reason") == "error"} & set(episode_ids)
 
     def require_own_code(self, code: str, kept: Collection[str]) -> None:
-        """Raises ConfigError where other code of the user than this one ran the episodes that are kept.
+        """Raises ConfigError if the user's code has changed since it ran the episodes that are kept.
 
         Args:
-            code: a hash of the code, "+" and a hash of the user's code; without "+" there is no such code.
+            code: a hash of this project's code, "+" and a hash of the user's code; without "+" there is no user's code.
             kept: ids of the episodes.
         """
         if not kept:
@@ -267,11 +267,11 @@ class RunDirectory:
         self._require_untouched(new="")
 
     def _content(self) -> bytes:
-        """Returns what the file of the results holds."""
+        """Returns the content of the file of results; empty if it does not exist."""
         return read_bytes(self._file, what="Results", most=MAX_LINES_BYTES) if self._file.exists() else b""
 
     def _open(self, content: bytes) -> None:
-        """Opens the results for more lines; `content` is what they hold."""
+        """Opens the file of results to append lines; `content` is its content so far."""
         self._results = open_to_grow(self._file)
         self._bytes, self._digest = len(content), hashlib.sha256(content)
 
@@ -283,11 +283,11 @@ class RunDirectory:
         self._digest.update(content)
 
     def _require_untouched(self, *, new: str = "", content: bool = False) -> None:
-        """Raises ConfigError where the results on the disk are not those that this process wrote.
+        """Raises ConfigError if the results on the disk are not those that this process wrote.
 
         Args:
-            new: id of the episode whose line is to be written; "": none.
-            content: whether to compare the content too, not only the size.
+            new: id of the episode whose line will be written; "": none.
+            content: whether to compare the content, and not only the size.
         """
         try:
             size = self._file.stat().st_size
@@ -395,7 +395,7 @@ class RunDirectory:
 
 
 def metric_value(line: Mapping[str, Any], metric: str) -> float | None:
-    """Returns a metric of a result line; None where the line, for example of an older version, does not have it.
+    """Returns a metric of a result line; None if the line, for example of an older version, does not have it.
 
     An episode that ended with an error is a failure, whose success and SPL are 0. It has no other metric: it did not
     run to its end, so that it has too few steps, collisions and metres.

@@ -39,7 +39,7 @@ def episode_seed(seed: int, episode_id: str) -> int:
 def agent_seed(seed: int, episode_id: str, key: str) -> int:
     """Returns the agent's seed for an episode, in [0, 2**32): a hash with the key of the run, which no agent gets.
 
-    Without the key the seed would name the episode, since those of public splits are known.
+    Without the key, an agent could identify the episode by its seed, because the episodes of public splits are known.
     """
     secret = hashlib.sha256(key.encode()).digest()
     return int.from_bytes(hashlib.blake2b(f"{seed}/{episode_id}".encode(), key=secret, digest_size=4).digest(), "big")
@@ -62,8 +62,8 @@ def play_episode(
         env: the environment.
         agent: the agent.
         episode: the episode.
-        seed: of the environment.
-        seed_of_agent: of the agent; None: that of the environment.
+        seed: seed of the environment.
+        seed_of_agent: seed of the agent; None: that of the environment.
         on_step: called after each step.
         viewers: informed of each step; they change nothing.
         name: the agent's name in messages; that of its class when None.
@@ -170,18 +170,18 @@ def ask(where: str, call: Callable[[], Any]) -> Any:
     """Returns what a call of the agent returns.
 
     Raises:
-        AgentError: it raised an error, or called `exit`; the message begins with `where` and
-            ends with the file and line of the user's code.
+        AgentError: it raised an error, or called `exit`; the message begins with `where` and ends with the file and
+            line of the user's code.
     """
     try:
         with marked(where):
             return call()
-    except BaseException as error:  # also `SystemExit`, `CancelledError` and classes of the user
+    except BaseException as error:  # also `SystemExit`, `CancelledError` and classes of users
         if is_stop(error):
             raise
         if debug():
             traceback.print_exc()
-        if isinstance(error, AgentError):  # of a part of the agent or of a bridge, whose message names the place
+        if isinstance(error, AgentError):  # a part of the agent or a bridge raised it; its message names the place
             raise AgentError(f"{where}: {text_of(error)}") from error
         reason = f"{type(error).__name__}: {text_of(error)}"
         raise AgentError(f"{where}: {reason}{place_of(error, below=__file__)}") from error
@@ -202,7 +202,7 @@ def next_action(agent: Agent, observation: Observation, where: str) -> Action:
 
 
 def confidence_of(agent: Agent, where: str) -> float | None:
-    """Returns how sure the agent is of the object for which it stops, in [0, 1]; None where it does not state it.
+    """Returns how sure the agent is of the object for which it stops, in [0, 1]; None if it does not state it.
 
     Raises:
         AgentError: `stop_confidence` failed, or returned something else; the message begins with `where`.
@@ -220,7 +220,7 @@ def confidence_of(agent: Agent, where: str) -> float | None:
 
 
 def target_of(agent: Agent, where: str) -> tuple[float, float] | None:
-    """Returns the place for which the agent stops, x and y in the start frame; None where it does not state it.
+    """Returns the place for which the agent stops, x and y in the start frame; None if it does not state it.
 
     Raises:
         AgentError: `stop_target_xy_m` failed, or returned something else; the message begins with `where`.

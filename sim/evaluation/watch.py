@@ -1,8 +1,8 @@
-"""Marks the calls and steps of an agent: a call that never returns can be ended, and a run shows its progress.
+"""Records the calls and steps of an agent, so that a call that never returns is ended and a run reports its progress.
 
 A worker writes the beginning and the end of each call, and the number of steps of its episode, to memory that it shares
-with the process that started it (`sim.evaluation.executors`). Nothing in the worker itself can end a call: it may loop
-in C or have stopped the process.
+with the process that started it (`sim.evaluation.executors`). Nothing in the worker itself can end a call, which may
+loop in C or have stopped the process.
 """
 
 from __future__ import annotations
@@ -16,37 +16,35 @@ from typing import Any
 Steps = Callable[[], int | None]
 """Returns the number of steps of a running episode so far; None: not known in this process."""
 WHERE_BYTES = 240
-"""Longest description of a call."""
+"""Longest description of a call, in bytes."""
 TICK_S = 0.25
-"""Interval at which workers are watched."""
+"""Interval at which workers are checked."""
 BETWEEN_CALLS_S = 1800.0
-"""Longest time without a call: loading a house, rendering, compiling the kernels in the first run."""
-
-
+"""Longest time without a call, in which houses are loaded and kernels are compiled."""
 FACTORY_S = 120.0
-"""Shortest limit for making an agent, which loads weights: `--step-timeout` is that of its steps."""
+"""Smallest time limit for the factory of an agent, which loads weights; `--step-timeout` may be shorter."""
 
 
 class Calls:
     """Memory of one worker, shared with the process that watches it.
 
     Args:
-        context: of the processes.
+        context: the context that starts the processes.
         limit_s: longest time of a call; 0: no limit.
     """
 
     def __init__(self, context: SpawnContext, *, limit_s: float) -> None:
-        self._mark = context.RawArray("d", 1)  # time of the last begin, or minus that of the last end
+        self._mark = context.RawArray("d", 1)  # time of the last begin, or minus the time of the last end
         self._where = context.RawArray("c", WHERE_BYTES)
-        self._least_s = context.RawArray("d", 1)  # of the call that runs
+        self._least_s = context.RawArray("d", 1)  # smallest limit of the running call
         self.step_count: MutableSequence[int] = context.RawArray("q", 1)
-        """One number: the steps of the episode that runs."""
+        """One number: the steps of the running episode."""
         self.limit_s = limit_s
         self._seen, self._waited_s, self._looked_s = 0.0, 0.0, time.monotonic()
 
     @property
     def where(self) -> str:
-        """The call that runs, for example "Agent 'mine:make', step 3"; "" between two calls."""
+        """The running call, for example "Agent 'mine:make', step 3"; "" between two calls."""
         return self._where.value.decode(errors="replace") if self._mark[0] > 0.0 else ""
 
     def begin(self, where: str, least_s: float = 0.0) -> None:
@@ -60,14 +58,14 @@ class Calls:
         self._mark[0] = -time.monotonic()
 
     def rest(self) -> None:
-        """Starts to wait anew, with no step: the worker gets work now."""
+        """Sets waiting time and steps to 0, because the worker gets new work now."""
         self.step_count[0] = 0
         self._waited_s, self._looked_s = 0.0, time.monotonic()
 
     def overdue(self) -> str:
-        """Returns a sentence where the worker has shown no sign of life for too long, else ""; for its watcher.
+        """Returns a sentence if no call has begun or ended for too long, else ""; called by the process that watches.
 
-        Time in which the watcher itself did not run does not count, for example after Ctrl-Z.
+        Time in which that process itself was stopped, for example by Ctrl-Z, does not count.
         """
         now_s, mark = time.monotonic(), self._mark[0]
         passed_s, self._looked_s = min(now_s - self._looked_s, 2.0 * TICK_S), now_s
@@ -88,7 +86,7 @@ _step_count: MutableSequence[int] = [0]
 
 
 def watched_as(calls: Calls) -> None:
-    """Has `marked` and `count_steps` write to these calls: this process is a worker."""
+    """Makes this process a watched worker: `marked` and `count_steps` write to `calls` from here on."""
     global _calls, _step_count
     _calls, _step_count = calls, calls.step_count
 
@@ -104,13 +102,13 @@ def counted_steps() -> int:
 
 
 def is_stop(error: BaseException) -> bool:
-    """Returns whether an error is Ctrl-C or SIGTERM. In a worker, signals do not raise it, but code of a user may."""
+    """Returns whether an error is Ctrl-C or SIGTERM; False in a worker, where only a user's code can raise it."""
     return isinstance(error, KeyboardInterrupt) and _calls is None
 
 
 @contextlib.contextmanager
 def marked(where: str, least_s: float = 0.0) -> Iterator[Any]:
-    """Marks a call of the agent for as long as the `with` block runs; it may take at least `least_s`."""
+    """Records a call of the agent while the `with` block runs; its time limit is at least `least_s`."""
     if _calls is None:
         yield
         return

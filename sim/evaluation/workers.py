@@ -21,7 +21,7 @@ from sim.evaluation.watch import Steps, counted_steps
 _log = logging.getLogger(__name__)
 ItemT = TypeVar("ItemT", bound="WorkItem")
 OnStart = Callable[[ItemT, Steps], None]
-"""Called with an item that begins and a function that returns the number of its steps so far."""
+"""Called when an item begins, with the item and a function that returns the number of its steps so far."""
 MAX_TRIES = 2
 """Number of times that an item is started; if its worker dies each time, the item is an error."""
 MAX_FAILED_STARTS = 3
@@ -78,8 +78,8 @@ class WorkerLost(Exception):
     """A worker died; the message gives the reason where it is known.
 
     Args:
-        reason: a sentence without its end.
-        final: whether its item is not tried once more.
+        reason: a sentence without its full stop.
+        final: True: the worker's item is not tried again.
     """
 
     def __init__(self, reason: str, *, final: bool = False) -> None:
@@ -87,7 +87,7 @@ class WorkerLost(Exception):
         self.final = final
 
     def __reduce__(self) -> tuple[Callable[..., WorkerLost], tuple[str, bool]]:
-        """Pickles both arguments."""
+        """Returns the form for pickling, with both arguments."""
         return _lost, (str(self), self.final)
 
 
@@ -148,7 +148,7 @@ class ItemRunner:
             if self._runner is None:
                 self._runner = self._spec.build()
             return self._runner.run(item)
-        except BaseException as error:  # `GeneratorExit` and the like come from code of a user
+        except BaseException as error:  # a user's code may raise `GeneratorExit`, for example
             return _sendable(error)
 
     def close(self) -> None:
@@ -158,7 +158,7 @@ class ItemRunner:
 
 
 def _sendable(error: BaseException) -> BaseException:
-    """Returns an error if it survives pickling; else its text, since errors of users may have any arguments."""
+    """Returns an error if it can be pickled, else one with its text; classes of users may take any arguments."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:
@@ -192,8 +192,8 @@ def run_in_pool(
         pool: starts the workers.
         items: the work.
         max_workers: largest number of workers at a time.
-        on_death: returns the line of an item whose worker died `MAX_TRIES` times, or that took too long, from the item
-            and the reason.
+        on_death: returns the line of an item whose workers died `MAX_TRIES` times, or that took too long, from the
+            item and the reason.
         on_start: see `OnStart`.
 
     Raises:
@@ -269,7 +269,7 @@ class _Scheduler(Generic[ItemT]):
         for slot in self.slots:
             if slot.idle:
                 self._assign(slot)
-                self._say_start(slot)
+                self._report_start(slot)
         starting = sum(not slot.ready for slot in self.slots)
         for _ in range(min(self.max_workers - len(self.slots), len(self.queue.items) - starting)):
             self.slots.append(_WorkerSlot(self.pool.start()))
@@ -281,7 +281,7 @@ class _Scheduler(Generic[ItemT]):
             slot.house = slot.item.house
             slot.worker.send(slot.item)
 
-    def _say_start(self, slot: _WorkerSlot[ItemT]) -> None:
+    def _report_start(self, slot: _WorkerSlot[ItemT]) -> None:
         """Calls `on_start` for the item that a worker got."""
         if self.on_start is not None and slot.item is not None:
             self.on_start(slot.item, slot.worker.steps)
@@ -301,7 +301,7 @@ class _Scheduler(Generic[ItemT]):
             raise message
         if was_ready:
             yield message
-        self._say_start(slot)  # after the line of the item before it
+        self._report_start(slot)  # after the line of the item before it
 
     def _retry_or_fail(self, slot: _WorkerSlot[ItemT], loss: WorkerLost) -> Iterator[Any]:
         """Puts the item of a dead worker back into the queue, or yields its error line."""

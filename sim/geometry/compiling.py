@@ -65,10 +65,10 @@ def must_compile() -> bool:
 
 
 def choose_cache() -> Path | None:
-    """Returns the temporary folder in which numba keeps compiled code where nothing else can be written; else None.
+    """Returns a temporary folder for numba's compiled code if no other folder can be written; else None.
 
-    numba uses `NUMBA_CACHE_DIR`, the folder of the code or the user's folder of caches, and fails if it can write to
-    none of them. The choice is noted in `NUMBA_CACHE_DIR`, so that workers share it.
+    numba uses `NUMBA_CACHE_DIR`, the folder of the code or the user's cache folder, and fails if it can write to none
+    of them. `NUMBA_CACHE_DIR` is set to the temporary folder, so that workers share it.
     """
     given = os.environ.get(_VARIABLE)
     if given:
@@ -83,7 +83,7 @@ def choose_cache() -> Path | None:
         own = stat.S_ISDIR(about.st_mode) and about.st_uid == os.getuid() and not about.st_mode & 0o077
     except OSError:
         own = False
-    if not own:  # another user made it, whose code would be run
+    if not own:  # another user may have made the folder; this process must not run code from it
         folder = Path(tempfile.mkdtemp(prefix=_TEMPORARY))
     os.environ[_VARIABLE] = str(folder)
     return folder
@@ -94,7 +94,7 @@ def _temporary() -> Path:
 
 
 def _can_write(folder: Path) -> bool:
-    """Returns whether a folder can be written, or made."""
+    """Returns whether a folder can be written, or created if it does not exist."""
     there = next(each for each in (folder, *folder.parents) if each.exists())
     return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
 

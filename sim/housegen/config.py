@@ -24,23 +24,23 @@ class HouseConfig:
     kind: PlanKind | None = None
     """Kind of floor plan."""
     area_m2: float | None = None
-    """Floor area of the ground storey, which is met to within 5 %, between the walls and to the middle of the walls."""
+    """Floor area of the ground storey. It is met to within 5 %, measured between the walls and to their middle."""
     clutter: float | None = None
     """0 without small objects, 1 with many."""
     rooms: tuple[str, ...] = ()
-    """Kinds of private rooms (gym, office, laundry ...) that it has in any case."""
+    """Kinds of private rooms (gym, office, laundry ...) that the house must have."""
     name: str = "house"
     """The model's name in the file."""
     movable: bool = False
     """Light chairs, stools, plants and gym equipment get free joints (`sim.housegen.mjcf.movables`)."""
     storeys: int = 1
-    """1, or 2: some rooms again above, with a flight of stairs between in a room of the kind `stair_hall`."""
+    """1, or 2: some rooms are repeated on an upper storey, and a room of the kind `stair_hall` has the stairs."""
     hazards: tuple[str, ...] = ()
-    """Families of hazards (`sim.housegen.hazards.FAMILIES`) that are placed where paths lead."""
+    """Families of hazards (`sim.housegen.hazards.FAMILIES`), which are placed on paths."""
     hazard_count: int | None = None
     """Number of hazards; it depends on the area when None."""
     any_size: bool = False
-    """Whether the file may have any size, as the files of the pool `wide` may: imported models are large."""
+    """Whether the file may have any size, like the files of the pool `wide`; imported models are large."""
     exact: bool = True
     """False: the area may be off by a quarter, and rooms that do not fit are left out, as in the shipped splits."""
 
@@ -74,6 +74,6 @@ class HouseConfig:
 
     @property
     def wanted_rooms(self) -> tuple[str, ...]:
-        """The private rooms, with the one that stairs need."""
+        """The private rooms, with the one that the stairs need."""
         needs_hall = self.storeys == 2 and "stair_hall" not in self.rooms
         return (*self.rooms, "stair_hall") if needs_hall else self.rooms

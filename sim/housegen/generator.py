@@ -41,10 +41,10 @@ from sim.houses.writing import house_text
 from sim.world.check import check_house
 
 GENERATOR_VERSION = 3
-"""Increased whenever the same seed gives another house; what `HouseConfig.exact` changes is recorded as such."""
+"""Increased whenever the same seed gives another house; the effect of `HouseConfig.exact` is recorded separately."""
 MAX_TRIES = 12
 MAX_REASONS = 3
-"""Reasons that the error of a seed without a house lists."""
+"""Largest number of reasons in the error message of a seed that gives no house."""
 MAX_AREA_ERROR = 0.05
 """Largest relative difference between the requested floor area and that of the rooms."""
 DRAWN_AREAS = (0.92, 1.1)

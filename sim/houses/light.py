@@ -1,4 +1,4 @@
-"""Gives light to a scene that has none: MuJoCo's default is a weak headlight, which leaves walls nearly black."""
+"""Adds light to a scene without lamps: MuJoCo's default is a weak headlight, with which walls are nearly black."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from sim.gl import mujoco
 LEAST_AMBIENT = 0.3
 """A scene without lamps whose headlight has at least this ambient part keeps its light."""
 AMBIENT, HEADLIGHT = 0.5, 0.2
-"""Ambient and diffuse part of the headlight that a scene gets."""
+"""Ambient and diffuse part of the headlight that is set."""
 SIDES = (((0.45, 0.3, -0.85), 0.25), ((-0.6, -0.35, -0.7), 0.12))
-"""Direction and strength of two lights without shadows, so that walls of a corner differ in brightness."""
+"""Direction and strength of two added lights without shadows: the walls of a corner then differ in brightness."""
 
 
 def add_light(spec: mujoco.MjSpec) -> tuple[str, ...]:
-    """Lights a scene without lamps whose headlight is weak; returns a sentence if it did so.
+    """Adds light to a scene without lamps whose headlight is weak; returns a sentence if it has added light.
 
     A bare room of medium grey then has a mean grey level of about 80 of 255 in the images of the robot's camera.
     """

@@ -116,7 +116,7 @@ def validate_house(house: House, model: mujoco.MjModel) -> Labels:
 
 
 def _require_low_planes(model: mujoco.MjModel) -> None:
-    """Raises a HouseError where a plane faces up above the ground: everything below it is inside of it."""
+    """Raises a HouseError if a plane faces up above the ground: everything below it is inside of it."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     planes = np.flatnonzero((model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE) & collidable_geoms(model))

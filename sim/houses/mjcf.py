@@ -1,8 +1,8 @@
-"""Reads MJCF files from anywhere: what a file asks for is counted before MuJoCo builds it.
+"""Reads MJCF files from any source: the memory that a file requires is estimated before MuJoCo builds its model.
 
-A few lines of MJCF can ask for any amount of memory: `replicate` in `replicate`, a texture of 60,000 x 60,000 pixels, a
-custom array of a given size. `read_spec` refuses such files, and numbers that are not finite, by name. Files that it
-includes, meshes and textures must lie in the folders of `sim.houses.references`.
+A few lines of MJCF can require any amount of memory: `replicate` in `replicate`, a texture of 60,000 x 60,000 pixels, a
+custom array of a given size. `read_spec` refuses such files and numbers that are not finite, and names the element.
+Included files, meshes and textures must be in the folders of `sim.houses.references`.
 """
 
 from __future__ import annotations
@@ -24,29 +24,31 @@ from sim.houses.references import Allowed, Reference, asset_path, asset_referenc
 from sim.reading import MAX_BYTES, image_size_px, open_plain, printable, read_bytes, reason_of
 
 MAX_ELEMENTS = 100_000
-"""Elements of a file after `replicate`; the largest house that ships has 6,000."""
+"""Largest number of elements of a file, with all copies by `replicate`; the largest shipped house has 6,000."""
 MAX_FILES = 100
-"""Files that a file may include."""
+"""Largest number of files that are read for one house: the file itself and the files that it includes."""
 MAX_DEPTH = 200
-"""Depth of nested elements; MuJoCo reads 500."""
+"""Largest depth of nested elements; MuJoCo itself reads 500."""
 MAX_TEXTURE_BYTES = 512 << 20
-"""All textures of a file together; those that ship have 10 MB."""
+"""Largest size of all textures of a file together; those that ship have 10 MB."""
 TEXTURE_VARIABLE = "STUBBORN_TEXTURE_MB"
-"""Environment variable with another limit for textures, MB."""
+"""Environment variable that sets another limit for textures, MB."""
 MAX_ASSET_BYTES = 512 << 20
-"""Files of meshes and other assets together."""
+"""Largest size of the files of all meshes and other assets together."""
 MAX_ARRAY = 1_000_000
 """Largest custom array, buffer or count of a file."""
 MAX_PHYSICS_BYTES = 1 << 30
-"""Memory for contacts and constraints: about 700 free bodies; the largest house that ships needs 20 MB."""
+"""Largest memory for contacts and constraints, enough for about 700 free bodies; the largest shipped house needs
+20 MB."""
 MAX_CONTACTS = 5000
-"""Contacts of a house at the start; with more, MuJoCo runs out of the memory that it reserves."""
+"""Largest number of contacts of a house in its initial state; more do not fit the memory that MuJoCo reserves."""
 LARGEST = 1e15
 """Largest magnitude of a number in a file."""
 FARTHEST_M = 10_000.0
 """Largest coordinate or size of a geom, a body, a site or a vertex."""
 _SUSPECT = re.compile(r"(?=\s*[-+.\dnNiI])[^nNeExX]*?(?:[nNxX]|[eE]\+?\d{2}|\d{16})", re.DOTALL)
-"""Matches numbers of which one may be nan, inf or beyond `LARGEST`; a quick test, names fail at their first letter."""
+"""Matches a list of numbers of which one may be nan, inf or beyond `LARGEST`. The test is fast: most names fail at the
+first letter."""
 _LENGTHS: Mapping[str, tuple[str, ...]] = {
     "hfield": ("nrow", "ncol"),
     "numeric": ("size",),
@@ -57,7 +59,7 @@ _LENGTHS: Mapping[str, tuple[str, ...]] = {
     "user": ("dim",),
 }  # fmt: skip
 """Attributes whose product is the length of an array."""
-_BEARERS = frozenset((
+_SENSOR_TARGETS = frozenset((
     "site", "joint", "tendon", "actuator", "body", "body1", "body2", "geom1", "geom2", "subtree1", "subtree2",
     "objname",
 ))  # fmt: skip
@@ -69,9 +71,10 @@ _NAMES = frozenset((
 ))  # fmt: skip
 """Attributes whose value is a name."""
 _NOT_FINITE = re.compile(r"[-+]?(?:nan(?:\(\w*\))?|inf(?:inity)?)", re.IGNORECASE)
-"""A word that C reads as a number that is not finite; `nan(1)` is one."""
+"""A word that C reads as a number that is not finite, such as `nan(1)`."""
 _READ_AT_ONCE = ("include", "model", "flexcomp")
-"""Elements whose file MuJoCo opens while it reads the text; `model` and `flexcomp` first in the current folder."""
+"""Elements whose file MuJoCo opens while it parses the text; those of `model` and `flexcomp` first in the current
+folder."""
 _FILE_NAME = re.compile(rb"""\bfile\s*=\s*(?:"[^"]*"|'[^']*')""")
 """The attribute `file` of an element, in the bytes of a file."""
 _CONTROL = re.compile(rb"[\x00-\x1f\x7f]")
@@ -86,7 +89,7 @@ def read_spec(path: Path, *, root: Path | None = None, error: type[ObjectNavErro
         error: class of the error.
 
     Raises:
-        ObjectNavError: of class `error`; the file cannot be read, is not MJCF, asks for too much, uses a file of
+        ObjectNavError: of class `error`; the file cannot be read, is not MJCF, requires too much memory, uses a file of
             another folder, or has a number that is not finite. The message names element and attribute but not the
             file.
     """
@@ -107,10 +110,10 @@ def read_spec(path: Path, *, root: Path | None = None, error: type[ObjectNavErro
 
 
 def orient_by_quaternions(spec: mujoco.MjSpec) -> None:
-    """Replaces Euler angles, axis-angle pairs and axes of a specification by quaternions, with its own angle settings.
+    """Replaces Euler angles, axis-angle pairs and axes of a specification by quaternions.
 
-    `fusestatic` reads the angles of an attached model with the settings of the model that it is attached to.
-    Quaternions have no settings.
+    `fusestatic` reads the angles of an attached model with the angle settings of the model to which it is attached.
+    Quaternions do not depend on these settings.
     """
     for element in (*spec.bodies, *spec.geoms, *spec.sites, *spec.cameras, *spec.frames):
         if element.alt.type != mujoco.mjtOrientation.mjORIENTATION_QUAT:
@@ -131,7 +134,7 @@ def _quaternion(spec: mujoco.MjSpec, orientation: mujoco.MjsOrientation) -> list
 
 
 def require_sizes(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseError) -> None:
-    """Raises an error where a compiled model has a position or a size that is not finite or beyond `FARTHEST_M`."""
+    """Raises an error if a compiled model has a position or a size that is not finite or beyond `FARTHEST_M`."""
     for kind, field in (("body", "pos"), ("geom", "pos"), ("geom", "size"), ("site", "pos"), ("site", "size")):
         values = getattr(model, f"{kind}_{field}")
         bad = np.flatnonzero(~(np.abs(values) <= FARTHEST_M).all(axis=1))
@@ -144,7 +147,7 @@ def require_sizes(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseE
 
 
 def require_few_contacts(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseError) -> None:
-    """Raises an error where a compiled model has so many moving bodies, or contacts, that its physics needs all memory.
+    """Raises an error if a compiled model has too many moving bodies or contacts for the memory of the physics.
 
     The memory of MuJoCo grows with the square of the number of moving bodies.
     """
@@ -166,7 +169,7 @@ def require_few_contacts(model: mujoco.MjModel, *, error: type[ObjectNavError] =
 
 
 class _Scan:
-    """Counts what the elements of a file and of the files that it includes ask for, and joins them to one text."""
+    """Counts the elements of a file and of the files that it includes, and joins the files to one text."""
 
     def __init__(self, allowed: Allowed) -> None:
         self._allowed = allowed
@@ -179,11 +182,11 @@ class _Scan:
         self._copies = self._loose_sensors = 0.0
 
     def text_of(self, path: Path, *, inner: bool = False) -> bytes:
-        """Returns a file with the files that it includes as one text, UTF-8; raises an error where that is too much.
+        """Returns a file with the files that it includes as one text, UTF-8; raises an error if it is too large.
 
         Args:
             path: the file.
-            inner: whether the text is what is inside of the root element, as for an included file.
+            inner: whether to return only the content of the root element, as for an included file.
         """
         if path in self._files:
             self._refuse(f"'{path.name}' is included more than once, which MuJoCo does not allow.")
@@ -238,10 +241,10 @@ class _Scan:
             factor *= max(1.0, math.prod(max(1.0, number) for number in _numbers(values.get("params", ""))) / 1000.0)
         self._elements += factor - self._factors[-1]
         self._copies += factor if tag == "replicate" else 0.0
-        self._loose_sensors += self._tags[-1:] == ["sensor"] and _BEARERS.isdisjoint(values)
+        self._loose_sensors += self._tags[-1:] == ["sensor"] and _SENSOR_TARGETS.isdisjoint(values)
         self._factors.append(factor)
         self._tags.append(tag)
-        # With each copy that `replicate` makes, MuJoCo doubles the sensors that belong to no element.
+        # For each copy that `replicate` makes, MuJoCo doubles the number of sensors that belong to no element.
         if self._elements + self._loose_sensors * 2.0 ** min(self._copies, 60.0) > MAX_ELEMENTS:
             self._refuse(f"{printable(where)}: the file has more than {MAX_ELEMENTS} elements with all copies.")
         if tag in _READ_AT_ONCE and values.get("file"):
@@ -259,7 +262,7 @@ class _Scan:
             self._refuse("attach: a house is one file; other files are put into it by include.")
 
     def _require_tag(self, tag: str, *, is_root: bool, included: bool) -> None:
-        """Refuses a root element of another kind, and a tag that MuJoCo reads in capital letters too."""
+        """Refuses a wrong root element, and capital letters in a tag that MuJoCo reads in any case."""
         if is_root and not included and tag == "robot":
             self._refuse("it is not an MJCF file that MuJoCo can read here but URDF: MuJoCo's `compile` converts it.")
         if is_root and (tag in _READ_AT_ONCE or (not included and tag != "mujoco")):
@@ -268,11 +271,11 @@ class _Scan:
             self._refuse(f"it is not an MJCF file that MuJoCo can read: '{tag}' is written '{tag.lower()}'.")
 
     def _require_name(self, name: str, content: bytes, start: int) -> None:
-        """Refuses a control character in the name of a file: expat reads a line break as a space, MuJoCo does not.
+        """Refuses a control character in the name of a file: expat reads a line break as a space, but MuJoCo does not.
 
         Args:
-            name: as expat reads it.
-            content: the file that holds it.
+            name: the name as expat reads it.
+            content: the content of the file that has the element.
             start: first byte of the element in the content.
         """
         written = _FILE_NAME.search(content, start)
@@ -280,9 +283,9 @@ class _Scan:
             self._refuse(f"it uses '{printable(name)}', whose name holds a control character.")
 
     def _found(self, path: Path, name: str) -> Path:
-        """Returns a file that a file names: next to the first file, as for MuJoCo, else next to the one that names it.
+        """Returns the path of a named file: in the folder of the house file, as in MuJoCo, else in that of `path`.
 
-        Raises an error where it does not exist or must not be read.
+        Raises an error if it does not exist or must not be read.
         """
         for folder in dict.fromkeys((self._allowed.file.parent, path.parent)):
             file = path_as_read(folder, name)
@@ -313,7 +316,7 @@ class _Scan:
 
 
 def _require_small_assets(spec: mujoco.MjSpec, folder: Path, error: type[ObjectNavError]) -> None:
-    """Raises an error where the textures or the files of meshes of a specification are too large."""
+    """Raises an error if the textures or the files of meshes of a specification are too large."""
     size = sum(_texture_bytes(spec, texture, folder) for texture in spec.textures)
     most = _most_texture_bytes(error)
     if size > most:
@@ -344,7 +347,7 @@ def _most_texture_bytes(error: type[ObjectNavError]) -> int:
 
 
 def _bytes_of_asset(file: Path, bytes_per_pixel: int) -> int:
-    """Returns the bytes of an image in memory, of another file its size; 0 where there is none, which MuJoCo names."""
+    """Returns the bytes of an image in memory, or the size of another file; 0 if there is none (MuJoCo reports it)."""
     if not file.is_file():
         return 0
     with open_plain(file, what="Asset") as stream:
@@ -353,7 +356,7 @@ def _bytes_of_asset(file: Path, bytes_per_pixel: int) -> int:
 
 
 def _numbers(text: str) -> list[float]:
-    """Returns the numbers of a list of numbers, decimal or hexadecimal as in C; none where a word is not a number."""
+    """Returns the numbers of a text, decimal or hexadecimal as in C; an empty list if a word is not a number."""
     try:
         return [float.fromhex(word) if "x" in word.lower() else float(word) for word in text.split()]
     except OverflowError:

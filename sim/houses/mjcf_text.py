@@ -1,6 +1,6 @@
-"""Reads the text of MJCF files in any usual encoding, and puts included files in their places.
+"""Reads the text of MJCF files in any usual encoding, and replaces each `include` by the content of its file.
 
-MuJoCo gets one text that has no `include` any more, so that what was checked is what MuJoCo reads. Alone it would also
+MuJoCo gets one text without `include`, so that it reads exactly the text that was checked. By itself, MuJoCo would also
 open `<Include>`, files in zip archives and, for some names, files of the current folder.
 """
 
@@ -16,16 +16,16 @@ _DECLARED = re.compile(rb"""\s*<\?xml[^>]{0,200}?\bencoding\s*=\s*["']([A-Za-z][
 _USUAL = re.compile(
     r"utf-8\S*|ascii|iso8859-\d+|cp\d+|mac-\w+|koi8-\w+|gb2312|gbk|gb18030|big5\w*|euc_\w+|shift_jis\w*|tis-620|utf-(?:16|32)\S*"
 )
-"""The encodings of texts, by Python's names; others, such as UTF-7, can hide letters or take long to decode."""
+"""The encodings that are read, by Python's names; others, such as UTF-7, can hide characters or decode slowly."""
 _TAG = re.compile(rb"""<[^>"']*(?:(?:"[^"]*"|'[^']*')[^>"']*)*>""")
 """A tag of well-formed XML."""
 
 
 def as_utf8(content: bytes) -> bytes:
-    """Returns the text of an XML file as UTF-8, by its byte order mark or its declaration.
+    """Returns the text of an XML file as UTF-8; its encoding is that of its byte order mark or its declaration.
 
     Raises:
-        ValueError: it has an encoding that is not read, or is not in its encoding.
+        ValueError: the encoding is not allowed, or the bytes are not valid in it.
     """
     content = without_mark(content)
     for start, encoding in ((b"<\0", "utf-16-le"), (b"\0<", "utf-16-be")):
@@ -41,7 +41,7 @@ def as_utf8(content: bytes) -> bytes:
         name = ""
     if not _USUAL.fullmatch(name):
         raise ValueError(f"its encoding '{declared}' is not read; save it as UTF-8")
-    if name.startswith(("utf-", "ascii")):  # a text of bytes that says "utf-16" was converted by a program
+    if name.startswith(("utf-", "ascii")):  # "utf-16" here: a program converted the text but not its declaration
         return _checked(content)
     return content.decode(name).encode("utf-8")
 
@@ -53,35 +53,35 @@ def _checked(content: bytes) -> bytes:
 
 @dataclass
 class Composition:
-    """The text of one file while it is parsed: the bytes of its root, and what takes the place of its includes."""
+    """The text of one file while it is parsed, with the position of its root and the replacements of its includes."""
 
     content: bytes
     """The file, UTF-8."""
     root: list[int] = field(default_factory=list)
-    """Begin of the content of the root element, then its end."""
+    """Positions of the content of the root element: its first byte and, once the end tag is known, its end."""
     _pieces: list[tuple[int, int, bytes]] = field(default_factory=list)
 
     def end_of_tag(self, start: int) -> tuple[int, bool]:
-        """Returns the end of the tag that begins at a byte, and whether the tag is a whole element."""
+        """Returns the end of the tag that begins at a byte, and whether the tag is a complete element (`<x/>`)."""
         found = _TAG.match(self.content, start)
         end = len(self.content) if found is None else found.end()
         return end, self.content[end - 2 : end] == b"/>"
 
     def open_root(self, start: int) -> None:
-        """Notes the start tag of the root element, which begins at a byte."""
+        """Stores the position of the start tag of the root element."""
         end, is_whole = self.end_of_tag(start)
         self.root = [end, end] if is_whole else [end]
 
     def close_root(self, start: int) -> None:
-        """Notes the end tag of the root element, which begins at a byte."""
+        """Stores the position of the end tag of the root element."""
         self.root = self.root if len(self.root) == 2 else [*self.root, start]
 
     def replace(self, start: int, end: int, text: bytes) -> None:
-        """Puts a text in place of an element."""
+        """Replaces the bytes from `start` to `end`, an element, by a text."""
         self._pieces.append((start, end, text))
 
     def text(self, *, inner: bool) -> bytes:
-        """Returns the text with all replacements; `inner`: only what is inside of the root element."""
+        """Returns the text with all replacements; with `inner`, only the content of the root element."""
         begin, last = self.root if inner else (0, len(self.content))
         parts: list[bytes] = []
         for start, end, text in self._pieces:

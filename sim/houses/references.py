@@ -1,9 +1,9 @@
 """Checks which other files an MJCF file may read: those of its own folder, and of folders that the user allows.
 
-MuJoCo opens every path that a file names: of an included file, a mesh, a texture. A file from elsewhere is data and
-must not choose paths: `<include file="../../x.xml"/>` and `<mesh file="/home/me/x.obj"/>` are refused, also behind a
-symbolic link. Textures may also lie in `../textures`, which the houses of a split share, and in the shipped folder. The
-user allows more with `--root FOLDER`, for packages whose files lie in folders next to each other.
+MuJoCo opens every path that a file names: of an included file, a mesh or a texture. A file from another source is data
+and must not choose paths: `<include file="../../x.xml"/>` and `<mesh file="/home/me/x.obj"/>` are refused, also if they
+are symbolic links. Textures may also be in `../textures`, which the houses of a split share, and in the shipped folder.
+The user allows one more folder with `--root FOLDER`, for packages whose files are in several folders.
 """
 
 from __future__ import annotations
@@ -25,30 +25,30 @@ from sim.reading import printable, read_bytes
 SHARED_TEXTURES = "textures"
 """Name of the folder, next to a split's folder, that all its houses may use."""
 MOST_FILES = 10_000
-"""Files of a house whose checksums are computed."""
+"""Largest number of files of a house whose checksums are computed."""
 _MOST_FOLDERS = 20
 _MOST_BYTES = 64 << 20
 _VALUE = rb"""\s*=\s*(?P<value>"[^"]*"|'[^']*')"""
 _FILE = re.compile(rb"\bfile\w*" + _VALUE)
 _FOLDER = re.compile(rb"\b(?:mesh|texture|asset)dir" + _VALUE)
 _ASSETS = frozenset((".png", ".jpg", ".jpeg", ".obj", ".stl", ".msh", ".ktx", ".bin", ".skn"))
-"""Suffixes of files that include no other."""
+"""Suffixes of files that name no other files."""
 _ELSEWHERE = re.compile(r":[/\\]|^\\|\.(?:zip|mjz)(?:[/\\]|$)", re.IGNORECASE)
-"""Names that MuJoCo reads as absolute but the system as relative to the current folder, and names of its archives."""
+"""Names that are absolute for MuJoCo but not for the operating system, and names of MuJoCo's archives."""
 MOST_LEVELS_UP = 3
 """A folder that a refusal proposes for `--root` is at most this many levels above the file."""
 
 
 @dataclass(frozen=True)
 class Reference:
-    """One path that a file of a house names."""
+    """A path that a file of a house names."""
 
     name: str
     """The path as the file writes it."""
     path: Path
     """The path at which MuJoCo looks for it."""
     folder: str = ""
-    """The folder that the file names for it, by `meshdir` for example."""
+    """The folder that the file gives for it, for example by `meshdir`."""
 
 
 @dataclass(frozen=True)
@@ -60,13 +60,20 @@ class Allowed:
     root: Path | None
     """The additional folder that the user allows; None: no other."""
     error: type[ObjectNavError]
-    """Class of the error: a HouseError is about a house, for which there is `--root`."""
+    """Class of the error; only a HouseError concerns a house, for which `--root` exists."""
+
+    @property
+    def folders(self) -> list[Path]:
+        """The folders, without symbolic links; all files below them are allowed."""
+        folder = self.file.parent
+        textures = [folder.parent / SHARED_TEXTURES, (assets_dir() / SHARED_TEXTURES).resolve()]
+        return [folder, *textures, *([] if self.root is None else [self.root.resolve()])]
 
     def require(self, reference: Reference) -> None:
-        """Raises an error where another file must not be read.
+        """Raises an error if another file must not be read.
 
         Args:
-            reference: the other file; it need not exist.
+            reference: the other file, which need not exist.
 
         Raises:
             ObjectNavError: of class `error`; the path leads out of the allowed folders or is not a regular file.
@@ -83,17 +90,14 @@ class Allowed:
             is_special = target.exists() and not target.is_file()
         except (OSError, ValueError, RuntimeError):
             raise self.error(f"it uses '{name}', which is not the name of a file.") from None
-        folder = self.file.parent
-        textures = [folder.parent / SHARED_TEXTURES, (assets_dir() / SHARED_TEXTURES).resolve()]
-        allowed = [folder, *textures, *([] if self.root is None else [self.root.resolve()])]
-        if not any(target.is_relative_to(each) for each in allowed):
+        if not any(target.is_relative_to(each) for each in self.folders):
             where = "its folder" if self.root is None else f"its folder and '{self.root}'"
             raise self.error(f"it uses '{name}', which is outside of {where}. {self._remedy(target)}")
         if is_special:
             raise self.error(f"it uses '{name}', which is not a regular file.")
 
     def _remedy(self, target: Path) -> str:
-        """Returns how the user can allow a file that is near the house file; for others the rule."""
+        """Returns a sentence on how the user can allow the file if it is near the house file, else the rule."""
         if not issubclass(self.error, HouseError):
             return "Copy all files of a robot into one folder."
         common = Path(os.path.commonpath((target, self.file)))
@@ -136,18 +140,23 @@ def path_as_read(folder: Path, *names: str) -> Path:
 
 
 def require_root(root: Path | None) -> None:
-    """Raises a HouseError where the folder of `--root` does not exist."""
+    """Raises a HouseError if the folder of `--root` does not exist."""
     if root is not None and not root.is_dir():
         raise HouseError(f"--root '{root}': there is no such folder.")
 
 
-def files_of(house_file: Path) -> list[Path]:
-    """Returns the files that an MJCF file uses, with those of its included files, sorted; shipped ones do not count.
+def files_of(house_file: Path, root: Path | None = None) -> list[Path]:
+    """Returns the files that an MJCF file and its included files use, sorted; shipped files do not count.
 
-    The text is searched for names of files, and MuJoCo is not asked: the result may hold a file that is not used, and
-    what a file may not read (`Allowed`) is left out.
+    The text is searched for names of files without MuJoCo. The result may therefore contain a file that is not used.
+    Files that it may not read (`Allowed`) are left out and are not opened.
+
+    Args:
+        house_file: the MJCF file.
+        root: another folder whose files it may use.
     """
     shipped, house_file = assets_dir().resolve(), house_file.resolve()
+    allowed = Allowed(house_file, root, HouseError).folders
     read: set[Path] = set()
     found = {house_file}
     names: dict[str, None] = {}
@@ -160,21 +169,26 @@ def files_of(house_file: Path) -> list[Path]:
             text = _content(file)
             names.update(dict.fromkeys(_values(_FILE, text)))
             folders.update(dict.fromkeys(_values(_FOLDER, text)))
-        for base in list(bases)[:_MOST_FOLDERS]:  # next to the first file, or next to the one that names it
+        for base in list(bases)[:_MOST_FOLDERS]:  # in the folder of the house file, or of the file that names it
             for folder in list(folders)[:_MOST_FOLDERS]:
                 for name in list(names)[:MOST_FILES]:
                     for each in {name, name.replace("\\", "/").rpartition("/")[2]}:
                         path = path_as_read(base, folder, each)
-                        if _is_plain(path) and not path.is_relative_to(shipped):
+                        if _is_plain(path) and not path.is_relative_to(shipped) and _is_below(path, allowed):
                             found.add(path)
     return sorted(found - {house_file})
+
+
+def _is_below(path: Path, folders: list[Path]) -> bool:
+    target = path.resolve()
+    return any(target.is_relative_to(each) for each in folders)
 
 
 def _content(file: Path) -> bytes:
     try:
         return as_utf8(read_bytes(file, what="File", most=_MOST_BYTES))
     except (ObjectNavError, ValueError):
-        return b""  # `read_spec` refuses it
+        return b""  # `read_spec` reports the fault
 
 
 def _values(attribute: re.Pattern[bytes], text: bytes) -> list[str]:

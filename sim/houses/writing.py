@@ -1,4 +1,4 @@
-"""Writes a house as compact XML, which is the output of MuJoCo without redundant digits, and with its textures."""
+"""Writes a house as compact XML, the output of MuJoCo without redundant digits, together with its textures."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from pathlib import Path
 from sim.errors import HouseError
 from sim.files import inside, write_together
 from sim.gl import mujoco
-from sim.houses.load import load_house
+from sim.houses.house import House
+from sim.houses.load import load_house, validate_house
 from sim.houses.references import SHARED_TEXTURES, asset_path
 from sim.reading import read_bytes, reason_of
 
@@ -36,12 +37,12 @@ def house_text(spec: mujoco.MjSpec, textures: str | None = None) -> str:
 def write_house(spec: mujoco.MjSpec, folder: str | Path, name: str | None = None) -> Path:
     """Writes a generated house with its textures into a folder; returns the file `<name>.xml`, for `--house`.
 
-    Several houses share the folder `textures` in it. `stubborn episodes --split` makes the folder a split.
+    Several houses share the subfolder `textures`. `stubborn episodes --split` makes the folder a split.
 
     Args:
-        spec: what `sim.generate` returned, also after changes of yours.
-        folder: it is created if it is missing.
-        name: name of the house; that of the model if None.
+        spec: the specification that `sim.generate` returned; you may have changed it.
+        folder: it is created if it does not exist.
+        name: name of the house; None: the name of the model.
 
     Raises:
         HouseError: the specification has files other than textures, or violates the house format.
@@ -52,9 +53,13 @@ def write_house(spec: mujoco.MjSpec, folder: str | Path, name: str | None = None
         raise HouseError(f"House '{name}' has meshes in files, which write_house does not copy.")
     path = inside(folder, f"{name}.xml", what="name of a house")
     try:
-        spec.compile()
+        model = spec.compile()
     except ValueError as error:
         raise HouseError(f"House '{name}' does not compile: {reason_of(error)}.") from None
+    try:
+        validate_house(House(name, spec), model)
+    except HouseError as error:
+        raise HouseError(f"House '{name}': {error}") from None
     files: dict[Path, bytes | str] = {path: house_text(spec, SHARED_TEXTURES)}
     for texture in spec.textures:
         for file in (each for each in (texture.file, *texture.cubefiles) if each):

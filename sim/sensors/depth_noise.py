@@ -87,7 +87,7 @@ class DepthNoise:
         )
 
     def model(self, camera: CameraModel) -> NoisyDepth | None:
-        """Returns a new noise model for this camera; None where all noise is off."""
+        """Returns a new noise model for this camera; None if all noise is off."""
         return None if self == DepthNoise() else NoisyDepth(self, camera)
 
 

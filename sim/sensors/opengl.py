@@ -58,7 +58,7 @@ def make_frame_buffer(model: mujoco.MjModel, camera: CameraModel, profile: Rende
 
 
 def free_contexts(gl: mujoco.GLContext, frame_buffers: set[mujoco.MjrContext]) -> None:
-    """Frees frame buffers and their OpenGL context; a forked process leaves them to the one that made them."""
+    """Frees frame buffers and their OpenGL context; does nothing in a forked process, which did not make them."""
     if is_forked():
         return
     with gl.as_current():  # freeing deletes objects of the current context

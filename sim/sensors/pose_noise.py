@@ -28,7 +28,7 @@ class PoseNoise:
         require_range(self, 0.0, math.inf, "gps_std_m", "gps_walk_m", "compass_std_rad", "compass_walk_rad")
 
     def model(self, camera: CameraModel) -> NoisyPose | None:
-        """Returns a new noise model; None where all noise is off."""
+        """Returns a new noise model; None if all noise is off."""
         return None if self == PoseNoise() else NoisyPose(self)
 
 

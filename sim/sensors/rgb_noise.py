@@ -35,7 +35,7 @@ class RgbNoise:
         require_range(self, 0.0, 0.3, "gain_std")
 
     def model(self, camera: CameraModel) -> NoisyRgb | None:
-        """Returns a new noise model for this camera; None where all noise is off."""
+        """Returns a new noise model for this camera; None if all noise is off."""
         return None if self == RgbNoise() else NoisyRgb(self, camera)
 
 

@@ -3,8 +3,8 @@
 A sensor is one object: its key in the observation, its Gymnasium space, what it reads and how it is read.
 `ObjectNavEnv(sensors=("rgb", MySensor()))` takes such objects in addition to the names of `sim.sensors.standard`.
 
-A sensor declares the images (`images`) and the fields of `SensorContext` (`reads`) that it reads; it gets no others.
-The result lines of an agent whose sensor declares the truth (`sim.interface.reads_truth`) say so.
+A sensor declares the images (`images`) and the fields of `SensorContext` (`reads`) that it reads; it gets no others. If
+a sensor declares ground truth (`sim.interface.reads_truth`), the result lines of its agent have `uses_ground_truth`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from sim.robot.drive import Motion
 
 
 class SensorContext:
-    """The state that one sensor is read from, after a reset or an action: only what the sensor declares.
+    """The state from which one sensor is read after a reset or an action: only the fields that the sensor declares.
 
     | field | declared in | meaning |
     |---|---|---|
@@ -52,14 +52,14 @@ class SensorContext:
         Args:
             sensor: the sensor that is read.
             images: all images that were rendered.
-            fields: all fields but `images`.
+            fields: all fields except `images`.
         """
         self.images = DeclaredImages(sensor.name, sensor.images, images)
         self._sensor, self._declared = sensor.name, declared_fields(sensor)
         vars(self).update({name: fields[name] for name in self._declared})
 
     def __getattr__(self, name: str) -> Any:
-        """Raises ConfigError for a field that the sensor does not declare; a declared one does not come here."""
+        """Raises ConfigError for a field that the sensor does not declare; declared fields are found before."""
         if name in CONTEXT_FIELDS:
             raise ConfigError(
                 f"Sensor '{self._sensor}' reads context.{name}, which it does not declare: "
@@ -74,7 +74,7 @@ def declared_fields(sensor: Sensor) -> tuple[str, ...]:
 
 
 class DeclaredImages(dict[str, NDArray]):
-    """The rendered images that a reader declares; it must not read others, such as the truth."""
+    """The rendered images that a reader declares; it must not read others, such as ground truth."""
 
     def __init__(self, reader: str, declared: Sequence[str], images: Mapping[str, NDArray]) -> None:
         super().__init__({name: images[name] for name in declared})
@@ -118,7 +118,7 @@ class NoiseSettings(Protocol):
     """Parameters of a noise model, usually a frozen dataclass whose defaults switch it off."""
 
     def model(self, camera: CameraModel) -> NoiseModel | None:
-        """Returns a new noise model for the readings of this camera; None where the noise is switched off."""
+        """Returns a new noise model for the readings of this camera; None if the noise is switched off."""
         ...
 
 

@@ -152,7 +152,7 @@ def resolve_sensors(given: Sequence[str | Sensor]) -> tuple[Sensor, ...]:
 
 
 def _checked(sensor: Sensor) -> Sensor:
-    """Returns a sensor of the user's after a check of its interface.
+    """Returns a user's sensor after a check of its interface.
 
     Raises:
         ConfigError: it is a class, lacks a member of `Sensor`, or has the name of a standard sensor.

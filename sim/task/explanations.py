@@ -276,10 +276,10 @@ def _distance_to_instance(goal: str, trajectory: Trajectory) -> str:
 
 
 def _stop_target(line: Line, goal: str, trajectory: Trajectory | None = None) -> str:
-    """Returns for which object the agent stopped: "at a sofa, 1.8 m from the nearest chair"; "" if it stated none."""
+    """Returns a text on the object for which the agent stopped: "at a sofa, 1.8 m from the nearest chair", or ""."""
     off_m = line.get("stop_target_to_goal_m")
     category = line.get("stop_target_category")
-    if trajectory is not None:  # that of an old file may know less than the line, and the reverse
+    if trajectory is not None:  # in results of older versions, one of the two may lack a value that the other has
         off_m = trajectory.stop_target_to_goal_m if off_m is None else off_m
         category = category or trajectory.stop_target_category
     if off_m is None:

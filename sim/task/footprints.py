@@ -35,7 +35,7 @@ class Floor(NamedTuple):
 
 
 class _Placed(NamedTuple):
-    """The positions and rotations of an instance's geoms, and its footprint there."""
+    """The positions and rotations of an instance's geoms, as bytes, and the footprint of the instance there."""
 
     place: bytes
     footprint: Footprint | None
@@ -71,11 +71,11 @@ class Footprint:
 
 
 class Footprints:
-    """Footprints of the instances of one model, each computed again only after the instance has moved.
+    """Footprints of the instances of one model; a footprint is computed again only after its instance has moved.
 
     Args:
         model: compiled world.
-        floors: of the house.
+        floors: floors of the house.
     """
 
     def __init__(self, model: mujoco.MjModel, floors: Sequence[Floor] = ()) -> None:
@@ -84,9 +84,13 @@ class Footprints:
         self._at_last: dict[tuple[int, ...], _Placed] = {}
 
     def of(self, data: mujoco.MjData, instance: Instance) -> Footprint | None:
-        """Returns the footprint of an instance in a state, kinematics computed; None where nothing of it is rendered.
+        """Returns the footprint of an instance in a state; None if nothing of it is rendered.
 
-        The first and the last state of each instance are kept.
+        The footprints of the first and of the last state of each instance are stored.
+
+        Args:
+            data: state of the world, with kinematics computed.
+            instance: the instance.
         """
         geoms = instance.geom_ids
         place = data.geom_xpos[list(geoms)].tobytes() + data.geom_xmat[list(geoms)].tobytes()

@@ -124,19 +124,19 @@ class GroundTruth:
         return self._region_now(goal, floor_z_m).nearest_m(x_m, y_m)
 
     def category_at(self, x_m: float, y_m: float, floor_z_m: float, *, goal: str, within_m: float) -> str | None:
-        """Returns the category of the object at a place of a storey, with objects where they are now in the world.
+        """Returns the category of the object at a place of a storey, at the present positions of the objects.
 
         Args:
             x_m: place in the world.
             y_m: place in the world.
             floor_z_m: height of the storey's floor.
-            goal: category that counts first, because outlines overlap: a cushion lies on a sofa.
+            goal: category that has priority, because footprints overlap: a cushion may lie on a sofa.
             within_m: largest distance in plan from the place to the footprint of the object.
 
         Returns:
-            The goal if an instance is near enough, else the category of the nearest object, of objects at the same
-            distance the smallest. A wall, a door or a window counts only where there is no other object. None: there
-            is nothing.
+            The goal if an instance is near enough, else the category of the nearest object; if several are equally
+            near, that of the smallest. A wall, a door or a window counts only if there is no other object. None: there
+            is no object.
         """
         off_m = self.nearest_now_m(goal, x_m, y_m, floor_z_m)
         if off_m is not None and off_m <= within_m:
@@ -157,7 +157,7 @@ class GroundTruth:
         return min(found)[-1] if found else None
 
     def _may_be_within(self, geoms: tuple[int, ...], x_m: float, y_m: float, within_m: float) -> bool:
-        """Returns False where the bounding spheres of all geoms are farther in plan from a place than a distance."""
+        """Returns False if all bounding spheres of the geoms are farther than `within_m` from the place, in plan."""
         model, data = self.world.model, self.world.data
         radius_m = np.where(model.geom_rbound[list(geoms)] > 0.0, model.geom_rbound[list(geoms)], np.inf)
         off_m = np.hypot(*(data.geom_xpos[list(geoms), :2] - (x_m, y_m)).T)
@@ -189,7 +189,7 @@ class GroundTruth:
         return self._surroundings[floor_z_m]
 
     def _existing(self, region: GoalRegion) -> GoalRegion:
-        """Returns the region; raises EpisodeError where no storey of the house has an instance."""
+        """Returns the region; raises EpisodeError if no storey of the house has an instance."""
         if not region.exists:
             raise EpisodeError(
                 f"House '{self.world.house.name}' has no '{region.goal}'. "

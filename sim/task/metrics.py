@@ -28,12 +28,12 @@ def path_efficiency(shortest_path_m: float, path_length_m: float) -> float:
 
 
 def spl(success: bool, shortest_path_m: float | None, path_length_m: float) -> float:
-    """Returns the success weighted by path length; 0 where there was no path from the start."""
+    """Returns the success weighted by path length; 0 if there was no path from the start."""
     return path_efficiency(shortest_path_m, path_length_m) if success and shortest_path_m is not None else 0.0
 
 
 def soft_spl(start_distance_m: float | None, end_distance_m: float | None, path_length_m: float) -> float:
-    """Returns the progress to the goal, in [0, 1], weighted by path length; 0 where there is or was no path."""
+    """Returns the progress to the goal, in [0, 1], weighted by path length; 0 if there is or was no path."""
     if start_distance_m is None or end_distance_m is None:
         return 0.0
     if start_distance_m <= 0.0:
@@ -58,7 +58,7 @@ def steps_to_first_sight(first_seen_step: int | None, max_steps: int) -> int:
 
 
 def per_metre(area_m2: float, path_length_m: float) -> float:
-    """Returns the floor area seen per metre driven; 0 where the robot has not moved by `MOVED_M`."""
+    """Returns the floor area seen per metre driven; 0 if the robot has not moved by `MOVED_M`."""
     return area_m2 / path_length_m if path_length_m >= MOVED_M else 0.0
 
 

@@ -136,7 +136,7 @@ class Task:
             self._end("max_steps")
 
     def require_running(self) -> None:
-        """Raises EpisodeError where no further action is allowed: the episode has not begun, or is over."""
+        """Raises EpisodeError if no further action is allowed: the episode has not begun, or is over."""
         if (reason := self._running.end_reason) is not None:
             raise EpisodeError(f"The episode has ended ({reason}): start another before the next action.")
 

@@ -28,7 +28,7 @@ SIGHT_BLOCKERS = ("wall", "door", "window")
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Geometry that does not depend on the goal: all footprints, and the obstacles to sight on one storey."""
+    """Geometry that does not depend on the goal: all footprints, and the obstacles that block sight on one storey."""
 
     footprints: Footprints
     blockers: tuple[ConvexPolygon, ...]
@@ -96,7 +96,7 @@ class GoalRegion:
         return bool(self.satisfied(np.array([[x_m, y_m]], dtype=np.float64))[0])
 
     def nearest_m(self, x_m: float, y_m: float) -> float | None:
-        """Returns the metres in plan to the nearest footprint, walls ignored; None where the storey has none."""
+        """Returns the metres in plan to the nearest footprint, walls ignored; None if the storey has none."""
         here = np.array([[x_m, y_m]], dtype=np.float64)
         distances = [
             0.0 if footprint.contains(here)[0] else float(footprint.boundary_m.query(here)[0][0])

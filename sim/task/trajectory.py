@@ -65,9 +65,9 @@ class Trajectory:
     stop_target_to_goal_m: float | None = None
     """Metres in plan from that place to the nearest instance, walls ignored; None: no place, or storey has none."""
     stop_target_category: str | None = None
-    """Category of the object at that place; None: no place, no object, or a file of an older version."""
+    """Category of the object at that place; None if there is no place or object, or in a file of an older version."""
     duration_s: NDArray[np.float32] | None = None  # (n,)
-    """Simulated time of each action; None: a file of an older version."""
+    """Simulated time of each action; None in a file of an older version."""
     about: Mapping[str, Any] = field(default_factory=dict)
     """Identity of the episode, and its scores; JSON types."""
 
@@ -246,7 +246,7 @@ class _Header(msgspec.Struct):
 
 
 def _check(trajectory: Trajectory) -> None:
-    """Raises ValueError where the arrays do not fit each other, or hold numbers without meaning."""
+    """Raises ValueError if the arrays do not fit each other, or hold numbers without meaning."""
     count = trajectory.actions.size
     for name, (kind, axes, more) in _ARRAYS.items():
         array = getattr(trajectory, name)

@@ -251,7 +251,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         raise EpisodeError(f"None of the {len(self.files)} plans has a '{goal}' that can be reached.")
 
     def _number(self, given: Any) -> int:
-        """Returns the number of a plan; raises ConfigError where there is none."""
+        """Returns the number of a plan; raises ConfigError if there is none."""
         if not isinstance(given, (int, np.integer)) or not 0 <= given < len(self.files):
             raise ConfigError(f"options['plan'] must be 0 to {len(self.files) - 1}, got {given!r}.")
         return int(given)

@@ -26,7 +26,7 @@ class Choices:
     """Sum of the true potentials of the best frontiers."""
 
     def add(self, true: Float[np.ndarray, " n"], predicted: Float[np.ndarray, " n"], path_m: Float[np.ndarray, " n"]):
-        """Counts the choice among the frontiers of a map; nothing where all are equally good."""
+        """Counts the choice among the frontiers of a map; nothing if all are equally good."""
         best = true >= true.max() - TIE
         if best.all():
             return

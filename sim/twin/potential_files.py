@@ -217,7 +217,7 @@ def _read(file: Path) -> tuple[SampleConfig, dict[str, NDArray]]:
 
 
 def _check(arrays: Mapping[str, NDArray], cells: int) -> None:
-    """Raises ValueError where an array is missing, has another shape than the others need, or holds a wrong index.
+    """Raises ValueError if an array is missing, has another shape than the others need, or holds a wrong index.
 
     Args:
         arrays: of a file with samples.
@@ -250,7 +250,7 @@ def _check(arrays: Mapping[str, NDArray], cells: int) -> None:
 
 
 def _size(arrays: Mapping[str, NDArray], name: str) -> int:
-    """Returns the number of entries of an array; raises ValueError where there is no such array."""
+    """Returns the number of entries of an array; raises ValueError if there is no such array."""
     if name not in arrays:
         raise ValueError(f"it has no '{name}'")
     return arrays[name].size

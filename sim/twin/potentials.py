@@ -204,7 +204,7 @@ def area_potential(
 
 
 def sample_of(truth: Truth, ground: Ground, start: Pose, everywhere: Bool[np.ndarray, "rows cols"]) -> Sample | None:
-    """Returns the sample of a map, or None where no frontier is on the patch.
+    """Returns the sample of a map, or None if no frontier is on the patch.
 
     Args:
         truth: of the plan.

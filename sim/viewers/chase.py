@@ -1,6 +1,6 @@
 """Renders the robot in third person: from behind and above, with everything between it and the eye cut away.
 
-Obstacles that no camera renders, such as panes of glass, are tinted where they stand in front of what is visible.
+Obstacles that no camera renders, such as panes of glass, are tinted where they are in front of visible surfaces.
 The near plane lies just before the robot, so that no wall or ceiling hides it, and the room ahead stays whole. Colours
 are shaded as those of the robot's camera (`sim.sensors.shading`).
 """
@@ -43,16 +43,17 @@ HFOV_RAD = math.radians(70.0)
 HIDDEN: Colour = (40, 170, 240)
 """Tint of obstacles that no camera renders."""
 _TINT, _IN_FRONT_M = 0.4, 0.06
-"""Share of the tint, and how far before the visible surface an invisible one must be."""
+"""Weight of the tint, and the smallest distance of an invisible surface in front of the visible one."""
 _COVER_M = 0.12
-"""A point of an invisible geom with a visible surface within this distance is no invisible obstacle: it is a part of
-visible furniture that only collides."""
+"""If a visible surface is within this distance of a point of an invisible geom, the point is not an invisible obstacle
+but the collision geom of visible furniture."""
 _INSIDE, _PANE_M = 0.8, 0.08
-"""A geom with this share of its volume inside of the box around the visible parts of its object is a part of them, but
-not a pane, which is thinner than the second number: that of a glass door lies in the box around its frame."""
+"""An invisible geom is part of visible furniture if at least this share of its volume is inside the box around the
+visible parts of its object. The exception is a pane, which is thinner than the second number: the pane of a glass door
+is inside the box around its frame."""
 _AXES = np.vstack([np.eye(3), -np.eye(3)])
 _SPECK_PX = 12
-"""Outlines around less than this area are not drawn."""
+"""Smallest area whose outline is drawn."""
 OUTSIDE: Colour = (36, 40, 48)
 """Colour of pixels that show nothing: the outside of the house."""
 _DARK, _LENS, _ARROW = (0.10, 0.12, 0.16, 1.0), (0.35, 0.75, 1.0, 1.0), (0.13, 0.35, 0.80, 1.0)
@@ -122,7 +123,7 @@ class ChaseView:
         self._finalizer()
 
     def _in_range(self, geoms: NDArray[np.intp], eye_m: NDArray, axes: NDArray, near_m: float) -> NDArray[np.intp]:
-        """Returns those of some geoms that are near enough to be drawn and not behind the near plane."""
+        """Returns those of the given geoms that are near enough to be drawn and in front of the near plane."""
         model, offset = self._world.model, self._world.data.geom_xpos[geoms] - eye_m
         bound = np.where(model.geom_rbound > 0.0, model.geom_rbound, np.inf)[geoms]
         return geoms[(np.linalg.norm(offset, axis=1) < FAR_M + bound) & (offset @ axes[0] + bound > near_m)]
@@ -136,7 +137,7 @@ class ChaseView:
         eye_m: NDArray,
         axes: NDArray,
     ) -> None:
-        """Tints invisible obstacles that stand before what is visible, and draws their edges.
+        """Tints invisible obstacles in front of visible surfaces, and draws their edges.
 
         Args:
             picture: (h, w, 3); changed in place.
@@ -148,7 +149,7 @@ class ChaseView:
         """
         self._scene.fill(self._world.data, hidden, eye_m, axes, self._slopes, near_m)
         for geom in self._scene.scene.geoms[: self._scene.scene.ngeom]:
-            geom.rgba[3], geom.transparent = 1.0, 0  # MuJoCo writes no depth of glass
+            geom.rgba[3], geom.transparent = 1.0, 0  # MuJoCo writes no depth for transparent geoms
         mujoco.mjr_restoreBuffer(self._context)
         mujoco.mjr_render(self._rect, self._scene.scene, self._context)
         mujoco.mjr_readPixels(None, self._depth, self._rect, self._context)
@@ -212,7 +213,7 @@ def hidden_obstacles(world: World) -> NDArray[np.bool_]:
 
 
 def _is_inside_visible(world: World, geom: int) -> bool:
-    """Returns whether a geom lies between visible parts of its own object, as a box under a table with four legs."""
+    """Returns whether a geom is between visible parts of its own object, like a box between the legs of a table."""
     model, data, number = world.model, world.data, int(world.labels.geom_instance[geom])
     own = world.labels.instances[number].geom_ids if number >= 0 else ()
     visible = np.intersect1d(np.array(own, np.int64), np.flatnonzero(rendered_geoms(model)))
@@ -226,7 +227,7 @@ def _is_inside_visible(world: World, geom: int) -> bool:
 
 
 def _covered_share(world: World, geom: int) -> float:
-    """Returns the share of nine points of a geom, across its two longest sides, that have a visible surface nearby."""
+    """Returns the share of nine points across the two longest sides of a geom that are near a visible surface."""
     model, data = world.model, world.data
     middle, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:].copy()
     half[int(np.argmin(half))] = 0.0
@@ -237,7 +238,7 @@ def _covered_share(world: World, geom: int) -> float:
     covered = 0
     for point in points:
         mujoco.mj_multiRay(model, data, point, _AXES.ravel(), groups, 1, -1, hit, far_m, None, len(_AXES), _COVER_M)
-        covered += bool(np.any((hit >= 0) & (far_m <= _COVER_M)))  # the cutoff only leaves geoms out
+        covered += bool(np.any((hit >= 0) & (far_m <= _COVER_M)))  # the cutoff skips geoms but does not bound distances
     return covered / len(points)
 
 

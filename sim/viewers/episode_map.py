@@ -1,4 +1,4 @@
-"""Draws where the episodes of a house start and which goals they ask for, from above, a picture for each storey."""
+"""Draws a map of the starts and goals of the episodes of a house, with one part for each storey."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ HEIGHT_PX, MARGIN_PX, TITLE_PX = 640, 16, 30
 ARROW_M = 0.35
 """Length of the line from a start in the direction in which the robot looks."""
 TEXT = 0.45
-"""Size of the names of goals."""
+"""Font scale of the names of goals."""
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
 
 
@@ -26,8 +26,8 @@ def draw_episode_map(task: Task, episodes: Sequence[Episode]) -> Picture:
     """Returns the starts and goals of the episodes of one house, uint8 (h, w, 3) RGB.
 
     Args:
-        task: of the house.
-        episodes: all of this house; the storeys on which they start are drawn next to each other.
+        task: the task in the house.
+        episodes: episodes of this house; the storeys on which they start are drawn next to each other.
     """
     storeys = sorted({episode.start.floor_z_m for episode in episodes})
     tiles = [_draw_storey(task, [each for each in episodes if each.start.floor_z_m == z_m], z_m) for z_m in storeys]
@@ -42,7 +42,7 @@ def draw_episode_map(task: Task, episodes: Sequence[Episode]) -> Picture:
 
 
 def _draw_storey(task: Task, episodes: Sequence[Episode], floor_z_m: float) -> Picture:
-    """Returns the map of one storey, y up; it shows the part in which the robot can be, and the goals."""
+    """Returns the map of one storey, y up: the area in which the robot can be, and the goals."""
     space = task.truth.space(floor_z_m)
     goals = sorted({episode.goal for episode in episodes})
     footprints = {goal: task.truth.region(goal, floor_z_m).footprints for goal in goals}
@@ -86,9 +86,9 @@ def _draw_storey(task: Task, episodes: Sequence[Episode], floor_z_m: float) -> P
 
 
 def _write(picture: Picture, text: str, middle: NDArray[np.int32], taken: list[tuple[int, int, int, int]]) -> None:
-    """Writes a text with a light outline near a pixel, where no other text is; leaves it out where there is no place.
+    """Writes a text with a light outline near a pixel without overlap; leaves it out if there is no free place.
 
-    `taken` holds left, top, right and bottom of the texts so far.
+    `taken` holds left, top, right and bottom of each text so far.
     """
     (width, height), _ = cv2.getTextSize(text, _FONT, TEXT, 1)
     left = int(np.clip(middle[0] - width // 2, 2, max(2, picture.shape[1] - width - 2)))

@@ -25,7 +25,7 @@ ViewPose = tuple[float, float, float, float]
 """x, y, height of the floor (metres) and yaw (degrees)."""
 VIEW_PX = (640, 480)
 TITLE_PX = 44
-"""Height of the line of a title."""
+"""Height of the strip with a title."""
 TOP_PX = (1400, 1100)
 TOP_FOVY_DEG = 12.0
 """Field of view from above: small, so that walls hide little of the furniture that stands at them."""
@@ -54,7 +54,8 @@ LOOK_SIZES = 1.2
 """The best distance from the middle of an object: this many times its size, and `NEAREST_LOOK_M` more."""
 HIDDEN_GROUP = 3
 QUADS = 28
-"""Squares along an edge of a flat geom, at whose corners light is computed: with few, lamps draw diamonds on floors."""
+"""Number of squares along an edge of a flat geom, at whose corners light is computed. If there are few, lamps
+cause diamond shapes on floors."""
 CEILING_M = 2.5
 """Height of a storey without rooms."""
 _STRUCTURE = tuple(MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling", "door", "window"))
@@ -171,13 +172,15 @@ def storeys(house: House) -> list[House]:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     floors_m = sorted({round(room.floor_z_m, 2) for room in read_rooms(model)})
+    if len(floors_m) < 2:
+        return [house]
     cut = []
     limits_m = [-math.inf, *(floor_m - STOREY_GAP_M for floor_m in floors_m[1:]), math.inf]
     for low_m, high_m in itertools.pairwise(limits_m):
         storey = spec.copy()
         other = (data.geom_xpos[:, 2] <= low_m) | (data.geom_xpos[:, 2] > high_m)
-        for body in list(storey.worldbody.bodies):
-            geoms = np.flatnonzero(model.geom_bodyid == model.body(body.name).id)
+        for compiled, body in zip(list(spec.worldbody.bodies), list(storey.worldbody.bodies), strict=True):
+            geoms = np.flatnonzero(model.geom_bodyid == compiled.id)
             if geoms.size and other[geoms].all():
                 storey.delete(body)
         for geom in list(storey.worldbody.geoms):
@@ -187,11 +190,11 @@ def storeys(house: House) -> list[House]:
             if not low_m < site.pos[2] <= high_m:
                 storey.delete(site)
         cut.append(replace(house, spec=storey))
-    return cut if len(cut) > 1 else [house]
+    return cut
 
 
 def draw_views(house: House, columns: int = 3) -> Picture | None:
-    """Renders what the robot sees, tiled, (h, w, 3) RGB; None where there is nothing to see.
+    """Renders what the robot sees, tiled, (h, w, 3) RGB; None if there is nothing to see.
 
     In each room it is where the view is longest. In a house without rooms it looks at an object of each category.
     """
@@ -295,10 +298,15 @@ def _view_lengths(model: mujoco.MjModel, data: mujoco.MjData, room: Room, x: flo
     return np.minimum(np.where(far < 0, 10.0, far), to_walls.min(axis=1) + 0.3)
 
 
+MARGIN_M = 1.0
+"""Width of the floor that is shown around a scene without rooms."""
+
+
 def _extent(model: mujoco.MjModel, labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Returns the lowest and highest corner (3,) of all rooms.
 
-    Without rooms it is the part of the storey's grid of free space where something is visible.
+    Without rooms it is the part of the storey's grid of free space where something is visible, with a metre around it.
+    Floors count only where nothing else is visible, because scenes from elsewhere often stand on a wide plane.
     """
     boxes = [box for room in read_rooms(model) for box in room.boxes]
     if boxes:
@@ -309,10 +317,12 @@ def _extent(model: mujoco.MjModel, labels: Labels) -> tuple[NDArray[np.float64],
     frame = FreeSpace(model, data, labels).frame
     low = np.array(frame.origin_xy_m)
     high = low + np.array(frame.shape)[::-1] * frame.cell_m
-    visible = np.flatnonzero(rendered_geoms(model)).tolist()
-    if visible:
-        lowest, highest = _box(model, data, visible)
-        low, high = np.maximum(low, lowest[:2]), np.minimum(high, highest[:2])
+    visible = rendered_geoms(model)
+    standing = visible & (labels.geom_category != MPCAT40_ID["floor"])
+    shown = np.flatnonzero(standing if standing.any() else visible).tolist()
+    if shown:
+        lowest, highest = _box(model, data, shown)
+        low, high = np.maximum(low, lowest[:2] - MARGIN_M), np.minimum(high, highest[:2] + MARGIN_M)
     return np.array([*low, 0.0]), np.array([*high, CEILING_M])
 
 
@@ -394,7 +404,7 @@ def tiled(tiles: list[Picture], columns: int) -> Picture:
 
 
 def titled(picture: Picture, title: str) -> Picture:
-    """Returns a picture (h, w, 3) below a line with its title."""
+    """Returns a picture (h, w, 3) with a strip above it that shows its title."""
     head = np.full((TITLE_PX, picture.shape[1], 3), 255, np.uint8)
     write(head, title, (12, round(0.7 * TITLE_PX)), picture.shape[1] - 24, round(0.55 * TITLE_PX), (20, 20, 20), BOLD)
     return np.vstack([head, picture])

@@ -36,7 +36,7 @@ _CLOSING_S = 5.0
 
 
 def require_display() -> None:
-    """Raises ConfigError where no window can be opened."""
+    """Raises ConfigError if no window can be opened."""
     if sys.platform == "darwin":
         raise ConfigError("--view: on macOS MuJoCo's viewer needs mjpython, which this command does not use.")
     with warnings.catch_warnings():

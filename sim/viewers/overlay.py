@@ -12,7 +12,7 @@
     | segments  | segments  | in sight  | legends, state of the agent     |
     +-----------+-----------+-----------+---------------------------------+
 
-Without a map of the agent the plan has the room of both; without a segmentation its pictures are left out.
+Without a map of the agent, the plan fills the area of both; without a segmentation, its pictures are left out.
 A text that is too wide for its place is written smaller.
 """
 
@@ -84,8 +84,8 @@ class FrameComposer:
         camera: the range of depth.
         plan_legend: names and colours of the true plan.
         map_legend: names and colours of the agent's map; None: the agent has no map.
-        scores: whether the agent has a segmentation, which scores the goal.
-        names: whether that segmentation names categories.
+        scores: whether the agent has a segmentation, which computes scores of the goal.
+        names: whether that segmentation names the category of each pixel.
         max_steps: number of actions that the episode allows.
         segmentation: name of the agent's segmentation.
     """
@@ -201,7 +201,7 @@ class FrameComposer:
         return (_SMALL_LEFT[self._segments.index(name)], _SMALL_TOP, *_SMALL)
 
     def _names(self, frame: Picture, segments: list[NDArray[np.uint8]]) -> None:
-        """Writes names and colours of the categories in the segmentations next to them, in columns in a fixed order."""
+        """Draws names and colours of the categories next to the segmentations, in columns and in a fixed order."""
         left = _SMALL_LEFT[len(self._segments) - 1] + _SMALL[0] + 12
         columns = (_CAMERA[0] + _CAMERA[2] - left) // _NAMES_PX
         rows, goal_id = _SMALL[1] // _ROW_PX, MPCAT40_ID[self.goal]

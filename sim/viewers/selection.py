@@ -32,7 +32,7 @@ def any_selected(options: ViewerOptions) -> bool:
 
 
 def check(options: ViewerOptions) -> None:
-    """Raises ConfigError where a selected viewer cannot run here."""
+    """Raises ConfigError if a selected viewer cannot run here."""
     for name, selected in (("--view", options.view), ("--rerun", options.rerun)):
         if selected and options.workers > 1:
             raise ConfigError(f"{name} shows one episode at a time: it needs --workers 1, got {options.workers}.")
@@ -53,8 +53,8 @@ def make(options: ViewerOptions, painter: MapPainter | None, seen: SeesFrames | 
 
     Args:
         options: of the run.
-        painter: draws the agent's map; None where it has none.
-        seen: gives the segmentation that the agent acts on; None where it has none.
+        painter: draws the agent's map; None if it has none.
+        seen: provides the segmentation that the agent acts on; None if it has none.
 
     Raises:
         ConfigError: see `check`.

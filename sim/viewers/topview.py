@@ -32,13 +32,12 @@ _STEP_CELLS = np.array([[math.sqrt(2), 1, math.sqrt(2)], [1, np.inf, 1], [math.s
 class TopView:
     """A `MapPainter` of the storey that the robot stands on, from above.
 
-    The colours of `legend` have the same meaning in the agent's map (`stubborn.drawing.map_painter`), where both have
-    them.
+    Colours that are also in the legend of the agent's map (`stubborn.drawing.map_painter`) have the same meaning there.
 
     Args:
         env: the environment of the episodes.
-        heading_up: turn the plan so that the heading of the start is up, as in the map of an agent. Otherwise x is to
-            the right and y up.
+        heading_up: whether the heading of the start points up, as in the map of an agent; otherwise x points to the
+            right and y up.
     """
 
     legend = (
@@ -56,7 +55,7 @@ class TopView:
         self._key: tuple[object, ...] = ()
         self._ground = np.zeros((1, 1, 3), np.uint8)
         self._to_px = np.zeros((2, 3))
-        """Affine map from metres to pixels."""
+        """Affine transformation from metres to pixels."""
 
     def words(self) -> str:
         """Returns "": the agent's intention is not known."""
@@ -92,11 +91,11 @@ class TopView:
 
     @property
     def _scale(self) -> float:
-        """Pixels of a metre."""
+        """Number of pixels per metre."""
         return float(np.hypot(*self._to_px[:, 0]))
 
     def _paint_ground(self, goal: str, floor_z_m: float, size_px: tuple[int, int]) -> NDArray[np.uint8]:
-        """Returns the picture without the robot, and stores its map from metres to pixels."""
+        """Returns the picture without the robot, and stores the transformation from metres to pixels."""
         task = self._env.scene.task
         truth, start = task.truth, task.start
         space, target = truth.space(floor_z_m), truth.target(goal, floor_z_m)
@@ -120,7 +119,7 @@ class TopView:
         return image
 
     def _from_cells(self, space: FreeSpace) -> NDArray[np.float64]:
-        """Returns the affine map (2, 3) from column and row of a cell to pixels."""
+        """Returns the affine transformation (2, 3) from column and row of a cell to pixels."""
         cell_m, middle_m = space.frame.cell_m, np.asarray(space.frame.origin_xy_m) + 0.5 * space.frame.cell_m
         return np.column_stack([self._to_px[:, :2] * cell_m, self._to_px[:, :2] @ middle_m + self._to_px[:, 2]])
 
@@ -130,26 +129,26 @@ class TopView:
 
 
 def whole_storey_m(space: FreeSpace, target: Target) -> NDArray[np.float64]:
-    """Returns corners (n, 2) in the world of all that is on a storey: free space, obstacles and goals."""
+    """Returns the convex hull (n, 2), in metres, of free space, obstacles and goals on a storey."""
     frame = space.frame
     free = frame.to_metres(np.argwhere(space.free))
     pieces = [piece for footprint in target.region.footprints for piece in footprint.parts]
     low = np.array(frame.origin_xy_m)
     high = low + np.array(frame.shape)[::-1] * frame.cell_m
     vertices = np.vstack([free, *(each.vertices_m for each in (*space.obstacles, *pieces))])
-    vertices = np.clip(vertices, low, high) if len(vertices) else np.stack([low, high])  # a terrain may be endless
+    vertices = np.clip(vertices, low, high) if len(vertices) else np.stack([low, high])  # a terrain may be huge
     return cv2.convexHull(vertices.astype(np.float32)).reshape(-1, 2).astype(np.float64)
 
 
 def _near_free(space: FreeSpace) -> NDArray[np.bool_]:
-    """Returns (rows, cols) the cells that the robot covers when its centre is in free space."""
+    """Returns a mask (rows, cols) of the cells that the robot can cover while its centre is in free space."""
     reach = math.ceil(space.radius_m / space.frame.cell_m) + 1
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
     return cv2.dilate(space.free.astype(np.uint8), kernel).astype(np.bool_)
 
 
 def _fitted(points_m: NDArray[np.float64], turn_rad: float, size_px: tuple[int, int]) -> NDArray[np.float64]:
-    """Returns the affine map (2, 3) from metres to pixels that turns points (n, 2) and fits them into a picture."""
+    """Returns the affine transformation (2, 3) from metres to pixels that turns points (n, 2) and fits them."""
     c, s = math.cos(turn_rad), math.sin(turn_rad)
     turned = points_m @ np.array([[c, s], [-s, c]])
     low, high = turned.min(axis=0) - _MARGIN_M, turned.max(axis=0) + _MARGIN_M

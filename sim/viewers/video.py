@@ -142,7 +142,7 @@ class VideoRecorder:
         Args:
             run: folder of the run; files go to `videos/` in it.
             painter: draws the agent's map; None: it has none.
-            seen: gives the segmentation that the agent acts on; None: it has none.
+            seen: provides the segmentation that the agent acts on; None: it has none.
         """
         self._run, self._painter, self._seen = run, painter, seen
         self._writer: VideoWriter | None = None
@@ -212,7 +212,7 @@ class VideoRecorder:
         self._free_chase()
 
     def _agent_map(self) -> overlay.MapPanel | None:
-        """Returns the agent's map; None where it has none."""
+        """Returns the agent's map; None if it has none."""
         painter = self._painter
         if painter is None:
             return None

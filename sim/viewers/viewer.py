@@ -66,11 +66,11 @@ class Viewer(Protocol):
 
 
 class SeesFrames(Protocol):
-    """The segmentation that an agent acts on, for viewers; asking for it changes nothing."""
+    """Provides the segmentation that an agent acts on to viewers; a call changes nothing."""
 
     @property
     def name(self) -> str:
-        """Returns its name, such as "rednet" or "ground truth"."""
+        """Returns the name of the segmentation, such as "rednet" or "ground truth"."""
         ...
 
     @property
@@ -79,7 +79,7 @@ class SeesFrames(Protocol):
         ...
 
     def perceived(self, observation: Observation, goal: str) -> Perceived | None:
-        """Returns the segmentation of a frame before the environment moves on; None: the agent did not use it."""
+        """Returns the segmentation of the present frame; None: the agent did not use it."""
         ...
 
 
@@ -96,5 +96,5 @@ class MapPainter(Protocol):
         ...
 
     def words(self) -> str:
-        """Returns what the agent is doing, such as "explores"; "" where that is not known."""
+        """Returns what the agent is doing, such as "explores"; "" if that is not known."""
         ...

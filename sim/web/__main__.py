@@ -1,7 +1,7 @@
-"""Watch an agent, or drive the robot, in the browser: `stubborn web`, then open the address that it prints.
+"""Watch an agent, or drive the robot, in the browser: run `stubborn web` and open the address that it prints.
 
 On a machine without a display, forward the port: `ssh -L 8008:127.0.0.1:8008 MACHINE`, and open
-http://127.0.0.1:8008 on your own.
+http://127.0.0.1:8008 on your own machine.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from sim.web.choices import Offer
 
 HERE = frozenset(("127.0.0.1", "localhost", "::1"))
-"""Names of this machine for itself."""
+"""Names by which this machine addresses itself."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +69,7 @@ class Args:
     config_file: Path | None = None
     """A TOML or JSON file of such fields; --config is applied after it."""
     runs: Path = Path("runs")
-    """Folder of the runs that the page shows, and to which episodes driven by hand are recorded."""
+    """Folder of the runs that the page shows; episodes that users drive are recorded there as well."""
 
 
 def main(args: Args) -> int:
@@ -108,7 +108,7 @@ def main(args: Args) -> int:
 
 
 def in_one_line(record: logging.LogRecord) -> bool:
-    """Replaces the traceback of a log record by the error, unless --debug is given: clients can cause it."""
+    """Replaces the traceback of a log record by the error, unless --debug is given: any client could fill the log."""
     if record.exc_info and not debug():
         error = record.exc_info[1]
         line = " ".join(f"{record.getMessage()} {type(error).__name__}: {error}".split())
@@ -117,7 +117,7 @@ def in_one_line(record: logging.LogRecord) -> bool:
 
 
 def offer(args: Args) -> Offer:
-    """Returns what the page offers in addition to what ships.
+    """Returns the parts that the page offers in addition to those that ship.
 
     Raises:
         ConfigError: an option contradicts another, or its file or name does not exist.
@@ -145,7 +145,7 @@ def offer(args: Args) -> Offer:
 
 
 def _absolute(value: Any) -> Any:
-    """Returns an absolute path for a path, which holds in whatever folder an agent works; other values as they are."""
+    """Returns a path as an absolute path, because agents may change the current folder; other values are unchanged."""
     return value.absolute() if isinstance(value, Path) else value
 
 
@@ -153,7 +153,7 @@ def _listen(host: str, port: int) -> socket.socket:
     """Returns a listening socket.
 
     Raises:
-        ConfigError: the address is not of this machine, or the port is in use.
+        ConfigError: the address is not one of this machine, or the port is in use.
     """
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]

@@ -1,4 +1,4 @@
-"""Answers of the server: JSON that any text fits into, and files that are open already."""
+"""Responses of the server: JSON that can hold any text, and files that are already open."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ _RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})")
 
 
 def as_ascii(content: Any) -> str:
-    """Returns JSON in ASCII, so that text with lone surrogates, such as a strange file name, can be sent too."""
+    """Returns JSON in ASCII, so that text with lone surrogates, such as some file names, can be sent too."""
     return json.dumps(content, ensure_ascii=True, allow_nan=False)
 
 
 class Json(JSONResponse):
-    """An answer in JSON."""
+    """A response in JSON."""
 
     def render(self, content: Any) -> bytes:
-        """Returns the answer as bytes."""
+        """Returns the body of the response."""
         return as_ascii(content).encode("ascii")
 
 
 class OpenFile(Response):
     """Sends an open file, or the one range of it that the request asks for, and closes it.
 
-    Exactly the announced number of bytes is sent, also when the file grows meanwhile.
+    Exactly the announced number of bytes is sent, even if the size of the file changes at the same time.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class OpenFile(Response):
             self._stream.seek(self._begin)
             while left > 0:
                 piece = await anyio.to_thread.run_sync(self._stream.read, min(left, _CHUNK_BYTES))
-                piece = piece or bytes(min(left, _CHUNK_BYTES))  # it became shorter
+                piece = piece or bytes(min(left, _CHUNK_BYTES))  # the file has become shorter
                 left -= len(piece)
                 await send({"type": "http.response.body", "body": piece, "more_body": left > 0})
             if scope["method"] == "HEAD" or self._left == 0:
@@ -68,7 +68,7 @@ class OpenFile(Response):
 
 
 def _range(header: str, size: int) -> tuple[int, int] | None:
-    """Returns begin and end of the range in a header; None: the whole file, also for one that has no place in it."""
+    """Returns begin and end of the range in a header; None: the whole file, also if the range is outside the file."""
     found = _RANGE.fullmatch(header.strip())
     if found is None or not any(found.groups()):
         return None
@@ -81,7 +81,7 @@ def _range(header: str, size: int) -> tuple[int, int] | None:
 
 
 async def or_404(answer: Callable[[], Response]) -> Response:
-    """Returns what a function, run in a thread, returns; a ConfigError becomes an answer with status 404."""
+    """Runs a function in a thread and returns its response; after a ConfigError, a response with status 404."""
     try:
         return await anyio.to_thread.run_sync(answer)
     except ConfigError as error:
@@ -91,5 +91,5 @@ async def or_404(answer: Callable[[], Response]) -> Response:
 def file_answer(
     request: Request, open_file: Callable[[], BinaryIO], media_type: str, headers: Mapping[str, str] | None = None
 ) -> Callable[[], Response]:
-    """Returns a function for `or_404` that opens a file and answers with it."""
+    """Returns a function for `or_404` that opens a file and responds with it."""
     return lambda: OpenFile(open_file(), media_type, request.headers.get("range", ""), headers)

@@ -1,4 +1,4 @@
-"""Lists what can be started from the page: what ships, and what the server was started with. Nothing else can be."""
+"""Lists what users can choose on the page: the parts that ship, and those with which the server was started."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ from sim.errors import ConfigError, HouseError
 from sim.houses.labels import read_labels
 from sim.interface import GOAL_CATEGORIES
 from sim.reading import convert
-from sim.web.controls import Driver, Wish
+from sim.web.controls import Driver, EpisodeRequest
 
 NOT_OFFERED = ("test",)
-"""Splits for a last measurement; `--split test` offers it."""
+"""Splits that are kept for a last measurement; the page offers them only if `--split` names them."""
 FIRST = ("val", "large", "hazards", "traps")
-"""The splits that come first."""
+"""The splits that the page lists first."""
 Goals = Mapping[str, Mapping[str, list[str]]]
-"""The ids of the episodes by house and goal; a house file has none, its episodes are drawn."""
+"""The ids of the episodes by house and goal; the lists of a house file are empty, because its episodes are drawn."""
 _PLAIN_TEXT = re.compile(r"[\w-]*")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Offer:
-    """What the server was started with, in addition to what ships."""
+    """The parts with which the server was started, in addition to those that ship."""
 
     agents: tuple[str, ...] = ()
     explorers: tuple[str, ...] = ()
@@ -42,14 +42,14 @@ class Offer:
     splits: tuple[str, ...] = ()
     houses: tuple[Path, ...] = ()
     options: RunOptions = field(default_factory=RunOptions)
-    """Options of every episode, for example weights, robot and noise."""
+    """Options that every episode gets, for example weights, robot and noise."""
 
 
 class Choices:
-    """Houses with their goals and episodes, agents, explorers and segmentations; read once."""
+    """The houses with their goals and episodes, and the agents, explorers and segmentations that users can choose."""
 
     def __init__(self, offer: Offer) -> None:
-        """Reads everything that can be chosen.
+        """Reads everything that can be chosen, once.
 
         Raises:
             ConfigError, HouseError: an agent, explorer, segmentation, split or house cannot be found or read.
@@ -72,7 +72,7 @@ class Choices:
         }
 
     def as_json(self) -> dict[str, Any]:
-        """Returns everything that can be chosen."""
+        """Returns everything that can be chosen, as JSON types."""
         return {
             "splits": self._splits,
             "agents": {
@@ -89,22 +89,22 @@ class Choices:
             "run_command": invocation.command("run", "--video"),
         }
 
-    def wish(self, message: Mapping[str, Any]) -> Wish:
-        """Returns the episode that a message of the page asks for.
+    def request(self, message: Mapping[str, Any]) -> EpisodeRequest:
+        """Returns the request that a message of the page describes.
 
         Raises:
-            ConfigError: something in it cannot be chosen.
+            ConfigError: a part of it cannot be chosen.
         """
         asked = convert(message, _Start, where="The message")
-        return self._wish(asked, self._options)
+        return self._request(asked, self._options)
 
-    def again(self, record: Mapping[str, Any], line: Mapping[str, Any], driver: Driver) -> Wish:
-        """Returns the episode of a finished run, with the run's agent, seed and settings as far as they are offered.
+    def again(self, record: Mapping[str, Any], line: Mapping[str, Any], driver: Driver) -> EpisodeRequest:
+        """Returns a request for an episode of a finished run, with the agent, seed and settings of that run.
 
         Args:
             record: the run's `config.json`.
             line: the episode's result line.
-            driver: of the robot.
+            driver: the agent or a person, who drives the robot first.
 
         Raises:
             ConfigError: the server was started without a part of the run, or a field of the record is missing.
@@ -125,14 +125,14 @@ class Choices:
         for name in ("seed", "seed_key", "noise", "profile", "verification"):
             if record.get(name) is not None:
                 options = replace(options, **{name: record[name]})
-        wish = self._wish(convert(asked, _Start, where="The run's config.json"), options)
-        if file:  # its episodes are drawn again, so everything that they depend on is that of the run
-            drawn = {name: record.get(name) for name in ("goal", "start_deg")}
-            wish = replace(wish, options=replace(wish.options, **drawn, episodes=record["episodes"]))
-        return replace(wish, record=record)
+        request = self._request(convert(asked, _Start, where="The run's config.json"), options)
+        if file:  # the episodes are drawn again, so that all options on which they depend must be those of the run
+            drawn = convert(dict(record), _Drawn, where="The run's config.json")
+            request = replace(request, options=replace(request.options, **msgspec.structs.asdict(drawn)))
+        return replace(request, record=record)
 
-    def _wish(self, asked: _Start, options: RunOptions) -> Wish:
-        """Returns an episode; raises ConfigError where a part of it is not offered."""
+    def _request(self, asked: _Start, options: RunOptions) -> EpisodeRequest:
+        """Returns a request; raises ConfigError if a part of it is not offered."""
         self._require("house" if asked.split.endswith(".xml") else "split", asked.split, self._splits)
         self._require("agent", asked.agent, self._agents)
         self._require("semantics", asked.semantics, self._semantics)
@@ -151,7 +151,7 @@ class Choices:
             options = replace(options, split=asked.split, labels=None, root=None)
         if not isinstance(self._semantics[asked.semantics].config, NetworkConfig):
             options = replace(options, weights=None)
-        return Wish(
+        return EpisodeRequest(
             split=asked.split,
             house=house,
             goal=goal,
@@ -171,7 +171,7 @@ class Choices:
 
 
 class _Start(msgspec.Struct):
-    """A message that asks for an episode."""
+    """A message of the page that requests an episode."""
 
     split: str
     house: str
@@ -181,6 +181,14 @@ class _Start(msgspec.Struct):
     explorer: str = ""
     episode: str = ""
     driver: Literal["agent", "person"] = "agent"
+
+
+class _Drawn(msgspec.Struct):
+    """The options of a run in one house on which its episodes depend."""
+
+    episodes: int
+    goal: str | None = None
+    start_deg: str | None = None
 
 
 def _split_name(name: str) -> str:
@@ -196,7 +204,7 @@ def _goals_of_split(name: str) -> Goals:
 
 
 def _goals_of_house(file: Path, options: RunOptions) -> Goals:
-    """Returns the goals in a house file: the one of its sidecar, else all categories that the house has."""
+    """Returns the goals in a house file: the one that its sidecar fixes, else all categories that the house has."""
     split = one_house(file, labels=options.labels, root=options.root)
     house = split.load_house(file.stem)
     fixed = split.sidecar(file.stem).goal
@@ -217,11 +225,12 @@ def _place_of(episode_id: str, houses: Goals, split: str) -> tuple[str, str]:
 
 
 def _settings(record: Mapping[str, Any], own: Iterable[str]) -> tuple[str, ...]:
-    """Returns the settings of a run as `--config` takes them.
+    """Returns the settings of a run in the form of `--config`.
 
     Args:
         record: the run's `config.json`.
-        own: the assignments of the server, which replace those of the run that may name files.
+        own: the server's assignments. They replace those settings of the run that may name files, because a record
+            must not choose files.
     """
     settings = record.get("settings")
     settings = settings if isinstance(settings, dict) else {}

@@ -17,19 +17,20 @@ Driver = Literal["agent", "person"]
 SPEEDS = (1.0, 2.0, 5.0, 60.0)
 """Actions per second that the page offers; the last is as fast as the machine allows."""
 _WAITING_ACTIONS = 4
-"""Actions of a person that wait at most. The oldest is dropped: the robot stops soon after a key is released."""
+"""Largest number of a person's actions that wait. Older ones are dropped, so that the robot stops soon after a key is
+released."""
 
 
 class Interrupted(BaseException):
-    """The episode is to end without a result: another was asked for, or the server stops.
+    """The episode must end without a result: a user has requested another one or ended it, or the server stops.
 
-    Like KeyboardInterrupt it is not an Exception: `play_episode` would count one as a failure of the agent.
+    Like KeyboardInterrupt, this class is not an Exception, which `play_episode` would count as a failure of the agent.
     """
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wish:
-    """An episode that a user asks for (`sim.web.choices`)."""
+class EpisodeRequest:
+    """A user's request for an episode (`sim.web.choices` makes it)."""
 
     split: str
     house: str
@@ -39,7 +40,7 @@ class Wish:
     explorer: str = ""
     """Name of the explorer; "" is the agent's own."""
     episode_id: str | None = None
-    """None: another one of this house and goal each time."""
+    """Id of the episode; None: another one of this house and goal each time."""
     driver: Driver = "agent"
     options: RunOptions
     """Options of the run that the episode belongs to."""
@@ -47,7 +48,7 @@ class Wish:
     """The `config.json` of the finished run to which the episode belongs; None: it belongs to none."""
 
     def as_json(self) -> dict[str, Any]:
-        """Returns what the page shows of it."""
+        """Returns the part that the page shows, as JSON types."""
         names = ("split", "house", "goal", "agent", "semantics", "explorer", "episode_id", "driver")
         return {name: getattr(self, name) for name in names}
 
@@ -64,7 +65,7 @@ class Controls:
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
-        self._wish: Wish | None = None
+        self._request: EpisodeRequest | None = None
         self._actions: deque[Action] = deque(maxlen=_WAITING_ACTIONS)
         self._steps, self._stopping, self._closed, self._redraw = 0, False, False, False
         self._next_s = 0.0
@@ -110,43 +111,43 @@ class Controls:
             self._redraw = True
             self._changed.notify_all()
 
-    def ask_for(self, wish: Wish) -> None:
-        """Requests another episode; the running one ends."""
+    def ask_for(self, request: EpisodeRequest) -> None:
+        """Stores a request for another episode; the running one ends."""
         with self._changed:
-            self._wish = wish
+            self._request = request
             self._changed.notify_all()
 
     def close(self) -> None:
-        """Ends the episode, and all waiting."""
+        """Ends the episode, and all calls that wait."""
         with self._changed:
             self._closed = True
             self._changed.notify_all()
 
-    def next_wish(self) -> Wish | None:
-        """Waits for an episode that is asked for, and starts it; None when the server stops."""
+    def next_request(self) -> EpisodeRequest | None:
+        """Waits for a request, prepares the controls for it and returns it; None when the server stops."""
         with self._changed:
-            self._changed.wait_for(lambda: self._wish is not None or self._closed)
+            self._changed.wait_for(lambda: self._request is not None or self._closed)
             if self._closed:
                 return None
-            wish, self._wish = self._wish, None
-            assert wish is not None
+            request, self._request = self._request, None
+            assert request is not None
             self._stopping, self._steps, self._next_s = False, 0, 0.0
             self.paused = False
             self._actions.clear()
-            self._hand_to(wish.driver)
-            return wish
+            self._hand_to(request.driver)
+            return request
 
     def choose(self, advised: Action) -> Choice | None:
-        """Waits until an action is due, and returns it: the agent's, or the driver's.
+        """Waits until an action is due and returns it: `advised`, the agent's action, or that of a person.
 
-        None: the current moment is to be shown again.
+        Returns None if the current moment must be shown again.
 
         Raises:
-            Interrupted: the episode is to end.
+            Interrupted: the episode must end.
         """
         with self._changed:
             while True:
-                if self._closed or self._stopping or self._wish is not None:
+                if self._closed or self._stopping or self._request is not None:
                     raise Interrupted
                 if self._redraw:
                     self._redraw = False

@@ -1,4 +1,4 @@
-"""Records the episodes that people drive on the page, as runs in the folder of the runs."""
+"""Records the episodes that users drive on the page, as runs in the folder of the runs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from sim.evaluation.results import RunDirectory
 
 
 class DrivenRuns:
-    """The runs that this server writes. Episodes with equal options share one, each episode at most once."""
+    """The runs that this server writes. Episodes with equal options share a run, which has each one at most once."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -39,12 +39,12 @@ class DrivenRuns:
         """Records the episode that has just ended; returns the folder of its run.
 
         Args:
-            setup: of the agent, which may have driven a part.
+            setup: the setup of the agent, which may have driven a part of the episode.
             env: the environment of the episode.
             episode: the episode.
-            metrics: what `play_episode` returned.
+            metrics: the entries that `play_episode` returned.
             person_steps: number of actions that a person chose.
-            hint_steps: number of these before which the shortest path was shown.
+            hint_steps: number of these actions for which a hint was shown.
 
         Raises:
             ConfigError: the folder is not writable.

@@ -1,4 +1,4 @@
-"""The next action on the true shortest path, for a person who drives."""
+"""Computes the next action on the true shortest path, as a hint for a person who drives."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from sim.interface import Action
 
 
 class Hints:
-    """Asks the oracle for the next action of one episode."""
+    """The hints of one episode: the next action of the oracle."""
 
     def __init__(self, env: ObjectNavEnv, goal: str) -> None:
         self._env, self._goal = env, goal
@@ -17,15 +17,15 @@ class Hints:
         self._given: Action | None = None
 
     def at(self, step: int, last: Action | None) -> Action | None:
-        """Returns the oracle's action for this moment; None where the goal cannot be reached.
+        """Returns the oracle's next action; None if the goal cannot be reached.
 
         Args:
             step: number of actions so far.
-            last: the last of them.
+            last: the last of these actions; None: there is none.
         """
         if step == self._step:
             return self._given
-        # The oracle takes a position off its route for a blocked step, so it begins anew unless its action was taken.
+        # The oracle takes any other action for a blocked step; it is reset unless the person followed its hint.
         followed = self._step is not None and step == self._step + 1 and last == self._given
         reachable = self._env.scene.task.metrics()["distance_to_goal"] is not None
         if reachable and not followed:

@@ -1,4 +1,4 @@
-"""The pictures of the running episode as JPEG files."""
+"""Draws the pictures of the running episode as JPEG files."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Lists the finished runs in a folder, and opens their reports, pictures and videos.
 
-Files are found by the names in the results, never by a path from outside; no link leads out of the folder of the runs,
-and only plain files are opened.
+Files are found by the names in the results, never by a path in a request. Links that lead out of the folder of the runs
+are refused, and only plain files are opened.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from sim.reading import open_plain, printable
 from sim.viewers.video import video_file
 
 MOST_RUNS = 100
-"""The newest runs are listed."""
+"""Largest number of runs that are listed, the newest ones."""
 REPORT = "report.html"
 _FILES: Mapping[str, Callable[[Path, str], Path]] = {"pictures": picture_file, "videos": video_file}
-"""Files of an episode that a report links to, by their folder."""
+"""Functions that return the path of an episode's file to which a report links, by the file's folder."""
 _COLUMNS = (
     "episode_id", "house", "goal", "agent", "success", "spl", "num_steps", "collisions", "failure", "end_reason",
 )  # fmt: skip
 
 
 class _Read(NamedTuple):
-    """A run as it was read, and the times and sizes of its files then."""
+    """A run that was read, and the times and sizes of its files at that time."""
 
     state: tuple[tuple[int, int], ...]
     run: Run
@@ -46,7 +46,7 @@ class Runs:
         self._read: dict[Path, _Read] = {}
 
     def as_json(self) -> list[dict[str, Any]]:
-        """Returns the runs, the newest first; one whose files are broken is listed with the reason."""
+        """Returns the runs, the newest first; a run whose files are broken is listed with the reason."""
         return [self._about(changed_ns, folder) for changed_ns, folder in self._newest()]
 
     def episodes(self, name: str) -> list[dict[str, Any]]:
@@ -97,9 +97,9 @@ class Runs:
         """Returns a picture or a video to which the report of a run links, open for reading.
 
         Args:
-            name: of the run.
-            kind: the folder in it, `pictures` or `videos`.
-            file_name: in that folder.
+            name: name of the run.
+            kind: the folder of the file, `pictures` or `videos`.
+            file_name: name of the file in that folder.
 
         Raises:
             ConfigError: no episode of the run has such a file.
@@ -153,7 +153,7 @@ class Runs:
             try:
                 if entry.is_dir(follow_symlinks=False) and self._there(file):
                     yield file.stat().st_mtime_ns, Path(entry.path)
-            except OSError:  # it was removed meanwhile
+            except OSError:  # it has just been removed
                 continue
 
     def _folder_of(self, name: str) -> Path:

@@ -1,7 +1,8 @@
-"""The server of the page: HTTP for the page and for finished runs, a websocket for the running episode.
+"""Serves the page: HTTP for the page and for finished runs, a websocket for the running episode.
 
-It serves only files of this package, and reports, pictures and videos of the folder of runs. A request is refused
-unless its `Host` is one of the allowed names (DNS rebinding), and a websocket unless it comes from the page itself.
+The server sends only files of this package, and reports, pictures and videos of the folder of runs. It refuses a
+request unless its `Host` is one of the allowed names (against DNS rebinding), and a websocket unless the page itself
+opens it.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from sim.errors import ConfigError, ObjectNavError
 from sim.reading import open_plain, parse_json, printable
 from sim.web.answers import Json, as_ascii, file_answer, or_404
 from sim.web.choices import Choices
-from sim.web.controls import Wish
+from sim.web.controls import EpisodeRequest
 from sim.web.driven import DrivenRuns
 from sim.web.pictures import NAMES
 from sim.web.runs import Runs
@@ -43,6 +44,8 @@ PAGE_FILES: Mapping[str, tuple[str, str]] = {
 }
 """Address, file and type of everything that the page consists of."""
 _log = logging.getLogger(__name__)
+MakeRequest = Callable[[Mapping[str, Any]], EpisodeRequest]
+"""Returns the request that a message of the page describes."""
 MAX_CLIENTS = 16
 MAX_MESSAGE_BYTES = 4096
 _POLICY = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; media-src 'self'; "
@@ -52,7 +55,7 @@ _REPORT_POLICY = "sandbox allow-scripts allow-popups; frame-ancestors 'none'"
 
 
 class Client:
-    """One connected page: what it has got of the newest state and frame."""
+    """One connected page: the pictures that it shows, and the numbers of the last state and frame that it got."""
 
     def __init__(self) -> None:
         self.names: frozenset[str] = frozenset(("camera", "chase"))
@@ -61,10 +64,13 @@ class Client:
 
 
 class Hub:
-    """Hands the newest state and frame of the session to all clients; slow ones miss frames (`Audience`)."""
+    """Sends the newest state and frame of the session to all clients (`Display`); slow clients miss frames.
+
+    Args:
+        driven: records the episodes that a person drives.
+    """
 
     def __init__(self, driven: DrivenRuns) -> None:
-        """Makes a session that records driven episodes there."""
         self.clients: set[Client] = set()
         self.session = Session(self, driven)
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -79,23 +85,23 @@ class Hub:
         self.session.start()
 
     def wanted(self) -> frozenset[str]:
-        """Returns the names of the pictures that some client shows."""
+        """Returns the names of the pictures that at least one client shows."""
         return self._wanted
 
     def show(self, frame: Frame) -> None:
-        """Takes the newest frame from the simulating thread."""
+        """Receives the newest frame from the thread that simulates."""
         self._in_loop(lambda: self._keep(frame=frame))
 
-    def tell(self, state: Mapping[str, Any]) -> None:
-        """Takes the newest state from the simulating thread."""
+    def show_state(self, state: Mapping[str, Any]) -> None:
+        """Receives the newest state from the thread that simulates."""
         self._in_loop(lambda: self._keep(state=state))
 
     def changed(self) -> None:
         """Sends the state to all clients again, after a command."""
         self._keep()
 
-    def count_wishes(self) -> None:
-        """Computes which pictures are shown anywhere; draws them if they are new."""
+    def update_wanted(self) -> None:
+        """Computes which pictures are shown by any client; requests new ones to be drawn."""
         before = self._wanted
         self._wanted = frozenset().union(*(client.names for client in self.clients))
         if self._wanted - before:
@@ -109,7 +115,7 @@ class Hub:
         return {"kind": "state", **self._state, **live, "clients": len(self.clients)}
 
     async def serve(self, client: Client, socket: WebSocket) -> None:
-        """Sends a client what is new, until it is gone."""
+        """Sends each new state and frame to a client until it disconnects."""
         while True:
             if client.state_number != self._state_number:
                 client.state_number = self._state_number
@@ -198,7 +204,7 @@ _HOST = re.compile(r"(?:\[(?P<address>[0-9A-Fa-f:.]+)\]|(?P<name>[\w.-]+))(?::\d
 
 
 def _only(scope: Scope, name: bytes) -> str | None:
-    """Returns the value of a header; None without one, `_REPEATED` where there are several."""
+    """Returns the value of a header; None if it is missing, `_REPEATED` if there are several."""
     values = [value for key, value in scope["headers"] if key.lower() == name]
     if len(values) > 1:
         return _REPEATED
@@ -206,7 +212,7 @@ def _only(scope: Scope, name: bytes) -> str | None:
 
 
 def _name_of(host: str) -> str:
-    """Returns the name in a Host header, without the port; "" where the header has another form."""
+    """Returns the name in a Host header, without the port; "" if the header has another form."""
     found = _HOST.fullmatch(host)
     return "" if found is None else (found["address"] or found["name"]).lower()
 
@@ -215,15 +221,15 @@ def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -
     """Returns the application.
 
     Args:
-        hub: of the session; it is opened and closed with the application.
-        choices: all that can be started.
+        hub: the hub of the session; it is opened and closed with the application.
+        choices: the parts that users can choose.
         runs: finished runs.
         hosts: names under which the server may be addressed.
     """
 
-    def wish(message: Mapping[str, Any]) -> Wish:
+    def make_request(message: Mapping[str, Any]) -> EpisodeRequest:
         if message.get("do") != "again":
-            return choices.wish(message)
+            return choices.request(message)
         run, line = runs.line(str(message.get("run")), str(message.get("episode")))
         return choices.again(run.config, line, "person" if message.get("driver") == "person" else "agent")
 
@@ -234,7 +240,7 @@ def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -
         hub.session.close()
 
     async def live(socket: WebSocket) -> None:
-        await _live(hub, wish, socket)
+        await _live(hub, make_request, socket)
 
     async def offered(request: Request) -> Response:
         return Json(choices.as_json())
@@ -287,7 +293,7 @@ def _page_file(name: str, media_type: str) -> Callable[[Request], Any]:
     return answer
 
 
-async def _live(hub: Hub, wish: Callable[[Mapping[str, Any]], Wish], socket: WebSocket) -> None:
+async def _live(hub: Hub, make_request: MakeRequest, socket: WebSocket) -> None:
     """Serves one websocket."""
     if len(hub.clients) >= MAX_CLIENTS:
         await socket.close(1013, "There are too many clients.")
@@ -295,36 +301,38 @@ async def _live(hub: Hub, wish: Callable[[Mapping[str, Any]], Wish], socket: Web
     await socket.accept()
     client = Client()
     hub.clients.add(client)
-    hub.count_wishes()
+    hub.update_wanted()
     hub.changed()
-    tasks = [asyncio.create_task(work) for work in (hub.serve(client, socket), _obey(hub, wish, client, socket))]
+    tasks = [
+        asyncio.create_task(work) for work in (hub.serve(client, socket), _obey(hub, make_request, client, socket))
+    ]
     try:
         await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     finally:
         for task in tasks:
             task.cancel()
-        # WebSocketDisconnect and RuntimeError: the client went while something was received or sent.
+        # WebSocketDisconnect and RuntimeError: the client disconnected while something was received or sent.
         for ended in await asyncio.gather(*tasks, return_exceptions=True):
             if isinstance(ended, Exception) and not isinstance(ended, (WebSocketDisconnect, RuntimeError)):
-                _log.error("A connection broke.", exc_info=ended)
+                _log.error("A connection failed.", exc_info=ended)
         hub.clients.discard(client)
-        hub.count_wishes()
+        hub.update_wanted()
         hub.changed()
 
 
-async def _obey(hub: Hub, wish: Callable[[Mapping[str, Any]], Wish], client: Client, socket: WebSocket) -> None:
-    """Carries out the messages of a client until it is gone."""
+async def _obey(hub: Hub, make_request: MakeRequest, client: Client, socket: WebSocket) -> None:
+    """Carries out the messages of a client until it disconnects."""
     while (message := await socket.receive())["type"] == "websocket.receive":
-        answer = await asyncio.to_thread(_carry_out, hub, wish, client, message.get("text"))
-        hub.count_wishes()
+        answer = await asyncio.to_thread(_carry_out, hub, make_request, client, message.get("text"))
+        hub.update_wanted()
         if answer is None:
             hub.changed()
         else:
             await socket.send_text(as_ascii({"kind": "refused", "message": printable(answer)}))
 
 
-def _carry_out(hub: Hub, wish: Callable[[Mapping[str, Any]], Wish], client: Client, text: str | None) -> str | None:
-    """Carries out one message of a page; returns why it was refused, None if it was not."""
+def _carry_out(hub: Hub, make_request: MakeRequest, client: Client, text: str | None) -> str | None:
+    """Carries out one message of a page; returns the reason if it is refused, else None."""
     try:
         if text is None:
             raise ConfigError("A message must be text.")
@@ -333,7 +341,7 @@ def _carry_out(hub: Hub, wish: Callable[[Mapping[str, Any]], Wish], client: Clie
             wanted = message.get("pictures")
             client.names = frozenset(name for name in NAMES if isinstance(wanted, list) and name in wanted)
         elif message.get("do") in ("start", "again"):
-            hub.session.controls.ask_for(wish(message))
+            hub.session.controls.ask_for(make_request(message))
         else:
             hub.session.controls.obey(message)
     except ObjectNavError as error:

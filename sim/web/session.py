@@ -1,4 +1,4 @@
-"""The running episode: one thread that simulates, and gives the server what there is to show."""
+"""Runs the episodes of the page in one thread, and gives their pictures and their state to the server."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from sim.episodes.splits import Episode
 from sim.errors import EpisodeError, debug
 from sim.evaluation.config_fields import differing_fields, is_same_file
 from sim.evaluation.rollout import agent_seed, episode_seed, play_episode
-from sim.interface import Action, Agent, Observation, Overridable, StatesTarget
+from sim.interface import Action, Agent, Closable, Observation, Overridable, StatesTarget
 from sim.reading import printable
 from sim.task.explanations import ACTION_WORDS, explain_end, in_words, with_article
 from sim.viewers.viewer import Moment
-from sim.web.controls import Controls, Interrupted, Wish
+from sim.web.controls import Controls, EpisodeRequest, Interrupted
 from sim.web.driven import DrivenRuns
 from sim.web.hints import Hints
 from sim.web.pictures import Pictures, in_sight
@@ -35,33 +35,36 @@ _NAMED_DIFFERENCES = 4
 
 @dataclass(frozen=True)
 class Frame:
-    """Facts and pictures of one moment."""
+    """Numbers and pictures of one moment."""
 
     facts: Mapping[str, Any]
-    """Step, action, metrics so far, categories in sight; JSON types."""
+    """The step, the last action, the metrics so far and the categories in sight; JSON types."""
     pictures: Mapping[str, bytes]
     """JPEG files by name (`sim.web.pictures.NAMES`)."""
 
 
-class Audience(Protocol):
-    """The server, as the simulating thread sees it. Its methods are called in that thread."""
+class Display(Protocol):
+    """Receives the frames and states of a session, and sends them to the clients.
+
+    The thread that simulates calls the methods.
+    """
 
     def wanted(self) -> frozenset[str]:
-        """Returns the names of the pictures that some client shows."""
+        """Returns the names of the pictures that at least one client shows."""
         ...
 
     def show(self, frame: Frame) -> None:
-        """Takes the newest frame."""
+        """Receives the newest frame."""
         ...
 
-    def tell(self, state: Mapping[str, Any]) -> None:
-        """Takes the newest state of the episode, JSON types."""
+    def show_state(self, state: Mapping[str, Any]) -> None:
+        """Receives the newest state of the episode, JSON types."""
         ...
 
 
 @dataclass(frozen=True)
 class _Made:
-    """Environment, agent and pictures, and the setup of which they were made."""
+    """Environment, agent and pictures, and the setup from which they were made."""
 
     setup: Setup
     parts: Parts
@@ -69,17 +72,17 @@ class _Made:
 
 
 class Session:
-    """Runs one episode after the other, as users ask for them; all users see the same one."""
+    """Runs the episodes that users request, one after the other; all users see the same one."""
 
-    def __init__(self, audience: Audience, driven: DrivenRuns) -> None:
+    def __init__(self, display: Display, driven: DrivenRuns) -> None:
         """Makes a session; `start` starts it.
 
         Args:
-            audience: receives what there is to show.
+            display: receives frames and states.
             driven: records the episodes that a person drives.
         """
         self.controls = Controls()
-        self._audience, self._driven = audience, driven
+        self._display, self._driven = display, driven
         self._made: _Made | None = None
         self._turn = 0
         self._thread = threading.Thread(target=self._run, daemon=True, name="simulation")
@@ -94,37 +97,37 @@ class Session:
         self._thread.join(wait_s)
 
     def _run(self) -> None:
-        while (wish := self.controls.next_wish()) is not None:
+        while (request := self.controls.next_request()) is not None:
             try:
-                self._play(wish)
+                self._run_episode(request)
             except Interrupted:
-                self._tell(wish, "idle", "The episode was ended; nothing was recorded.")
+                self._show_state(request, "idle", "The episode was ended; nothing was recorded.")
             except USAGE_ERRORS as error:
-                self._tell(wish, "failed", str(error))
-            except BaseException as error:  # code of the user's may raise anything, and this thread has to go on
+                self._show_state(request, "failed", str(error))
+            except BaseException as error:  # a user's code may raise anything, and this thread must continue
                 if debug():
                     traceback.print_exc()
                 self._free()
                 reason = f"{type(error).__name__}: {error} (unexpected; --debug shows where)"
-                self._tell(wish, "failed", f"The episode broke: {reason}")
+                self._show_state(request, "failed", f"The episode failed: {reason}")
         self._free()
 
-    def _play(self, wish: Wish) -> None:
-        self._tell(wish, "loading", f"Loading house {wish.house} and the agent {wish.agent} ...")
-        made = self._made_for(wish)
+    def _run_episode(self, request: EpisodeRequest) -> None:
+        self._show_state(request, "loading", f"Loading house {request.house} and the agent {request.agent} ...")
+        made = self._made_for(request)
         parts, pictures = made.parts, made.pictures
-        episode = choose_episode(parts.env, wish, self._turn, made.setup)
+        episode = choose_episode(parts.env, request, self._turn, made.setup)
         self._turn += 1
-        shared = SharedAgent(parts, pictures, self.controls, self._audience)
-        about: dict[str, Any] = {"note": unlike_the_run(made.setup, parts.env, wish.record)}
+        shared = SharedAgent(parts, pictures, self.controls, self._display)
+        about: dict[str, Any] = {"note": unlike_the_run(made.setup, parts.env, request.record)}
 
         def begun(env: ObjectNavEnv) -> None:
             about.update(episode_id=episode.episode_id, max_steps=env.task_config.max_steps, legends=pictures.legends())
             about.update(segmentation=parts.seen.name if parts.seen is not None else "")
-            self._tell(wish, "playing", f"Looking for {with_article(wish.goal)}.", **about)
+            self._show_state(request, "running", f"Looking for {with_article(request.goal)}.", **about)
 
         watcher = _Watcher(begun, shared)
-        options = wish.options
+        options = request.options
         line = play_episode(
             parts.env,
             shared,
@@ -132,14 +135,14 @@ class Session:
             seed=episode_seed(options.seed, episode.episode_id),
             seed_of_agent=agent_seed(options.seed, episode.episode_id, options.seed_key or ""),
             viewers=[watcher],
-            name=wish.agent,
+            name=request.agent,
         )
         shared.show_end()
         nearest_m = parts.env.scene.task.trajectory().nearest_instance_m
         detects = parts.seen is not None and not shared.stopped_by_person
-        outcome = explain_end(line, wish.goal, parts.env.success_rule, nearest_m, detects=detects)
+        outcome = explain_end(line, request.goal, parts.env.success_rule, nearest_m, detects=detects)
         recorded = self._record(made, episode, line, shared)
-        self._tell(wish, "ended", outcome.headline, outcome=asdict(outcome) | {"recorded": recorded}, **about)
+        self._show_state(request, "ended", outcome.headline, outcome=asdict(outcome) | {"recorded": recorded}, **about)
 
     def _record(self, made: _Made, episode: Episode, line: Mapping[str, Any], shared: SharedAgent) -> str:
         """Records an episode in which a person drove; returns a sentence about it, "" where no person did."""
@@ -152,31 +155,33 @@ class Session:
             return f"It could not be recorded: {error}"
         return f"Recorded in {folder}."
 
-    def _made_for(self, wish: Wish) -> _Made:
-        """Returns environment, agent and pictures; those of the last episode where they fit."""
-        if self._made is None or self._made.setup.options != wish.options:
+    def _made_for(self, request: EpisodeRequest) -> _Made:
+        """Returns environment, agent and pictures; those of the last episode if the options are the same."""
+        if self._made is None or self._made.setup.options != request.options:
             self._free()
-            setup = resolve(wish.options)
+            setup = resolve(request.options)
             parts = build_parts(setup, watched=True)
             self._made = _Made(setup, parts, Pictures(parts))
         return self._made
 
     def _free(self) -> None:
         if self._made is not None:
+            if isinstance(self._made.parts.agent, Closable):
+                self._made.parts.agent.close()
             self._made.pictures.close()
             self._made.parts.env.close()
         self._made = None
 
-    def _tell(self, wish: Wish, phase: str, message: str, **more: Any) -> None:
+    def _show_state(self, request: EpisodeRequest, phase: str, message: str, **more: Any) -> None:
         text = printable(" ".join(message.split()))
-        self._audience.tell({"phase": phase, "message": text, "wish": wish.as_json(), **more})
+        self._display.show_state({"phase": phase, "message": text, "request": request.as_json(), **more})
 
 
 class SharedAgent:
-    """An `Agent` whose actions are the agent's own or those of a person, when the controls say so."""
+    """An `Agent` that forwards the actions of another agent, or those of a person while a person drives."""
 
-    def __init__(self, parts: Parts, pictures: Pictures, controls: Controls, audience: Audience) -> None:
-        self._parts, self._pictures, self._controls, self._audience = parts, pictures, controls, audience
+    def __init__(self, parts: Parts, pictures: Pictures, controls: Controls, display: Display) -> None:
+        self._parts, self._pictures, self._controls, self._display = parts, pictures, controls, display
         self._inner: Agent = parts.agent
         self._last: Action | None = None
         self.info: Mapping[str, Any] = {}
@@ -195,7 +200,7 @@ class SharedAgent:
         """Shows the observation, waits until an action is due and returns it.
 
         Raises:
-            Interrupted: the episode is to end.
+            Interrupted: the episode must end.
         """
         advised = Action(self._inner.act(observation))
         choice = None
@@ -211,7 +216,7 @@ class SharedAgent:
         return action
 
     def stop_target_xy_m(self) -> tuple[float, float] | None:
-        """Returns the place for which the agent stops; None where a person does, or where it states none."""
+        """Returns the place for which the agent stops; None if a person stops, or if the agent states none."""
         inner = self._inner
         return inner.stop_target_xy_m() if isinstance(inner, StatesTarget) and not self.stopped_by_person else None
 
@@ -224,8 +229,8 @@ class SharedAgent:
         images, metrics = env.truth_images, env.scene.task.metrics()
         step, action = metrics["num_steps"], advised or Action.STOP
         moment = Moment(step=step, observation=observation, images=images, action=action)
-        names = self._audience.wanted()
-        if advised is None:  # after the end: what the agent perceives is that of the frame before
+        names = self._display.wanted()
+        if advised is None:  # after the end, the agent's pictures are those of the previous frame
             names -= {"predicted", "score", "map"}
         hint = None
         if advised is not None and self._hints is not None and self._controls.hints:
@@ -244,11 +249,11 @@ class SharedAgent:
             "shortest_m": None if metrics["shortest_path"] is None else float(metrics["shortest_path"]),
             "in_sight": in_sight(images["semantic"], env.episode.goal),
         }
-        self._audience.show(Frame(facts, self._pictures.draw(names, moment) if names else {}))
+        self._display.show(Frame(facts, self._pictures.draw(names, moment) if names else {}))
 
 
 class _Watcher:
-    """A viewer that says when the episode has begun and keeps the outcome of the last action."""
+    """A viewer that calls `begun` when the episode has begun, and stores the outcome of each action."""
 
     def __init__(self, begun: Callable[[ObjectNavEnv], None], shared: SharedAgent) -> None:
         self._begun, self._shared = begun, shared
@@ -269,45 +274,53 @@ class _Watcher:
         pass
 
 
-def choose_episode(env: ObjectNavEnv, wish: Wish, turn: int, setup: Setup) -> Episode:
-    """Returns the episode that a user asks for; without an id another one of its house and goal turn after turn.
+def choose_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int, setup: Setup) -> Episode:
+    """Returns the episode of a request; without an id, the episodes of its house and goal in turn.
 
-    An episode of a finished run in a house file is drawn again with all others of that run.
+    To draw an episode of a finished run in a house file again, all episodes of that run are drawn.
 
     Raises:
         EpisodeError: there is no such episode, or none can be drawn in a house file.
     """
-    if wish.options.house is not None and wish.record is not None:
+    if request.options.house is not None and request.record is not None:
         again = {episode.episode_id: episode for episode in drawn_episodes(env, setup)}
-        if wish.episode_id not in again:
-            raise EpisodeError(f"The run has no episode '{wish.episode_id}'. It has: {', '.join(list(again)[:5])}, ...")
-        return again[wish.episode_id]
-    if wish.options.house is not None:
-        return _draw_episode(env, wish, turn)
-    if wish.episode_id is not None:
-        return env.split.episode(wish.episode_id)
-    fitting = [each for each in env.split.episodes if (each.house, each.goal) == (wish.house, wish.goal)]
+        if request.episode_id not in again:
+            raise EpisodeError(
+                f"The run has no episode '{request.episode_id}'. It has: {', '.join(list(again)[:5])}, ..."
+            )
+        return again[request.episode_id]
+    if request.options.house is not None:
+        return _draw_episode(env, request, turn)
+    if request.episode_id is not None:
+        return env.split.episode(request.episode_id)
+    fitting = [each for each in env.split.episodes if (each.house, each.goal) == (request.house, request.goal)]
     if not fitting:
-        raise EpisodeError(f"Split '{wish.split}' has no episode with '{in_words(wish.goal)}' in house '{wish.house}'.")
+        raise EpisodeError(
+            f"Split '{request.split}' has no episode with '{in_words(request.goal)}' in house '{request.house}'."
+        )
     return fitting[turn % len(fitting)]
 
 
-def _draw_episode(env: ObjectNavEnv, wish: Wish, turn: int) -> Episode:
+def _draw_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int) -> Episode:
     """Returns a new episode in a house file, with the goal and start that the options fix."""
-    number = re.fullmatch(rf"{re.escape(wish.house)}_(\d{{4,9}})", wish.episode_id or f"{wish.house}_{turn:04d}")
+    number = re.fullmatch(
+        rf"{re.escape(request.house)}_(\d{{4,9}})", request.episode_id or f"{request.house}_{turn:04d}"
+    )
     if number is None:
-        raise EpisodeError(f"Episodes of house '{wish.house}' are {wish.house}_0000 and so on, not {wish.episode_id}.")
-    rng = np.random.default_rng([wish.options.seed, int(number[1])])
+        raise EpisodeError(
+            f"Episodes of house '{request.house}' are {request.house}_0000 and so on, not {request.episode_id}."
+        )
+    rng = np.random.default_rng([request.options.seed, int(number[1])])
     return env.draw_episode(rng, episode_id=number[0])
 
 
 def unlike_the_run(setup: Setup, env: ObjectNavEnv, record: Mapping[str, Any] | None) -> str:
-    """Returns a sentence on what differs from the run whose episode is shown; "" where nothing does, or without a run.
+    """Returns a sentence that names the differences from the run whose episode is shown; "" if there are none.
 
     Args:
-        setup: of the episode.
+        setup: the setup of the episode.
         env: its environment.
-        record: the run's `config.json`.
+        record: the run's `config.json`; None: the episode belongs to no run.
     """
     if record is None:
         return ""

@@ -69,10 +69,10 @@ def check_house(
 
 
 def check_own_house(house: House) -> tuple[list[str], list[str]]:
-    """Returns the faults of a house of the user's, and remarks; each is a sentence.
+    """Returns the faults of a user's house, and remarks; each is a sentence.
 
     Faults are places and goals that the robot cannot reach. Overlaps, objects without support and objects that move by
-    themselves do not keep a house from being used; they are remarks. The house may have no room sites.
+    themselves are only remarks, because the house can be used. The house may have no room sites.
 
     Args:
         house: a house that `load_house` returned.
@@ -112,7 +112,7 @@ class _CompiledHouse:
         return self._instance(geom).name
 
     def _instance(self, geom: int) -> Instance:
-        """Returns the instance of a geom; a geom without a label, which label rules allow, is one of its own."""
+        """Returns the instance of a geom; a geom without a label, which label rules allow, is its own instance."""
         number = int(self.labels.geom_instance[geom])
         return (
             self.labels.instances[number] if number >= 0 else Instance(describe_geom(self.model, geom), "void", (geom,))
@@ -208,7 +208,7 @@ def _unreachable(house: _CompiledHouse, rule: SuccessRule, robot: RobotModel) ->
 def _unreachable_without_rooms(
     house: _CompiledHouse, rule: SuccessRule, robot: RobotModel
 ) -> tuple[list[str], set[str]]:
-    """Returns the faults of a house without room sites, and the goal categories that the robot comes near."""
+    """Returns the faults of a house without room sites, and the goal categories that the robot can approach."""
     space = FreeSpace(house.model, house.data, house.labels, robot=robot, rule=rule)
     reached = space.largest_part()
     if not reached.any():

@@ -39,7 +39,7 @@ def approach_on(
 ) -> Approach | None:
     """Returns the approach to some candidates on a part of the map; its cell is relative to that part.
 
-    Returns None where they have no reachable viewpoint.
+    Returns None if they have no reachable viewpoint.
     """
     if not candidates.any():
         return None
@@ -56,7 +56,7 @@ def approach_from_here(
 ) -> Approach | None:
     """Returns the approach that ends at the robot's present position; its cell is relative to that part of the map.
 
-    Returns None where no candidate is in sight within `StopDistances.pushing_m`.
+    Returns None if no candidate is in sight within `StopDistances.pushing_m`.
     """
     if not candidates.any():
         return None
@@ -76,7 +76,7 @@ def approach_to(
     pose: Pose,
     finder: ViewpointFinder,
 ) -> Approach | None:
-    """Returns the approach to viewpoints; None where there is no route.
+    """Returns the approach to viewpoints; None if there is no route.
 
     `nearest_row` and `nearest_col` are the candidate cell that is nearest to each cell of the view.
     """

@@ -1,4 +1,4 @@
-"""Classifiers that tell true (class 1) from false (class 0) candidates by four features.
+"""Classifiers that separate true (class 1) from false (class 0) candidates by four features.
 
 `stubborn.detection.verifier_fit` fits them with scikit-learn. This module evaluates them with NumPy only.
 """

@@ -28,8 +28,8 @@ class TargetConfig:
     """If the robot pushes against something on its path to a viewpoint, a visible candidate within this distance is
     near enough."""
     last_resort_m: float = 1.6
-    """Where there is no viewpoint at all, a candidate is verified from the nearest reachable place within this
-    distance; late in an episode the agent stops there, which may still succeed."""
+    """If there is no viewpoint, a candidate is verified from the nearest reachable place within this distance. Late in
+    an episode the agent stops there, which may still succeed."""
     outline_margin_m: float = 0.25
     """With inexact outlines the agent goes nearer than `stop_in_view_m` and `viewpoint_m` by this distance where it
     can, because an inexact outline may include a part of a neighbouring object."""

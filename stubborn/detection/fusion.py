@@ -26,7 +26,7 @@ from sim.reading import Number, read_json
 FOLDER = Path(__file__).parent / "fusions"
 """Folder of the shipped parameters."""
 DEFAULT_KIND = "rednet"
-"""The kind whose parameters another kind gets that has none."""
+"""The kind whose parameters are used for kinds without parameters of their own."""
 SURFACES = ("wall", "floor", "ceiling")
 """Categories of the surfaces behind, below and above every object."""
 IS_SURFACE = np.array([name in SURFACES for name in MPCAT40[1:]])

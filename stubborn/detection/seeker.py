@@ -242,7 +242,7 @@ class TargetSeeker:
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
         """Verifies the candidate at a map cell; a rejected one never counts again in this episode.
 
-        Returns False where there is no candidate. A candidate that is connected to a rejected object never counts as
+        Returns False if there is no candidate. A candidate that is connected to a rejected object never counts as
         new.
         """
         whole = self._known(navmap)

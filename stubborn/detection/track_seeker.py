@@ -268,7 +268,7 @@ class TrackSeeker:
         result = set(tracks)
         for track in tracks:
             others = np.flatnonzero(self.probability >= self.config.part_share * self.probability[track])
-            result.update(self._of_episode().beside(track, others, self.config.part_gap_voxels).tolist())
+            result.update(self._of_episode().near(track, others, self.config.part_gap_voxels).tolist())
         return sorted(result)
 
     def _best_doubtful(self, tracks: list[int], pose: Pose) -> int:
@@ -318,7 +318,7 @@ class TrackSeeker:
             self._pushes += 1
 
     def _look(self, navmap: NavMap, window: Window, pose: Pose, track: int) -> Approach | None:
-        """Returns the approach to a place to look at a track from; None: the track was decided on or set aside."""
+        """Returns the approach to a place with a view of a track; None: the track was decided on or set aside."""
         tracks, cells = self._of_episode(), self.cells_of(navmap, [track])
         seen_from, middle_xy_m = tracks.evidence.near_sectors(track), tracks.track(track).middle_xy_m
         looked_from = seen_from | self._hidden.get(track, False)

@@ -174,7 +174,7 @@ class Tracks:
         probability = self.evidence.probability[number]
         return Track(number, probability, float(bottom_m), float(top_m), (float(cols_m), float(rows_m)), (x_m, y_m))
 
-    def beside(self, number: int, others: Int[np.ndarray, " n"], gap_voxels: int) -> Int[np.ndarray, " m"]:
+    def near(self, number: int, others: Int[np.ndarray, " n"], gap_voxels: int) -> Int[np.ndarray, " m"]:
         """Returns those of `others` whose box is at most `gap_voxels` voxels from the box of track `number`."""
         apart = np.maximum(self._low[others] - self._high[number] - 1, self._low[number] - self._high[others] - 1)
         return others[apart.max(axis=1, initial=0) <= gap_voxels]
@@ -268,7 +268,7 @@ class Tracks:
         return same[0]
 
     def _begin(self) -> int:
-        """Returns the number of a new track; 0 where there are too many."""
+        """Returns the number of a new track; 0 if there are too many."""
         if self.count + 1 >= self.config.most_tracks:
             return 0
         self.count += 1

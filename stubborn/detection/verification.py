@@ -22,7 +22,7 @@ from stubborn.detection.classifiers import Classifier, Features, NaiveBayes
 FOLDER = Path(__file__).parent / "verifiers"
 """Folder of the shipped parameters."""
 DEFAULT_KIND = "rednet"
-"""The kind whose parameters another kind gets that has none: those of a network are nearer to it than none."""
+"""The kind whose parameters are used for kinds without parameters of their own, because it is a network."""
 METHODS: Mapping[str, Callable[[Mapping[str, Any]], Classifier]] = MappingProxyType(
     {"naive-bayes": NaiveBayes.from_dict}
 )

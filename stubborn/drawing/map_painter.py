@@ -38,7 +38,7 @@ LEGEND: tuple[tuple[str, Colour], ...] = (
     ("rejected", REJECTED),
     ("route, its end", ROUTE),
 )
-"""Colours that the true plan (`sim.viewers.topview`) has too have the same meaning there."""
+"""Name and colour of each item; a colour that is also in the true plan (`sim.viewers.topview`) has the same meaning."""
 GROUND: tuple[tuple[str, Colour], ...] = (("driven over", SWEPT), ("floor seen", SEEN_FREE), ("never seen", UNKNOWN))
 """The pale colours of the ground, for legends that have space for them."""
 _SMALLEST_SIDE_M, _STRIDE_M, _EDGE_M = 8.0, 2.0, 0.25
@@ -100,7 +100,7 @@ class AgentMapPainter:
         return canvas.image
 
     def words(self) -> str:
-        """Returns what the agent is doing; "" where its route is not shown."""
+        """Returns what the agent is doing; "" if its route is not shown."""
         return describe_intention(self.agent) if self.show_route else ""
 
     def _grow(self, pose: Pose) -> None:

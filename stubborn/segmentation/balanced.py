@@ -70,7 +70,7 @@ class ViewIndex:
 
     views: tuple[StoredView, ...]
     objects: dict[str, dict[str, list[ShownObject]]]
-    """Objects by category, then by style; "" where the style is not known."""
+    """Objects by category, then by style; "" if the style is not known."""
 
     @classmethod
     def of(cls, shards: Sequence[Path]) -> ViewIndex:

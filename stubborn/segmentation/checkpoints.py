@@ -37,7 +37,7 @@ _BROKEN_PICKLE = (
 )  # fmt: skip
 """The exceptions that `torch.load` raises for files that are not checkpoints."""
 _NUMPY_NUMBERS = [multiarray.scalar, np.dtype, *{type(np.dtype(code)) for code in "?bBhHiIlLqQefd"}]
-"""What pickles call to make NumPy's numbers; they run no other code. Trainers store metrics as such numbers."""
+"""Functions with which pickles make NumPy's numbers; they run no other code. Trainers store metrics as such numbers."""
 _TERMINAL_CODE = re.compile(r"\x1b\[[0-9;]*m")
 MAX_CHECKPOINT_BYTES = 2 << 30
 MAX_SIZE = 4096

@@ -128,11 +128,20 @@ def list_shards(folder: Path) -> list[Path]:
     """Returns the shards of a folder, sorted by name.
 
     Raises:
-        ConfigError: the folder holds no shard.
+        ConfigError: the folder holds no shard, or two shards that begin with the same view.
     """
     shards = sorted(folder.glob("*.tar"))
     if not shards:
         raise ConfigError(f"No shards (*.tar) in '{folder}'. `stubborn views` makes them.")
+    first = dict[str, Path]()
+    for shard in shards:
+        key = next(_members(shard, frozenset()), ("", {}))[0]
+        if key and key in first:
+            raise ConfigError(
+                f"The shards '{first[key]}' and '{shard}' both hold the view '{key}', which would count twice: remove "
+                "one, or keep shards of other commands in folders of their own."
+            )
+        first[key] = shard
     return shards
 
 
@@ -220,7 +229,7 @@ class _Once:
         self._key, self._parts = "", set[str]()
 
     def require(self, key: str, part: str) -> None:
-        """Raises ConfigError where a member, which follows the earlier ones, is a second one of its kind."""
+        """Raises ConfigError if a member, which follows the earlier ones, is a second one of its kind."""
         if key != self._key or not self._keys:
             if key in self._keys:
                 raise ConfigError(f"Shard '{self._file}' holds the view '{key}' twice; a view is stored once.")

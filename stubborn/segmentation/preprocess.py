@@ -39,7 +39,7 @@ class Padding(NamedTuple):
 
 
 def require_whole_strides(height_px: int, width_px: int) -> None:
-    """Raises ConfigError where height or width is not a multiple of `STRIDE_PX`."""
+    """Raises ConfigError if height or width is not a multiple of `STRIDE_PX`."""
     if height_px % STRIDE_PX or width_px % STRIDE_PX:
         raise ConfigError(
             f"A network takes multiples of {STRIDE_PX} pixels in height and width, got {height_px} x {width_px}."

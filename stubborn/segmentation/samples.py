@@ -209,7 +209,7 @@ def random_goal_pixel(semantic: UInt8[np.ndarray, "h w"], rng: np.random.Generat
 
 
 def random_pixel(mask: Bool[np.ndarray, "h w"], rng: np.random.Generator) -> tuple[int, int] | None:
-    """Returns row and column of a pixel of a mask, each equally often; None where it is empty."""
+    """Returns row and column of a pixel of a mask, each equally often; None if it is empty."""
     pixels = np.flatnonzero(mask)
     if pixels.size == 0:
         return None

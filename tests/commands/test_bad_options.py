@@ -174,7 +174,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--split val", "fitted on 'val'"),
         ("--split OUT --semantics gt", "makes no errors to learn"),
         ("--split nowhere --judge", "nowhere"),
-        ("--split val --judge --minutes 0 --log OUT", "holds no tracks"),
+        ("--split val --judge --minutes 0 --log OUT", "has no tracks"),
     ],
     "sim.commands.train.verifier": [
         ("--semantics gt", "makes no errors to learn"),

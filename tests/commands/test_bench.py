@@ -156,17 +156,17 @@ def run_quickly(parts: str, tmp_path: Path) -> dict[str, Any]:
 
 
 def test_a_quick_run_writes_figures_machine_and_calibration(tmp_path: Path) -> None:
-    written = run_quickly("c,d,l", tmp_path)
-    shares = {"c": 0.0, "gt": 0.0, "rednet": 0.0}
-    for figure in written["figures"]:
-        if figure["what"].startswith("of it"):
-            whose = "c" if figure["part"] == "c" else figure["what"].split(", ")[1]
-            shares[whose] += figure["ratio"]
-    assert shares["gt"] == pytest.approx(1.0)
-    assert shares["rednet"] == pytest.approx(1.0)
-    assert 0.8 < shares["c"] <= 1.0
+    written = run_quickly("c", tmp_path)
+    shares = [figure["ratio"] for figure in written["figures"] if figure["what"].startswith("of it")]
+    assert 0.8 < sum(shares) <= 1.0
 
 
 @pytest.mark.slow
 def test_every_part_runs(tmp_path: Path) -> None:
-    run_quickly(",".join(bench.PARTS), tmp_path)
+    written = run_quickly(",".join(bench.PARTS), tmp_path)
+    shares = {"gt": 0.0, "rednet": 0.0}
+    for figure in written["figures"]:
+        if figure["part"] == "d" and figure["what"].startswith("of it"):
+            shares[figure["what"].split(", ")[1]] += figure["ratio"]
+    assert shares["gt"] == pytest.approx(1.0)
+    assert shares["rednet"] == pytest.approx(1.0)

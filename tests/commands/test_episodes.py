@@ -34,7 +34,7 @@ def folder(tmp_path: Path) -> Path:
     second = with_box(second, "wall_10", centre_m=(2.2, 0.0, 1.25), half_m=(0.05, 2.5, 1.25))
     second = with_box(second, "sink_00", centre_m=(3.0, 0.0, 0.4), half_m=(0.2, 0.2, 0.4))  # walled in
     (folder / "first.xml").write_text(first.spec.to_xml())
-    (folder / "second.xml").write_text(second.spec.to_xml())
+    (folder / "second.XML").write_text(second.spec.to_xml())
     return folder
 
 
@@ -112,7 +112,7 @@ def test_two_processes_write_the_same_bytes_as_one(folder):
 
 def test_episodes_of_removed_houses_are_removed(folder):
     main(Args(split=folder, episodes=4))
-    (folder / "second.xml").unlink()
+    (folder / "second.XML").unlink()
     main(Args(split=folder, episodes=4))
     assert {episode.house for episode in load_split(folder).episodes} == {"first"}
     assert [file.name for file in (folder / "content").iterdir()] == ["first.json.gz"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -20,6 +21,11 @@ from stubborn.segmentation.shipped import SHIPPED_REDNET
 from tests.commands.test_train_segmentation import write_views
 
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
+
+
+@pytest.fixture(autouse=True)
+def few_timed_frames(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(evaluate_rednet, "TIMED_FRAMES", 2)
 
 
 @pytest.fixture
@@ -134,3 +140,44 @@ def test_the_calibration_of_the_shipped_weights_is_replaced_only_when_the_option
     for given in (None, SHIPPED_REDNET):
         with pytest.raises(ConfigError, match="Give --weights FILE, a copy of them for example, or --shipped"):
             evaluate_rednet.main(Args(views=(tmp_path,), weights=given, calibrate=True))
+
+
+OWN = "tests.helpers.segmentations"
+
+
+@pytest.mark.parametrize(("name", "accuracy"), [("BRIGHT", "1.000"), ("BrightGoals", None)])
+def test_a_segmentation_of_ones_own_is_evaluated(
+    name: str, accuracy: str | None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_views(tmp_path / "views", 4)
+    assert evaluate_rednet.main(Args(views=(tmp_path / "views",), semantics=f"{OWN}:{name}")) == 0
+    printed = capsys.readouterr().out
+    assert "| mIoU, goal categories present | 1.000 |" in printed
+    assert "| sofa | 1.000 | 4 | 100 % |" in printed
+    assert "| number of views | 4 |" in printed
+    assert accuracy is None or f"| pixel accuracy | {accuracy} |" in printed
+
+
+def test_the_configuration_of_a_segmentation_of_ones_own_counts(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_views(tmp_path / "views", 2)
+    evaluate_rednet.main(Args(views=(tmp_path / "views",), semantics=f"{OWN}:BRIGHT", config=("detector.bar=250",)))
+    assert "| sofa | 0.000 | 2 | 0 % |" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"semantics": f"{OWN}:Truth"}, "reads 'semantic', and stored views have rgb and depth only"),
+        ({"semantics": f"{OWN}:BRIGHT", "calibrate": True}, "--calibrate is for networks of this project"),
+        ({"semantics": f"{OWN}:BRIGHT", "config": ("detector.level=1",)}, "bar"),
+        ({"config": ("detector.level=1",)}, "--config needs --semantics"),
+    ],
+)
+def test_options_that_a_segmentation_of_ones_own_cannot_take_are_refused(
+    options: dict[str, Any], message: str, tmp_path: Path
+) -> None:
+    write_views(tmp_path / "views", 1)
+    with pytest.raises(ConfigError, match=message):
+        evaluate_rednet.main(Args(views=(tmp_path / "views",), **options))

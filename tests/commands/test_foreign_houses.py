@@ -17,13 +17,15 @@ from sim.commands import label as label_house
 from sim.commands.views import generate as generate_views
 from sim.episodes.splits import load_split
 from sim.gl import mujoco
+from sim.houses.house import House
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID
 from sim.viewers import house_pictures
+from sim.viewers.house_pictures import storeys
 from stubborn.segmentation.dataset import list_shards, read_shard
 from tests.helpers.foreign import SCENE, write_scene
-from tests.helpers.worlds import room
+from tests.helpers.worlds import room, two_storeys, with_box
 
 
 @pytest.fixture(autouse=True)
@@ -246,3 +248,26 @@ def test_visual_walls_become_solid_boxes_and_meshes_stay(tmp_path: Path) -> None
     solid = {geom.name: geom.contype for geom in loaded.spec.geoms}
     assert solid["Shell.N"] == 1
     assert solid["Arch.look"] == 0
+
+
+def test_storeys_of_a_scene_whose_bodies_have_no_names_are_cut() -> None:
+    house = two_storeys()
+    for storey, height_m in ((0, 0.5), (1, 3.5)):
+        body = house.spec.worldbody.add_body(pos=[0.5, 0.5, height_m])
+        body.add_geom(name=f"misc_{storey:02d}", type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.1, 0.1, 0.1])
+    kept = [{geom.name for geom in each.spec.geoms if geom.name.startswith("misc")} for each in storeys(house)]
+    assert kept == [{"misc_00"}, {"misc_01"}]
+    single = with_box(room(3, 3), "misc_00", centre_m=(0, 0, 0.5), half_m=(0.1, 0.1, 0.1))
+    single.spec.worldbody.add_body()
+    assert storeys(single) == [single]
+
+
+def test_a_small_scene_on_a_wide_plane_fills_its_picture() -> None:
+    spec = mujoco.MjSpec.from_string(
+        '<mujoco><worldbody><geom name="Ground" type="plane" size="20 20 .1"/>'
+        '<geom name="Box" type="box" size="1 1 .2" pos="0 0 .2" rgba="1 0 0 1"/></worldbody></mujoco>'
+    )
+    house = House("wide", spec, rules={"Ground": "floor", "Box": "table"})
+    colours = house_pictures.distinct_colours(["floor", "table"])
+    picture = house_pictures.draw_top(house, colours=colours)
+    assert (picture == colours[MPCAT40_ID["table"]]).all(axis=2).mean() > 0.05

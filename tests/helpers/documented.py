@@ -175,7 +175,7 @@ def unmarked_commands() -> dict[str, str]:
 
 
 def program_of(command: str) -> tuple[str, list[str]]:
-    """What a canonical command starts (`views show`, `tools.research.check_twin`, `examples/x.py`), and its options."""
+    """Returns the program of a command (such as `views show`, `examples/x.py`), and its options."""
     words = shlex.split(command)
     if words[0] == "stubborn":
         return split(words[1:])
@@ -292,8 +292,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     **{
         f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} --episodes 5": (
-            f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} {_SMALL} --episodes 1 "
-            "--out {tmp}/run",
+            f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} task.max_steps=30 {_SMALL} "
+            "--episodes 1 --out {tmp}/run",
         )
         for control in ("semantics=shuffled", "goal=wrong")
     },
@@ -383,6 +383,14 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         'torch.save(MyNetwork().state_dict(), "{tmp}/my_network.pt")\'',
         f"{_RUN} --semantics examples.my_segmentation:SEGMENTATION --config detector.weights={{tmp}}/my_network.pt"
         f" task.max_steps=5 {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    "stubborn evaluate --views views_val --semantics examples.my_segmentation:SEGMENTATION"
+    " --config detector.weights=my_network.pt": (
+        _VIEWS,
+        f"{PYTHON} -c 'import torch; from examples.my_segmentation import MyNetwork; "
+        'torch.save(MyNetwork().state_dict(), "{tmp}/my_network.pt")\'',
+        "stubborn evaluate --views {tmp}/views --semantics examples.my_segmentation:SEGMENTATION"
+        " --config detector.weights={tmp}/my_network.pt",
     ),
     f"{_RUN} --semantics rednet --weights runs/rednet/rednet.safetensors": (
         f"{_RUN} --semantics rednet --weights {_SHIPPED} {_SMALL} --episodes 1 --out {{tmp}}/run",

@@ -56,7 +56,7 @@ HANGING = {
     "thread": _start_thread,
     "raise": _raise,
 }
-"""What code of a user may do to its process."""
+"""Actions of a user's code on its process, by name."""
 
 
 @dataclass(frozen=True)

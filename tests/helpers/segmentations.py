@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.env.objectnav import ObjectNavEnv
-from sim.interface import Action, Observation, Perceived, Scores, SegmentationSpec, SegmenterSpec
+from sim.interface import MPCAT40_ID, Action, Observation, Perceived, Scores, SegmentationSpec, SegmenterSpec
 
 ASKED: list[set[str]] = []
 """Keys of each observation that a `Flat` got in this process."""
@@ -47,6 +47,13 @@ class Wrong:
         return self.returned
 
 
+class WrongNames(Wrong):
+    """Returns what a test says as categories, too."""
+
+    def categories(self, observation: Observation) -> object:
+        return self.returned
+
+
 class Truth:
     """Reads the true segmentation in the environment, and declares it."""
 
@@ -76,3 +83,39 @@ class Stating:
 
     def stated_segmentation(self) -> Perceived | None:
         return self.seen
+
+
+@dataclass(frozen=True)
+class BrightConfig:
+    """The option of `Bright`."""
+
+    bar: int = 100
+
+
+class Bright:
+    """Takes bright pixels for a sofa and dark ones for a wall."""
+
+    spec = SegmenterSpec(sensors=("rgb",), kind="bright")
+
+    def __init__(self, config: BrightConfig) -> None:
+        self.config = config
+
+    def posteriors(self, observation: Observation) -> NDArray:
+        bright = observation["rgb"][..., 0] > self.config.bar
+        found = np.zeros((40, *bright.shape), np.float32)
+        found[MPCAT40_ID["sofa"] - 1], found[MPCAT40_ID["wall"] - 1] = bright, ~bright
+        return found
+
+
+BRIGHT = SegmentationSpec(make=Bright, config=BrightConfig(), spec=Bright.spec)
+
+
+class BrightGoals:
+    """Scores the goal only: bright pixels are a sofa."""
+
+    spec = SegmenterSpec(sensors=("rgb",), kind="bright")
+
+    def scores(self, observation: Observation, goal: str) -> Scores:
+        bright = (observation["rgb"][..., 0] > 100).astype(np.float32)
+        target = bright if goal == "sofa" else np.zeros_like(bright)
+        return Scores(target, 1.0 - target)

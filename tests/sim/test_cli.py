@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+import tyro
 
 from sim import cli
 from sim.errors import HouseError, PhysicsError, debug
@@ -31,9 +32,12 @@ def test_parsed_arguments_reach_main() -> None:
     assert seen == [Args(episodes=7)]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Optional:
-    """Options that need not be given."""
+    """Options that need not be given, and folders."""
+
+    runs: tyro.conf.Positional[tuple[Path, ...]]
+    """Folders of runs."""
 
     weights: Path | None = None
     """A file; by default the shipped one."""
@@ -51,8 +55,8 @@ def test_the_help_of_an_option_shows_no_empty_default(capsys: pytest.CaptureFixt
     assert "None)" not in shown
     assert "(default: )" not in shown
     assert "A number. (default: 3)" in shown
-    parsed = cli.parse(Optional, ["--only", "a", "b"])
-    assert parsed == Optional(only=("a", "b"))
+    parsed = cli.parse(Optional, ["here", "--only", "a", "b"])
+    assert parsed == Optional(runs=(Path("here"),), only=("a", "b"))
 
 
 @pytest.mark.parametrize(

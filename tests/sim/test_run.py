@@ -26,11 +26,18 @@ from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.results import lines_of
 from tests.helpers.worlds import two_storeys
 
+SMALL = ("camera.width_px=160", "camera.height_px=120")
+
 
 def command(*options: object) -> list[str]:
-    """Uses ground truth unless another segmentation is requested: a network would take most of the time."""
+    """Uses ground truth and small images unless the options say otherwise: a network would take most of the time."""
     semantics = () if "--semantics" in options else ("--semantics", "gt")
-    return [sys.executable, "-m", "sim.run", *map(str, (*options, *semantics))]
+    given = list(map(str, (*options, *semantics)))
+    if "--config" in given:
+        given[given.index("--config") + 1 : given.index("--config") + 1] = SMALL
+    else:
+        given += ["--config", *SMALL]
+    return [sys.executable, "-m", "sim.run", *given]
 
 
 def run(*options: object) -> subprocess.CompletedProcess[str]:
@@ -104,7 +111,7 @@ def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path
         assert trajectory.about["scores"] == line
         picture = cv2.imread(str(picture_file(tmp_path / "recorded", line["episode_id"])))
         assert picture is not None
-        assert picture.shape == (480, 640, 3)
+        assert picture.shape == (120, 160, 3)
         assert trajectory.num_steps == line["num_steps"]
         assert trajectory.moved_m.sum() == pytest.approx(line["path_length"], abs=1e-4)
         assert int(trajectory.collided.sum()) == line["collisions"]

@@ -91,7 +91,7 @@ def test_actions_are_valid_and_the_same_seed_gives_the_same_episode(name: str):
     assert first.actions == second.actions
 
 
-@pytest.mark.parametrize("name", sample(AGENTS, 7))
+@pytest.mark.parametrize("name", sample(AGENTS, 4))
 def test_two_episodes_in_a_row_are_those_of_two_fresh_agents(name: str):
     one, runs = build(name), (("cushion", 3), ("bed", 5))
     in_a_row = [run_episode(world(), one, goal, seed=seed, max_steps=STEPS).actions for goal, seed in runs]

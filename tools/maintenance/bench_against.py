@@ -60,7 +60,7 @@ class Compared:
 
     @property
     def ratio(self) -> float:
-        """How many times faster this checkout is: the median over the rounds."""
+        """Factor by which this checkout is faster: the median over the rounds."""
         return float(np.median(np.array(self.there_s) / np.array(self.here_s)))
 
     @property

@@ -1,8 +1,7 @@
 """Hooks of MkDocs (`mkdocs.yml`): rules of the built site, reported as warnings, which `--strict` turns into errors.
 
-Links to files outside of `docs/`, which GitHub follows, become paths of the repository. The site asks no other host for
-anything: the reader may be offline, and no other host learns who reads it. Links that a reader follows are another
-matter.
+Links to files outside `docs/`, which work on GitHub, become paths of the repository. The pages load nothing from other
+hosts, so that they work offline and no other host learns of the reader. Links to other hosts are allowed.
 """
 
 from __future__ import annotations
@@ -32,12 +31,12 @@ def fetched_from_elsewhere(page: str) -> Iterator[str]:
 
 
 def on_page_markdown(markdown: str, **_: Any) -> str:
-    """Returns the text of a page with the paths of files outside of `docs/` in place of links to them."""
+    """Returns the text of a page in which links to files outside `docs/` are replaced by the paths of these files."""
     return _OUTSIDE.sub(r"\1 (`\2`)", markdown)
 
 
 def on_post_build(config: Any) -> None:
-    """Warns of every page that would ask another host."""
+    """Logs a warning for every page that would load something from another host."""
     site = Path(config["site_dir"])
     for file in sorted([*site.rglob("*.html"), *site.rglob("*.css")]):
         for address in sorted(set(fetched_from_elsewhere(file.read_text(encoding="utf-8")))):

@@ -151,7 +151,7 @@ def _is_playable(config: AgentConfig) -> bool:
 
 
 def _recorded_tree(run: Run, name: str) -> dict[str, Any]:
-    """Returns a part of the configuration tree of a run; raises ConfigError where it was not recorded."""
+    """Returns a part of the configuration tree of a run; raises ConfigError if it was not recorded."""
     tree = run.recorded("config").get(name)
     if not isinstance(tree, dict):
         raise ConfigError(f"'{run.path / 'config.json'}' has no field 'config.{name}', which --explore needs.")

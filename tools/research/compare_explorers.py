@@ -86,10 +86,10 @@ def main(args: Args) -> int:
     )
     for name, config in configs.items():
         agent = TwinAgent(twin_config(AgentConfig(explorer=config)))
-        played = [episode(agent, plans, number, args.seed) for number in range(args.episodes)]
-        lines += [{"explorer": name, **line} for line in played]
-        first = played if first is None else first
-        print(row(name, played, first), flush=True)
+        results = [episode(agent, plans, number, args.seed) for number in range(args.episodes)]
+        lines += [{"explorer": name, **line} for line in results]
+        first = results if first is None else first
+        print(row(name, results, first), flush=True)
         if args.out is not None:
             write_atomically(args.out, "".join(json.dumps(line) + "\n" for line in lines))
     return 0
@@ -126,14 +126,14 @@ def episode(agent: TwinAgent, plans: Sequence[Path], number: int, seed: int) -> 
     return {"house": file.stem, "goal": goal, "episode": number, **found}
 
 
-def row(name: str, played: Sequence[Mapping[str, Any]], first: Sequence[Mapping[str, Any]]) -> str:
+def row(name: str, results: Sequence[Mapping[str, Any]], first: Sequence[Mapping[str, Any]]) -> str:
     """Returns the figures of an explorer, and the ratio of its steps to those of the first one, as text."""
-    steps, others = (np.array([line["steps_to_first_sight"] for line in lines], float) for lines in (played, first))
-    seen = np.array([line["gt_explored"] for line in played], float)
-    houses = [str(line["house"]) for line in played]
+    steps, others = (np.array([line["steps_to_first_sight"] for line in lines], float) for lines in (results, first))
+    seen = np.array([line["gt_explored"] for line in results], float)
+    houses = [str(line["house"]) for line in results]
     low, high = np.percentile(_resampled(houses, steps), [2.5, 97.5])
     ratio = np.percentile(_resampled(houses, steps) / _resampled(houses, others), [2.5, 97.5])
-    collisions, metres = (float(np.mean([line[key] for line in played])) for key in ("collisions", "path_length"))
+    collisions, metres = (float(np.mean([line[key] for line in results])) for key in ("collisions", "path_length"))
     return (
         f"{name:34s} seen {seen.mean():.3f}  steps to first sight {steps.mean():6.1f} [{low:.1f}, {high:.1f}]  median "
         f"{np.median(steps):5.1f}  ratio {steps.mean() / others.mean():.3f} [{ratio[0]:.3f}, {ratio[1]:.3f}]  "

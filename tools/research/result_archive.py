@@ -46,7 +46,7 @@ class _Setup(msgspec.Struct):
 
 @dataclass(frozen=True, order=True)
 class RunKey:
-    """What one row of a table evaluates."""
+    """The agent and options that one row of a table evaluates."""
 
     split: str
     agent: str

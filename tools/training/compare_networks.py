@@ -120,7 +120,7 @@ class Evaluation(msgspec.Struct):
 
 
 def last_row(folder: Path) -> Evaluation | None:
-    """Returns the last evaluation of a run; None where there is none."""
+    """Returns the last evaluation of a run; None if there is none."""
     file = folder / "val.csv"
     if not file.is_file():
         return None

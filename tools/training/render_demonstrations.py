@@ -130,7 +130,7 @@ def _work_of(run: Run, args: Args) -> Iterator[HouseWork]:
     wanted = [line for line in lines if line["success"] or args.failed]
     there = [line for line in wanted if trajectory_file(run.path, line["episode_id"]).is_file()]
     if not there:
-        raise ConfigError(f"'{run.path}' has no trajectory of an episode that succeeded: play it with --record.")
+        raise ConfigError(f"'{run.path}' has no trajectory of an episode that succeeded: run it with --record.")
     files = {line["episode_id"]: _file_of(run.path, line["episode_id"], args.out) for line in there}
     known = next((file for file in files.values() if file.exists()), None)
     if known is not None:

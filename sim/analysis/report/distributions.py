@@ -70,7 +70,7 @@ class Histogram:
 
     @property
     def top_percent(self) -> int:
-        """Upper end of the axis of all pictures, a multiple of 20: at least the ends of the intervals of all bars."""
+        """Returns the upper end of the axis of all pictures, a multiple of 20 above the intervals of all bars."""
         shares = [share for run in range(len(self.counts)) for share in self.shares(run) if share.count]
         highest = max((100.0 * share.interval[1] for share in shares), default=100.0)
         return min(100, 20 * math.ceil(highest / 20.0))

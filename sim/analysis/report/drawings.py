@@ -28,7 +28,7 @@ from sim.world.world import World
 Trajectories = Mapping[str, Sequence[Trajectory | None]]
 """Trajectories by episode, one for each run."""
 HouseTruth = GroundTruth | None
-"""Ground truth of a house; None where the house cannot be loaded."""
+"""Ground truth of a house; None if the house cannot be loaded."""
 
 
 def split_of(run: Run) -> Split:
@@ -74,7 +74,7 @@ class Drawings:
     episodes: dict[str, Any] = field(default_factory=dict)
     """Drawings by episode id: the names of plan and area, the shortest path, and a path for each run."""
     house_m2: dict[str, float | None] = field(default_factory=dict)
-    """Floor area of all rooms of each house; None where the house declares none."""
+    """Floor area of all rooms of each house; None if the house declares none."""
 
     def add(
         self, runs: Sequence[Run], episode_id: str, trajectories: Sequence[Trajectory | None], truth: HouseTruth

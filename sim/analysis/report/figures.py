@@ -45,7 +45,7 @@ METRICS = (
 """Metrics by which runs are judged and compared."""
 Z95 = 1.959964
 FEW = 30
-"""With fewer episodes a bootstrap interval is too narrow; it has no width where all episodes ended alike."""
+"""Number of episodes below which a bootstrap interval is too narrow; it has no width if all episodes end alike."""
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ def causes(runs: Runs) -> list[Group]:
 
 
 def _proportion(values: Sequence[float], houses: Sequence[str]) -> Proportion:
-    """Returns the proportion of ones with its bootstrap interval over houses, of few episodes with Wilson's."""
+    """Returns the proportion of ones with its bootstrap interval over houses, or Wilson's interval for few episodes."""
     if len(values) < FEW:
         return wilson(round(sum(values)), len(values))
     share = estimate(values, houses)
@@ -175,9 +175,9 @@ def few_note(count: int) -> str:
     if count >= FEW:
         return ""
     return (
-        f"Only {count} episode{'s' * (count != 1)}: little is certain. Intervals of shares in % are Wilson's, which "
-        "hold for few episodes; those of other means are too narrow. All are bootstrap intervals from "
-        f"{FEW} episodes on."
+        f"Only {count} episode{'s' * (count != 1)}: the results are uncertain. Intervals of shares in % are Wilson's, "
+        "which are valid for few episodes; those of other means are too narrow. With "
+        f"{FEW} or more episodes, all are bootstrap intervals."
     )
 
 

@@ -1,8 +1,9 @@
-"""Agents with Habitat's interface as agents of this project: `--agent habitat:package.module:CLASS`.
+"""Runs agents with Habitat's interface as agents of this project: `--agent habitat:package.module:CLASS`.
 
-The arguments of the class's constructor are fields of the agent's configuration, which `--config agent.KEY=VALUE` sets,
-next to `BRIDGE_FIELDS`. A required argument called `config` or `task_config` gets the configuration of the run
-(`sim.bridges.habitat.config.make_config`). The text `module:NAME()` as a value calls that function.
+The fields of the agent's configuration are the arguments of the class's constructor and `BRIDGE_FIELDS`;
+`--config agent.KEY=VALUE` sets them. A required argument called `config` or `task_config` gets the configuration of the
+run (`sim.bridges.habitat.config.make_config`). A value of the form `module:NAME()` is replaced by the result of that
+function.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from sim.errors import ConfigError
 from sim.interface import Action, AgentSpec, CameraModel, Observation, RobotModel, SuccessRule
 
 Json = bool | int | float | str | list | dict | None
-"""Values of an argument without one of the annotations of `_PLAIN`."""
+"""Allowed values of an argument whose annotation is not in `_PLAIN`."""
 _PLAIN = (bool, int, float, str)
 _CALL = re.compile(r"([A-Za-z_][\w.]*):([A-Za-z_]\w*)\(\)")
 _OF_THE_RUN = ("config", "task_config")
@@ -40,18 +41,18 @@ BRIDGE_FIELDS: tuple[tuple[str, Any, Any], ...] = (
 
 
 class HabitatAgent:
-    """An agent of this project (`sim.interface.Agent`) that asks an agent with Habitat's interface.
+    """An agent of this project (`sim.interface.Agent`) that calls an agent with Habitat's interface.
 
     Args:
         agent: an object with `reset()` and `act(observations)`.
-        conversion: of the observations.
+        conversion: converts the observations.
     """
 
     def __init__(self, agent: Any, conversion: Conversion) -> None:
         self.agent, self._conversion = agent, conversion
 
     def reset(self, goal: str, seed: int) -> None:
-        """Starts an episode; Habitat's agents get no seed, so that the global generators are seeded.
+        """Starts an episode. Habitat's agents get no seed; therefore this method seeds the global generators.
 
         Raises:
             AgentError: the agent's data set has no such goal category.
@@ -67,7 +68,7 @@ class HabitatAgent:
         """Returns the next action.
 
         Raises:
-            AgentError: the agent returned something else.
+            AgentError: the agent returned something other than an action.
         """
         return to_action(self.agent.act(self._conversion.observations(observation)))
 
@@ -77,11 +78,11 @@ def spec_of(name: str, found: Any) -> AgentSpec:
 
     Args:
         name: the agent's name, for messages.
-        found: a class or factory of such agents, which get RGB and depth and no ground truth; or an `AgentSpec` whose
-            `make` returns one, for agents that declare something else.
+        found: a class or factory of such agents, which get RGB and depth and no ground truth; or, for agents that
+            declare other sensors, an `AgentSpec` whose `make` returns such an agent.
 
     Raises:
-        ConfigError: it is something else, or an argument of the constructor has the name of a field of the bridge.
+        ConfigError: it has another type, or an argument of the constructor has the name of a field of the bridge.
     """
     if isinstance(found, AgentSpec):
         return _wrapped(name, found)
@@ -91,8 +92,8 @@ def spec_of(name: str, found: Any) -> AgentSpec:
     taken = {each[0] for each in BRIDGE_FIELDS} & {each.name for each in arguments}
     if taken:
         raise ConfigError(
-            f"Agent '{name}' has an argument '{min(taken)}', and so has the bridge; give a function without it that "
-            "makes the agent."
+            f"Agent '{name}' has an argument '{min(taken)}', which is also a field of the bridge; give a function "
+            "without this argument that makes the agent."
         )
     config = _config_of(found, arguments)
 
@@ -112,7 +113,7 @@ def spec_of(name: str, found: Any) -> AgentSpec:
 
 @contextlib.contextmanager
 def own_command_line() -> Iterator[None]:
-    """Hides the options of this process from code that reads `sys.argv`, inside of the `with` block."""
+    """Hides the options of this process from code that reads `sys.argv` inside the `with` block."""
     before = sys.argv
     sys.argv = before[:1]
     try:
@@ -122,7 +123,7 @@ def own_command_line() -> Iterator[None]:
 
 
 def _wrapped(name: str, spec: AgentSpec) -> AgentSpec:
-    """Returns a specification whose agents have Habitat's interface as one of agents of this project."""
+    """Returns a specification of agents of this project, from one whose agents have Habitat's interface."""
 
     def make(*, camera: CameraModel, max_steps: int, **parts: Any) -> HabitatAgent:
         with own_command_line():
@@ -136,7 +137,7 @@ def _wrapped(name: str, spec: AgentSpec) -> AgentSpec:
 
 
 def _conversion(camera: CameraModel, config: Any) -> Conversion:
-    """Returns the conversion that an agent's configuration asks for."""
+    """Returns the conversion that an agent's configuration describes."""
     return Conversion(camera=camera, **{field: getattr(config, field, default) for field, _, default in BRIDGE_FIELDS})
 
 
@@ -146,14 +147,14 @@ def _goals(config: Any) -> tuple[str, ...]:
 
 
 def _require_methods(name: str, agent: Any) -> None:
-    """Raises ConfigError where an object is no agent with Habitat's interface."""
+    """Raises ConfigError if an object is not an agent with Habitat's interface."""
     missing = [method for method in ("reset", "act") if not callable(getattr(agent, method, None))]
     if missing:
         raise ConfigError(f"Agent '{name}': a {type(agent).__name__} has no method {' and '.join(missing)}.")
 
 
 def _arguments(found: Callable[..., Any]) -> list[inspect.Parameter]:
-    """Returns the arguments of a class or factory, except for *args; none where Python does not know them."""
+    """Returns the arguments of a class or factory, except for *args; an empty list if Python does not know them."""
     try:
         signature = inspect.signature(found)
     except (TypeError, ValueError):
@@ -162,7 +163,7 @@ def _arguments(found: Callable[..., Any]) -> list[inspect.Parameter]:
 
 
 def _config_of(found: Callable[..., Any], arguments: list[inspect.Parameter]) -> Any:
-    """Returns a frozen dataclass object with the arguments and the fields of the bridge, at their defaults."""
+    """Returns a frozen dataclass object with the arguments and the fields of the bridge, with their defaults."""
     fields: list[Any] = []
     hints = _hints(found)
     for argument in arguments:
@@ -179,12 +180,12 @@ def _config_of(found: Callable[..., Any], arguments: list[inspect.Parameter]) ->
 
 
 def _require_known_values(config: Any) -> None:
-    """Raises ConfigError where a field of the bridge has a value that is not allowed."""
+    """Raises ConfigError if a field of the bridge has a value that is not allowed."""
     _goals(config)
 
 
 def _hints(found: Callable[..., Any]) -> dict[str, Any]:
-    """Returns the annotations of a class's constructor or of a factory; none where they cannot be read."""
+    """Returns the annotations of a class's constructor or of a factory; an empty dict if they cannot be read."""
     try:
         return typing.get_type_hints(found.__init__ if isinstance(found, type) else found)
     except Exception:  # names that exist only for type checkers
@@ -192,7 +193,7 @@ def _hints(found: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _shown(argument: inspect.Parameter) -> Any:
-    """Returns the default of an argument, as the configuration shows it; None: it is required, or no plain value."""
+    """Returns the default of an argument for the configuration; None if it is required, or not a plain value."""
     default = argument.default
     if isinstance(default, Path):
         return str(default)
@@ -203,7 +204,7 @@ def _shown(argument: inspect.Parameter) -> Any:
 def _values(
     name: str, arguments: list[inspect.Parameter], config: Any, of_the_run: Any
 ) -> tuple[list[Any], dict[str, Any]]:
-    """Returns the arguments by position and by name: those that are set, and the configuration of the run.
+    """Returns the positional arguments and the arguments by name: those that are set, and the run's configuration.
 
     Raises:
         ConfigError: a required argument is not set.
@@ -237,7 +238,7 @@ def _values(
 
 
 def _called(value: Any) -> Any:
-    """Returns the result of the function that a text `module:NAME()` names; any other value unchanged."""
+    """Returns the result of the function that a text `module:NAME()` names; returns any other value unchanged."""
     found = _CALL.fullmatch(value) if isinstance(value, str) else None
     if found is None:
         return value

@@ -1,4 +1,4 @@
-"""Habitat's `Agent`, and the loops `Benchmark` and `Challenge` that evaluate one."""
+"""Provides Habitat's base class `Agent`, and `Benchmark` and `Challenge`, which evaluate agents."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Agent:
     """Base class of agents with Habitat's interface."""
 
     def reset(self) -> None:
-        """Called before each episode."""
+        """Prepares for an episode; called before each one."""
         raise NotImplementedError
 
     def act(self, observations: Any) -> Any:
@@ -29,7 +29,7 @@ class Benchmark:
     """Evaluates agents over the episodes of an `Env`.
 
     Args:
-        config_paths: for `get_config`.
+        config_paths: argument of `get_config`.
         eval_remote: must be False: there is no server.
         options: further arguments of `Env`, such as `split` and `episodes`.
     """
@@ -44,7 +44,7 @@ class Benchmark:
 
         Args:
             agent: an object with `reset()` and `act(observations)`.
-            num_episodes: the first N episodes; None: all.
+            num_episodes: number of episodes; None: all.
         """
         env = self._env
         count = env.number_of_episodes if num_episodes is None else num_episodes
@@ -62,7 +62,7 @@ class Benchmark:
 
 
 class Challenge(Benchmark):
-    """The loop of the Habitat challenges; the variable `CHALLENGE_CONFIG_FILE` names the configuration."""
+    """Habitat's loop for challenges; the environment variable `CHALLENGE_CONFIG_FILE` names the configuration."""
 
     def __init__(self, eval_remote: bool = False, **options: Any) -> None:
         super().__init__(os.environ.get("CHALLENGE_CONFIG_FILE"), eval_remote, **options)

@@ -1,7 +1,7 @@
 """Habitat's configuration: one tree with attribute access, in the layouts of its old and new versions.
 
-Agents read it; an environment takes from it what can be set here (`SETTINGS`): the split, the number of steps and the
-camera. All other values describe this project's task and change nothing.
+Agents read it. An environment takes from it the values that can be set (`SETTINGS`): the split, the number of steps and
+the camera. All other values describe this project's task and change nothing.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from sim.reading import read_bytes
 _LOG = logging.getLogger("habitat")
 _MOST_BYTES = 1 << 20
 _MOST_VALUES = 20_000
-"""Largest number of values of a file, counted as often as its aliases repeat them."""
+"""Largest number of values of a file; a value that aliases repeat counts each time."""
 _OLD, _NEW = "SIMULATOR.{}_SENSOR.{}", "habitat.simulator.agents.main_agent.sim_sensors.{}_sensor.{}"
 
 
@@ -43,7 +43,7 @@ SETTINGS: Mapping[str, tuple[str, ...]] = {
     "max_depth_m": _places("max_depth", "depth"),
     "normalize_depth": _places("normalize_depth", "depth"),
 }
-"""What an environment takes from a configuration, with the paths of each value in both layouts."""
+"""The values that an environment takes from a configuration, with the paths of each in both layouts."""
 
 
 class Config(dict[str, Any]):
@@ -53,8 +53,8 @@ class Config(dict[str, Any]):
         try:
             return self[name]
         except KeyError:
-            there_is = ", ".join(map(str, self)) or "nothing"
-            raise AttributeError(f"The configuration has no '{name}' here. It has: {there_is}.") from None
+            available = ", ".join(map(str, self)) or "nothing"
+            raise AttributeError(f"The configuration has no '{name}' here. It has: {available}.") from None
 
     def __setattr__(self, name: str, value: Any) -> None:
         self[name] = value
@@ -87,8 +87,8 @@ def make_config(
     """Returns the configuration of a task, in the old layout and, under `habitat`, in the new one.
 
     Args:
-        camera, robot, success: of the task; None: the defaults.
-        max_steps: actions of an episode.
+        camera, robot, success: models of the task; None: the defaults.
+        max_steps: largest number of actions of an episode.
         split: name of the split.
     """
     camera, robot = camera or CameraModel(), robot or RobotModel()
@@ -133,9 +133,9 @@ def get_config(
     """Returns the configuration of this project's task, changed by files and by overrides.
 
     Args:
-        config_paths: YAML files of either layout; several are separated by commas. A path at which there is no file
-            names a configuration that comes with Habitat; it changes nothing, and a warning says so.
-        overrides: `path=value`, or paths and values in turn.
+        config_paths: YAML files of either layout; several are separated by commas. If there is no file at a path, it
+            names a configuration that comes with Habitat: it changes nothing, and a warning is logged.
+        overrides: texts `path=value`, or paths and values alternately.
 
     Raises:
         ConfigError: a file cannot be read, or an override has another form.
@@ -154,7 +154,7 @@ def get_config(
 
 
 def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the entries of `SETTINGS` in which a configuration differs from that of this project's task.
+    """Returns the entries of `SETTINGS` whose values differ from those of this project's task.
 
     Raises:
         ConfigError: two paths of one setting have different values, such as the widths of RGB and depth.
@@ -173,7 +173,7 @@ def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _remove_other_actions(config: Config) -> None:
-    """Removes actions that the robot does not have, such as LOOK_UP, from the lists that agents choose from."""
+    """Removes actions that the robot does not have, such as LOOK_UP, from the lists of actions."""
     known = {action.name for action in Action}
     removed = set[str]()
     for tree, name in ((config.get("TASK"), "POSSIBLE_ACTIONS"), (_at(config, "habitat.task"), "actions")):
@@ -204,7 +204,7 @@ def _tree(value: Any) -> Any:
 
 
 def _merge(config: Config, changes: Mapping[str, Any]) -> None:
-    """Puts the values of nested dicts into a configuration, in place."""
+    """Writes the values of nested dicts into a configuration, in place."""
     for key, value in changes.items():
         inner = config.get(str(key))
         if isinstance(inner, Config) and isinstance(value, Mapping):
@@ -214,7 +214,7 @@ def _merge(config: Config, changes: Mapping[str, Any]) -> None:
 
 
 def _at(config: Mapping[str, Any], path: str) -> Any:
-    """Returns the value at a path; None where there is none."""
+    """Returns the value at a dotted path; None if the configuration has no such path."""
     value: Any = config
     for name in path.split("."):
         value = value.get(name) if isinstance(value, Mapping) else None
@@ -248,7 +248,7 @@ def _read_yaml(file: Path) -> Mapping[str, Any]:
     """Returns the content of a YAML file.
 
     Raises:
-        ConfigError: it cannot be read, holds no mapping, or is too large.
+        ConfigError: the file cannot be read, is not a mapping, or is too large.
     """
     try:
         import yaml

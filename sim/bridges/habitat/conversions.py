@@ -37,11 +37,11 @@ ACTION_IDS: Mapping[str, int] = MappingProxyType(
 )
 """Habitat's numbers of actions; the camera of this project does not tilt, so that the last two are refused."""
 _DEEPEST = 3
-"""Levels of dicts around an action."""
+"""Largest number of nested dicts around an action."""
 
 
 class Observations(dict[str, Any]):
-    """The observation of one step by the name of the sensor."""
+    """The observation of one step: a dict of arrays by the name of the sensor."""
 
 
 class _Actions:
@@ -122,7 +122,7 @@ class Conversion:
         return found
 
     def space(self, own: Mapping[str, spaces.Space[Any]]) -> spaces.Dict:
-        """Returns the space of the observations in Habitat's form, for the spaces of this project's sensors."""
+        """Returns the space of the observations in Habitat's form, from the spaces of this project's sensors."""
         found = dict(own)
         height_px, width_px = self.camera.height_px, self.camera.width_px
         found["objectgoal"] = spaces.Box(0, len(self.goals) - 1, (1,), np.int64)
@@ -143,10 +143,10 @@ class Conversion:
 def to_action(given: Any) -> Action:
     """Returns the action that a Habitat agent gave: a number, a name, or a dict with the key `action`.
 
-    Numbers may be Python's, NumPy's, or tensors and arrays of one element; names may be in upper case.
+    A number may be an integer of Python or NumPy, or a tensor or array of one element; a name may be in upper case.
 
     Raises:
-        AgentError: it is none of the four actions.
+        AgentError: it is not one of the four actions.
     """
     inner = given
     for _ in range(_DEEPEST):
@@ -168,13 +168,13 @@ def to_action(given: Any) -> Action:
 
 
 def _whole_number(value: Any) -> int | None:
-    """Returns an integer of Python, NumPy or a tensor of one element; None for anything else."""
+    """Returns the value of an integer of Python or NumPy, or of an array of one element; None for anything else."""
     if isinstance(value, (bool, np.bool_)):
         return None
     if getattr(value, "shape", ()) != () and hasattr(value, "reshape"):  # an array or tensor
         try:
             value = value.reshape(-1)[0] if np.prod(value.shape) == 1 else None
-        except Exception:  # an object of the agent's
+        except Exception:  # the user's class raised it
             return None
     try:
         return operator.index(value)

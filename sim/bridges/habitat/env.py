@@ -22,15 +22,15 @@ from sim.evaluation.rollout import episode_seed
 from sim.interface import Action, CameraModel
 
 DRAWN_EPISODES = 5
-"""Episodes of a house that has none of its own, if their number is not given."""
+"""Number of episodes that are drawn in a house file if `episodes` is not given."""
 _defaults: dict[str, Any] = {}
 
 
 @contextlib.contextmanager
 def default_options(**options: Any) -> Iterator[None]:
-    """Gives options to each `Env` that is made inside of the `with` block, as `stubborn habitat` does for a script.
+    """Sets default options of each `Env` that is made inside the `with` block; `stubborn habitat` uses it for scripts.
 
-    They have priority over a configuration, and the arguments of `Env` over them.
+    These options have priority over a configuration, and the arguments of `Env` have priority over these options.
     """
     before = dict(_defaults)
     _defaults.update(options)
@@ -44,17 +44,17 @@ def default_options(**options: Any) -> Iterator[None]:
 class Env:
     """Runs episodes one after the other, in the order of the split and then again from its beginning.
 
-    `reset()` starts the next episode and returns its observations, `step(action)` returns the next ones, until
-    `episode_over`. `get_metrics()` has Habitat's names: `success`, `spl`, `soft_spl` (and `softspl`, its name until
-    2021), `distance_to_goal` (inf: no path), `num_steps`, and `collisions` with `count` and `is_collision`.
+    `reset()` starts the next episode and returns its first observations; `step(action)` returns the next ones, until
+    `episode_over` is True. `get_metrics()` uses Habitat's names: `success`, `spl`, `soft_spl` (and `softspl`, its name
+    until 2021), `distance_to_goal` (inf: no path), `num_steps`, and `collisions` with `count` and `is_collision`.
 
     Args:
         config: a configuration of `get_config`; the environment takes `SETTINGS` from it. None: the defaults.
-        dataset: accepted for scripts that give it, and must be None: houses and episodes come from a split.
+        dataset: exists only for scripts that give it, and must be None: houses and episodes come from a split.
         split: name of a shipped split, or a folder with the same layout.
         house: one MJCF file in place of a split.
-        episodes: the first N episodes; None: all, and `DRAWN_EPISODES` with `house`.
-        seed: of sensor noise and, with `house`, of the episodes; the same as `--seed`.
+        episodes: number of episodes, the first of the split; None: all, or `DRAWN_EPISODES` with `house`.
+        seed: seed of sensor noise and, with `house`, of the episodes; the same as `--seed`.
         categories: numbering of `objectgoal`, a key of `CATEGORIES`; only episodes with its goals are run.
         options: further arguments of `sim.env.objectnav.ObjectNavEnv`, such as `noise`, `profile` and `sensors`.
 
@@ -98,12 +98,12 @@ class Env:
 
     @property
     def current_episode(self) -> ObjectGoalNavEpisode:
-        """The running episode; before the first `reset`, the one that it starts."""
+        """The running episode; before the first `reset`, the first episode."""
         return to_habitat(self._env.split, self._episode)
 
     @property
     def episode_over(self) -> bool:
-        """Whether the episode has ended, so that `reset` comes next."""
+        """Whether the episode has ended, so that `reset` must be called next."""
         return self._over
 
     def reset(self) -> Observations:
@@ -119,7 +119,7 @@ class Env:
         """Carries out an action (a number, a name, or a dict with the key `action`) and returns the observations.
 
         Raises:
-            AgentError: it is not an action.
+            AgentError: `action` is not an action.
             EpisodeError: the episode is over.
         """
         observation, _, terminated, truncated, self._info = self._env.step(to_action(action))
@@ -127,7 +127,7 @@ class Env:
         return self._conversion.observations(observation)
 
     def get_metrics(self) -> dict[str, Any]:
-        """Returns the metrics so far, with Habitat's names; see the class."""
+        """Returns the metrics so far, with Habitat's names (see the class)."""
         info = self._info
         distance_m = info["distance_to_goal"]
         return {
@@ -155,7 +155,7 @@ class Env:
         self.close()
 
     def _first_episodes(self, count: int | None) -> list[Episode]:
-        """Returns the first episodes with a goal of the data set; those of one house are drawn."""
+        """Returns the first episodes with a goal of the data set; in a house file, episodes are drawn."""
         env, goals = self._env, self._conversion.goals
         if not env.split.episodes:
             rngs = (np.random.default_rng([self._seed, i]) for i in range(count or DRAWN_EPISODES))
@@ -216,7 +216,7 @@ class AgentState:
 
 
 def _camera(given: dict[str, Any]) -> CameraModel:
-    """Returns the camera; its settings are removed from the options."""
+    """Returns the camera that the options describe, and removes its settings from the options."""
     fields: dict[str, Any] = {}
     for name in ("width_px", "height_px", "min_depth_m", "max_depth_m"):
         if name in given:

@@ -1,4 +1,4 @@
-"""Episodes in the form of Habitat's `ObjectGoalNavEpisode`, for evaluation scripts that read them."""
+"""Converts episodes to the form of Habitat's `ObjectGoalNavEpisode`, for evaluation scripts that read them."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class ObjectGoal:
     object_id: str
     object_category: str
     position: list[float]
-    """Its centre in Habitat's frame: y up, metres."""
+    """Centre of the instance in Habitat's frame: y up, metres."""
     view_points: list[dict[str, Any]] = field(default_factory=list)
-    """Places from which a STOP succeeds: `{"agent_state": {"position": ..., "rotation": ...}}`."""
+    """Positions at which a STOP succeeds: `{"agent_state": {"position": ..., "rotation": ...}}`."""
 
     @property
     def object_name(self) -> str:
@@ -33,7 +33,7 @@ class ObjectGoal:
 
 @dataclass(frozen=True, kw_only=True)
 class ObjectGoalNavEpisode:
-    """An episode with Habitat's field names. Positions are y up, rotations are quaternions xyzw."""
+    """An episode with Habitat's field names. Positions have y up; rotations are quaternions xyzw."""
 
     episode_id: str
     scene_id: str
@@ -43,7 +43,7 @@ class ObjectGoalNavEpisode:
     info: dict[str, Any]
     """`geodesic_distance`: recorded length of the shortest path, metres; None: unknown."""
     goals_file: Path
-    """The file of the house's episodes and goals; there is none where episodes are drawn in a house."""
+    """The file of the house's episodes and goals; it does not exist for episodes that are drawn in a house file."""
 
     @property
     def goals_key(self) -> str:
@@ -52,7 +52,7 @@ class ObjectGoalNavEpisode:
 
     @functools.cached_property
     def goals(self) -> list[ObjectGoal]:
-        """The instances of the goal category that the house's file lists; empty where there is no such file.
+        """The instances of the goal category that the house's file lists; empty if there is no such file.
 
         Raises:
             ConfigError: the file has another format.

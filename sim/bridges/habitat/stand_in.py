@@ -1,7 +1,7 @@
-"""A stand-in for the package `habitat`, which does not install from PyPI: the few names that agents import.
+"""A stand-in for the package `habitat`, which cannot be installed from PyPI: it has the few names that agents import.
 
-`install` makes `import habitat` work in this process if the package is not there. An import of a name that the stand-in
-lacks fails as usual, and `lacking` returns a sentence that names it.
+`install` makes `import habitat` work in this process if the package is not installed. The import of a name that the
+stand-in does not have fails as usual, and `lacking` returns a sentence that names it.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from typing import Any
 
 from sim.bridges import habitat as ours
 
-NOTE = "Habitat is not installed: a stand-in of this project provides the names of it that are imported."
-"""The sentence with which a run announces the stand-in."""
+NOTE = "Habitat is not installed: a stand-in of this project provides those of its names that are imported."
+"""The sentence that a run prints if it uses the stand-in."""
 _ADVICE = "is not part of the stand-in for Habitat, which is not installed here (docs/habitat.md)"
 _LOG = logging.getLogger("habitat")
 _CONFIG = {"get_config": ours.get_config, "read_write": ours.read_write, "Config": ours.Config}
@@ -59,9 +59,9 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
 
 
 def install() -> bool:
-    """Provides the stand-in in this process if Habitat is not installed; returns whether it does."""
+    """Provides the stand-in in this process if Habitat is not installed; returns whether this process has it."""
     if not installed() and not _is_there():
-        _LOG.addHandler(logging.StreamHandler())  # Habitat's logger prints
+        _LOG.addHandler(logging.StreamHandler())  # Habitat's logger prints to standard error
         _LOG.setLevel(logging.INFO)
         sys.meta_path.insert(0, _FINDER)  # first: a folder of this name is a namespace package to the other finders
         importlib.import_module("habitat")
@@ -74,7 +74,7 @@ def installed() -> bool:
 
 
 def remove() -> None:
-    """Takes the stand-in out of this process."""
+    """Removes the stand-in from this process."""
     if installed():
         sys.meta_path.remove(_FINDER)
         _LOG.handlers.clear()
@@ -84,7 +84,7 @@ def remove() -> None:
 
 
 def lacking(error: BaseException) -> str | None:
-    """Returns a sentence that names what the stand-in lacks, if that is why an import failed; else None."""
+    """Returns a sentence that names what the stand-in lacks if an import failed for this reason; else None."""
     if not installed() or not isinstance(error, ImportError) or (error.name or "").partition(".")[0] != "habitat":
         return None
     found = re.match(r"cannot import name '(\w+)'", str(error))
@@ -104,7 +104,7 @@ class _Finder(MetaPathFinder, Loader):
         return ModuleSpec(fullname, self, is_package=is_package)
 
     def exec_module(self, module: ModuleType) -> None:
-        """Puts the names into a module, and for the whole package its modules."""
+        """Adds the names to a module; for the package `habitat`, it imports all modules of the stand-in."""
 
         def missing(name: str) -> Any:
             raise AttributeError(f"'{module.__name__}.{name}' {_ADVICE}")
@@ -121,7 +121,7 @@ _FINDER = _Finder()
 
 
 def _is_there() -> bool:
-    """Returns whether a package `habitat` can be imported; a folder without `__init__.py` is none."""
+    """Returns whether a package `habitat` can be imported; a folder without `__init__.py` does not count."""
     if "habitat" in sys.modules:
         return True
     found = importlib.util.find_spec("habitat")

@@ -2,7 +2,7 @@
 
 stubborn bench                                             # all parts, half an hour at most
 stubborn bench --parts a,b,d                               # rendering, the agent's step
-stubborn bench --parts j                                   # steps per second by image size, sensors and number
+stubborn bench --parts j                                   # steps per second by image size and sensors
 stubborn bench --out runs/bench.json --markdown docs/performance.md
 stubborn bench --quick                                     # tests that everything runs; its figures have no meaning
 

@@ -1,4 +1,4 @@
-"""Part (l): time that a step of an agent takes more in a process of its own (`--agent process:COMMAND`)."""
+"""Part (l): the time by which a process of its own (`--agent process:COMMAND`) lengthens a step of an agent."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from sim.commands.bench.stages import Setting
 from sim.interface import CameraModel, Observation, RobotModel, SuccessRule
 
 MOST_MS = 2.0
-"""Goal for the median of a step at 640 x 480 with RGB and depth."""
+"""Largest median time of a step at 640 x 480 with RGB and depth that the benchmark accepts."""
 PAUSE_S = 0.005
-"""Time between two steps, in which the simulator renders."""
+"""Pause between two steps, as long as the simulator needs to render."""
 _AGENT = """
 from sim.bridges.stubborn_client import TURN_LEFT, serve
 class Turner(object):
@@ -41,12 +41,12 @@ def agent_in_a_process(setting: Setting) -> list[Figure]:
     copies = [timed(lambda: {name: each.copy() for name, each in observation.items()}) for _ in range(20)]
     steps = min(500, setting.amount.steps)
     figures = []
-    for way, goal in (("shared memory", Goal(of="value", sign="<=", bound=MOST_MS)), ("pipes", None)):
+    for channel, goal in (("shared memory", Goal(of="value", sign="<=", bound=MOST_MS)), ("pipes", None)):
         ms = _steps_ms(agent, observation, steps)
         value, baseline = float(np.median(ms)), float(np.median(copies))
         figures.append(
             Figure(
-                part="l", what=f"a step in a process of its own, {way}", value=value, unit="ms",
+                part="l", what=f"a step in a process of its own, {channel}", value=value, unit="ms",
                 against="a copy of the observation", baseline=baseline, ratio=value / baseline, goal=goal, count=steps,
             )
         )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Part (j): steps per second of the environment alone, as in a training, by image size, sensors and number."""
+"""Part (j): steps per second of the environment alone, as in a training, by image size, sensors and environments."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ VECTORS = ((1, "sync"), (2, "sync"), (1, "async"), (2, "async"), (4, "async"))
 """Number of environments, and the kind of vector."""
 VECTOR_SIZE_PX = (128, 96)
 CACHED = 2
-"""Houses that stay loaded in the measurement with resets."""
+"""Number of houses that stay loaded in the measurement with resets."""
 ROUNDS = 5
-"""Number of rounds in which the cases take turns; the fastest round of each counts."""
+"""Number of rounds; in each round, all cases are measured once, and the fastest round of each case counts."""
 _MOVES = (Action.MOVE_FORWARD, Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_RIGHT)
 
 
@@ -85,7 +85,7 @@ def _single(setting: Setting) -> Iterator[Figure]:
 def _with_resets(setting: Setting) -> Iterator[Figure]:
     """Yields the rate of random actions, a quarter of which are STOP, in houses that stay loaded, and their memory.
 
-    The baseline are the same steps without STOP in one of the houses.
+    The baseline is the rate of steps without STOP in one of the houses.
     """
     houses = load_split("val").houses[: min(CACHED, setting.amount.image_sizes)]
     before = memory_mb()["VmRSS"]

@@ -87,7 +87,7 @@ def card_text(network: Evaluated, measured: Measured) -> str:
             "",
             *_categories(measured),
             *([f"Not in these views: {', '.join(absent)}.", ""] if absent else []),
-            *_distances_and_sizes(measured.breakdown),
+            *distances_and_sizes(measured.breakdown),
             *_reliability(measured),
         ]
     )
@@ -135,7 +135,8 @@ def _categories(measured: Measured) -> Iterable[str]:
     yield ""
 
 
-def _distances_and_sizes(breakdown: Breakdown) -> Iterable[str]:
+def distances_and_sizes(breakdown: Breakdown) -> Iterable[str]:
+    """Yields tables of the results by distance and by the size of objects, Markdown."""
     yield "| distance | mIoU | pixel accuracy |\n|---|--:|--:|"
     for low, high, iou in breakdown.iou_by_distance():
         yield f"| {low:g} to {high:g} m | {iou.goals:.3f} | {iou.accuracy:.3f} |"

@@ -1,6 +1,7 @@
 """Evaluates a network on labelled views: intersection over union, objects found, calibration, time per frame.
 
     stubborn evaluate --views runs/views_val_fast runs/views_val_good
+    stubborn evaluate --views runs/views_val_fast --semantics my_network:SEGMENTATION --config detector.weights=my.pt
     stubborn evaluate --weights runs/rednet/rednet.safetensors --views runs/views_val_fast \\
         --calibrate --card stubborn/segmentation/weights/README.md
 
@@ -15,7 +16,7 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +28,9 @@ from torch.utils.data import DataLoader
 
 from sim import cli
 from sim.commands.evaluate.network_card import Evaluated, Measured, card_text, write_card
+from sim.commands.evaluate.own import measure_own, own_text
 from sim.composition.segmenters import weights_file
+from sim.files import write_atomically
 from sim.interface import CameraModel, ConfigError
 from stubborn.segmentation.breakdown import Breakdown
 from stubborn.segmentation.calibration import Calibration, fit_calibration
@@ -54,6 +57,10 @@ class Args:
     """Folders of shards of one size (`stubborn views`), of houses that the network was not trained on."""
     weights: Path | None = None
     """Weights of the network; None: the shipped ones."""
+    semantics: str | None = None
+    """A segmentation of your own, package.module:NAME, in place of a network of this project."""
+    config: tuple[str, ...] = ()
+    """With --semantics: fields of its configuration, detector.FIELD=VALUE."""
     count: cli.Amount = 0
     """Number of views of each folder, spread over its shards; 0: all."""
     calibrate: bool = False
@@ -97,6 +104,10 @@ def main(args: Args) -> int:
         if value is not None and value < 1:
             raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {value}.")
     torch.set_num_threads(args.threads)
+    if args.semantics is not None:
+        return _evaluate_own(args, args.semantics)
+    if args.config:
+        raise ConfigError("--config needs --semantics.")
     file = weights_file(args.weights)
     if args.calibrate and not args.shipped and file.resolve() == SHIPPED_REDNET.resolve():
         raise ConfigError(
@@ -120,6 +131,23 @@ def main(args: Args) -> int:
     print(card_text(about, measured))
     if args.card is not None:
         write_card(args.card, about, measured, args.curves)
+    return 0
+
+
+def _evaluate_own(args: Args, semantics: str) -> int:
+    """Evaluates a user's segmentation and prints the results; returns the exit status.
+
+    Raises:
+        ConfigError: an option is for networks of this project only, or as `measure_own`.
+    """
+    allowed = {"views", "semantics", "config", "count", "threads", "card"}
+    for option in fields(args):
+        if option.name not in allowed and getattr(args, option.name) != option.default:
+            raise ConfigError(f"--{option.name.replace('_', '-')} is for networks of this project, not --semantics.")
+    text = own_text(measure_own(semantics, args.views, count=args.count, config=args.config))
+    print(text)
+    if args.card is not None:
+        write_atomically(args.card, text + "\n")
     return 0
 
 

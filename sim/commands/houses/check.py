@@ -7,9 +7,9 @@
 
 The check measures the file as users load it: labels, overlaps, support, movable objects at rest, reachability, the
 furniture that each kind of room must have (`sim.world.room_requirements`), and pixels of void in views of the robot's
-camera. A house of your own needs no room sites and no furniture; its faults are the places and goals that the robot
-cannot reach, and the rest is printed as notes, unless `--furnished` asks for all rules. The exit status is 1 if any
-house has a fault.
+camera. A house of your own needs no room sites and no furniture: only places and goals that the robot cannot reach are
+faults, and everything else is printed as notes, unless `--furnished` is given. The exit status is 1 if any house has a
+fault.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import numpy as np
 
 from sim import cli
 from sim.env.scene import Scene
-from sim.episodes.splits import Split, load_split
+from sim.episodes.splits import Split, has_episodes, house_files, labels_of, load_split, split_of_files
 from sim.errors import ConfigError, HouseError
 from sim.evaluation.parallel import ordered_map
 from sim.geometry.pose import Pose
@@ -62,7 +62,7 @@ class Args:
     movable: bool = False
     """Whether light furniture can be pushed."""
     split: str | None = None
-    """Name or folder of a split; its houses are checked instead of fresh ones."""
+    """Name of a split, or a folder of houses with or without episodes, which are checked instead of fresh ones."""
     house: Path | None = None
     """One MJCF file, which is checked instead of fresh houses."""
     labels: Path | None = None
@@ -70,7 +70,7 @@ class Args:
     root: Path | None = None
     """With --house: a folder whose files the house may use in addition to its own folder."""
     furnished: bool = False
-    """Apply all rules of generated houses to a split or house of your own; the shipped splits are always so checked."""
+    """Apply all rules of generated houses to a split or house of your own; they always apply to the shipped splits."""
     views: cli.Amount = 12
     """Number of views in each house that are searched for void."""
     workers: cli.Count = 1
@@ -84,7 +84,7 @@ class Checked:
     name: str
     faults: tuple[str, ...]
     notes: tuple[str, ...] = ()
-    """What is unusual in a house of the user's, but does not keep it from being used."""
+    """Sentences on unusual properties of a user's house that do not prevent its use."""
     tries: int = 1
     """Number of attempts that the generator made."""
     rejects: tuple[str, ...] = ()
@@ -139,15 +139,19 @@ def _check_seeds(args: Args) -> Iterator[Checked]:
 
 
 def _check_split(args: Args, split: str) -> Iterator[Checked]:
-    """Checks the houses of a split."""
-    found = load_split(split)
+    """Checks the houses of a split, or those in a folder that has no episodes yet."""
+    folder = Path(split)
+    if (alone := house_files(folder)) and not has_episodes(folder):
+        found = split_of_files(tuple(alone.values()), labels=labels_of(folder))
+    else:
+        found = load_split(split)
     generated = args.furnished or _is_generated(found)
     check = functools.partial(_check_named, found, args.views, generated)
     return ordered_map(check, found.houses, workers=args.workers)
 
 
 def _is_generated(split: Split) -> bool:
-    """Returns whether all houses of a split come from the generator: a shipped split, but for the traps."""
+    """Returns whether all houses of a split come from the generator: each shipped split except for the traps."""
     shipped = any(path.parent.parent == assets_dir().resolve() for path in split.house_paths.values())
     return split.house_list is not None or (shipped and split.name in SPLITS)
 
@@ -171,7 +175,7 @@ def _check_named(split: Split, views: int, generated: bool, name: str) -> Checke
 
 
 def _check_loaded(house: House, views: int, *, generated: bool) -> Checked:
-    """Checks a house, by all rules of generated houses or only by those for a house of the user's."""
+    """Checks a house by all rules of generated houses, or only by those for users' houses."""
     began_s = time.process_time()
     if generated:
         faults, notes = _faults(house, views), ()

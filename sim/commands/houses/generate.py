@@ -11,9 +11,9 @@ Houses with models that `stubborn import furniture` has imported, and the ten ho
     stubborn houses generate --furniture runs/models --houses 5 --out /tmp/houses
     stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer
 
-The houses of a split use the folder `textures` next to their own, other houses the one in their own; it is created if
-it is missing. The generated train houses are kept in the cache of `sim.housegen.splits.house_list`, where
-`stubborn episodes` reads them.
+The houses of a split use the folder `textures` next to the split's folder, other houses a folder `textures` in their
+own folder; it is created if it is missing. The generated train houses are kept in the cache of
+`sim.housegen.splits.house_list`, where `stubborn episodes` reads them.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class Args:
     area_m2: cli.Positive | None = None
     """Without a split: floor area of the ground storey, met to within 5 %; sampled when not given."""
     rooms: tuple[str, ...] = ()
-    """Without a split: private rooms that each house has, such as gym, office, laundry, closet; a kind may repeat."""
+    """Without a split: private rooms that each house must have, such as gym or office; a kind may be repeated."""
     storeys: Literal[1, 2] = 1
     """Without a split: number of storeys."""
     hazards: tuple[str, ...] = ()
@@ -159,7 +159,7 @@ def _write_train(args: Args) -> Iterator[Made]:
 
 
 def _write_seeds(args: Args) -> Iterator[Made]:
-    """Writes houses of any seeds, with the textures in a folder next to them."""
+    """Writes houses of consecutive seeds, and the textures into a folder next to them."""
     config = HouseConfig(
         pool=args.pool,
         kind=args.kind,
@@ -185,7 +185,7 @@ def _imported(args: Args) -> ImportedFurniture:
 
 
 def _write_transfer_test(args: Args) -> Iterator[Made]:
-    """Writes the houses of the transfer test, with the textures in a folder next to them."""
+    """Writes the houses of the transfer test, and the textures into a folder next to them."""
     assert args.furniture is not None
     make = functools.partial(_make_imported, ImportedFurniture(args.furniture, "transfer"))
     copy_textures(args.out / SHARED_TEXTURES)

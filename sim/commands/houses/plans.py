@@ -125,7 +125,7 @@ def house_of(config: HouseConfig, seed: int) -> House:
 
 
 def _export(out: Path, name: str, source: dict[str, Any], make: Any) -> Exported:
-    """Writes the plans of the house that `make` returns, and that of the lowest storey last, as a mark of completion.
+    """Writes the plans of the house that `make` returns; the lowest storey's is last and marks that all are written.
 
     Raises:
         ConfigError: there is a plan of that name from another source.

@@ -4,8 +4,9 @@ stubborn import furniture --source /usr/share/sweethome3d/furniture --out runs/m
 stubborn houses generate --furniture runs/models --houses 4 --out runs/houses
 
 The source is a folder with catalogues of Sweet Home 3D (.sh3f), or with OBJ, glTF or other models and a table
-models.csv or models.toml (docs/furniture.md). Needs the extra `models`. No model is part of this repository; you are
-responsible for following the licences, which are written into models.json and into the houses, with the authors.
+models.csv or models.toml (docs/furniture.md). This command needs the extra `models`. No model is part of this
+repository. You are responsible for following the licences; they are written into models.json and into the houses,
+together with the authors.
 """
 
 from __future__ import annotations

@@ -69,7 +69,7 @@ class Args:
     workers: cli.Count = 1
     """Number of processes."""
     step_timeout: cli.NotNegative | None = None
-    """Seconds that one call of an agent may take, as in `stubborn run`; 0 runs your own code in this process."""
+    """Longest time of a call of an agent, seconds, as in `stubborn run`; 0 runs your own code in this process."""
     executor: str = "local"
     """Executor: local processes, or ray (extra `ray`) for a cluster whose machines can all access --out."""
     address: str | None = None
@@ -90,7 +90,7 @@ class Args:
     seed: cli.Seed = 0
     """Seed of the runs."""
     chunk: cli.Count | None = None
-    """Number of episodes that an agent runs in its turn; 20, with several splits 60."""
+    """Number of episodes that an agent runs before the next agent's turn; by default 20, with several splits 60."""
     minutes: cli.NotNegative | None = None
     """Time limit: a chunk that would end later is not started. 0 makes the tables from the existing runs only."""
 
@@ -176,7 +176,7 @@ def common_episodes(
 
 
 def require_same_conditions(runs: Sequence[Run]) -> None:
-    """Raises ConfigError where two runs differ in robot, camera, rendering, noise, task or the shipped network."""
+    """Raises ConfigError if two runs differ in robot, camera, rendering, noise, task or the shipped network."""
     for other in runs[1:]:
         for path, first, second in differing_fields(_conditions(runs[0], other), _conditions(other, runs[0])):
             raise ConfigError(
@@ -364,7 +364,7 @@ def _each_split(args: Args) -> list[Args]:
 
 
 def _episodes_of(args: Args) -> SplitEpisodes:
-    """Returns the first episodes of the split of the options; raises ConfigError where it has too few."""
+    """Returns the first episodes of the split of the options; raises ConfigError if it has too few."""
     split = load_split(args.split)
     if args.episodes > len(split.episodes):
         raise ConfigError(f"--episodes {args.episodes}: split '{split.name}' has {len(split.episodes)} episodes.")
@@ -372,7 +372,7 @@ def _episodes_of(args: Args) -> SplitEpisodes:
 
 
 def _check(args: Args) -> None:
-    """Raises ConfigError where an option is not allowed."""
+    """Raises ConfigError if an option is not allowed."""
     if args.table != "all":
         table_named(args.table)
     if args.minutes == 0.0:

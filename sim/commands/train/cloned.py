@@ -24,7 +24,7 @@ from torch.nn import functional
 
 from sim import cli
 from sim.commands.train.timed_training import PRINT_EVERY_S, TimedTraining, stride
-from sim.commands.train.training_files import read_columns, tell_next
+from sim.commands.train.training_files import print_next_commands, read_columns
 from sim.datasets.demonstrations import Demonstration, list_demonstrations, read_demonstration
 from sim.interface import GOAL_CATEGORIES, Action, ConfigError
 from sim.invocation import command
@@ -33,7 +33,7 @@ from stubborn.baselines.cloned_input import HEIGHT_PX, NO_ACTION, WIDTH_PX, Step
 from stubborn.baselines.cloned_net import FILES, ClonedNet
 
 HELD_BACK = 10
-"""One house in this number is held back."""
+"""One of this many houses is held back."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,7 +71,7 @@ def main(args: Args) -> int:
     draw_curve(args.out)
     weights = args.out / "cloned.safetensors"
     chosen = ("--agent", "cloned", "--semantics", "gt", "--config", f"agent.weights={weights}")
-    tell_next(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
+    print_next_commands(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
     return 0
 
 
@@ -189,8 +189,8 @@ def agreement(
 
     Args:
         found: (n,) the most probable actions.
-        true: (n,) those of the demonstrator.
-        changes: (n,) whether the true one differs from the previous one.
+        true: (n,) the actions of the demonstrator.
+        changes: (n,) whether the demonstrator's action differs from the previous one.
         losses: (n,) cross entropies.
     """
     right = found == true

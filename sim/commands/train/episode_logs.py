@@ -55,7 +55,7 @@ class LogOptions:
     seed: cli.Seed = 0
     """Seed of the episodes."""
     shipped: bool = False
-    """Without --out: write the parameters that ship for this kind of segmentation, or judge them."""
+    """In place of --out: write the parameters that ship for this kind of segmentation, or judge them."""
     log: cli.OutFolder | None = None
     """Folder of the log; None: a folder in runs, named after the command, --semantics and the split."""
 
@@ -70,7 +70,7 @@ def check(args: LogOptions) -> None:
 
 
 def parameters_file(args: LogOptions, out: Path | None, folder: Path) -> Path:
-    """Returns the file of the parameters: --out, or with --shipped that of the kind in the folder of shipped ones.
+    """Returns the file of the parameters: --out, or with --shipped the shipped file of this kind of segmentation.
 
     Raises:
         ConfigError: neither option is given, or nothing ships for this segmentation.
@@ -87,12 +87,12 @@ def parameters_file(args: LogOptions, out: Path | None, folder: Path) -> Path:
 
 
 def where_to(args: LogOptions, out: Path | None) -> str:
-    """Returns the option that says where the parameters go, for the command that a file of parameters records."""
+    """Returns the option that names the file of parameters, for the command that this file records."""
     return "--shipped" if out is None else f"--out {shlex.quote(str(out))}"
 
 
 def default_log(command: str, args: LogOptions, split: Split) -> Path:
-    """Returns the folder of a log without --log."""
+    """Returns the folder of the log if --log is not given."""
     return Path("runs") / f"{command}-{args.semantics.replace(':', '.')}-{split.name}"
 
 
@@ -102,7 +102,7 @@ def lines_of(
     """Returns the lines of the first `args.episodes` episodes, by id; those that are not in the log yet are run now.
 
     Args:
-        args: with 0 minutes no episode is run, and the log is read whatever its code and seed.
+        args: with 0 minutes, no episode is run, and the log is read even if its code or seed differs.
         split: the split of `args`.
         log: folder of the log.
         line_type: the fields of a line.
@@ -118,7 +118,7 @@ def lines_of(
     else:
         run = RunDirectory(log, log_config(args, split), line_type)
         try:
-            _play(args, split, run, runner, nothing)
+            _run_episodes(args, split, run, runner, nothing)
             lines = run.lines
         finally:
             run.discard_if_empty()
@@ -128,7 +128,7 @@ def lines_of(
 
 
 def _require_log_of(log: Path, wanted: Mapping[str, Any]) -> None:
-    """Raises ConfigError where a log is not of this split and segmentation."""
+    """Raises ConfigError if a log is not of this split and segmentation."""
     file = log / "config.json"
     there = read_json(file, dict[str, Any], what="Config of a log") if file.is_file() else {}
     for path, actual, asked in differing_fields(there, {key: wanted[key] for key in there if key in wanted}):
@@ -155,7 +155,7 @@ def log_config(args: LogOptions, split: Split) -> dict[str, Any]:
 
 
 def _own_code(semantics: str) -> str:
-    """Returns "+" and a hash of the code of a segmentation of the user's; "" for those that ship."""
+    """Returns "+" and a hash of the code of a user's segmentation; "" for those that ship."""
     module, separator, _ = semantics.partition(":")
     return f"+{hash_of_own((module,))}" if separator else ""
 
@@ -166,7 +166,9 @@ def line_of(episode: Episode, steps: int, **found: Any) -> dict[str, Any]:
     return about | {"steps": steps} | found
 
 
-def _play(args: LogOptions, split: Split, run: RunDirectory, runner: RunnerSpec, nothing: Mapping[str, Any]) -> None:
+def _run_episodes(
+    args: LogOptions, split: Split, run: RunDirectory, runner: RunnerSpec, nothing: Mapping[str, Any]
+) -> None:
     """Runs the episodes that are not in the log yet, until the time is up."""
     done = {line["episode_id"] for line in run.lines}
     todo = [episode for episode in split.episodes[: args.episodes] if episode.episode_id not in done]

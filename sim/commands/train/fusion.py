@@ -11,7 +11,7 @@ The log has one line and one file (tracks/<episode>.npz) per episode. The same c
 extend it, as long as split, code and detector are the same. --minutes 0 runs no episode and fits the existing log. Then
 `stubborn.detection.fusion_fit` fits the parameters and judges them on houses left out.
 
-The houses should hold furniture that the network was not trained on, otherwise the fit trusts it too much: see
+The houses should have furniture on which the network was not trained, otherwise the fit overestimates its quality: see
 docs/segmentation.md. Houses of val and test are for --judge only.
 """
 
@@ -86,7 +86,7 @@ def main(args: Args) -> int:
     episodes = tracks_of(args, split)
     samples = samples_of(episodes, seed=args.seed)
     if not samples:
-        raise ConfigError("The log holds no tracks: run episodes, with --minutes above 0 or without this option.")
+        raise ConfigError("The log has no tracks: run episodes, with --minutes above 0 or without this option.")
     about = {"episodes": len(episodes), "houses": len({str(each["house"]) for each in episodes})}
     about["tracks"] = sum(len(each["counts"]) for each in episodes)
     print(", ".join(f"{value} {name}" for name, value in about.items()))

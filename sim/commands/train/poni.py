@@ -24,7 +24,7 @@ from torch.nn import functional
 
 from sim import cli
 from sim.commands.train.timed_training import PRINT_EVERY_S, TimedTraining, stride
-from sim.commands.train.training_files import read_columns, tell_next
+from sim.commands.train.training_files import print_next_commands, read_columns
 from sim.interface import ConfigError
 from sim.invocation import command
 from sim.plans.plan import read_plan
@@ -68,7 +68,7 @@ class Args:
     val_count: cli.Amount = 900
     """Largest number of held-back samples in an evaluation; 0: all."""
     seed: cli.Seed = 0
-    """Seed of the initial weights, the order and the rotations of the samples; the samples have a seed of their own."""
+    """Seed of the initial weights and of the order and rotations of the samples; the samples have another seed."""
 
 
 def main(args: Args) -> int:
@@ -80,7 +80,7 @@ def main(args: Args) -> int:
     draw_curve(args.out)
     weights = args.out / "poni.safetensors"
     chosen = ("--agent", "poni", "--semantics", "gt", "--config", f"agent.explorer.weights={weights}")
-    tell_next(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
+    print_next_commands(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
     return 0
 
 

@@ -33,9 +33,9 @@ from sim.commands.train.training_files import (
     cut_rows,
     load_state,
     options_of,
+    print_next_commands,
     require_options,
     save_state,
-    tell_next,
 )
 from sim.interface import CameraModel, ConfigError
 from sim.invocation import command
@@ -69,7 +69,7 @@ from stubborn.segmentation.unet import MobileEncoder, UNet
 
 LOG_EVERY_STEPS = 20
 EVALUATION_SHARE = 0.1
-"""With --hours, an evaluation takes at most about this share of the time: fewer views are evaluated."""
+"""Largest share of the time that an evaluation takes with --hours; if necessary, fewer views are evaluated."""
 PRINT_EVERY_S = 10.0
 """Shortest time between two lines that print the loss."""
 NORMALISATION_VIEWS = 320
@@ -117,8 +117,8 @@ class Args:
     area_weights: bool = False
     """Pixels of small objects weigh up to four times as much. Views need --extras instances."""
     subpixel: cli.OnUnlessNo = True
-    """Train the finest output of a RedNet on all pixels; by default on one of every 2 x 2 block, another one in each
-    step, which is faster."""
+    """Train the finest output of a RedNet on all pixels. By default it is trained on one random pixel of each 2 x 2
+    block, which is faster."""
     block_px: cli.Count = 1
     """Factor by which views are shrunk for the network; 1 for views that are stored small (--shrink 2)."""
     window_px: cli.Count | None = None
@@ -167,7 +167,7 @@ def main(args: Args) -> int:
     weights = args.out / "rednet.safetensors"
     if trainer.start_miou is not None:
         print(f"mIoU of goals, calibrated: {trainer.start_miou:.3f} at the start, {trainer.best:.3f} now")
-    tell_next(
+    print_next_commands(
         weights,
         command("evaluate", "--views", *map(str, args.val_views), "--weights", str(weights)),
         command("run", "--semantics", "rednet", "--weights", str(weights)),
@@ -307,7 +307,7 @@ class Trainer:
             if most < len(self.val):
                 count = len(self.val)
                 self.val = Subset(self.val, range(0, count, -(-count // max(most, 8))))
-                print(f"evaluations use {len(self.val)} of {count} views to keep to the time", flush=True)
+                print(f"evaluations use {len(self.val)} of {count} views, to meet the time limit", flush=True)
         began_s = time.perf_counter()
         iou, _, calibrated = evaluate(self.model, DataLoader(self.val, batch_size=8), device=self.device)
         self._evaluation_s, self.start_miou = time.perf_counter() - began_s, calibrated.goals

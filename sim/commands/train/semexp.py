@@ -47,10 +47,10 @@ from sim.commands.train.training_files import (
     cut_rows,
     load_state,
     options_of,
+    print_next_commands,
     read_columns,
     require_options,
     save_state,
-    tell_next,
 )
 
 LAST_EPISODES = 300
@@ -119,12 +119,12 @@ def main(args: Args) -> int:
     run.train()
     weights = args.out / "semexp.safetensors"
     chosen = ("--agent", "semexp", "--semantics", "gt", "--config", f"agent.explorer.weights={weights}")
-    tell_next(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
+    print_next_commands(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
     return 0
 
 
 def _require_curve(file: Path) -> None:
-    """Raises ConfigError where a file of curves lacks a column that is drawn; one that does not exist is not drawn."""
+    """Raises ConfigError if a file of curves lacks a column that is drawn; one that does not exist is not drawn."""
     if not file.is_file():
         return
     if not set(_DRAWN) <= set(read_columns(file)):
@@ -258,7 +258,7 @@ class _Watch(BaseCallback):
         return not self.run.is_over
 
     def _on_rollout_start(self) -> None:
-        """Saves here: at the end of a rollout, the network has not yet been trained on its goals."""
+        """Saves the state here, because at the end of a rollout the network has not yet been trained on its goals."""
         now_s = time.perf_counter()
         self.run.trained = self.run.goals, self.run.steps
         if now_s - self._saved_s >= self.run.args.save_s:

@@ -47,10 +47,12 @@ def cut_rows(file: Path, column: str, most: int) -> None:
     """
     if not file.is_file():
         return
-    lines = [line.rstrip("\r") for line in _text_of(file).split("\n")[:-1]]  # the last part is no whole line
+    lines = [line.rstrip("\r") for line in _text_of(file).split("\n")[:-1]]  # the last part is not a complete line
     names = lines[0].split(",") if lines else [column]
     if column not in names:
-        raise ConfigError(f"'{file}' is not a curve of this command: it has no column '{column}'. Take another folder.")
+        raise ConfigError(
+            f"'{file}' is not a curve of this command: it has no column '{column}'. Choose another folder."
+        )
     number = names.index(column)
     rows = [(line, _numbers(line)) for line in lines[1:]]
     kept = [line for line, values in rows if len(values) == len(names) and values[number] <= most]
@@ -93,7 +95,7 @@ def _list_of(files: Sequence[Path]) -> str:
 
 
 def require_options(out: Path, before: Mapping[str, str], now: Mapping[str, str]) -> None:
-    """Raises ConfigError where options of a run differ from those of its start; both are of `options_of`."""
+    """Raises ConfigError if options of a run differ from those of its start; both are of `options_of`."""
     for name in sorted({*before, *now}):
         was, given = (options.get(name, "(absent)") for options in (before, now))
         if was != given:
@@ -104,10 +106,10 @@ def require_options(out: Path, before: Mapping[str, str], now: Mapping[str, str]
 
 
 def read_columns(file: Path) -> dict[str, list[float]]:
-    """Returns the columns of a CSV file of numbers, NaN for empty fields; nothing where there is no file.
+    """Returns the columns of a CSV file of numbers, NaN for empty fields; an empty dict if there is no file.
 
     Raises:
-        ConfigError: a field is no number.
+        ConfigError: a field is not a number.
     """
     if not file.exists():
         return {}
@@ -119,7 +121,7 @@ def read_columns(file: Path) -> dict[str, list[float]]:
 
 
 def _text_of(file: Path) -> str:
-    """Returns the text of a curve; what is no UTF-8 is replaced."""
+    """Returns the text of a curve; bytes that are not UTF-8 are replaced."""
     return read_bytes(file, what="Curve").decode("utf-8", errors="replace")
 
 
@@ -176,6 +178,6 @@ def load_state(
     return done
 
 
-def tell_next(weights: Path, *commands: str) -> None:
+def print_next_commands(weights: Path, *commands: str) -> None:
     """Prints the path of the trained weights, and the commands that use them."""
     print(f"weights: {weights}\nnext:", *commands, sep="\n  ", flush=True)

@@ -6,11 +6,11 @@
 The agent runs without stopping. Each candidate that it would verify is logged with its four features, the truth
 (whether a STOP there would succeed) and the robot's position; the agent then continues as if it had rejected the
 candidate. Candidates that are verified from too far away to stop are not logged, since a STOP there always fails.
+After such a rejection, the agent finds the rest of the object again. Therefore, of the true candidates of an episode
+that the robot judged from places within 2 m of each other, only the first counts; the same holds for false candidates.
 
 The log has one line per episode. The same command continues it, and more episodes extend it, as long as split, modules
-and detector are the same. --minutes 0 runs no episode and fits the existing log, also one of older code. After
-such a rejection, the agent finds the rest of the object again. Therefore, of the true candidates of an episode that the
-robot judged from places within 2 m of each other, only the first counts; the same holds for false candidates.
+and detector are the same. --minutes 0 runs no episode and fits the existing log, even if older code wrote it.
 
 Then the verifier is fitted and written as JSON with the counts and its quality on houses left out
 (`stubborn.detection.verifier_fit`).

@@ -1,4 +1,4 @@
-"""Draws a trial: the trap from above, its invisible obstacles as tinted surfaces, the robot's true path, the map."""
+"""Draws a trial: the trap from above with its invisible obstacles and the robot's true path, and the agent's map."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ LEGEND = (
 PAPER, INK = (245, 245, 245), (30, 30, 30)
 _TINT = 0.4
 _LEAN_M = (0.18, 0.30)
-"""A point of an invisible obstacle is drawn this far to the right and up for each metre of its height: seen vertically,
-a pane of glass would be a line."""
+"""A point of an invisible obstacle is drawn this far to the right and up for each metre of its height: from exactly
+above, a pane of glass would look like a line."""
 
 
 def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Picture:
@@ -99,7 +99,7 @@ class TopView:
         cv2.circle(self.image, self._pixel(place_m), radius_px, colour, -1, cv2.LINE_AA)
 
     def invisible(self, world: World) -> None:
-        """Draws obstacles that no camera renders as tinted surfaces, which lean to the right and up."""
+        """Draws obstacles that no camera renders as tinted surfaces, sheared to the right and up by their height."""
         surfaces = np.zeros(self.image.shape[:2], np.uint8)
         outlines = []
         for geom in np.flatnonzero(hidden_obstacles(world)).tolist():

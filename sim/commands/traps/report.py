@@ -63,8 +63,8 @@ class Args:
     max_steps: cli.Count = 500
     """Largest number of actions of an episode."""
     pictures: cli.OnUnlessNo = True
-    """Draw no paths; by default those of the first heading of each trap, and of every episode in which an agent did
-    not escape, are drawn."""
+    """Do not draw paths; by default, the path of the first heading of each trap is drawn, and that of every episode in
+    which the agent did not escape."""
 
 
 def main(args: Args) -> int:

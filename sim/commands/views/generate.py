@@ -91,7 +91,7 @@ class Args:
     shard: str = "1/1"
     """i/n, from 1/n to n/n: generate every n-th shard from the i-th on."""
     executor: str = "local"
-    """Executor of the shards: local processes, or ray (extra `ray`) for a cluster whose machines all see --out."""
+    """Executor: local processes, or ray (extra `ray`) for a cluster whose machines can all access --out."""
     address: str | None = None
     """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine is in."""
     profile: str = "good"
@@ -238,7 +238,7 @@ def _recipe(args: Args, seed: int) -> Recipe:
 
 
 def _kept(args: Args, task: ShardTask, config: dict[str, Any]) -> ShardNote | None:
-    """Returns the note of a complete shard; None where it is missing or broken.
+    """Returns the note of a complete shard; None if it is missing or broken.
 
     Raises:
         ConfigError: the shard was generated with other options.

@@ -38,7 +38,7 @@ def sliding_door(s: Sketch, floor: FloorMap) -> bool:
 
 
 def screen(s: Sketch, floor: FloorMap) -> bool:
-    """Adds a free-standing screen across the path, often with wings at its ends towards who comes along the path."""
+    """Adds a free-standing screen across the path, often with wings at its ends towards the robot's approach."""
     del floor
     s.align()
     half = 0.5 * float(s.rng.uniform(1.2, 2.2))

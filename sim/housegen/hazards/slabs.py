@@ -33,7 +33,7 @@ def podium(s: Sketch, floor: FloorMap) -> bool:
 
 
 def planks(s: Sketch, floor: FloorMap) -> bool:
-    """Adds two or three boards that lie as an L or a U open towards who comes along the path."""
+    """Adds two or three boards in the shape of an L or a U, open towards the robot's approach."""
     del floor
     high, wide = float(s.rng.uniform(*HIGH_M)), float(s.rng.uniform(0.10, 0.16))
     half = 0.5 * float(s.rng.uniform(1.0, 1.7))

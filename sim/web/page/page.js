@@ -8,10 +8,10 @@ const KEYS = {ArrowUp: 1, w: 1, ArrowLeft: 2, a: 2, ArrowRight: 3, d: 3, x: 0};
 const RETRY_MS = [300, 600, 1200, 2500];
 
 let socket = null;
-let left = false;  // another page is shown; the browser may keep this one for its Back button
+let left = false;  // true: another page is shown; the browser may keep this one for its Back button
 let failures = 0;
 let choices = null;
-let closed = false;  // the outcome of this episode: a state that comes again does not open it again
+let closed = false;  // true: the user has closed the outcome of this episode; further states do not open it again
 let state = {phase: "idle", driver: "agent", paused: false, per_s: 2, hints: false};
 
 // --- connection ---------------------------------------------------------------------------------------------------
@@ -23,18 +23,18 @@ function connect() {
   socket.binaryType = "arraybuffer";
   socket.onopen = () => {
     failures = 0;
-    linked("connected", false);
+    showConnection("connected", false);
     showWanted();
   };
-  socket.onmessage = (event) => (typeof event.data === "string" ? told(JSON.parse(event.data)) : shown(event.data));
+  socket.onmessage = (event) => (typeof event.data === "string" ? showState(JSON.parse(event.data)) : showFrame(event.data));
   socket.onclose = () => {
     if (left || opened !== socket) return;
-    linked("connection lost, trying again", true);
+    showConnection("connection lost, trying again", true);
     setTimeout(reconnect, RETRY_MS[Math.min(failures++, RETRY_MS.length - 1)]);
   };
 }
 
-// The browser would keep the connection of a page that it keeps, and the server would count that page as open.
+// Without this, the browser would keep the connection of a page that it keeps, and the server would count that page.
 function leave() {
   left = true;
   if (socket) socket.close();
@@ -47,7 +47,7 @@ function comeBack(event) {
 }
 
 async function reconnect() {
-  // A websocket that fails leaves an error in the console; a request that fails is asked for first and is caught.
+  // A websocket that fails leaves an error in the console. A request that fails does not, so it is tried first.
   try {
     await fetch("api/choices", {cache: "no-store"});
   } catch {
@@ -57,7 +57,7 @@ async function reconnect() {
   connect();
 }
 
-function linked(words, lost) {
+function showConnection(words, lost) {
   $("link").textContent = words;
   $("link").classList.toggle("lost", lost);
 }
@@ -71,9 +71,9 @@ function showWanted() {
   send({do: "show", pictures: live ? [...figures.keys()] : []});
 }
 
-// --- what the server says -----------------------------------------------------------------------------------------
+// --- messages of the server ---------------------------------------------------------------------------------------
 
-function told(news) {
+function showState(news) {
   if (news.kind === "refused") {
     $("message").textContent = news.message;
     following = false;
@@ -82,25 +82,25 @@ function told(news) {
   state = news;
   document.body.dataset.phase = news.phase;
   document.body.dataset.driver = news.driver;
-  const playing = news.phase === "playing";
-  if (following && news.phase === "loading") follow(news.wish);
+  const running = news.phase === "running";
+  if (following && news.phase === "loading") follow(news.request);
   if (news.phase === "loading") {
     document.body.dataset.step = "-1";
     for (const figure of figures.values()) figure.classList.replace("absent", "empty") || figure.classList.add("empty");
   }
   $("message").textContent = news.message;
-  $("driver").textContent = news.driver === "person" ? "you drive" : news.wish ? news.wish.agent : "agent";
+  $("driver").textContent = news.driver === "person" ? "you drive" : news.request ? news.request.agent : "agent";
   $("pause").textContent = news.paused ? "Run" : "Pause";
-  $("pause").disabled = $("step").disabled = !playing || news.driver === "person";
+  $("pause").disabled = $("step").disabled = !running || news.driver === "person";
   $("take").textContent = news.driver === "person" ? "Hand back" : "Take over";
-  $("take").disabled = $("end").disabled = !playing;
+  $("take").disabled = $("end").disabled = !running;
   $("hints").setAttribute("aria-pressed", String(news.hints));
-  if (!playing) hint(null);
+  if (!running) hint(null);
   $("note").textContent = news.note || "";
   $("note").hidden = !news.note;
   $("speed").value = String(news.per_s);
-  for (const button of document.querySelectorAll(".pad button")) button.disabled = !playing;
-  linked(news.clients > 1 ? `connected, ${news.clients} pages` : "connected", false);
+  for (const button of document.querySelectorAll(".pad button")) button.disabled = !running;
+  showConnection(news.clients > 1 ? `connected, ${news.clients} pages` : "connected", false);
   const outcome = news.phase === "ended" ? news.outcome : null;
   if (!outcome) closed = false;
   $("outcome").hidden = !outcome || closed;
@@ -127,7 +127,7 @@ function closeOutcome() {
   if (focused) $("start").focus({preventScroll: true});
 }
 
-async function shown(buffer) {
+async function showFrame(buffer) {
   const length = new DataView(buffer).getUint32(0);
   const frame = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
   let at = 4 + length;
@@ -209,7 +209,7 @@ function options(select, values, wanted) {
   if (values.includes(before)) select.value = before;
 }
 
-// A path is shown by its end.
+// Of a path, only the last name is shown.
 const shortened = (value) => (value.includes("/") ? value.replace(/\/+$/, "").split("/").at(-1) : value) || "its own";
 
 const goalsNow = () => choices.splits[$("split").value][$("house").value];
@@ -228,13 +228,13 @@ function chosenHouse() {
   chosenGoal();
 }
 
-// An episode of another house or goal is no longer the wanted one.
+// Removes the chosen episode if it is of another house or goal.
 function chosenGoal() {
   const ids = goalsNow()[$("goal").value];
   if (ids.length && !ids.includes($("episode").value)) $("episode").value = "";
 }
 
-// The episode's id says house and goal.
+// Selects the house and the goal of the chosen episode.
 function chosenEpisode() {
   const id = $("episode").value;
   for (const [house, goals] of Object.entries(choices.splits[$("split").value])) {
@@ -255,24 +255,24 @@ function chosenAgent() {
 }
 
 // Shows the episode of a finished run in the form.
-function follow(wish) {
+function follow(request) {
   following = false;
-  if (!(wish.split in choices.splits)) return;
-  $("split").value = wish.split;
+  if (!(request.split in choices.splits)) return;
+  $("split").value = request.split;
   chosenSplit();
-  $("house").value = wish.house;
-  options($("goal"), Object.keys(goalsNow()), wish.goal);
-  for (const name of ["agent", "semantics", "explorer"]) $(name).value = wish[name];
-  $("episode").value = wish.episode_id ?? "";
+  $("house").value = request.house;
+  options($("goal"), Object.keys(goalsNow()), request.goal);
+  for (const name of ["agent", "semantics", "explorer"]) $(name).value = request[name];
+  $("episode").value = request.episode_id ?? "";
   chosenAgent();
 }
 
 function start(driver) {
-  const wish = {do: "start", driver};
-  for (const name of ["split", "house", "goal", "agent", "semantics"]) wish[name] = $(name).value;
-  wish.episode = $("episode").value.trim();
-  wish.explorer = $("explorer").disabled ? "" : $("explorer").value;
-  send(wish);
+  const request = {do: "start", driver};
+  for (const name of ["split", "house", "goal", "agent", "semantics"]) request[name] = $(name).value;
+  request.episode = $("episode").value.trim();
+  request.explorer = $("explorer").disabled ? "" : $("explorer").value;
+  send(request);
   if (phone.matches) window.scrollTo(0, 0);
 }
 
@@ -290,7 +290,7 @@ async function choose() {
 // --- finished runs ------------------------------------------------------------------------------------------------
 
 let runs = [];
-let following = false;  // the next episode that begins is the one that was asked for here
+let following = false;  // true: the next episode that begins is the one that was requested here
 let opened = null;  // the run whose episodes are shown: its name, address and result lines
 const marked = new Set();  // names of the runs to compare, in the order of the clicks
 
@@ -438,7 +438,7 @@ function tab(name) {
 
 function key(event) {
   const typing = event.target.closest("select, input, video");
-  if (typing || event.ctrlKey || event.metaKey || event.altKey || $("live").hidden || state.phase !== "playing") return;
+  if (typing || event.ctrlKey || event.metaKey || event.altKey || $("live").hidden || state.phase !== "running") return;
   const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
   if (name in KEYS) {
     if (!(KEYS[name] === 0 && event.repeat)) send({do: "act", action: KEYS[name]});
@@ -455,7 +455,7 @@ const take = () => send({do: state.driver === "person" ? "agent" : "person"});
 const hints = () => send({do: "hints", on: !state.hints});
 
 function hold(button) {
-  // A held button drives on, as a held key does.
+  // A button that is held repeats its action, as a key that is held does.
   let timer = null;
   const act = () => send({do: "act", action: Number(button.dataset.action)});
   const release = () => clearInterval(timer);
@@ -465,7 +465,7 @@ function hold(button) {
     if (button.dataset.action !== "0") timer = setInterval(act, 350);
   });
   for (const end of ["pointerup", "pointerleave", "pointercancel"]) button.addEventListener(end, release);
-  button.addEventListener("click", (event) => { if (event.detail === 0) act(); });  // by the keyboard
+  button.addEventListener("click", (event) => { if (event.detail === 0) act(); });  // a click by the keyboard
   button.addEventListener("contextmenu", (event) => event.preventDefault());
 }
 

@@ -591,7 +591,7 @@ def test_pictures_and_videos_show_where_the_page_was_moved_with_its_run(
     browser.open(tmp_path / "page.html")
     browser.click(".open")
     waited = "return new Promise(done => setTimeout(() => done(document.querySelector('.detail').innerText), 300))"
-    assert "The large picture is not there: keep the page beside the folder of its run." in browser.run(waited)
+    assert "The large picture does not exist: keep the page next to the folder of its run." in browser.run(waited)
 
 
 def test_text_from_files_runs_nothing_in_the_browser(browser: Browser, pair: tuple[Path, Path]) -> None:

@@ -176,7 +176,7 @@ def test_an_agent_specification_may_declare_ground_truth() -> None:
     [
         (3, "must be a class, a factory or an AgentSpec, got int"),
         (NoAgent, "a NoAgent has no method act"),
-        (lambda categories: Wanderer(), "has an argument 'categories', and so has the bridge"),
+        (lambda categories: Wanderer(), "has an argument 'categories', which is also a field of the bridge"),
     ],
 )
 def test_something_else_is_refused(found: Any, message: str) -> None:

@@ -46,11 +46,11 @@ FAULTS = {
     "no_answer": "no answer within 0.3 s",
     "forks": "no answer within 0.3 s",
     "late_answer": "no answer within 0.3 s",
-    "drip": "no message begins with b'|no answer within 0.3 s",
-    "flood_stdout": "no message begins with b'(garbage|arbage)",
+    "drip": "a message does not begin with b'|no answer within 0.3 s",
+    "flood_stdout": "a message does not begin with b'(garbage|arbage)",
     "flood_stderr": "no answer within 0.3 s; the last lines of its standard error: .*garbage",
-    "garbage": "its answer is not valid: no message begins with",
-    "text": "no message begins with b'Loading weights",
+    "garbage": "its answer is not valid: a message does not begin with",
+    "text": "a message does not begin with b'Loading weights",
     "closed_stdout": "its process closed its standard output before it answered",
     "closed_stdin": "closed its standard input",
     "sigkill": "its process was ended by SIGKILL before it answered",
@@ -58,7 +58,7 @@ FAULTS = {
     "sigstop": "no answer within 0.3 s",
     "exit_0": "its process ended with status 0 before it answered$",
     "exit_3": r"its process ended with status 3 before it answered; the last lines .*: Goodbye \| with status 3$",
-    "version": "version 2 of the protocol, not 1: copy stubborn_client.py anew",
+    "version": "version 2 of the protocol, not 1: copy stubborn_client.py again",
     "huge_header": r"a message of 4294967295 \+ 0 bytes is too large",
     "huge_arrays": r"a message of 2 \+ 9223372036854775808 bytes is too large",
     "large_arrays": "its arrays have 268435456 bytes, at most 67108864",
@@ -89,7 +89,7 @@ FAULTS = {
     "map_pickle": "dtype",
     "map_missing": "arrays",
 }
-"""What an agent's process does at its first step, map or reset, and what the message says."""
+"""The behaviour of an agent's process at its first step, map or reset, and a part of the message."""
 
 
 def command(fault: str, folder: Path) -> list[str]:

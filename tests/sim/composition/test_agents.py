@@ -125,6 +125,10 @@ def test_every_agent_has_a_description_of_one_line() -> None:
         ("def other(): ...", "has no 'make'"),
         ("make = 7", "must be an AgentSpec or a factory, got int"),
         ("def make(camera): ...", "its factory is called with the arguments camera, robot"),
+        (
+            "class make:\n    def reset(self): ...\n    def act(self, observations): ...",
+            "with Habitat's interface is given as --agent habitat:",
+        ),
         ("def make(**_): return {}['sofa']", "cannot be built: KeyError: 'sofa'"),
         ("def make(**_): exit(4)", "cannot be built: SystemExit: 4"),
     ],

@@ -77,6 +77,19 @@ def test_a_result_that_is_not_allowed_is_named_with_the_segmentation(
     env.close()
 
 
+@pytest.mark.parametrize("returned", [np.zeros((5, 7), int), np.zeros((0, 0), int), np.full((48, 64), 41)])
+def test_categories_of_a_wrong_size_or_number_are_named(
+    returned: object, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(segmentations.Wrong, "returned", returned)
+    env = ObjectNavEnv(house=house, sensors=("rgb", "depth"), camera=CameraModel(width_px=64, height_px=48))
+    segmenter = find_segmentation("tests.helpers.segmentations:WrongNames", None).make(env, None)
+    observation, _ = env.reset(seed=0)
+    with pytest.raises(AgentError, match="categories returned an array of"):
+        segmenter.categories(observation)
+    env.close()
+
+
 @pytest.mark.parametrize(
     ("name", "message"),
     [

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim.episodes import habitat
-from sim.episodes.splits import Episode, load_split, one_house, shipped_splits, write_split
+from sim.episodes.splits import Episode, house_files, house_sum, load_split, one_house, shipped_splits, write_split
 from sim.errors import EpisodeError, HouseError
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError, wrap_angle
@@ -190,3 +190,25 @@ def test_one_house_is_a_split_without_episodes(folder):
     assert split.load_house("a").name == "a"
     with pytest.raises(HouseError, match="no such file"):
         one_house(folder / "z.xml")
+
+
+def test_two_houses_that_differ_in_their_endings_only_are_refused(tmp_path: Path) -> None:
+    for name in ("flat.xml", "flat.MJCF", "other.XML", "flat.json"):
+        (tmp_path / name).touch()
+    with pytest.raises(ConfigError, match="have one name"):
+        house_files(tmp_path)
+    (tmp_path / "flat.MJCF").unlink()
+    assert list(house_files(tmp_path)) == ["flat", "other"]
+
+
+def test_a_file_that_a_house_may_not_read_does_not_count_in_its_checksum(tmp_path: Path) -> None:
+    secret = tmp_path / "elsewhere" / "secret.txt"
+    house = tmp_path / "split" / "house.xml"
+    for folder in (secret.parent, house.parent):
+        folder.mkdir()
+    house.write_text('<mujoco><include file="../elsewhere/secret.txt"/></mujoco>')
+    secret.write_text("one")
+    closed, opened = house_sum(house), house_sum(house, root=secret.parent)
+    secret.write_text("two")
+    assert house_sum(house) == closed
+    assert house_sum(house, root=secret.parent) != opened

@@ -42,7 +42,7 @@ SHAPES = {
     "ellipsoid": mujoco.mjtGeom.mjGEOM_ELLIPSOID,
     "mesh": mujoco.mjtGeom.mjGEOM_MESH,
 }
-every_style = pytest.mark.parametrize("style", sample(STYLES, 200), ids=lambda s: f"{s.category}-{s.name}")
+every_style = pytest.mark.parametrize("style", sample(STYLES, 100), ids=lambda s: f"{s.category}-{s.name}")
 
 
 @cache

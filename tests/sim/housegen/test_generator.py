@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim.errors import HouseError
 from sim.gl import mujoco
 from sim.housegen import generate
 from sim.housegen.floor_plan.rectangles import Rect
@@ -32,7 +33,7 @@ from tests.helpers.sampling import sample
 SEEDS = list(range(30))
 
 
-@pytest.mark.parametrize("seed", sample(SEEDS, 3))
+@pytest.mark.parametrize("seed", sample(SEEDS, 2))
 def test_any_seed_gives_a_house_in_the_format_that_passes_the_check(seed: int) -> None:
     house = generate_house(seed, HouseConfig(pool="heldout" if seed % 2 else "train"))
     model = house.spec.compile()
@@ -184,3 +185,13 @@ def test_a_picture_high_above_a_bed_blocks_no_other_position() -> None:
     assert hang_on_wall(layout, rng, picture, sides=["west"], at=2.5, bottom_m=1.7) is not None
     wardrobe = CATALOGUE.make_item("cabinet", rng, pool="train", use="wardrobe")
     assert put_against_wall(layout, rng, wardrobe, sides=["east"]) is not None
+
+
+def test_a_house_that_breaks_the_format_does_not_replace_a_file(tmp_path: Path) -> None:
+    (tmp_path / "mine.xml").write_text("kept")
+    spec = mujoco.MjSpec.from_string(
+        '<mujoco><worldbody><geom name="table_00" size="1 1 1" type="box"/></worldbody></mujoco>'
+    )
+    with pytest.raises(HouseError, match="House 'mine'"):
+        write_house(spec, tmp_path, "mine")
+    assert (tmp_path / "mine.xml").read_text() == "kept"

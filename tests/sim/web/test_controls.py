@@ -10,10 +10,12 @@ import pytest
 from sim.composition.options import RunOptions
 from sim.errors import ConfigError
 from sim.interface import Action
-from sim.web.controls import Choice, Controls, Interrupted, Wish
+from sim.web.controls import Choice, Controls, EpisodeRequest, Interrupted
 
 LEFT, AHEAD = Action.TURN_LEFT, Action.MOVE_FORWARD
-WISH = Wish(split="val", house="val_00", goal="bed", agent="stubborn", semantics="gt", options=RunOptions())
+REQUEST = EpisodeRequest(
+    split="val", house="val_00", goal="bed", agent="stubborn", semantics="gt", options=RunOptions()
+)
 
 
 def later(action, delay_s: float = 0.1) -> None:
@@ -65,18 +67,18 @@ def test_few_actions_wait_so_that_the_robot_stops_soon_after_a_key_is_released()
 
 def test_actions_that_wait_belong_to_their_episode() -> None:
     controls = Controls()
-    controls.ask_for(Wish(**{**vars(WISH), "driver": "person"}))
-    controls.next_wish()
+    controls.ask_for(EpisodeRequest(**{**vars(REQUEST), "driver": "person"}))
+    controls.next_request()
     for _ in range(3):
         controls.obey({"do": "act", "action": 1})
-    controls.ask_for(Wish(**{**vars(WISH), "driver": "person"}))
-    controls.next_wish()
+    controls.ask_for(EpisodeRequest(**{**vars(REQUEST), "driver": "person"}))
+    controls.next_request()
     later(controls.redraw)
     assert controls.choose(LEFT) is None
 
 
-@pytest.mark.parametrize("end", [lambda c: c.obey({"do": "stop"}), lambda c: c.ask_for(WISH), lambda c: c.close()])
-def test_a_new_wish_an_end_or_a_closing_server_interrupts_the_episode(end) -> None:
+@pytest.mark.parametrize("end", [lambda c: c.obey({"do": "stop"}), lambda c: c.ask_for(REQUEST), lambda c: c.close()])
+def test_a_new_request_an_end_or_a_closing_server_interrupts_the_episode(end) -> None:
     controls = Controls()
     controls.obey({"do": "pause"})
     later(lambda: end(controls))

@@ -56,7 +56,7 @@ def test_the_world_can_be_shown_before_the_first_action() -> None:
         episode=SimpleNamespace(goal="bed"),
     )
     parts: Any = SimpleNamespace(agent=Stops(), env=env, painter=None)
-    audience: Any = SimpleNamespace(wanted=frozenset, show=shown.append)
+    display: Any = SimpleNamespace(wanted=frozenset, show=shown.append)
     unused: Any = None
-    SharedAgent(parts, unused, unused, audience).show_end()
+    SharedAgent(parts, unused, unused, display).show_end()
     assert (shown[0].facts["last"], shown[0].facts["ended"]) == (None, True)

@@ -238,8 +238,8 @@ def test_an_episode_runs_to_its_end_and_a_second_client_sees_it(server: Server, 
         second.send(json.dumps({"do": "show", "pictures": ["plan"]}))
         second.send(json.dumps({"do": "speed", "per_s": 60}))
         browser.click("#start")
-        begun = state_of(second, "playing")
-        assert (begun["wish"]["house"], begun["wish"]["goal"]) == ("wedged_spawn", "bed")
+        begun = state_of(second, "running")
+        assert (begun["request"]["house"], begun["request"]["goal"]) == ("wedged_spawn", "bed")
         header, pictures = frame_of(second)
         assert [name for name, _ in header["pictures"]] == ["plan"]
         assert pictures[:2] == b"\xff\xd8"  # a JPEG
@@ -276,8 +276,8 @@ def test_ten_actions_are_driven_the_agent_is_taken_over_from_and_gets_the_robot_
     with server.connect() as second:
         second.send(json.dumps({"do": "show", "pictures": []}))
         second.send(json.dumps({"do": "start", **WISH, "agent": "stubborn"}))
-        state_of(second, "playing")
-        wait_for(lambda: browser.run("return document.body.dataset.phase") == "playing")
+        state_of(second, "running")
+        wait_for(lambda: browser.run("return document.body.dataset.phase") == "running")
         browser.click("#pause")
         wait_for(lambda: browser.run("return document.querySelector('#pause').textContent") == "Run")
         before = wait_for(lambda: frame_now(browser) + 1)
@@ -322,7 +322,7 @@ def test_escape_closes_the_outcome_of_each_episode(server: Server, browser: Brow
         for _ in range(2):
             second.send(json.dumps({"do": "speed", "per_s": 60}))
             second.send(json.dumps({"do": "start", **WISH, "agent": "random"}))
-            state_of(second, "playing")
+            state_of(second, "running")
             second.send(json.dumps({"do": "act", "action": 0}))
             wait_for(lambda: browser.run(hidden) is False)
             browser.keys("body", ESCAPE)
@@ -424,7 +424,7 @@ def test_all_pictures_are_above_the_fold_and_none_is_black_while_loading(server:
         browser.visit(server.address)
         wait_for(lambda: browser.run("return document.querySelector('#link').textContent").startswith("connected"))
         boxes = browser.run(
-            "told({...state, phase: 'loading', note: ''});"
+            "showState({...state, phase: 'loading', note: ''});"
             "return [...document.querySelectorAll('figure')].map(f => [f.getBoundingClientRect().bottom,"
             " getComputedStyle(f.querySelector('canvas')).visibility, f.offsetHeight])"
         )

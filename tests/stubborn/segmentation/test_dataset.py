@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import shutil
 import tarfile
 from pathlib import Path
 
@@ -136,7 +137,7 @@ def test_some_views_are_spread_over_all_shards_and_no_other_is_decoded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, count: int, wanted: int
 ) -> None:
     for number in range(3):
-        write_tar(tmp_path / f"views-{number}.tar", ["a", "b"])
+        write_tar(tmp_path / f"views-{number}.tar", [f"a{number}", f"b{number}"])
     shards = list_shards(tmp_path)
     decoded: list[Path] = []
     decode = dataset.decode_view
@@ -146,3 +147,10 @@ def test_some_views_are_spread_over_all_shards_and_no_other_is_decoded(
         assert decoded == [shards[0], shards[-1]]
     elif count:
         assert set(decoded) == set(shards)
+
+
+def test_a_shard_that_was_copied_is_refused(tmp_path: Path) -> None:
+    first, _ = two_shards(tmp_path)
+    shutil.copy(first, tmp_path / "copy.tar")
+    with pytest.raises(ConfigError, match="both hold the view 's0_0'"):
+        list_shards(tmp_path)

@@ -114,7 +114,7 @@
     const image = html("img", { src: episode.pictures[run], alt: `What the camera sees at the end of ${episode.id}` });
     image.addEventListener("error", () => {
       if (episode.thumbs[run]) image.replaceWith(thumbnail(episode, run));
-      words.textContent = "The large picture is not there: keep the page beside the folder of its run.";
+      words.textContent = "The large picture does not exist: keep the page next to the folder of its run.";
     }, { once: true });
     return [html("figure", {}, image, words)];
   }
@@ -122,12 +122,12 @@
   function makeVideo(episode, run) {
     if (!episode.videos[run]) return [];
     const src = episode.videos[run];
-    // The browser shows the first frame: the picture of the end stands beside it.
+    // The browser shows the first frame; the picture of the end is next to it.
     const player = html("video", { controls: "", preload: "metadata", src, "aria-label": `Video of ${episode.id}` });
     const words = html("figcaption", {}, html("a", { href: src }, "Open the file of the video"));
     player.addEventListener("error", () => {
       player.remove();
-      words.textContent = "The video is not there: keep the page beside the folder of its run.";
+      words.textContent = "The video does not exist: keep the page next to the folder of its run.";
     }, { once: true });
     return [html("figure", { class: "film" }, player, words)];
   }
