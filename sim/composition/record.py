@@ -18,6 +18,7 @@ from sim.episodes.splits import Episode
 from sim.evaluation.own_code import hash_of_own
 from sim.evaluation.rollout import broken_metrics
 from sim.paths import code_hash
+from sim.robot.config import PHYSICS_VERSION
 from sim.robot.foreign import robot_sha256
 from sim.sensors.opengl import describe_gl
 
@@ -31,6 +32,7 @@ def record_of(setup: Setup, split: dict[str, Any]) -> dict[str, Any]:
     return flat | {
         "settings": as_json(setup.settings),
         "config": as_json(setup.config),
+        "physics": PHYSICS_VERSION,
         "segmentation": _segmentation_of(setup),
         "files_sha256": _checksums(setup),
         "split_identity": split,
@@ -90,7 +92,7 @@ def _files_in(tree: Any, name: str) -> Iterator[tuple[str, Path]]:
 def error_line(setup: Setup, episode: Episode, error: str) -> dict[str, Any]:
     """Returns the result line of an episode that could not be run to its end."""
     nothing = {"distance_to_goal": None, "shortest_path": episode.shortest_path_m, "trapped": None, "failure": None}
-    counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "wall_time_s": 0.0}
+    counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "simulated_s": 0.0, "wall_time_s": 0.0}
     nothing |= dict.fromkeys(
         ("gt_explored", "first_seen_step", "steps_to_first_sight", "area_seen_m2", "area_per_metre")
     )

@@ -214,6 +214,7 @@ class Body:
     wheel_qvel: tuple[NDArray[np.float64], NDArray[np.float64]]  # (1,) the same, rad/s
     wheel_signs: tuple[float, float]
     """1 for a wheel whose joint turns forward when it drives ahead, else -1."""
+    tyre_geoms: tuple[int, ...]
     wheel_geoms: tuple[int, ...]
     """Tyres and casters; for a third-party body also its visual geoms."""
 
@@ -238,6 +239,7 @@ class Body:
             ctrl=data.ctrl[motors[0] : motors[0] + 2],
             touches=data.sensordata[touch : touch + 4 * len(sensors)].reshape(-1, 4),
             hull_geoms=hull,
+            tyre_geoms=tuple(geom for geom in geoms if model.geom(geom).name.endswith("_tyre")),
             wheel_qpos=(data.qpos[places[0][0] :][:1], data.qpos[places[1][0] :][:1]),
             wheel_qvel=(data.qvel[places[0][1] :][:1], data.qvel[places[1][1] :][:1]),
             wheel_signs=(float(model.actuator_gear[motors[0], 0]), float(model.actuator_gear[motors[1], 0])),

@@ -12,6 +12,10 @@ from typing import Literal, get_args
 
 from sim.interface import CLIMB_M, FORWARD_M, TURN_RAD, ConfigError, RobotModel
 
+PHYSICS_VERSION = 2
+"""Results of different versions of the physics are not comparable, and runs are not resumed across them. 1: feedback of
+the true pose, wheels that collide with floors only."""
+
 Base = Literal["planar", "free"]
 """`planar`: three slides and a vertical hinge keep the body upright; `free`: only its wheels and casters carry it."""
 

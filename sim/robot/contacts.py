@@ -50,6 +50,7 @@ class ContactLog:
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, body: Body) -> None:
         self._model, self._data, self._labels = model, data, labels
         self._hull = frozenset(body.hull_geoms)
+        self._tyres = np.array(body.tyre_geoms)
         self._all_parts = self._hull | frozenset(body.wheel_geoms)
         self._wrench = np.zeros(6)
         self._touches: dict[int, _Touch] = {}
@@ -57,6 +58,12 @@ class ContactLog:
     def clear(self) -> None:
         """Removes all samples; called at the start of an action."""
         self._touches = {}
+
+    def compression_m(self) -> float:
+        """Returns the depth to which the tyres are pressed into the ground now, the mean of their contacts."""
+        contacts = self._data.contact
+        depths = -contacts.dist[np.isin(contacts.geom, self._tyres).any(axis=1)]
+        return float(depths.mean()) if len(depths) else 0.0
 
     def sample(self, tick: int, *, all_parts: bool = False) -> None:
         """Adds the current contacts of the hull at the end of one tick of the action.

@@ -77,7 +77,7 @@ class Driver:
     def reset(self, yaw_rad: float, conditions: Conditions = NOMINAL) -> None:
         """Starts a new episode: the headings are `yaw_rad` plus multiples of a turn."""
         self._motors.reset(conditions)
-        self._odometry.reset(yaw_rad, conditions)
+        self._odometry.reset(yaw_rad, conditions, self._log.compression_m())
         self._start_yaw, self._turns = yaw_rad, 0
 
     def run(self, action: Action) -> Motion:

@@ -23,13 +23,20 @@ class Odometry:
         self._radius_m, self._track_m = config.wheels.radius_m, 2.0 * config.wheels.half_track_m
         self.reset(0.0, NOMINAL)
 
-    def reset(self, yaw_rad: float, conditions: Conditions) -> None:
-        """Starts an episode at the origin with a known heading."""
+    def reset(self, yaw_rad: float, conditions: Conditions, compression_m: float = 0.0) -> None:
+        """Starts an episode at the origin with a known heading.
+
+        Args:
+            yaw_rad: the heading.
+            conditions: errors of encoders and gyro.
+            compression_m: of the loaded tyres; a wheel rolls at the middle of it, for which a base is calibrated.
+        """
         self.x_m = self.y_m = 0.0
         self.yaw_rad = yaw_rad
         self.speed_m_s = self.rate_rad_s = 0.0
         left, right = conditions.encoder_scale
-        self._metres_per_rad = self._radius_m * left, self._radius_m * right
+        rolling_m = self._radius_m - 0.5 * compression_m
+        self._metres_per_rad = rolling_m * left, rolling_m * right
         self._gyro_scale, self._gyro_bias_rad_s = conditions.gyro_scale, conditions.gyro_bias_rad_s
         self._wheels_rad = self._body.wheel_angles()
         self._gyro_rad = self._body.yaw_rad
