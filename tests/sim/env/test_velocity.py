@@ -132,7 +132,7 @@ def test_an_episode_ends_after_its_time_limit(tmp_path: Path) -> None:
     env.reset(seed=0)
     assert [env.step(np.zeros(3, np.float32))[3] for _ in range(3)] == [False, False, True]
     info = env._info(collided=False)
-    assert (info["end_reason"], info["num_steps"], info["time_s"]) == ("max_steps", 3, pytest.approx(0.6))
+    assert (info["end_reason"], info["num_steps"], info["simulated_s"]) == ("max_steps", 3, pytest.approx(0.6))
     env.close()
     assert make(tmp_path).task_config.max_steps == 6000
 
@@ -205,7 +205,7 @@ def test_discrete_actions_end_at_the_same_places_as_in_the_discrete_environment(
         np.testing.assert_allclose(mine["gps"], theirs["gps"], atol=0.015)
         np.testing.assert_allclose(mine["compass"], theirs["compass"], atol=math.radians(1.5))
         assert not info["collided"]
-        assert info["time_s"] < 1.2 * len(actions) * 2
+        assert info["simulated_s"] < 1.2 * len(actions) * 2
     by_velocity.close()
     moves.close()
 
@@ -235,5 +235,5 @@ def test_an_agent_of_discrete_actions_finds_its_goal(tmp_path: Path) -> None:
     while not (terminated or truncated):
         observation, _, terminated, truncated, info = actions.step(agent.act(observation))
     assert (info["success"], info["end_reason"]) == (1.0, "stop")
-    assert info["time_s"] < 60.0
+    assert info["simulated_s"] < 60.0
     env.close()
