@@ -186,6 +186,7 @@ def by_action(trajectory: Trajectory, steps: int) -> Trajectory:
         ended=trajectory.ended[moments[1:] - 1],
         collided=np.logical_or.reduceat(trajectory.collided, begins),
         touched=np.logical_or.reduceat(trajectory.touched, begins),
+        duration_s=None if trajectory.duration_s is None else np.add.reduceat(trajectory.duration_s, begins),
     )
 
 
