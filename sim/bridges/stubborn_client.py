@@ -148,10 +148,11 @@ def serve(agent):
             return
         try:
             answer, arrays = client.answer(request, content)
+            buffers = pack(dict(answer, id=request["id"]), arrays)
         except Exception as error:  # the agent raised it; the simulator ends the episode
             traceback.print_exc()
-            answer, arrays = {"type": "error", "error": _text_of(error)}, {}
-        for buffer in pack(dict(answer, id=request["id"]), arrays):
+            buffers = pack({"type": "error", "error": _text_of(error), "id": request["id"]}, {})
+        for buffer in buffers:
             _write(sink, buffer)
 
 

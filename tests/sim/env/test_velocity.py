@@ -117,13 +117,14 @@ def test_a_light_chair_that_is_pushed_is_no_collision(tmp_path: Path) -> None:
     env.close()
 
 
-def test_a_round_body_turns_between_two_walls_without_a_collision(tmp_path: Path) -> None:
-    house = sofa_room()
-    for number, y_m in enumerate((1.0 + 0.18 + 0.1, 1.0 - 0.18 - 0.1)):
-        house = with_box(house, f"cabinet_{number:02d}", centre_m=(-1.5, y_m, 0.5), half_m=(0.5, 0.05, 0.5))
+def test_a_round_body_that_turns_at_a_wall_does_not_collide_again(tmp_path: Path) -> None:
+    house = with_box(sofa_room(), "cabinet_00", centre_m=(-1.0, 1.0, 0.5), half_m=(0.1, 0.5, 0.5))
     env = make(tmp_path, house)
     env.reset(seed=0)
-    assert drive(env, (0.0, 1.8, 0.0), 10)[-1]["collisions"] == 0
+    assert drive(env, AHEAD, 15)[-1]["collisions"] == 1
+    turning = drive(env, (0.0, 1.8, 0.0), 10)
+    assert (turning[-1]["collisions"], turning[0]["touches"] > 0) == (1, True)
+    assert turning[-1]["yaw"] > 1.0
     env.close()
 
 
