@@ -5,7 +5,7 @@
 
 | table | measures |
 |---|---|
-| motions | error of a forward and of a turn with each noise preset, beside those of a LoCoBot (PyRobot, controller ILQR) |
+| motions | errors of a forward and a turn with each noise preset, and those of a LoCoBot (PyRobot, controller ILQR) |
 | edges | how many of the approaches climb an edge, by its height, the friction and the base |
 | pushing | force on a box that is pushed, against the force of dry friction at its corners |
 | steps | edges again, with several time steps |
@@ -16,8 +16,8 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -108,9 +108,7 @@ def motions() -> Iterator[Row]:
     yield {"preset": "LoCoBot, published"} | LOCOBOT
 
 
-def edges(
-    timestep_s: float = PhysicsConfig().timestep_s, bases: tuple[Base, ...] = ("free", "planar")
-) -> Iterator[Row]:
+def edges(timestep_s: float = PhysicsConfig().timestep_s, bases: Sequence[Base] = ("free", "planar")) -> Iterator[Row]:
     """Yields the number of approaches that climb a bar across the path."""
     for base in bases:
         config = RobotConfig(base=base, physics=PhysicsConfig(timestep_s=timestep_s))
@@ -198,7 +196,7 @@ def push(config: RobotConfig, mass_kg: float, friction: float, offset_m: float) 
     def sample(model: mujoco.MjModel, data: mujoco.MjData) -> None:
         del model
         # At the speed of the robot, before the box has turned much; the robot itself still accelerates before 0.5 s.
-        if 0.12 < data.qvel[v] < 0.18 and 0.01 < data.qpos[q] - x_m < 0.08:
+        if 0.02 < data.qvel[v] < 0.18 and 0.01 < data.qpos[q] - x_m < 0.08:
             forces.append(float(data.sensordata[touch + 1]))
 
     x_m = float(world.data.qpos[q])

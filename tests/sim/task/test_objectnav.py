@@ -285,3 +285,15 @@ def test_an_object_that_no_camera_can_see_is_not_a_goal():
     house = with_box(room(8, 4), "bed_00", centre_m=(2.5, 0, 0.25), half_m=(0.5, 1.0, 0.25))
     house = with_box(house, "sofa_00", centre_m=(-1.5, 1.0, 0.2), half_m=(0.2, 0.2, 0.2), group=3)
     assert GroundTruth(World(house)).goals() == ("bed",)
+
+
+def test_the_simulated_time_of_an_episode_is_the_sum_of_its_actions():
+    world = bed_room()
+    task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
+    began_s = world.data.time
+    result = act(world, task, FORWARD, LEFT, FORWARD)
+    durations = task.trajectory().duration_s
+    assert result["simulated_s"] == pytest.approx(world.data.time - began_s)
+    assert durations is not None
+    assert durations.sum() == pytest.approx(result["simulated_s"], abs=1e-4)
+    assert (durations > 0.4).all()
