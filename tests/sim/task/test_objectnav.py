@@ -42,7 +42,7 @@ def act(world: World, task: Task, *actions: Action) -> dict:
 
 def test_the_straight_path_to_the_goal_has_success_and_spl_one():
     world = bed_room()
-    task = begin(world, "bed", Pose(-0.999, 0.0, 0.0))  # eight forwards by odometry may be a millimetre short of 2 m
+    task = begin(world, "bed", Pose(-0.995, 0.0, 0.0))  # eight forwards by odometry may be millimetres short of 2 m
     assert task.metrics()["distance_to_goal"] == pytest.approx(2.0, abs=0.02)
     result = act(world, task, *[FORWARD] * 8, STOP)
     assert result["success"] == 1.0
@@ -195,7 +195,7 @@ def test_a_stop_right_under_the_goal_is_not_a_success():
 
 def test_a_goal_on_the_storey_of_the_robot_is_found():
     world = World(two_storeys())
-    for goal, start in (("sofa", replace(UPSTAIRS, x_m=UPSTAIRS.x_m + 0.001)), ("bed", Pose(0.501, 0.0, 0.0))):
+    for goal, start in (("sofa", replace(UPSTAIRS, x_m=UPSTAIRS.x_m + 0.002)), ("bed", Pose(0.502, 0.0, 0.0))):
         result = act(world, begin(world, goal, start), FORWARD, FORWARD, STOP)
         assert result["success"] == 1.0, goal
         assert result["failure"] is None
