@@ -37,17 +37,17 @@ class GoalVector:
         return np.array([np.hypot(x_m, y_m) / 5.0, np.sin(direction_rad), np.cos(direction_rad)], np.float32)
 
 
-class Scan:
+class Rays:
     """Smallest depth in each of `RAYS` groups of columns of the image's middle rows, relative to the largest depth."""
 
-    name, images, noise = "scan", ("depth",), None
+    name, images, noise = "rays", ("depth",), None
 
     def space(self, camera: CameraModel) -> spaces.Box:
-        """Returns the space of float32 scans (RAYS,)."""
+        """Returns the space of float32 distances (RAYS,)."""
         return spaces.Box(0.0, 1.0, (RAYS,), np.float32)
 
     def read(self, context: SensorContext) -> NDArray:
-        """Returns the scan from left to right; a larger image is sampled at the resolution of the training."""
+        """Returns the distances from left to right; a larger image is sampled at the resolution of the training."""
         depth_m = context.images["depth"]
         block = max(1, depth_m.shape[1] // CAMERA.width_px)
         depth_m = depth_m[block // 2 :: block, block // 2 :: block]
@@ -69,7 +69,7 @@ class Bumper:
         return np.array([context.collided], np.float32)
 
 
-SENSORS = (GoalVector(), Scan(), Bumper())
+SENSORS = (GoalVector(), Rays(), Bumper())
 SPACE = spaces.Dict({sensor.name: sensor.space(CAMERA) for sensor in SENSORS})
 """Space of the policy's observations, which are flattened in this order."""
 

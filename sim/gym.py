@@ -1,8 +1,9 @@
-"""Registers the environment with Gymnasium, on import.
+"""Registers the environments with Gymnasium, on import.
 
     import sim.gym
     env = gymnasium.make("stubborn/ObjectNav-v0", split="val")
     env = gymnasium.make("sim.gym:stubborn/ObjectNav-v0", split="val")  # the same, without the import
+    env = gymnasium.make("stubborn/ObjectNavVelocity-v0", split="val")  # driven by velocities
 
 Gymnasium 1.0 has no entry points any more. An id that is not registered raises `NamespaceNotFound: Namespace stubborn
 not found. Have you installed the proper package for stubborn?`, although the package is installed: the module has to be
@@ -24,13 +25,17 @@ from __future__ import annotations
 
 import gymnasium
 
+from sim.env.discrete import DiscreteActions
 from sim.env.progress import ProgressReward
 
-__all__ = ["ENV_ID", "ProgressReward"]
+__all__ = ["ENV_ID", "VELOCITY_ENV_ID", "DiscreteActions", "ProgressReward"]
 
 ENV_ID = "stubborn/ObjectNav-v0"
+VELOCITY_ENV_ID = "stubborn/ObjectNavVelocity-v0"
 
 if ENV_ID not in gymnasium.registry:
     gymnasium.register(
         id=ENV_ID, entry_point="sim.env.objectnav:ObjectNavEnv"
     )  # no time limit: the task truncates by itself
+if VELOCITY_ENV_ID not in gymnasium.registry:
+    gymnasium.register(id=VELOCITY_ENV_ID, entry_point="sim.env.velocity:ObjectNavVelocityEnv")

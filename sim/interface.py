@@ -163,7 +163,7 @@ class SuccessRule:
 
 
 Observation = Mapping[str, NDArray]
-"""The observation of one step; the keys are those of `SENSORS` that were requested, plus `POSE_SENSORS`.
+"""The observation of one step: those of `SENSORS` and `scan` that were requested, plus `POSE_SENSORS`.
 
 | key | shape | dtype | meaning |
 |---|---|---|---|
@@ -173,10 +173,13 @@ Observation = Mapping[str, NDArray]
 | gps | (2,) | float32 | metres forward and left of the start pose |
 | compass | (1,) | float32 | yaw against the start heading, in (-pi, pi] |
 | objectgoal | (1,) | int64 | index into `GOAL_CATEGORIES` |
+| scan | (rays,) | float32 | lidar, metres; 0: nearer than its range, the maximum range: no return in it |
 """
 
 SENSORS: tuple[str, ...] = ("rgb", "depth", "semantic")
 """Image sensors, which are rendered only when requested."""
+SCAN = "scan"
+"""The lidar (`sim.sensors.scan`), which is in the observation only when requested."""
 POSE_SENSORS: tuple[str, ...] = ("gps", "compass", "objectgoal")
 """Always present."""
 CONTEXT_FIELDS: tuple[str, ...] = ("goal", "collided", "pose", "start", "motion", "model", "data")
@@ -192,11 +195,12 @@ def reads_truth(sensor: Any) -> bool:
 
     Args:
         sensor: name of a standard sensor, or an object with the interface `sim.sensors.sensor.Sensor`. `gps`, `compass`
-            and `objectgoal` are part of the task: they do not count, although they are computed from the true pose.
+            and `objectgoal` are part of the task, and `scan` is a measurement: they do not count, although they are
+            computed from the true state.
     """
     if isinstance(sensor, str):
         return sensor == "semantic"
-    if getattr(sensor, "name", "") in POSE_SENSORS:
+    if getattr(sensor, "name", "") in (*POSE_SENSORS, SCAN):
         return False
     declared = {*getattr(sensor, "images", ()), *getattr(sensor, "reads", ())}
     return not declared.isdisjoint(TRUE_IMAGES | TRUE_FIELDS)

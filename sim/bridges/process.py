@@ -19,6 +19,7 @@ import numpy as np
 from msgspec import Meta
 from numpy.typing import NDArray
 
+from sim.bridges.habitat.conversions import Conversion
 from sim.bridges.process_command import PREFIX, ProcessConfig, command_of
 from sim.bridges.process_pipe import AgentProcess, Answer
 from sim.bridges.stubborn_client import MOST_HEADER_BYTES, ProtocolError, unpack_arrays
@@ -38,6 +39,7 @@ _Text = Annotated[str, Meta(max_length=MOST_HEADER_BYTES)]
 class _Ready(msgspec.Struct, tag_field="type", tag="ready"):
     shares_memory: bool = False
     draws_map: bool = False
+    interface: str = "stubborn"
 
 
 class _Done(msgspec.Struct, tag_field="type", tag="done"):
@@ -78,6 +80,7 @@ def process_spec(name: str) -> AgentSpec:
         config=ProcessConfig(),
         uses_segmentation=False,
         painter=_painter_of,
+        goals=_goals,
     )
 
 
@@ -116,6 +119,9 @@ class ProcessAgent:
             "max_steps": max_steps,
             "goals": list(GOAL_CATEGORIES),
         }
+        self._conversion = _conversion(camera, config)
+        if self._conversion is not None:
+            self._setup |= {"interface": config.interface, "goals": list(self._conversion.goals)}
         self._process: AgentProcess | None = None
         self._chosen = _Chosen(action=0)
         self.draws_map = False
@@ -126,7 +132,13 @@ class ProcessAgent:
             raise ConfigError(f"Agent '{self.name}' cannot be started: {error}.") from None
 
     def reset(self, goal: str, seed: int) -> None:
-        """Starts a new episode; if the last process has failed, in a new process."""
+        """Starts a new episode; if the last process has failed, in a new process.
+
+        Raises:
+            AgentError: the process failed, or the data set of an agent with Habitat's interface has no such goal.
+        """
+        if self._conversion is not None:
+            self._conversion.goal_number(goal)
         process = self._process or self._start()
         process.new_episode()
         self._ask({"type": "reset", "goal": goal, "seed": seed}, _Done)
@@ -134,7 +146,8 @@ class ProcessAgent:
     def act(self, observation: Observation) -> Action:
         """Returns the action that the agent chooses."""
         self._chosen = _Chosen(action=0)
-        self._chosen = self._ask({"type": "act"}, _Chosen, observation)[0]
+        seen = observation if self._conversion is None else self._conversion.observations(observation)
+        self._chosen = self._ask({"type": "act"}, _Chosen, seen)[0]
         return Action(self._chosen.action)
 
     def stop_confidence(self) -> float | None:
@@ -170,6 +183,11 @@ class ProcessAgent:
         process = self._process = AgentProcess(self._command)
         request = {"type": "start", "setup": self._setup, "memory": process.memory}
         ready, _ = self._ask(request, _Ready, within_s=self._config.start_timeout_s)
+        if ready.interface != self._config.interface:
+            reason = (
+                f"its stubborn_client.py does not know agent.interface={self._config.interface}: copy the file anew"
+            )
+            raise self._failure(AgentError(reason))
         if not ready.shares_memory:
             process.share_no_memory()
         self.draws_map = ready.draws_map
@@ -235,6 +253,19 @@ class ProcessPainter:
     def words(self) -> str:
         """Returns the words on what the agent is doing that came with its last image."""
         return self._words
+
+
+def _conversion(camera: CameraModel, config: ProcessConfig) -> Conversion | None:
+    """Returns the conversion of observations for an agent with Habitat's interface; None for one with ours."""
+    if config.interface != "habitat":
+        return None
+    return Conversion(camera=camera, categories=config.categories, normalize_depth=config.normalize_depth)
+
+
+def _goals(config: ProcessConfig) -> tuple[str, ...]:
+    """Returns the goal categories that the agent knows."""
+    conversion = _conversion(CameraModel(), config)
+    return GOAL_CATEGORIES if conversion is None else conversion.goals
 
 
 def _painter_of(agent: Agent) -> ProcessPainter | None:

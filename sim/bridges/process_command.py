@@ -6,12 +6,14 @@ import itertools
 import shlex
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal, get_args
 
 from sim.errors import ConfigError
 from sim.geometry.numbers import require_numbers
 
 PREFIX = "process:"
 """Beginning of the names of these agents."""
+Interface = Literal["stubborn", "habitat"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,9 +22,23 @@ class ProcessConfig:
 
     start_timeout_s: float = 120.0
     """Longest time from the start of the command to its first answer."""
+    interface: Interface = "stubborn"
+    """The agent's interface: `stubborn` (`reset(goal, seed)`), or `habitat` (`reset()`, observations and actions as
+    Habitat has them)."""
+    categories: str = "mp3d"
+    """With `habitat`: the data set that numbers the goals, `mp3d` or `hm3d`."""
+    normalize_depth: bool = True
+    """With `habitat`: depth is scaled to [0, 1]; False: metres."""
 
     def __post_init__(self) -> None:
         require_numbers(self)
+        if self.interface not in get_args(Interface):
+            raise ConfigError(
+                f"ProcessConfig.interface must be one of {', '.join(get_args(Interface))}, got '{self.interface}'."
+            )
+        ours = ProcessConfig.categories, ProcessConfig.normalize_depth
+        if self.interface != "habitat" and (self.categories, self.normalize_depth) != ours:
+            raise ConfigError("agent.categories and agent.normalize_depth need agent.interface=habitat.")
         if self.start_timeout_s <= 0.0:
             raise ConfigError(f"ProcessConfig.start_timeout_s must be > 0 s, got {self.start_timeout_s}.")
 

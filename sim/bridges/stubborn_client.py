@@ -11,6 +11,10 @@ An agent has two methods. `reset(goal, seed)` starts an episode; `goal` is a cat
 dict of arrays: `rgb` uint8 (h, w, 3), `depth` float32 (h, w) in metres, `gps` float32 (2,), `compass` float32 (1,) and
 `objectgoal` int64 (1,).
 
+An agent with Habitat's interface is served in the same way: `reset()` and `act(observations)`, whose observations and
+actions are Habitat's. The option `--config agent.interface=habitat` of `stubborn run` announces it. The generators of
+`random`, NumPy and PyTorch are seeded before each episode.
+
 Further methods are optional. `stop_confidence()` and `stop_target_xy_m()` are called after STOP. `map_image()` returns
 the agent's map for videos, uint8 RGB (h, w, 3), and `state()` returns a few words on what the agent is doing.
 
@@ -30,6 +34,7 @@ import json
 import mmap
 import operator
 import os
+import random
 import select
 import struct
 import sys
@@ -37,6 +42,7 @@ import threading
 import time
 import traceback
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -56,6 +62,7 @@ DTYPES = ("|b1", "|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f2", 
 LAST_WORDS_S = 5.0
 """Longest time in which the agent may end by itself after the simulator has ended."""
 STOP, MOVE_FORWARD, TURN_LEFT, TURN_RIGHT = range(4)
+HABITAT_ACTIONS = {"stop": STOP, "move_forward": MOVE_FORWARD, "turn_left": TURN_LEFT, "turn_right": TURN_RIGHT}
 ACTIONS = "0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT, 3 TURN_RIGHT"
 
 
@@ -141,10 +148,11 @@ def serve(agent):
             return
         try:
             answer, arrays = client.answer(request, content)
+            buffers = pack(dict(answer, id=request["id"]), arrays)
         except Exception as error:  # the agent raised it; the simulator ends the episode
             traceback.print_exc()
-            answer, arrays = {"type": "error", "error": _text_of(error)}, {}
-        for buffer in pack(dict(answer, id=request["id"]), arrays):
+            buffers = pack({"type": "error", "error": _text_of(error), "id": request["id"]}, {})
+        for buffer in buffers:
             _write(sink, buffer)
 
 
@@ -154,6 +162,7 @@ class _Client:
     def __init__(self, agent):
         self.agent = agent
         self.shared = _SharedMemory()
+        self.interface = "stubborn"
 
     def answer(self, request, content):
         """Returns the header of the answer to a request, and its arrays."""
@@ -161,7 +170,7 @@ class _Client:
         if kind == "start":
             return self.start(request), {}
         if kind == "reset":
-            self.agent.reset(request["goal"], request["seed"])
+            self.reset(request["goal"], request["seed"])
             return {"type": "done"}, {}
         if kind == "act":
             described = request["arrays"]
@@ -174,6 +183,7 @@ class _Client:
 
     def start(self, request):
         shared = self.shared.open(request["memory"])
+        self.interface = request["setup"].get("interface", self.interface)
         if isinstance(self.agent, type) or not hasattr(self.agent, "act"):
             self.agent = self.agent(_as_namespace(request["setup"]))
         for method in ("reset", "act"):
@@ -181,12 +191,23 @@ class _Client:
                 raise TypeError(f"the agent {self.agent!r} has no method '{method}'")
         python = ".".join(str(part) for part in sys.version_info[:3])
         draws_map = hasattr(self.agent, "map_image")
-        return {"type": "ready", "python": python, "shares_memory": shared, "draws_map": draws_map}
+        ready = {"type": "ready", "python": python, "shares_memory": shared, "draws_map": draws_map}
+        return dict(ready, interface=self.interface)
+
+    def reset(self, goal, seed):
+        if self.interface != "habitat":
+            self.agent.reset(goal, seed)
+            return
+        random.seed(seed)
+        np.random.seed(seed % 2**32)  # noqa: NPY002 - agents draw from it
+        if "torch" in sys.modules:
+            sys.modules["torch"].manual_seed(seed)
+        self.agent.reset()
 
     def act(self, observation):
         given = self.agent.act(observation)
         try:
-            action = operator.index(given)
+            action = operator.index(_from_habitat(given) if self.interface == "habitat" else given)
         except TypeError:
             raise TypeError(f"act() returned {given!r:.100}; an action is one of {ACTIONS}") from None
         answer = {"type": "action", "action": action}
@@ -196,6 +217,23 @@ class _Client:
             place = self.agent.stop_target_xy_m()
             answer["stop_target_xy_m"] = None if place is None else [_number(each) for each in place]
         return answer
+
+
+def _from_habitat(given: Any) -> Any:
+    """Returns the number of an action in one of Habitat's forms: a number, a name, or a dict with the key `action`."""
+    inner: Any = given
+    while isinstance(inner, dict) and "action" in inner:
+        inner = inner["action"]
+    if isinstance(inner, (list, tuple)) and len(inner) == 1:
+        inner = inner[0]
+    if isinstance(inner, (bool, np.bool_)):
+        raise TypeError("a truth value is no action")
+    if isinstance(inner, str):
+        return HABITAT_ACTIONS.get(inner.lower(), inner)
+    shape = getattr(inner, "shape", ())
+    if shape != () and np.prod(shape) == 1:  # an array or tensor of one element
+        return getattr(inner, "reshape")(-1)[0]  # noqa: B009 - of an unknown class
+    return inner
 
 
 class _SharedMemory:

@@ -31,7 +31,7 @@ from sim.reading import read_bytes
 SHARDS = "shard_*_of_*"
 MAX_FILE_BYTES = 4 << 30
 """Largest file of an episode that is copied; videos are the largest."""
-COPIED = ("trajectories", "pictures", "videos", "rerun")
+COPIED = ("trajectories", "pictures", "videos", "rerun", "mcap")
 """Folders of a run with files of single episodes."""
 
 

@@ -16,7 +16,7 @@ from sim.episodes.splits import Episode
 from sim.evaluation.last_view import write_last_view
 from sim.evaluation.rollout import record_episode
 
-_OF_THE_WORLD = ("robot", "camera", "profile", "noise", "task")
+_OF_THE_WORLD = ("robot", "camera", "scan", "profile", "noise", "task")
 """Fields of the configuration that apply to a person as well as to an agent."""
 
 

@@ -42,6 +42,7 @@ def make_env(setup: Setup, *, sensors: tuple[str | Sensor, ...], truth: tuple[st
         noise=config.noise,
         robot=config.robot,
         camera=config.camera,
+        scan=config.scan,
         task=config.task,
     )
 

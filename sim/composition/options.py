@@ -84,6 +84,8 @@ class RunOptions:
     """Stream poses, images, points and map to the Rerun viewer (extra `rerun`)."""
     rerun_save: bool = False
     """Write a Rerun file of each episode to <out>/rerun (extra `rerun`)."""
+    mcap: bool = False
+    """Write ROS 2 messages of each episode to an MCAP file in <out>/mcap (extra `ros`)."""
     retry_errors: bool = False
     """Run the episodes again that ended with an error in an earlier start of this run."""
     keep_results: bool = False

@@ -25,6 +25,7 @@ from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot
 from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.profiles import RenderProfile, get_profile
+from sim.sensors.scan import ScanConfig
 from sim.sensors.sensor import Sensor
 from sim.task.config import TaskConfig
 from stubborn.detection.verification import (
@@ -67,6 +68,8 @@ class RunConfig:
     camera: CameraModel
     sensors: tuple[str, ...]
     """Sensors in the agent's observation, by name: those that agent and segmentation declare."""
+    scan: ScanConfig
+    """The lidar of the sensor `scan`."""
     profile: RenderProfile
     noise: NoiseConfig
     task: TaskConfig
@@ -201,6 +204,7 @@ def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKin
         robot=robot,
         camera=camera,
         sensors=_sensor_names(spec, segmentation),
+        scan=ScanConfig(),
         profile=get_profile(options.profile),
         noise=get_noise(options.noise),
         task=TaskConfig(),

@@ -25,6 +25,7 @@ from sim.robot.config import RobotConfig
 from sim.robot.drive import Motion
 from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise, noise_from_dict
 from sim.sensors.profiles import RenderProfile, get_profile
+from sim.sensors.scan import ScanConfig, ScanSensor
 from sim.sensors.sensor import Sensor, SensorContext
 from sim.sensors.standard import STANDARD_SENSORS, resolve_sensors
 from sim.task.config import TaskConfig
@@ -72,11 +73,12 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         noise: noise of sensors and drive: the name of a preset of `sim.sensors.noise`, or a `NoiseConfig`. The metrics
             are never noisy. A house whose sidecar (`sim.houses.sidecar`) fixes noise keeps its own.
         render_mode: `rgb_array` or None.
-        task: when a STOP succeeds, and the number of actions. This and the other configurations, `success`, `camera`
-            and `robot`, may also be a dict of some of their fields: `camera={"width_px": 128, "height_px": 96}`.
+        task: when a STOP succeeds, and the number of actions. This and the other configurations, `success`, `camera`,
+            `scan` and `robot`, may also be a dict of some of their fields: `camera={"width_px": 128, "height_px": 96}`.
         success: replaces `task.success`.
         max_steps: replaces `task.max_steps`.
         camera: intrinsics and mount height.
+        scan: the lidar of the sensor `scan`.
         robot: body and drive.
         cached_houses: number of houses that stay loaded, those that were used last. To load a house takes most of a
             second; a loaded house takes about 70 MB (docs/performance.md).
@@ -108,6 +110,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         success: SuccessRule | Mapping[str, Any] | None = None,
         max_steps: int | None = None,
         camera: CameraModel | Mapping[str, Any] | None = None,
+        scan: ScanConfig | Mapping[str, Any] | None = None,
         robot: RobotConfig | Mapping[str, Any] | None = None,
         cached_houses: int = 1,
     ) -> None:
@@ -118,7 +121,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         if start is not None and (self.split.episodes or len(self.split.houses) != 1):
             raise ConfigError("start needs house: the episodes of a split have their own.")
         self.goal, self.start = goal, start
-        self.sensors = resolve_sensors(sensors)
+        self.scan_config = as_settings(scan, ScanConfig(), name="scan")
+        self.sensors = _with_scan(resolve_sensors(sensors), self.scan_config)
         self.truth_images: dict[str, NDArray] = {}
         """Images that were rendered last, without noise: at least those of `truth`."""
         self._truth = tuple(truth)
@@ -138,6 +142,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._scene: Scene | None = None
         self._episode: Episode | None = None
         self._motion: Motion | None = None
+        self._steps_per_action = 1
         self._closed = False
 
     @property
@@ -155,6 +160,11 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         if self._episode is None:
             raise gymnasium.error.ResetNeeded("Call reset() before the first step.")
         return self._episode
+
+    @property
+    def robot_config(self) -> RobotConfig:
+        """Body and drive of the robot."""
+        return self._robot
 
     @property
     def robot_model(self) -> RobotModel:
@@ -195,11 +205,14 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
 
     def step(self, action: int) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
         """Carries out one action; see the class."""
-        scene = self.scene
-        scene.task.require_running()
-        motion = self._motion = scene.world.move(Action(action))
+        self.scene.task.require_running()
+        return self._outcome(self.scene.world.move(Action(action)))
+
+    def _outcome(self, motion: Motion) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
+        """Returns what `step` returns after a motion."""
+        scene, self._motion = self.scene, motion
         observation, semantic = self._observe()
-        scene.task.observe(Action(action), motion, semantic)
+        scene.task.observe(motion.action, motion, semantic)
         reward = float(scene.task.success)
         return observation, reward, scene.task.terminated, scene.task.truncated, self._info(motion.collided)
 
@@ -253,6 +266,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             camera=self.camera_model,
             profile=self._profile,
             task=self.task_config,
+            steps_per_action=self._steps_per_action,
         )
 
     def _make_noise(self, config: NoiseConfig) -> SensorNoise:
@@ -314,6 +328,14 @@ def _with_changes(
     if success is not None:
         task = replace(task, success=as_settings(success, task.success, name="success"))
     return task if max_steps is None else replace(task, max_steps=max_steps)
+
+
+def _with_scan(sensors: tuple[Sensor, ...], scan: ScanConfig) -> tuple[Sensor, ...]:
+    """Returns the sensors with this lidar in place of the standard one; a `ScanSensor` of another one stays."""
+    return tuple(
+        replace(each, config=scan) if isinstance(each, ScanSensor) and each == ScanSensor() else each
+        for each in sensors
+    )
 
 
 def _check_options(goal: str | None, render_mode: str | None) -> None:

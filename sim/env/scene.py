@@ -28,12 +28,13 @@ class Scene:
         camera: CameraModel,
         profile: str | RenderProfile,
         task: TaskConfig | None = None,
+        steps_per_action: int = 1,
     ) -> None:
         config = task or TaskConfig()
         self.world = World(house, robot=robot, rule=config.success)
         self.camera = Camera(self.world.model, self.world.labels, camera=camera, profile=profile)
         self.gloss = geom_gloss(self.world.model, self.world.labels)  # (ngeom,)
-        self.task = Task(self.world, config, camera=camera)
+        self.task = Task(self.world, config, camera=camera, steps_per_action=steps_per_action)
 
     def close(self) -> None:
         """Frees the renderer."""

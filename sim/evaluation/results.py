@@ -51,7 +51,7 @@ RESAMPLED, RESAMPLED_IN_ONE_HOUSE = "houses, then the episodes of each", "the ep
 """The units that the intervals of a summary resample."""
 PLACEMENT_OPTIONS = ("executor", "address", "shard")
 """Options that say where episodes are run; they change no result."""
-VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save")
+VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save", "mcap")
 """Options that start viewers; they change no result."""
 WITHOUT_EFFECT = frozenset({"workers", "out", "record", "seed_key", *PLACEMENT_OPTIONS, *VIEWER_OPTIONS})
 """Entries of the config that change no result, or that are random in each run (`seed_key`)."""

@@ -24,6 +24,8 @@ from sim.sensors.actuation_noise import ActuationNoise
 from sim.sensors.depth_noise import DepthNoise
 from sim.sensors.pose_noise import PoseNoise
 from sim.sensors.rgb_noise import RgbNoise
+from sim.sensors.scan import ScanSensor
+from sim.sensors.scan_noise import ScanNoise
 from sim.sensors.sensor import NoiseModel, Sensor
 
 
@@ -38,6 +40,7 @@ class NoiseConfig:
     rgb: RgbNoise = field(default_factory=RgbNoise)
     pose: PoseNoise = field(default_factory=PoseNoise)
     actuation: ActuationNoise = field(default_factory=ActuationNoise)
+    scan: ScanNoise = field(default_factory=ScanNoise)
 
 
 _D435_FOCAL_BASELINE = 388.0 * 0.05
@@ -76,6 +79,7 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 gyro_scale=(0.97, 1.03),
                 gyro_bias_rad_s=math.radians(0.01),
             ),
+            scan=ScanNoise(std_share=0.01),
         ),
         # An old camera in poor light on a robot with slippery wheels: 2.5 times the depth error, and a compass drift
         # of 4.5 deg after 500 actions.
@@ -110,6 +114,7 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 gyro_scale=(0.92, 1.08),
                 gyro_bias_rad_s=math.radians(0.03),
             ),
+            scan=ScanNoise(std_m=0.015, std_share=0.025, dropout=0.02),
         ),
     }
 )
@@ -183,7 +188,7 @@ class SensorNoise:
         observed = {each.name for each in sensors}
         self._models: list[NoiseModel | None] = []  # one for each part; None: off or not observed
         for part in parts:
-            model = None if isinstance(part, ActuationNoise) else part.model(camera)
+            model = _model_of(part, camera, sensors)
             self._models.append(model if model is not None and observed.issuperset(model.sensors) else None)
         self._streams: list[np.random.Generator] = []
 
@@ -217,3 +222,13 @@ class SensorNoise:
             if model is not None:
                 noisy |= model.apply(noisy, {name: images[name] for name in model.images}, rng)
         return noisy
+
+
+def _model_of(part: Any, camera: CameraModel, sensors: Sequence[Sensor]) -> NoiseModel | None:
+    """Returns the noise model of one part; None where it is off, of the drive, or of a lidar that is not observed."""
+    if isinstance(part, ActuationNoise):
+        return None
+    if isinstance(part, ScanNoise):
+        scans = [each.config for each in sensors if isinstance(each, ScanSensor)]
+        return part.model_of(scans[0]) if scans else None
+    return part.model(camera)

@@ -1,4 +1,4 @@
-"""The six standard sensors, named as in Habitat; shapes and units are in `sim.interface.Observation`."""
+"""The standard sensors, named as in Habitat, and the lidar; shapes and units are in `sim.interface.Observation`."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from sim.errors import ConfigError
 from sim.interface import CONTEXT_FIELDS, GOAL_CATEGORIES, MPCAT40, POSE_SENSORS, CameraModel
+from sim.sensors.scan import ScanSensor
 from sim.sensors.sensor import NoiseSettings, Sensor, SensorContext, declared_fields
 
 
@@ -127,6 +128,7 @@ STANDARD_SENSORS: Mapping[str, Sensor] = MappingProxyType(
         sensor.name: sensor
         for sensor in (
             RgbSensor(), DepthSensor(), SemanticSensor(), GpsSensor(), CompassSensor(), ObjectGoalSensor(),
+            ScanSensor(),
         )
     }
 )  # fmt: skip

@@ -62,12 +62,13 @@ def per_metre(area_m2: float, path_length_m: float) -> float:
     return area_m2 / path_length_m if path_length_m >= MOVED_M else 0.0
 
 
-def stayed_near(positions_m: Sequence[tuple[float, float]] | NDArray[np.float64]) -> bool:
+def stayed_near(positions_m: Sequence[tuple[float, float]] | NDArray[np.float64], every: int = 1) -> bool:
     """Returns whether the last window of positions (n, 2) stays within `TRAPPED_RADIUS_M` of its first position.
 
-    False while fewer than `TRAPPED_WINDOW_STEPS` steps were taken.
+    False while fewer than `TRAPPED_WINDOW_STEPS` actions were taken; an action takes `every` steps.
     """
-    if len(positions_m) <= TRAPPED_WINDOW_STEPS:
+    steps = every * TRAPPED_WINDOW_STEPS
+    if len(positions_m) <= steps:
         return False
-    window = np.asarray(positions_m[-TRAPPED_WINDOW_STEPS - 1 :], dtype=np.float64)
+    window = np.asarray(positions_m[-steps - 1 :: every], dtype=np.float64)
     return bool(np.hypot(*(window - window[0]).T).max() < TRAPPED_RADIUS_M)

@@ -18,7 +18,7 @@ from sim.task.config import TaskConfig
 from sim.task.failures import TARGET_ON_GOAL_M, Cause, cause_of_failure
 from sim.task.ground_truth import GroundTruth
 from sim.task.seen_floor import SeenFloor
-from sim.task.trajectory import Recorder, Trajectory
+from sim.task.trajectory import Recorder, Trajectory, by_action
 from sim.world.world import World
 
 EndReason = Literal["stop", "max_steps", "fallen"]
@@ -66,11 +66,21 @@ class Task:
         world: the compiled house with its robot.
         config: when a STOP succeeds, and the number of actions.
         camera: the robot's camera; see `GroundTruth`.
+        steps_per_action: number of steps that take as long as a discrete action. `trapped` and the causes of failures
+            look at windows of actions.
     """
 
-    def __init__(self, world: World, config: TaskConfig | None = None, *, camera: CameraModel | None = None) -> None:
+    def __init__(
+        self,
+        world: World,
+        config: TaskConfig | None = None,
+        *,
+        camera: CameraModel | None = None,
+        steps_per_action: int = 1,
+    ) -> None:
         self.world = world
         self.config = config or TaskConfig()
+        self._steps_per_action = steps_per_action
         self.truth = GroundTruth(world, success=self.config.success, camera=camera)
         self._record: _Record | None = None
 
@@ -121,7 +131,7 @@ class Task:
         record.simulated_s += motion.duration_s
         record.collisions += motion.collided
         record.touches += bool(motion.contacts) and not motion.collided
-        record.trapped = record.trapped or metrics.stayed_near(record.positions_m)
+        record.trapped = record.trapped or metrics.stayed_near(record.positions_m, self._steps_per_action)
         if action == Action.STOP:
             record.success = self.truth.succeeds_now(record.goal, pose.x_m, pose.y_m, pose.floor_z_m)
         record.distance_m = None if motion.fell else self._distance_now()
@@ -259,7 +269,7 @@ class Task:
         record, pose = self._running, self.world.pose
         record.end_reason = reason
         record.nearest_instance_m = self.truth.nearest_now_m(record.goal, pose.x_m, pose.y_m, pose.floor_z_m)
-        record.failure = cause_of_failure(self.trajectory())
+        record.failure = cause_of_failure(by_action(self.trajectory(), self._steps_per_action))
 
     @property
     def _running(self) -> _Record:

@@ -11,7 +11,7 @@ import json
 import os
 import urllib.parse
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -165,6 +165,28 @@ class Recorder:
             stop_target_to_goal_m=stop_target_to_goal_m,
             stop_target_category=stop_target_category,
         )
+
+
+def by_action(trajectory: Trajectory, steps: int) -> Trajectory:
+    """Returns a trajectory of short steps as one of actions that take `steps` of them each; the last one is whole.
+
+    A moment of the result is one of the given trajectory; what an action touched is what any of its steps did.
+    """
+    count = trajectory.num_steps
+    if steps == 1 or count == 0:
+        return trajectory
+    moments = np.unique(np.append(np.arange(count, -1, -steps), 0))
+    begins = moments[:-1]
+    return replace(
+        trajectory,
+        poses=trajectory.poses[moments],
+        goal_share=trajectory.goal_share[moments],
+        distance_m=trajectory.distance_m[moments],
+        actions=trajectory.actions[moments[1:] - 1],
+        ended=trajectory.ended[moments[1:] - 1],
+        collided=np.logical_or.reduceat(trajectory.collided, begins),
+        touched=np.logical_or.reduceat(trajectory.touched, begins),
+    )
 
 
 def trajectory_file(run: Path, episode_id: str) -> Path:

@@ -1,4 +1,4 @@
-"""Builds the viewers that the options `--video`, `--view`, `--rerun` and `--rerun-save` select."""
+"""Builds the viewers that the options `--video`, `--view`, `--rerun`, `--rerun-save` and `--mcap` select."""
 
 from __future__ import annotations
 
@@ -24,11 +24,13 @@ class ViewerOptions(Protocol):
     def rerun(self) -> bool: ...  # noqa: D102
     @property
     def rerun_save(self) -> bool: ...  # noqa: D102
+    @property
+    def mcap(self) -> bool: ...  # noqa: D102
 
 
 def any_selected(options: ViewerOptions) -> bool:
     """Returns True if there is a viewer, so that all images must be rendered."""
-    return options.video or options.view or options.rerun or options.rerun_save
+    return options.video or options.view or options.rerun or options.rerun_save or options.mcap
 
 
 def check(options: ViewerOptions) -> None:
@@ -46,6 +48,10 @@ def check(options: ViewerOptions) -> None:
         from sim.viewers import rerun_log
 
         rerun_log.require_rerun(window=options.rerun)
+    if options.mcap:
+        from sim.viewers import mcap_log
+
+        mcap_log.require_mcap()
 
 
 def make(options: ViewerOptions, painter: MapPainter | None, seen: SeesFrames | None = None) -> list[Viewer]:
@@ -73,4 +79,8 @@ def make(options: ViewerOptions, painter: MapPainter | None, seen: SeesFrames | 
         from sim.viewers.rerun_log import RerunLog
 
         viewers.append(RerunLog(options.out if options.rerun_save else None, painter))
+    if options.mcap and options.out is not None:
+        from sim.viewers.mcap_log import McapLog
+
+        viewers.append(McapLog(options.out))
     return viewers

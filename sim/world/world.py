@@ -17,6 +17,7 @@ from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import RobotConfig
 from sim.robot.contacts import ContactLog
 from sim.robot.drive import Driver, Motion
+from sim.robot.velocity import Velocity, VelocityDrive
 from sim.world.compile import compile_world
 from sim.world.storeys import floor_geoms, floor_levels
 from sim.world.support import FloorSupport
@@ -50,6 +51,7 @@ class World:
         self._body = Body.find(self.model, self.data)
         log = ContactLog(self.model, self.data, self.labels, self._body)
         self._driver = Driver(self.config, self.model, self.data, self._body, log)
+        self._velocity_drive = VelocityDrive(self.config, self.model, self.data, self._body, log)
         self._levels_m = floor_levels(self.model, self.labels)
         self._floors = floor_geoms(self.model, self.labels)
         self._support = FloorSupport(self.model, self.data, self._floors, self.config)
@@ -86,6 +88,7 @@ class World:
         if not any(not geoms.isdisjoint(self._wheels) for geoms, _ in self._contacts()):
             raise EpisodeError(f"{self._describe(start)}: there is no floor at z = {start.floor_z_m:.2f} m.")
         self._driver.reset(start.yaw_rad, conditions)
+        self._velocity_drive.reset()
 
     def move(self, action: Action) -> Motion:
         """Performs one action in physics, from rest to rest. STOP is a motion of zero.
@@ -98,9 +101,20 @@ class World:
             PhysicsError: NaN, an unstable state, or a robot that tipped over without an edge.
         """
         z_before = self._body.z_m
-        motion = self._driver.run(Action(action))
+        return self._checked(self._driver.run(Action(action)), z_before)
+
+    def hold(self, command: Velocity, period_s: float) -> Motion:
+        """Holds a velocity for a period (`sim.robot.velocity`); the robot need not be at rest before or after.
+
+        `fell` and errors are those of `move`. An episode is driven either by `move` or by `hold`.
+        """
+        z_before = self._body.z_m
+        return self._checked(self._velocity_drive.run(command, period_s), z_before)
+
+    def _checked(self, motion: Motion, z_before: float) -> Motion:
+        """Returns the motion, with `fell` set; see `move`."""
         self._require_finite()
-        if action != Action.STOP and self._has_fallen(z_before):
+        if motion.action != Action.STOP and self._has_fallen(z_before):
             return replace(motion, fell=True)
         self._require_upright()
         return motion

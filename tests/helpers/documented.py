@@ -424,6 +424,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     f"{_RUN} --view --episodes 2": Only("needs a display; tests/sim/test_live.py plays without one"),
     f"{_RUN} --rerun-save --out runs/logged": Only("needs the extra rerun; tests/sim/test_live.py where it is there"),
+    f"{_RUN} --mcap --out runs/ros": (f"{_RUN} --agent oracle {_SMALL} --mcap --episodes 1 --out {{tmp}}/ros",),
     f"{_RUN} --rerun --episodes 2": Only("needs a display and the extra rerun"),
     "stubborn web --agent examples.my_agent:AGENT --house examples/my_house.xml": Only(
         "serves until it is interrupted; tests/sim/web/test_choices.py chooses an agent and a house so"

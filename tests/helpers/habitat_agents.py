@@ -43,6 +43,14 @@ class Configured(Wanderer):
         self.task_config, self.distance = task_config, distance
 
 
+class Placed(Wanderer):
+    """Takes its arguments by their places."""
+
+    def __init__(self, first: int = 1, second: int = 2, /) -> None:
+        super().__init__()
+        self.first, self.second = first, second
+
+
 class NoAgent:
     """Lacks `act`."""
 

@@ -223,6 +223,8 @@ def _values(
         elif value is None and required:
             missing.append(argument.name)
         if value is None or (not required and value == _shown(argument)):
+            if argument.kind is inspect.Parameter.POSITIONAL_ONLY and not required:
+                positional.append(argument.default)  # later ones keep their places
             continue
         if argument.kind is inspect.Parameter.POSITIONAL_ONLY:
             positional.append(value)

@@ -42,6 +42,8 @@ class Benchmark:
     def evaluate(self, agent: Any, num_episodes: int | None = None) -> dict[str, float]:
         """Runs the agent and returns the mean of each metric; `collisions` gives `collisions/count` and so on.
 
+        Each call begins with the first episode, so that agents are compared on the same ones.
+
         Args:
             agent: an object with `reset()` and `act(observations)`.
             num_episodes: number of episodes; None: all.
@@ -51,6 +53,7 @@ class Benchmark:
         if not 1 <= count <= env.number_of_episodes:
             raise ConfigError(f"num_episodes must be 1 to {env.number_of_episodes}, got {num_episodes}.")
         sums: dict[str, float] = {}
+        env.rewind()
         for _ in range(count):
             observations = env.reset()
             agent.reset()

@@ -17,7 +17,7 @@ from sim.bridges.habitat.episodes import ObjectGoalNavEpisode, to_habitat
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes import habitat
 from sim.episodes.splits import Episode
-from sim.errors import AgentError, ConfigError
+from sim.errors import AgentError, ConfigError, EpisodeError
 from sim.evaluation.rollout import episode_seed
 from sim.interface import Action, CameraModel
 
@@ -106,6 +106,10 @@ class Env:
         """Whether the episode has ended, so that `reset` must be called next."""
         return self._over
 
+    def rewind(self) -> None:
+        """Makes the next `reset` start the first episode."""
+        self._number = -1
+
     def reset(self) -> Observations:
         """Starts the next episode and returns its observations."""
         self._number = (self._number + 1) % len(self._listed)
@@ -127,8 +131,14 @@ class Env:
         return self._conversion.observations(observation)
 
     def get_metrics(self) -> dict[str, Any]:
-        """Returns the metrics so far, with Habitat's names (see the class)."""
+        """Returns the metrics so far, with Habitat's names (see the class).
+
+        Raises:
+            EpisodeError: no episode has begun.
+        """
         info = self._info
+        if not info:
+            raise EpisodeError("get_metrics needs an episode: call reset first.")
         distance_m = info["distance_to_goal"]
         return {
             "distance_to_goal": math.inf if distance_m is None else float(distance_m),
@@ -224,8 +234,23 @@ def _camera(given: dict[str, Any]) -> CameraModel:
     if "hfov_deg" in given:
         fields["hfov_rad"] = math.radians(given.pop("hfov_deg"))
     if "position" in given:
-        fields["height_m"] = given.pop("position")[1]
+        fields["height_m"] = _height_m(given.pop("position"))
     camera = given.pop("camera", None)
     if isinstance(camera, CameraModel):
         return camera
     return CameraModel(**fields | dict(camera or {}))
+
+
+def _height_m(position: Any) -> float:
+    """Returns the height of a camera of Habitat's from its position: right, up and back, metres.
+
+    Raises:
+        ConfigError: it is something else, or not on the robot's axis.
+    """
+    try:
+        right_m, up_m, back_m = map(float, position)
+    except (TypeError, ValueError):
+        raise ConfigError(f"POSITION of a camera is [0, height, 0] in metres, got {position!r}.") from None
+    if right_m or back_m:
+        raise ConfigError(f"POSITION of a camera must lie on the robot's axis, [0, height, 0], got {position!r}.")
+    return up_m

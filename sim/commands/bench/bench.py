@@ -22,7 +22,18 @@ from rich.console import Console
 
 from sim import cli
 from sim.analysis import display
-from sim.commands.bench import bridged, growth, learning, making, rendering, report, scaling, starting, stepping
+from sim.commands.bench import (
+    bridged,
+    driving,
+    growth,
+    learning,
+    making,
+    rendering,
+    report,
+    scaling,
+    starting,
+    stepping,
+)
 from sim.commands.bench.calibration import Calibration, Calibrator
 from sim.commands.bench.figures import Figure
 from sim.commands.bench.stages import QUICK, Amount, Setting
@@ -41,6 +52,8 @@ PARTS: Mapping[str, Callable[[Setting], list[Figure]]] = {
     "j": learning.steps_of_training,
     "k": starting.starts,
     "l": bridged.agent_in_a_process,
+    "m": driving.velocities,
+    "n": driving.lidar,
 }
 MAX_DRIFT = 1.15
 """A calibration that changes by a larger factor between two parts gives a warning."""
@@ -53,7 +66,7 @@ class Args:
     parts: str = ",".join(PARTS)
     """Letters of parts, separated by commas: a, b rendering; c the environment's step; d the agent's step; e episodes;
     f views; g houses; h workers; i growth; j steps of a training; k starts;
-    l an agent in a process of its own."""
+    l an agent in a process of its own; m velocities; n the lidar."""
     quick: bool = False
     """Measure as little as possible, to test that everything runs."""
     out: cli.OutFile | None = None

@@ -1,17 +1,19 @@
-"""Part (l): the time by which a process of its own (`--agent process:COMMAND`) lengthens a step of an agent."""
+"""Part (l): an agent in a process of its own (`--agent process:COMMAND`): time of a step, and steps per second."""
 
 from __future__ import annotations
 
 import sys
 import time
+from typing import Any
 
 import numpy as np
 
 from sim.bridges.process import ProcessAgent
 from sim.bridges.process_command import ProcessConfig
 from sim.commands.bench.figures import Figure, Goal, timed
-from sim.commands.bench.stages import Setting
-from sim.interface import CameraModel, Observation, RobotModel, SuccessRule
+from sim.commands.bench.stages import Rig, Setting
+from sim.env.objectnav import ObjectNavEnv
+from sim.interface import Action, Agent, CameraModel, Observation, RobotModel, SuccessRule
 
 MOST_MS = 2.0
 """Largest median time of a step at 640 x 480 with RGB and depth that the benchmark accepts."""
@@ -36,7 +38,7 @@ def agent_in_a_process(setting: Setting) -> list[Figure]:
         "compass": np.zeros(1, np.float32),
         "objectgoal": np.zeros(1, np.int64),
     }
-    parts = {"camera": camera, "robot": RobotModel(), "success": SuccessRule(), "max_steps": 500}
+    parts: dict[str, Any] = {"camera": camera, "robot": RobotModel(), "success": SuccessRule(), "max_steps": 500}
     agent = ProcessAgent([sys.executable, "-c", _AGENT], **parts, config=ProcessConfig())
     copies = [timed(lambda: {name: each.copy() for name, each in observation.items()}) for _ in range(20)]
     steps = min(500, setting.amount.steps)
@@ -52,7 +54,39 @@ def agent_in_a_process(setting: Setting) -> list[Figure]:
         )  # fmt: skip
         agent.share_no_memory()
     agent.close()
-    return figures
+    return [*figures, _steps_per_second(parts, min(300, setting.amount.steps))]
+
+
+class Turner:
+    """The same agent in this process."""
+
+    def reset(self, goal: str, seed: int) -> None:
+        """Does nothing."""
+
+    def act(self, observation: Observation) -> Action:
+        """Turns left."""
+        return Action.TURN_LEFT
+
+
+def _steps_per_second(parts: dict[str, Any], steps: int) -> Figure:
+    """Returns the steps per second with an agent in another process, against the same agent in this one."""
+    there, ms = ProcessAgent([sys.executable, "-c", _AGENT], **parts, config=ProcessConfig()), {}
+    agents: dict[str, Agent] = {"there": there, "here": Turner()}
+    rigs = {}
+    for name, agent in agents.items():
+        env = ObjectNavEnv(sensors=("rgb", "depth"))
+        rigs[name], ms[name] = Rig(env, agent, env.split.episodes), 0.0
+    for _ in range(steps):
+        for name, rig in rigs.items():
+            ms[name] += sum(rig.step())
+    there.close()
+    for rig in rigs.values():
+        rig.env.close()
+    rate, baseline = (1e3 * steps / ms[name] for name in ("there", "here"))
+    return Figure(
+        part="l", what="steps a second, RGB and depth, in a process of its own", value=rate, unit="/s",
+        against="in this process", baseline=baseline, ratio=rate / baseline, count=steps,
+    )  # fmt: skip
 
 
 def _steps_ms(agent: ProcessAgent, observation: Observation, steps: int) -> list[float]:

@@ -23,7 +23,7 @@ from sim.configuration import with_fields
 from sim.errors import AgentError, ConfigError
 from sim.interface import GOAL_CATEGORIES, Action, AgentSpec, CameraModel, RobotModel, SuccessRule
 from sim.run import entry
-from tests.helpers.habitat_agents import Configured, NoAgent, Wanderer, arguments
+from tests.helpers.habitat_agents import Configured, NoAgent, Placed, Wanderer, arguments
 
 CAMERA = CameraModel(width_px=4, height_px=3)
 SMALL = ("camera.width_px=64", "camera.height_px=48")
@@ -144,6 +144,11 @@ def test_arguments_of_the_constructor_are_fields_of_the_configuration() -> None:
         build(Wanderer, stop_afte=7)
     with pytest.raises(ConfigError, match="'stop_after' cannot be 'x'"):
         build(Wanderer, stop_after="x")
+
+
+def test_arguments_by_place_keep_their_places() -> None:
+    agent = build(Placed, second=5).agent
+    assert (agent.first, agent.second) == (1, 5)
 
 
 def test_a_required_configuration_is_that_of_the_run_and_other_required_arguments_are_asked_for() -> None:

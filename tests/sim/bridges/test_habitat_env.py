@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -176,6 +177,35 @@ def test_a_benchmark_returns_the_mean_of_each_metric(house: Path) -> None:
         benchmark.evaluate(Wanderer(), num_episodes=3)
     with pytest.raises(ConfigError, match="no evaluation server"):
         Challenge(eval_remote=True)
+
+
+def test_two_agents_of_a_benchmark_are_measured_on_the_same_episodes(
+    house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    benchmark = Benchmark(None, house=house, episodes=3, camera=SMALL)
+    begun: list[str] = []
+    reset = Env.reset
+
+    def noted(env: Env) -> Any:
+        observations = reset(env)
+        begun.append(env.current_episode.episode_id)
+        return observations
+
+    monkeypatch.setattr(Env, "reset", noted)
+    for _ in range(2):
+        benchmark.evaluate(Wanderer(stop_after=0), num_episodes=2)
+    assert begun[:2] == begun[2:]
+
+
+def test_metrics_before_the_first_episode_are_refused(env: Env) -> None:
+    with pytest.raises(EpisodeError, match="call reset first"):
+        env.get_metrics()
+
+
+@pytest.mark.parametrize("position", [0.9, [0.1, 0.9, 0], [0.9], "high"])
+def test_a_camera_off_the_axis_is_refused(house: Path, position: Any) -> None:
+    with pytest.raises(ConfigError, match="POSITION of a camera"):
+        Env(house=house, position=position)
 
 
 def test_a_configuration_file_of_either_layout_sets_split_steps_and_camera(tmp_path: Path) -> None:

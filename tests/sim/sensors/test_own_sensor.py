@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sim.env.objectnav import ObjectNavEnv
 from sim.geometry.pose import Pose
-from sim.interface import POSE_SENSORS, SENSORS, Action, CameraModel, ConfigError, reads_truth
+from sim.interface import POSE_SENSORS, SCAN, SENSORS, Action, CameraModel, ConfigError, reads_truth
 from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.sensor import NoiseSettings, SensorContext
 from sim.sensors.standard import STANDARD_SENSORS, DepthSensor, resolve_sensors
@@ -128,7 +128,7 @@ def observations(house: Path, actions: list[Action], **options) -> list[dict[str
 
 
 def test_the_standard_sensors_are_those_of_the_interface() -> None:
-    assert tuple(STANDARD_SENSORS) == SENSORS + POSE_SENSORS
+    assert tuple(STANDARD_SENSORS) == (*SENSORS, *POSE_SENSORS, SCAN)
 
 
 @pytest.mark.filterwarnings("error")

@@ -146,7 +146,8 @@ def test_view_without_a_display_gives_one_clear_line(monkeypatch: pytest.MonkeyP
 
 def options(**given: Any) -> Any:
     return SimpleNamespace(
-        **{"out": None, "workers": 1, "video": False, "view": False, "rerun": False, "rerun_save": False} | given
+        **{"out": None, "workers": 1, "video": False, "view": False, "rerun": False, "rerun_save": False, "mcap": False}
+        | given
     )
 
 

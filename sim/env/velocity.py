@@ -1,0 +1,90 @@
+"""ObjectNav driven by velocities, as a real base is: the same task, sensors, metrics and splits as `ObjectNavEnv`."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from sim.env.objectnav import ObjectNavEnv
+from sim.errors import ConfigError
+from sim.interface import MAX_STEPS, Action
+from sim.robot.velocity import Velocity
+
+ACTION_S = 1.2
+"""Duration of the longest discrete action, a forward from rest to rest. Windows of `n` actions in the metrics are `n`
+times as long."""
+
+
+class ObjectNavVelocityEnv(ObjectNavEnv):
+    """`ObjectNavEnv` with velocities in place of discrete actions.
+
+    ## Actions
+    `Box(3)`, float32: forward speed (m/s), turn rate (rad/s, counter-clockwise), and STOP if the third number is above
+    0.5. Speeds are held for `period_s`; the limits of speed and acceleration are those of the robot's drive, by default
+    0.5 m/s, 1.8 rad/s, 1 m/s2 and 6 rad/s2. Numbers outside of the space are clipped. STOP counts where the robot is.
+
+    ## Observations, reward, info
+    As `ObjectNavEnv`; a step is one period, also in `num_steps` and `first_seen_step`. `info` also has `time_s`, the
+    simulated time since the start, and `blocked`: a contact blocks the robot. `collided` is true only in the period in
+    which a contact begins to block; `collisions` counts these. The window of 100 actions of `trapped` is 120 s.
+
+    ## End
+    `terminated` at STOP and at a fall, `truncated` after `time_limit_s` (`end_reason` is `max_steps`).
+
+    Args:
+        period_s: time for which a command is held, a whole multiple of the tick of the drive (20 ms).
+        time_limit_s: simulated time of an episode; the default is what 500 discrete actions take at most.
+        options: those of `ObjectNavEnv`, except for `max_steps`.
+
+    Raises:
+        ConfigError: see `ObjectNavEnv`; or a period, a limit or an action that is not allowed.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 - declared by Gymnasium
+
+    def __init__(self, *, period_s: float = 0.1, time_limit_s: float = MAX_STEPS * ACTION_S, **options: Any) -> None:
+        if options.get("max_steps") is not None:
+            raise ConfigError("The limit of an episode driven by velocities is time_limit_s, in place of max_steps.")
+        if not 0.0 < period_s <= ACTION_S:
+            raise ConfigError(f"period_s must lie in (0, {ACTION_S}] s, got {period_s}.")
+        if not period_s <= time_limit_s < math.inf:
+            raise ConfigError(f"time_limit_s must be finite and at least period_s = {period_s} s, got {time_limit_s}.")
+        self.period_s, self.time_limit_s = period_s, time_limit_s
+        super().__init__(**options, max_steps=math.ceil(time_limit_s / period_s - 1e-6))
+        self._steps_per_action = max(1, round(ACTION_S / period_s))
+        drive = self._robot.drive
+        ticks = period_s / drive.tick_s
+        if abs(ticks - round(ticks)) > 1e-6:
+            raise ConfigError(f"period_s must be a whole multiple of {drive.tick_s} s, got {period_s}.")
+        high = np.array([drive.speed_m_s, drive.turn_speed_rad_s, 1.0], np.float32)
+        self.action_space = spaces.Box(high * np.array([-1.0, -1.0, 0.0], np.float32), high)
+
+    def step(self, action: Any) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
+        """Holds one command for a period; see the class."""
+        self.scene.task.require_running()
+        speed_m_s, rate_rad_s, stop = self._clipped(action)
+        if stop > 0.5:
+            return self._outcome(self.scene.world.move(Action.STOP))
+        return self._outcome(self.scene.world.hold(Velocity(speed_m_s, rate_rad_s), self.period_s))
+
+    def _clipped(self, action: Any) -> tuple[float, float, float]:
+        """Returns speed, turn rate and STOP, within the space."""
+        given = np.asarray(action, np.float64)
+        if given.shape != (3,) or not np.isfinite(given).all():
+            raise ConfigError(
+                f"An action is three finite numbers: m/s forward, rad/s to the left, and STOP above 0.5; got "
+                f"{action!r}."
+            )
+        space = self.action_space
+        assert isinstance(space, spaces.Box)
+        speed_m_s, rate_rad_s, stop = np.clip(given, space.low, space.high).tolist()
+        return speed_m_s, rate_rad_s, stop
+
+    def _info(self, collided: bool) -> dict[str, Any]:
+        info, motion = super()._info(collided), self.motion
+        blocked = motion is not None and motion.ended == "blocked"
+        return info | {"time_s": info["num_steps"] * self.period_s, "blocked": blocked}
