@@ -33,5 +33,5 @@ class Blocking:
         self._moved.append(moved)
         if len(self._moved) <= self._ticks:
             return False
-        pushing = sum(self._commanded[-self._ticks :]) >= self._pushing * self._ticks
+        pushing = min(self._commanded[-self._ticks :]) >= self._pushing
         return pushing and self._moved[-1] - self._moved[-1 - self._ticks] < self._least

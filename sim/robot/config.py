@@ -131,11 +131,11 @@ class DriveConfig:
     acceleration_m_s2: float = 1.0
     turn_speed_rad_s: float = 1.8
     turn_acceleration_rad_s2: float = 6.0
-    lookahead_s: float = 0.023
+    lookahead_s: float = 0.025
     """The planned speed is taken this far ahead of the current time: half a tick and the lag of the motors."""
-    position_gain_1_s: float = 9.0
+    position_gain_1_s: float = 6.0
     """Speed per metre behind the profile."""
-    heading_gain_1_s: float = 9.0
+    heading_gain_1_s: float = 6.0
     """Turn rate per radian of heading error."""
     blocked_s: float = 0.2
     """A motion is blocked when the motors have pushed for this long ..."""
@@ -148,9 +148,9 @@ class DriveConfig:
     tipping_force_n: float = 5.0
     """... and its hull pushes sideways more than this: it is about to tip over at a table top."""
     pushing_m_s: float = 0.05
-    """Motors push when the mean of their commanded speed is at least this ..."""
+    """Motors push while their commanded speed is at least this ..."""
     pushing_rad_s: float = 0.15
-    """... or their mean commanded turn rate is."""
+    """... or their commanded turn rate is."""
     push_share: float = 0.75
     """Largest share of the force of the motors that pushes an object; the rest keeps the heading."""
     gyro: bool = True

@@ -121,12 +121,14 @@ class Driver:
     def _forward(self) -> Ended:
         """Drives ahead along the heading reference."""
         drive, odometry = self._drive, self._odometry
-        profile = Trapezoid(drive.forward_m, drive.speed_m_s, drive.acceleration_m_s2)
+        # A motion ends when it comes within its tolerance from below.
+        aim_m = drive.forward_m + 0.5 * drive.position_tolerance_m
+        profile = Trapezoid(aim_m, drive.speed_m_s, drive.acceleration_m_s2)
         blocking, moved_m = Blocking(drive, turning=False), self._true_progress()
-        remaining_m = self._remaining(drive.forward_m)
+        remaining_m = self._remaining(aim_m)
         for tick in range(math.ceil((profile.duration_s + drive.timeout_s) / self._tick_s)):
             time_s = tick * self._tick_s
-            lag = remaining_m() - (drive.forward_m - profile.distance(time_s))
+            lag = remaining_m() - (aim_m - profile.distance(time_s))
             heading_error = wrap_angle(self._reference - odometry.yaw_rad)
             if time_s >= profile.duration_s and self._at_rest(lag, heading_error, time_s - profile.duration_s):
                 return "reached"

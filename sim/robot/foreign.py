@@ -26,7 +26,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from sim.interface import CameraModel, ConfigError
+from sim.interface import CLIMB_M, CameraModel, ConfigError
 from sim.reading import read_bytes, read_json
 from sim.robot.config import BodyConfig, RobotConfig, RobotFile, WheelConfig
 from sim.robot.measurement import RobotMeasurements, measure
@@ -41,6 +41,8 @@ MIN_CLEARANCE_M = 0.005
 """Least distance between the body's skin and the floor, so that the body does not rub on the floor."""
 WHEEL_MASS_SHARE = 0.01
 """Share of the robot's mass that is declared for each wheel; the simulated masses are those of the file."""
+CLIMBED_SHARE = 0.18
+"""Height that a wheel climbs from rest with friction 0.7, relative to its radius."""
 CASTER_OFFSET_SHARE = 0.8
 """Declared distance of the casters from the centre, relative to the body's radius."""
 
@@ -79,6 +81,7 @@ def _robot_config(path: Path, sidecar: dict[str, Any]) -> RobotConfig:
     wheels = _wheels(measured, wheel_radius_m, body)
     return RobotConfig(
         base="planar",
+        climb_m=_climb_m(body, wheels),
         body=body,
         wheels=wheels,
         file=file,
@@ -127,6 +130,11 @@ def _body(sidecar: dict[str, Any], measured: RobotMeasurements) -> BodyConfig:
         mass_kg=measured.mass_kg,
         com_height_m=measured.com_height_m,
     )
+
+
+def _climb_m(body: BodyConfig, wheels: WheelConfig) -> float:
+    """Returns the height of the highest edge that the robot climbs, at most that of the default robot."""
+    return min(CLIMB_M, CLIMBED_SHARE * wheels.radius_m, body.clearance_m)
 
 
 def _camera(sidecar: dict[str, Any]) -> CameraModel:
