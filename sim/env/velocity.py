@@ -28,9 +28,9 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
     0.5 m/s, 1.8 rad/s, 1 m/s2 and 6 rad/s2. Numbers outside of the space are clipped. STOP counts where the robot is.
 
     ## Observations, reward, info
-    As `ObjectNavEnv`; a step is one period, also in `num_steps` and `first_seen_step`. `info` also has `time_s`, the
-    simulated time since the start, and `blocked`: a contact blocks the robot. `collided` is true only in the period in
-    which a contact begins to block; `collisions` counts these. The window of 100 actions of `trapped` is 120 s.
+    As `ObjectNavEnv`; a step is one period, also in `num_steps` and `first_seen_step`. `info` also has `simulated_s`,
+    the time since the start, and `blocked`: a contact blocks the robot. `collided` is true only in the period in which
+    a contact begins to block; `collisions` counts these. The window of 100 actions of `trapped` is 120 s.
 
     ## End
     `terminated` at STOP and at a fall, `truncated` after `time_limit_s` (`end_reason` is `max_steps`).
@@ -87,4 +87,4 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
     def _info(self, collided: bool) -> dict[str, Any]:
         info, motion = super()._info(collided), self.motion
         blocked = motion is not None and motion.ended == "blocked"
-        return info | {"time_s": info["num_steps"] * self.period_s, "blocked": blocked}
+        return info | {"simulated_s": info["num_steps"] * self.period_s, "blocked": blocked}

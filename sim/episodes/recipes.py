@@ -7,6 +7,7 @@
 | hazards | 30 | `hazard` | 2 to 30 |
 | train | 10 | `any` | 2 to 30 |
 | traps | 3 | `any` | the start of the sidecar with three headings |
+| contact-val, contact-test, contact-heldout | 1 | `any` | the start of the sidecar |
 """
 
 from __future__ import annotations
@@ -64,6 +65,7 @@ EPISODE_RECIPES: Mapping[str, EpisodeRecipe] = MappingProxyType(
         "hazards": EpisodeRecipe(per_house=30, rule="hazard"),
         "train": EpisodeRecipe(per_house=10, view_points=2),
         "traps": EpisodeRecipe(per_house=3, turns_rad=START_TURNS_RAD),
+        **dict.fromkeys(("contact-val", "contact-test", "contact-heldout"), EpisodeRecipe(per_house=1, view_points=2)),
     }
 )
 """Recipes by name of the split."""

@@ -1,10 +1,13 @@
-"""Reads and writes `<name>.json` next to `<name>.xml`: the start, goal and sensor noise that a scene prescribes."""
+"""Reads and writes `<name>.json` next to `<name>.xml`: the start, goal and sensor noise that a scene prescribes.
+
+For a trap of a family it also holds the family's parameters and the shortest paths.
+"""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
@@ -14,7 +17,33 @@ from sim.errors import HouseError
 from sim.files import write_atomically
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES
-from sim.reading import Metres, read_json
+from sim.reading import Count, Metres, Name, read_json
+
+Parameter = float | int | str
+"""Value of a parameter of a trap."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrapFacts:
+    """The family, difficulty and parameters of a trap of `stubborn traps --family`, and its shortest paths."""
+
+    family: str
+    difficulty: str
+    seed: int
+    parameters: Mapping[str, Parameter]
+    """Parameters of the family, as `sim.housegen.traps.families` names them."""
+    gap_m: float
+    """Width of the narrowest passage of the route to the goal."""
+    hidden_length_m: float
+    """Total length in plan of what is hidden: of panes, stools, sills, rows of legs, or of a drop."""
+    hidden_objects: int
+    """Number of hidden geoms."""
+    shortest_path_m: float
+    """Geodesic distance from the start to the nearest place where a STOP succeeds."""
+    open_path_m: float
+    """The same distance without what is hidden."""
+    fewest_actions: int
+    """Number of turns and forwards of a route that a breadth-first search over poses found."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +58,8 @@ class Sidecar:
     """Purpose of the scene, in one line."""
     zone_m: tuple[float, float, float, float] | None = None
     """x0, y0, x1, y1 of the trap: steps inside it count as steps in the trap."""
+    trap: TrapFacts | None = None
+    """None: the scene is of no family."""
 
 
 EMPTY_SIDECAR = Sidecar()
@@ -41,6 +72,19 @@ class _Start(msgspec.Struct, forbid_unknown_fields=True):
     floor_z_m: Metres = 0.0
 
 
+class _Trap(msgspec.Struct, forbid_unknown_fields=True):
+    family: Name
+    difficulty: Name
+    seed: Count
+    parameters: dict[Name, float | int | Name]
+    gap_m: Metres
+    hidden_length_m: Metres
+    hidden_objects: Count
+    shortest_path_m: Metres
+    open_path_m: Metres
+    fewest_actions: Count
+
+
 class _Content(msgspec.Struct, forbid_unknown_fields=True):
     """The file."""
 
@@ -49,6 +93,7 @@ class _Content(msgspec.Struct, forbid_unknown_fields=True):
     start: _Start | None = None
     zone_m: tuple[Metres, Metres, Metres, Metres] | None = None
     noise: dict[str, Any] | None = None
+    trap: _Trap | None = None
 
 
 def sidecar_path(house_file: Path) -> Path:
@@ -73,6 +118,7 @@ def read_sidecar(house_file: Path) -> Sidecar:
         noise=content.noise or {},
         reason=content.reason,
         zone_m=None if content.zone_m is None else (x0, y0, x1, y1),
+        trap=None if content.trap is None else TrapFacts(**msgspec.structs.asdict(content.trap)),
     )
 
 
@@ -88,5 +134,7 @@ def write_sidecar(house_file: Path, sidecar: Sidecar) -> None:
         content["zone_m"] = list(sidecar.zone_m)
     if sidecar.noise:
         content["noise"] = dict(sidecar.noise)
+    if sidecar.trap is not None:
+        content["trap"] = {**asdict(sidecar.trap), "parameters": dict(sidecar.trap.parameters)}
     text = json.dumps(content, indent=2, allow_nan=False)
     write_atomically(sidecar_path(house_file), text + "\n")

@@ -105,6 +105,7 @@ class VelocityDrive:
             side = math.copysign(1.0, command.speed_m_s) if command.pushes_forward else 0.0
             direction = side * math.cos(yaw), side * math.sin(yaw)
             contacts = self._log.contacts_of_aborted(self._tick_s, ticks - self._touch_ticks, direction)
+            self._blocked = self._blocked and any(contact.stopped for contact in contacts)  # else wheels that spin
         return Motion(
             action=command.nearest_action,
             displacement_m=math.hypot(x - x0, y - y0),

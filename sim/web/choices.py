@@ -23,9 +23,9 @@ from sim.interface import GOAL_CATEGORIES
 from sim.reading import convert
 from sim.web.controls import Driver, EpisodeRequest
 
-NOT_OFFERED = ("test",)
+NOT_OFFERED = ("test", "contact-test", "contact-heldout")
 """Splits that are kept for a last measurement; the page offers them only if `--split` names them."""
-FIRST = ("val", "large", "hazards", "traps")
+FIRST = ("val", "large", "hazards", "traps", "contact-val")
 """The splits that the page lists first."""
 Goals = Mapping[str, Mapping[str, list[str]]]
 """The ids of the episodes by house and goal; the lists of a house file are empty, because its episodes are drawn."""

@@ -181,6 +181,10 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--split nowhere", "Unknown split"),
         ("--split val", "fitted on 'val'"),
     ],
+    "sim.commands.traps.make": [
+        ("--out OUT --family glass", "pane_gap"),
+        ("--out OUT --split contact", "contact-val"),
+    ],
     "sim.commands.traps.report": [
         ("--out OUT --split nowhere", "Unknown split"),
         ("--out OUT --agents nobody", "nobody"),

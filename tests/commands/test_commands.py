@@ -19,6 +19,7 @@ from sim.commands.main import COMMANDS
 from sim.episodes.splits import load_split, shipped_splits
 from sim.housegen.splits.house_list import house_bytes
 from sim.housegen.splits.recipes import SPLIT_VERSION, SPLITS
+from sim.housegen.traps.families.contact_splits import CONTACT_SPLITS
 from sim.interface import ConfigError
 from tests.helpers import documented
 from tests.helpers.documented import PYTHON, TRIALS, Only
@@ -53,7 +54,7 @@ def test_a_listed_train_house_comes_out_as_listed(number: int) -> None:
     assert hashlib.sha256(house_bytes(houses.recipes[name])).hexdigest() == houses.sha256[name]
 
 
-@pytest.mark.parametrize("split", ["val", "test", "large", "hazards", "train", "traps"])
+@pytest.mark.parametrize("split", ["val", "test", "large", "hazards", "train", "traps", *CONTACT_SPLITS])
 def test_a_shipped_split_carries_the_one_version(split: str) -> None:
     assert split in shipped_splits()
     assert load_split(split).version == SPLIT_VERSION

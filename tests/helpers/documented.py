@@ -572,8 +572,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn bench --parts a,b,d --out runs/bench.json": Only(
         "takes minutes; tests/commands/test_bench.py runs its parts"
     ),
-    "stubborn traps report --out runs/traps --agents stubborn --headings 1": (
-        "stubborn traps report --out {tmp}/traps --agents stubborn --traps glass_maze --headings 1",
+    "stubborn traps --family pane_gap --difficulty hard --seed 10 --out runs/panes": (
+        "stubborn traps --family pane_gap --difficulty hard --seed 10 --out {tmp}/panes",
+    ),
+    "stubborn traps report --split contact-val --agents oracle stubborn --out runs/contact": (
+        "stubborn traps report --split contact-val --agents oracle --traps jam_easy_00 --no-pictures --out {tmp}/out",
     ),
 }
 """Each documented command: the commands to try, the last of them the same tool with the same options, or why not.

@@ -16,7 +16,7 @@ from sim.errors import HouseError
 from sim.geometry.pose import Pose
 from sim.housegen.traps.catalogue import TRAPS
 from sim.houses.load import load_house
-from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, write_sidecar
+from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, TrapFacts, read_sidecar, write_sidecar
 from sim.interface import MPCAT40_ID
 from sim.paths import assets_dir
 from tests.helpers.sampling import sample
@@ -74,6 +74,18 @@ def test_writing_and_reading_a_sidecar_is_identity(tmp_path):
         noise={"depth": {"hole_share": 1.0}},
         reason="why",
         zone_m=(0.0, 1.0, 2.0, 3.0),
+        trap=TrapFacts(
+            family="pane_gap",
+            difficulty="hard",
+            seed=3,
+            parameters={"gap_m": 0.5, "rows": 2},
+            gap_m=0.5,
+            hidden_length_m=3.0,
+            hidden_objects=2,
+            shortest_path_m=5.0,
+            open_path_m=4.0,
+            fewest_actions=20,
+        ),
     )
     write_sidecar(tmp_path / "a.xml", sidecar)
     assert read_sidecar(tmp_path / "a.xml") == sidecar

@@ -57,7 +57,7 @@ and [`{TABLE_FILE}`]({TABLE_FILE}).
 | `<split>/content/<house>.json.gz` | the episodes of one house; y points up, quaternions are xyzw |
 | `<split>/{UNREACHABLE_FILE}` | the instances that the robot cannot reach; they are not goals |
 | `train/houses.json` | the recipe and the checksum of each house of `train` |
-| `traps/` | [test scenes](../../docs/traps.md) with fixed start and goal |
+| `traps/`, `contact-*/` | [traps](../../docs/traps.md) with fixed start and goal, made by `stubborn traps` |
 | `transfer_models.txt` | the names of the imported models that only the [transfer test](../../docs/furniture.md) uses |
 | `{TABLE_FILE}` | one row for each house |
 
@@ -74,6 +74,7 @@ folder.
 | `large` | houses of more than 300 m2, five of them with two storeys | 30 | 12 to 60 |
 | `hazards` | obstacles that depth misses or shows as passable | 30 | 2 to 30 |
 | `train` | training | 10 | 2 to 30 |
+| `contact-*` | traps, 30 a family: [val, test and heldout](../../docs/traps.md) | 1 | 2 to 11 |
 
 The distance is the length of the shortest path. In `large` it may be 6 m if the robot can reach only one instance, and
 no instance of the goal is visible from the start in any direction. In `hazards` the shortest path leads past a hazard

@@ -2,8 +2,11 @@
 
     stubborn traps report --out runs/traps
 
+    stubborn traps report --split contact-val --agents oracle stubborn --out runs/contact
+
 Each agent runs every trap from the start headings of the split. An interrupted run is resumed. A picture shows the trap
 from above with the robot's true path (blue) and the contacts that stopped it (red), and the agent's map at the end.
+Traps of families also get curves with intervals and a picture of each family (`sim.commands.traps.family_report`).
 """
 
 from __future__ import annotations
@@ -19,15 +22,16 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from rich.table import Table
 
 from sim import cli
 from sim.analysis import display
+from sim.commands.traps.family_report import facts_of, family_grid, require_matplotlib, write_family_report
+from sim.commands.traps.grid import grid, markdown_of, table_of
 from sim.commands.traps.picture import draw_trial
 from sim.commands.traps.trial import Trial, run_trial
 from sim.composition.agents import build_agent, find_agent
 from sim.env.objectnav import ObjectNavEnv
-from sim.episodes.splits import Episode
+from sim.episodes.splits import Episode, load_split
 from sim.files import open_to_grow, write_together
 from sim.files import write_picture as save_picture
 from sim.interface import Agent, ConfigError
@@ -41,7 +45,7 @@ from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 DEFAULT_AGENTS = ("oracle", "stubborn-i", "stubborn-ii", "stubborn-iii", "stubborn-iv", "stubborn-v")
 COLUMNS: tuple[str, ...] = (
     "trap", "episode_id", "agent", "escaped", "steps", "steps_in_trap", "collisions", "trapped", "spl",
-    "forward_mean_m", "deepest_mm",
+    "forward_mean_m", "deepest_mm", "fell",
 )  # fmt: skip
 """Columns of the CSV, which has one row for each episode."""
 
@@ -51,7 +55,7 @@ class Args:
     """Report which agent escapes from which trap: a table, and pictures of the paths."""
 
     out: cli.OutFolder
-    """Folder for results.jsonl, traps.csv, traps.md and pictures/."""
+    """Folder for results.jsonl, traps.csv, traps.md and pictures/; for traps of families also tables and curves."""
     split: str = "traps"
     """The traps: a shipped split, or a folder of yours with episodes (`stubborn episodes --recipe traps`)."""
     agents: tuple[str, ...] = DEFAULT_AGENTS
@@ -63,13 +67,16 @@ class Args:
     max_steps: cli.Count = 500
     """Largest number of actions of an episode."""
     pictures: cli.OnUnlessNo = True
-    """Do not draw paths; by default, the path of the first heading of each trap is drawn, and that of every episode in
-    which the agent did not escape."""
+    """Do not draw paths and families; by default, the path of every episode in which the agent did not escape is drawn,
+    and for traps of no family that of the first heading."""
 
 
 def main(args: Args) -> int:
     """Runs the missing episodes, then writes the table."""
     console = display.make_console()
+    facts = facts_of(load_split(args.split))
+    if facts:
+        require_matplotlib()
     results = args.out / "results.jsonl"
     found = read_lines(results, Row, what="Results")
     if found.torn:
@@ -85,8 +92,13 @@ def main(args: Args) -> int:
                 file.write(json.dumps(rows[-1]) + "\n")
             outcome = "escaped" if trial.escaped else "stuck"
             console.print(f"{name} {trial.episode_id}: {outcome} after {len(trial.motions)} steps")
-    write_together({args.out / "traps.csv": as_csv(rows), args.out / "traps.md": as_markdown(rows)})
-    console.print(as_table(rows))
+    write_together({args.out / "traps.csv": as_csv(rows), args.out / "traps.md": markdown_of(*grid(rows))})
+    write_family_report(args.out, rows, args.split, facts, pictures=args.pictures)
+    if facts:
+        of_families = [row for row in rows if row["trap"] in facts]
+        console.print(table_of("successes (95 % interval)", *family_grid(of_families, facts)))
+    else:
+        console.print(table_of("successes (steps in the trap, collisions: medians)", *grid(rows)))
     return 0
 
 
@@ -104,6 +116,7 @@ class Row(msgspec.Struct):
     spl: Number
     forward_mean_m: Number | None
     deepest_mm: Number
+    fell: bool = False
 
 
 def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:
@@ -115,12 +128,14 @@ def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:
     try:
         agent = make_agent(name, env)
         episodes = wanted(env, args)
-        firsts = {each.house: each.episode_id for each in reversed(episodes)}
+        others = {
+            each.house: each.episode_id for each in reversed(episodes) if env.split.sidecar(each.house).trap is None
+        }
         for episode in episodes:
             if episode.episode_id in done:
                 continue
             trial = run_trial(env, agent, name, episode)
-            if args.pictures and (firsts[episode.house] == episode.episode_id or not trial.escaped):
+            if args.pictures and (others.get(episode.house) == episode.episode_id or not trial.escaped):
                 write_picture(args.out / "pictures", env, agent, trial)
             yield trial
     finally:
@@ -175,6 +190,7 @@ def row_of(trial: Trial) -> dict[str, Any]:
         "spl": round(float(trial.metrics["spl"]), 3),
         "forward_mean_m": round(float(np.mean(forwards_m)), 4) if forwards_m else None,
         "deepest_mm": round(1000 * trial.deepest_m, 2),
+        "fell": trial.metrics["end_reason"] == "fallen",
     }
 
 
@@ -185,54 +201,3 @@ def as_csv(rows: Sequence[dict[str, Any]]) -> str:
     writer.writeheader()
     writer.writerows(rows)
     return stream.getvalue()
-
-
-def grid(rows: Sequence[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
-    """Returns header and lines of the table: a line for each trap, then the totals; a column for each agent."""
-    names = sorted({row["agent"] for row in rows})
-    traps = list(dict.fromkeys(row["trap"] for row in rows))
-    lines = []
-    for trap in traps:
-        cells = [[row for row in rows if (row["trap"], row["agent"]) == (trap, name)] for name in names]
-        lines.append([trap, *(_cell(cell) for cell in cells)])
-    every = [[row for row in rows if row["agent"] == name] for name in names]
-    lines.append(["**success**", *(f"**{sum(r['escaped'] for r in of)}/{len(of)}**" for of in every)])
-    for label, key in (("steps in the trap, median", "steps_in_trap"), ("collisions, median", "collisions")):
-        lines.append([label, *(f"{np.median([row[key] for row in of]):.0f}" for of in every)])
-    lines.append(["metres per forward, mean", *(f"{_forward_m(of):.2f}" for of in every)])
-    lines.append(["deepest contact, mm", *(f"{max(row['deepest_mm'] for row in of):.1f}" for of in every)])
-    return ["trap", *names], lines
-
-
-def as_markdown(rows: Sequence[dict[str, Any]]) -> str:
-    """Returns the table for docs/traps.md."""
-    header, lines = grid(rows)
-    rule = ["---", *("---:" for _ in header[1:])]
-    return "".join("| " + " | ".join(line) + " |\n" for line in (header, rule, *lines))
-
-
-def as_table(rows: Sequence[dict[str, Any]]) -> Table:
-    """Returns the table for the terminal."""
-    header, lines = grid(rows)
-    table = Table(title="successes (steps in the trap, collisions: medians)")
-    table.add_column(header[0])
-    for name in header[1:]:
-        table.add_column(name, justify="right")
-    for line in lines:
-        table.add_row(*(cell.strip("*") for cell in line))
-    return table
-
-
-def _cell(rows: Sequence[dict[str, Any]]) -> str:
-    """Returns successes out of episodes, with medians of steps in the trap and of collisions."""
-    if not rows:
-        return "-"
-    steps = np.median([row["steps_in_trap"] for row in rows])
-    collisions = np.median([row["collisions"] for row in rows])
-    return f"{sum(row['escaped'] for row in rows)}/{len(rows)} ({steps:.0f}, {collisions:.0f})"
-
-
-def _forward_m(rows: Sequence[dict[str, Any]]) -> float:
-    """Returns the mean displacement of a forward action."""
-    moved = [row["forward_mean_m"] for row in rows if row["forward_mean_m"] is not None]
-    return float(np.mean(moved)) if moved else 0.0
