@@ -24,6 +24,8 @@ from sim.interface import MPCAT40, MPCAT40_ID
 RENDERED_GROUPS = 3
 """Geoms of groups 0, 1 and 2 are rendered; those of group 3 and above are collision geoms only."""
 VOID = "void"
+ROBOT_PREFIX = "stubborn_robot/"
+"""Prefix of every name of the robot in a compiled world. No house has it; other simulators write `robot/`."""
 RULES_S = 5.0
 """Time for the label rules on all names of a house; those of a scene of 1,000 geoms take some milliseconds."""
 MAX_RULE_LETTERS = 1000
@@ -60,7 +62,7 @@ class Labels:
 
 
 def read_labels(
-    model: mujoco.MjModel, *, rules: Mapping[str, str] | None = None, ignore_prefix: str = "robot/"
+    model: mujoco.MjModel, *, rules: Mapping[str, str] | None = None, ignore_prefix: str = ROBOT_PREFIX
 ) -> Labels:
     """Returns the labels of a compiled house or world.
 

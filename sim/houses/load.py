@@ -11,7 +11,7 @@ from sim.errors import HouseError
 from sim.gl import mujoco
 from sim.houses.foreign import make_walls_solid, remove_unsupported, void_notes
 from sim.houses.house import House
-from sim.houses.labels import Labels, collidable_geoms, describe_geom, read_labels
+from sim.houses.labels import ROBOT_PREFIX, Labels, collidable_geoms, describe_geom, read_labels
 from sim.houses.light import add_light
 from sim.houses.mjcf import read_spec, require_few_contacts, require_sizes
 from sim.houses.references import require_root
@@ -98,6 +98,11 @@ def validate_house(house: House, model: mujoco.MjModel) -> Labels:
     ):
         if count:
             raise HouseError(f"a house must not have {kind}s, but this one has {kind} {_quote(elements[0].name)}.")
+    for each in (*house.spec.bodies, *house.spec.geoms, *house.spec.joints, *house.spec.sites):
+        if each.name.startswith(ROBOT_PREFIX):
+            raise HouseError(
+                f"names with the prefix '{ROBOT_PREFIX}' are the robot's, but there is {_quote(each.name)}."
+            )
     if model.nflex or model.nskin:
         raise HouseError("a house consists of geoms, but this one has a flex or a skin, which cannot be labelled.")
     for shape, kind in _NOT_CONVEX.items():

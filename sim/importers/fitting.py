@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -50,7 +50,8 @@ class Fitter:
     """Makes the items of one house; the same asset at the same kind of place is the same item."""
 
     def __init__(self, rng: np.random.Generator, pool: Pool) -> None:
-        self._rng, self._pool = rng, pool
+        self._rng = rng
+        self._pool: Pool = pool
         self._made: dict[tuple[str, Place, tuple[float, float, float]], Fitted] = {}
 
     def fit(self, asset: str, entry: Entry, size_m: tuple[float, float, float], place: Place) -> Fitted:
@@ -80,11 +81,11 @@ class Fitter:
 
     def _best(self, category: str, use: str | None, size_m: tuple[float, float, float]) -> tuple[Item, float]:
         """Returns the item, of those drawn, that needs the least stretching, and its largest factor."""
-        hints = {**_HINTS.get(category, {}), **({} if use is None else {"use": use})}
+        hints: dict[str, Any] = {**_HINTS.get(category, {}), **({} if use is None else {"use": use})}
         found: list[tuple[float, int, Item]] = []
         for number in range(DRAWS):
             item = CATALOGUE.make_item(category, self._rng, pool=self._pool, **hints)
-            asked = {
+            asked: dict[str, Any] = {
                 name: float(np.clip(new, HINT_RANGE[0] * old, HINT_RANGE[1] * old))
                 for name, new, old in zip(("depth_m", "width_m", "height_m"), size_m, item.size_m, strict=True)
             }

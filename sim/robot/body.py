@@ -26,11 +26,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.gl import mujoco
-from sim.houses.labels import geoms_of
+from sim.houses.labels import ROBOT_PREFIX, geoms_of
 from sim.interface import wrap_angle
 from sim.robot.config import RobotConfig
 
-PREFIX = "robot/"
+PREFIX = ROBOT_PREFIX
 """Prefix of every name of the robot in a compiled world."""
 ROBOT_GROUP = 5
 """Geom group of the robot, which no camera renders."""

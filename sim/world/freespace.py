@@ -22,7 +22,7 @@ from sim.geometry.fast_marching import distances
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.houses.house import Room
-from sim.houses.labels import Labels
+from sim.houses.labels import ROBOT_PREFIX, Labels
 from sim.interface import RobotModel, SuccessRule
 from sim.world.obstacles import obstacle_polygons
 from sim.world.plan import floor_polygons, house_extent, room_rectangles
@@ -58,7 +58,7 @@ class FreeSpace:
         robot: RobotModel | None = None,
         rule: SuccessRule | None = None,
         floor_z_m: float = 0.0,
-        robot_prefix: str = "robot/",
+        robot_prefix: str = ROBOT_PREFIX,
     ) -> None:
         """Computes the free space of the storey whose floor is at `floor_z_m`.
 

@@ -11,7 +11,7 @@ from sim.geometry.convex_kernels import mark_inside
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.houses.geoms import UNBOUNDED_M, geom_polytope
-from sim.houses.labels import Labels, collidable_geoms, geoms_of
+from sim.houses.labels import ROBOT_PREFIX, Labels, collidable_geoms, geoms_of
 from sim.interface import MPCAT40_ID, RobotModel
 from sim.world.plan import polygons_between
 
@@ -30,7 +30,7 @@ def obstacle_polygons(
     robot: RobotModel,
     floor_z_m: float,
     *,
-    robot_prefix: str = "robot/",
+    robot_prefix: str = ROBOT_PREFIX,
 ) -> list[ConvexPolygon]:
     """Returns the plan projections of what is an obstacle on a storey.
 

@@ -102,7 +102,7 @@ def test_a_hall_has_as_many_geoms_as_asked_and_is_a_house() -> None:
     for count in (100, 300):
         world = World(House("hall", hall(count)))
         geoms = [world.model.geom(i).name for i in range(world.model.ngeom)]
-        assert sum(not name.startswith("robot/") for name in geoms) == count
+        assert sum(not name.startswith("stubborn_robot/") for name in geoms) == count
 
 
 def test_memory_is_reported_in_megabytes() -> None:

@@ -77,9 +77,9 @@ def test_training_lowers_the_loss_on_the_demonstrated_actions(tmp_path: Path):
     args = train_cloned.Args(demonstrations=(), out=tmp_path, streams=6, length=12, rate=5e-3)
     trainer = train_cloned.Trainer(args, shown, shown[:4], [])
     losses = []
-    for _ in range(60):
+    for _ in range(30):
         losses.append(trainer.train_once()["cross_entropy"])
-    assert np.mean(losses[-10:]) < 0.3 * np.mean(losses[:5])
+    assert np.mean(losses[-5:]) < 0.5 * np.mean(losses[:5])
 
 
 def test_an_evaluation_takes_at_most_the_given_number(tmp_path: Path):

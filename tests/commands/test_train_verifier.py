@@ -109,6 +109,7 @@ def test_a_log_of_another_split_code_or_detector_is_refused_with_the_difference(
         train_verifier.main(args)
 
 
+@pytest.mark.slow
 def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):

@@ -81,18 +81,18 @@ def test_a_line_and_the_summary_have_the_fields_of_the_contract(house: Path, tmp
 
 
 def test_a_killed_run_resumes_without_lost_or_doubled_lines(house: Path, tmp_path: Path) -> None:
-    options = ("--agent", "oracle", "--house", house, "--episodes", 12)
+    options = ("--agent", "oracle", "--house", house, "--episodes", 6)
     results = tmp_path / "killed" / "results.jsonl"
     process = subprocess.Popen(command(*options, "--out", tmp_path / "killed"), stdout=subprocess.DEVNULL)
     deadline_s = time.monotonic() + 60
-    while not (results.exists() and results.read_text().count("\n") >= 2):
+    while not (results.exists() and results.read_text().count("\n") >= 1):
         assert time.monotonic() < deadline_s, "no result in a minute"
         assert process.poll() is None, "it ended before it could be killed"
         time.sleep(0.02)
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     before = results.read_text().count("\n")
-    assert before < 12
+    assert before < 6
     assert run(*options, "--out", tmp_path / "killed").returncode == 0
     assert run(*options, "--out", tmp_path / "whole").returncode == 0
     assert lines_of(tmp_path / "killed") == lines_of(tmp_path / "whole")

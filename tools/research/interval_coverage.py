@@ -27,6 +27,9 @@ METHODS = ("two-stage", "houses", "t")
 SIZES = ((10, 10), (20, 10), (30, 7), (30, 34))
 """Houses and episodes of each; the last are `val`."""
 
+CORRELATIONS = (0.0, 0.1, 0.3)
+"""Of two episodes in one house."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
@@ -36,8 +39,6 @@ class Args:
     """Samples of each row."""
     resamples: cli.Count = 500
     """Resamples of the bootstraps."""
-    correlations: tuple[float, ...] = (0.0, 0.1, 0.3)
-    """Correlations of two episodes in one house."""
     seed: cli.Seed = 0
 
 
@@ -46,7 +47,7 @@ def main(args: Args) -> int:
     rng = np.random.default_rng(args.seed)
     print("houses x episodes, correlation: coverage % and width in points of " + ", ".join(METHODS))
     for houses, episodes in SIZES:
-        for correlation in args.correlations:
+        for correlation in CORRELATIONS:
             found = coverage(houses, episodes, correlation, args.samples, args.resamples, rng)
             cells = "  ".join(f"{100 * share:5.1f} {100 * width:5.1f}" for share, width in found)
             print(f"{houses:3d} x {episodes:2d}, {correlation:.1f}:  {cells}", flush=True)

@@ -195,7 +195,7 @@ def push(config: RobotConfig, mass_kg: float, friction: float, offset_m: float) 
     world.reset(Pose(0.0, 0.0, 0.0))
     joint = world.model.body("stool_00").jntadr[0]
     q, v, forces = world.model.jnt_qposadr[joint], world.model.jnt_dofadr[joint], []
-    touch = world.model.sensor("robot/touch").adr[0]
+    touch = world.model.sensor("stubborn_robot/touch").adr[0]
 
     def sample(model: mujoco.MjModel, data: mujoco.MjData) -> None:
         del model

@@ -12,6 +12,7 @@ from sim.episodes.splits import Episode
 from sim.evaluation.rollout import episode_seed
 from sim.gl import mujoco
 from sim.interface import Action, Agent
+from sim.robot.body import PREFIX
 from sim.robot.contacts import Contact
 from sim.robot.drive import Motion
 
@@ -79,7 +80,7 @@ def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode, *, s
     agent.reset(episode.goal, seed)
     zone = env.split.sidecar(episode.house).zone_m
     world = env.scene.world
-    hull = frozenset(world.model.geom(f"robot/{part}_hull").id for part in ("lower", "upper"))
+    hull = frozenset(world.model.geom(f"{PREFIX}{part}_hull").id for part in ("lower", "upper"))
     deepest = DeepestContact(hull)
     mujoco.set_mjcb_control(deepest)
     try:

@@ -88,7 +88,7 @@ class Place:
 def movable_bodies(model: mujoco.MjModel) -> list[int]:
     """Returns the bodies with a free joint, without the robot's."""
     free = model.jnt_bodyid[model.jnt_type == mujoco.mjtJoint.mjJNT_FREE].tolist()
-    return [body for body in free if not model.body(body).name.startswith("robot/")]
+    return [body for body in free if not model.body(body).name.startswith("stubborn_robot/")]
 
 
 def movable_names(model: mujoco.MjModel) -> list[str]:

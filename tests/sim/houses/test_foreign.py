@@ -12,9 +12,12 @@ from sim import run
 from sim.env.objectnav import ObjectNavEnv
 from sim.errors import HouseError
 from sim.geometry.pose import Pose
+from sim.gl import mujoco
+from sim.houses.labels import ROBOT_PREFIX
 from sim.houses.load import load_house
 from sim.interface import MPCAT40_ID, Action
 from sim.task.ground_truth import GroundTruth
+from sim.world.freespace import FreeSpace
 from sim.world.world import World
 from tests.helpers.foreign import LABELS, SCENE, write_scene
 from tests.helpers.worlds import room
@@ -47,10 +50,12 @@ def test_the_robot_is_the_same_in_every_style_of_file(world: World) -> None:
     ours = World(room())
     for name in ("base", "left_wheel", "right_wheel"):
         for field in ("mass", "inertia", "ipos"):
-            np.testing.assert_allclose(*(getattr(w.model.body(f"robot/{name}"), field) for w in (world, ours)))
+            np.testing.assert_allclose(*(getattr(w.model.body(f"stubborn_robot/{name}"), field) for w in (world, ours)))
     for geom in ("lower_hull", "upper_hull", "left_tyre"):
         for field in ("friction", "condim", "solref", "margin", "priority", "contype", "conaffinity", "group", "size"):
-            np.testing.assert_array_equal(*(getattr(w.model.geom(f"robot/{geom}"), field) for w in (world, ours)))
+            np.testing.assert_array_equal(
+                *(getattr(w.model.geom(f"stubborn_robot/{geom}"), field) for w in (world, ours))
+            )
     for field in ("timestep", "integrator", "cone", "disableflags", "enableflags"):
         assert getattr(world.model.opt, field) == getattr(ours.model.opt, field)
 
@@ -112,3 +117,19 @@ def test_a_missing_mesh_is_reported_in_one_sentence(tmp_path: Path) -> None:
     with pytest.raises(HouseError, match=r"flat\.xml.*arch\.obj") as refused:
         load_house(house, labels_path=labels)
     assert "\n" not in str(refused.value)
+
+
+def test_a_house_may_have_names_that_begin_with_robot_but_not_with_our_prefix(tmp_path: Path) -> None:
+    spec = room(6, 6).spec
+    for number, name in enumerate(("stubborn_robot/base", "stubborn_robot/arm")):
+        body = spec.worldbody.add_body(name=name, pos=[1.0 + number, 1.0, 0.4])
+        body.add_geom(name=f"table_{number:02d}", type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.2, 0.2, 0.4])
+    file = tmp_path / "house.xml"
+    file.write_text(spec.to_xml())
+    world = World(load_house(file))
+    assert [each.name for each in world.labels.of_category("table")] == ["table_00", "table_01"]
+    assert not FreeSpace.from_world(world).is_free(1.0, 1.0)
+    spec.bodies[-1].name = f"{ROBOT_PREFIX}base"
+    file.write_text(spec.to_xml())
+    with pytest.raises(HouseError, match="are the robot's"):
+        load_house(file)

@@ -110,9 +110,9 @@ def test_a_wrong_rule_is_refused(rules, message):
 
 
 def test_the_geoms_of_the_robot_belong_to_no_instance():
-    robot = '<body name="robot/base"><geom name="robot/shell" size=".1"/><geom size=".1"/></body>'
+    robot = '<body name="stubborn_robot/base"><geom name="stubborn_robot/shell" size=".1"/><geom size=".1"/></body>'
     world = robot + '<geom name="wall_00" size=".1"/>'
     model = compiled(world)
     assert owners(world) == ["wall_00", None, None]
-    assert geoms_of(model, "robot/").tolist() == [False, True, True]
+    assert geoms_of(model, "stubborn_robot/").tolist() == [False, True, True]
     assert read_labels(model).void_geoms == 0

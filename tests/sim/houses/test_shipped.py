@@ -110,7 +110,7 @@ def test_the_check_finds_no_fault(case: Case) -> None:
 
 def test_all_visual_geoms_are_labelled(case: Case) -> None:
     world = case.scene.world
-    seen = rendered_geoms(world.model) & ~geoms_of(world.model, "robot/")
+    seen = rendered_geoms(world.model) & ~geoms_of(world.model, "stubborn_robot/")
     assert seen.any()
     assert (world.labels.geom_category[seen] != 0).all()
     assert (world.labels.geom_instance[seen] >= 0).all()
@@ -120,7 +120,7 @@ def test_movable_objects_overlap_others_by_less_than_a_centimetre(case: Case) ->
     model = case.scene.world.model
     at_rest = mujoco.MjData(model)
     mujoco.mj_forward(model, at_rest)
-    objects = collidable_geoms(model) & ~geoms_of(model, "robot/")
+    objects = collidable_geoms(model) & ~geoms_of(model, "stubborn_robot/")
     between_objects = objects[at_rest.contact.geom].all(axis=1)
     assert (at_rest.contact.dist[between_objects] > -0.01).all()
 
@@ -164,7 +164,7 @@ def test_the_distance_from_start_to_goal_is_the_recorded_one_and_within_the_limi
 
 def test_after_half_a_second_at_rest_a_start_touches_only_the_floor_and_only_with_wheels(case: Case) -> None:
     world = case.scene.world
-    robot = geoms_of(world.model, "robot/")
+    robot = geoms_of(world.model, "stubborn_robot/")
     rolling = np.array([world.model.geom(i).name.endswith(("_tyre", "_caster")) for i in range(world.model.ngeom)])
     assert rolling.sum() >= 3
     for episode in sample(case.episodes, EPISODES):

@@ -85,7 +85,7 @@ WEIGHT_N = 9.81 * RobotConfig().body.mass_kg
 
 def test_all_the_weight_of_a_planar_base_is_on_the_wheels():
     loads = ground_loads_n("planar")
-    assert loads.keys() == {"robot/left_tyre", "robot/right_tyre"}
+    assert loads.keys() == {"stubborn_robot/left_tyre", "stubborn_robot/right_tyre"}
     assert sum(loads.values()) == pytest.approx(WEIGHT_N, rel=0.01)
 
 
@@ -93,6 +93,6 @@ def test_the_springs_of_a_free_base_press_the_wheels_down_with_their_share_of_th
     loads = ground_loads_n("free")
     share = RobotConfig().wheels.load_share
     for side in ("left", "right"):
-        assert loads[f"robot/{side}_tyre"] == pytest.approx(0.5 * share * WEIGHT_N, rel=0.05)
-    assert loads["robot/front_caster"] == pytest.approx(loads["robot/rear_caster"], rel=0.01)
+        assert loads[f"stubborn_robot/{side}_tyre"] == pytest.approx(0.5 * share * WEIGHT_N, rel=0.05)
+    assert loads["stubborn_robot/front_caster"] == pytest.approx(loads["stubborn_robot/rear_caster"], rel=0.01)
     assert sum(loads.values()) == pytest.approx(WEIGHT_N, rel=0.01)

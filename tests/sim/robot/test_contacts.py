@@ -64,7 +64,7 @@ class DeepestContact:
     """Records the deepest overlap of the hull over all physics steps."""
 
     def __init__(self, world: World) -> None:
-        self._hull = {world.model.geom(f"robot/{name}_hull").id for name in ("lower", "upper")}
+        self._hull = {world.model.geom(f"stubborn_robot/{name}_hull").id for name in ("lower", "upper")}
         self.depth_m = 0.0
 
     def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
@@ -135,8 +135,8 @@ def test_the_lightest_touch_has_the_right_normal_and_depth(kind):
         house, reach_m = with_box(open_floor(), "stool_00", centre_m=(*middle, 0.4), half_m=(0.2, 0.3, 0.4)), 0.0
     world = World(house, robot=RobotConfig(base="planar"))
     data, model = world.data, world.model
-    joints = [model.joint(f"robot/{name}").qposadr[0] for name in ("x", "y", "z", "yaw")]
-    hull = {model.geom(f"robot/{name}_hull").id for name in ("lower", "upper")}
+    joints = [model.joint(f"stubborn_robot/{name}").qposadr[0] for name in ("x", "y", "z", "yaw")]
+    hull = {model.geom(f"stubborn_robot/{name}_hull").id for name in ("lower", "upper")}
     rng = np.random.default_rng(0)
     for _ in range(400):
         depth_m = float(10.0 ** rng.uniform(-9, -2.6))

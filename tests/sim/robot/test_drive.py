@@ -88,7 +88,7 @@ def test_every_action_ends_at_rest():
     base = slice(0, 2)
     for action in (FORWARD, FORWARD, FORWARD, LEFT, FORWARD, FORWARD, RIGHT, FORWARD):
         world.move(action)
-        robot = world.model.body("robot/base").dofadr[0]
+        robot = world.model.body("stubborn_robot/base").dofadr[0]
         assert np.abs(world.data.qvel[robot + base.start : robot + base.stop]).max() < 0.01
 
 
@@ -153,7 +153,7 @@ def test_corners_and_thin_legs_stop_the_robot_and_leave_its_heading(obstacle, of
 @pytest.mark.parametrize("offset_m", [0.0, 0.1])
 def test_no_speed_tunnels_through_a_thin_leg(speed_m_s, offset_m):
     world = world_with(with_post(open_floor(), "table_00", xy_m=(0.5, offset_m)))
-    world.data.qvel[world.model.joint("robot/x").dofadr[0]] = speed_m_s
+    world.data.qvel[world.model.joint("stubborn_robot/x").dofadr[0]] = speed_m_s
     drive(world, *[FORWARD] * 6)
     beyond_m = 0.5 + math.sqrt((0.18 + 0.01) ** 2 - offset_m**2)
     assert world.pose.x_m < 0.5 or abs(world.pose.y_m - offset_m) > 0.18

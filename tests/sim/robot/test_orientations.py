@@ -120,7 +120,7 @@ def test_every_geom_stands_where_mujoco_alone_puts_it(tmp_path: Path, house: str
     alone = mujoco.MjModel.from_xml_string(house)
     np.testing.assert_allclose(_poses(world.model, furniture), _poses(alone, furniture), atol=1e-5)
     alone, body = mujoco.MjModel.from_xml_string(robot), ["deck", "arm0", "arm1"]
-    theirs = _poses(world.model, [f"robot/file/{name}" for name in body], "robot/base")
+    theirs = _poses(world.model, [f"stubborn_robot/file/{name}" for name in body], "stubborn_robot/base")
     theirs -= theirs[0] * (np.arange(12) >= 9)  # the base's origin is on the floor: compare with the deck
     ours = _poses(alone, body, "bot")
     np.testing.assert_allclose(theirs, ours - ours[0] * (np.arange(12) >= 9), atol=1e-5)

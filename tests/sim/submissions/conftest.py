@@ -16,7 +16,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("submissions")
     split = tiny_split(folder)
     for name, (agent, noise) in RUNS.items():
-        recorded(split, folder / name, agent, "--noise", noise)
+        recorded(split, folder / name, agent, "--noise", noise, "--seed-key", "key")
         words = submit.Args(run=folder / name, name=f"The {name}", authors=("A. Author",), links=("https://x.org/a",))
         assert submit.main(words) == 0
     return folder

@@ -58,7 +58,7 @@ def test_labels_survive_fusing():
     world = World(furnished())
     assert world.model.body("world").id == 0
     names = [world.model.body(i).name for i in range(world.model.nbody)]
-    assert [name for name in names if not name.startswith("robot/")] == ["world", "stool_00"]
+    assert [name for name in names if not name.startswith("stubborn_robot/")] == ["world", "stool_00"]
     assert {each.name for each in world.labels.instances} == {
         "floor_00",
         "sofa_00",
@@ -78,7 +78,7 @@ def test_labels_survive_fusing():
 
 def test_the_robot_belongs_to_no_instance():
     world = World(furnished())
-    robot = [i for i in range(world.model.ngeom) if world.model.geom(i).name.startswith("robot/")]
+    robot = [i for i in range(world.model.ngeom) if world.model.geom(i).name.startswith("stubborn_robot/")]
     assert len(robot) == 6
     assert (world.labels.geom_instance[robot] == -1).all()
     assert (world.labels.geom_category[robot] == 0).all()
@@ -126,7 +126,7 @@ def test_no_option_of_the_file_remains():
 def test_the_compiler_settings_of_a_house_change_neither_the_robot_nor_the_visual_geoms(setting):
     plain = World(furnished())
     world = World(House("set", mujoco.MjSpec.from_string(XML.replace("<option", f"<compiler {setting}/>\n<option"))))
-    base = world.model.body("robot/base").id
+    base = world.model.body("stubborn_robot/base").id
     assert world.model.body_subtreemass[base] == pytest.approx(RobotConfig().body.mass_kg)
     assert world.model.ngeom == plain.model.ngeom
     world.reset(ORIGIN)
@@ -182,13 +182,13 @@ def test_a_rug_is_not_a_storey():
     world = World(with_box(open_floor(), "floor_01", centre_m=(0, 0, 0.005), half_m=(0.5, 0.5, 0.005)))
     world.reset(ORIGIN)
     assert world.pose.floor_z_m == 0.0
-    assert world.data.body("robot/base").xpos[2] == pytest.approx(0.01, abs=0.001)
+    assert world.data.body("stubborn_robot/base").xpos[2] == pytest.approx(0.01, abs=0.001)
 
 
 def test_a_start_on_a_platform_stands_on_it():
     world = World(with_box(open_floor(), "floor_01", centre_m=(0, 0, 0.025), half_m=(0.5, 0.5, 0.025)))
     world.reset(ORIGIN)
-    assert world.data.body("robot/base").xpos[2] == pytest.approx(0.05, abs=0.001)
+    assert world.data.body("stubborn_robot/base").xpos[2] == pytest.approx(0.05, abs=0.001)
     assert world.move(Action.TURN_LEFT).ended == "reached"
 
 
@@ -220,14 +220,14 @@ def test_a_start_without_floor_is_refused():
 def test_a_robot_that_drops_has_fallen():
     world = World(open_floor(), robot=RobotConfig(base="planar"))
     world.reset(ORIGIN)
-    world.data.qpos[world.model.joint("robot/z").qposadr[0]] = 1.0
+    world.data.qpos[world.model.joint("stubborn_robot/z").qposadr[0]] = 1.0
     assert world.move(Action.MOVE_FORWARD).fell
 
 
 def test_a_free_robot_on_its_side_has_tipped_over():
     world = World(open_floor(), robot=RobotConfig(base="free"))
     world.reset(ORIGIN)
-    joint = world.model.joint("robot/free").qposadr[0]
+    joint = world.model.joint("stubborn_robot/free").qposadr[0]
     world.data.qpos[joint + 2 : joint + 7] = (0.18, math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)
     with pytest.raises(PhysicsError, match="tipped over"):
         world.move(Action.MOVE_FORWARD)
