@@ -183,7 +183,7 @@ def main(args: Args) -> int:
     print(f"policy: {args.out / 'policy.zip'}")
     print(
         f"stubborn run --agent examples.ppo_agent:AGENT --config-file {shlex.quote(str(settings))} "
-        f"--house examples/my_house.xml --goal {GOAL} --video"
+        f"--house {HOUSE} --goal {GOAL} --video"
     )
     return 0
 

@@ -141,8 +141,14 @@ def _episode_table(lines: Sequence[Line]) -> Table:
     return table
 
 
+FEW_HOUSES = 5
+"""With fewer houses, resampling gives intervals that are too narrow, often of width 0."""
+
+
 def _summary_table(summary: Mapping[str, Any]) -> Table:
     caption = f"Intervals resample {summary['ci95_resamples']}."
+    if summary["houses"] < FEW_HOUSES:
+        caption += " Of so few houses they are too narrow."
     title = f"{counted(summary['episodes'], 'episode')} in {counted(summary['houses'], 'house')}"
     table = Table(title=title, caption=caption)
     table.add_column("metric")

@@ -34,6 +34,7 @@ from typing import Any
 import numpy as np
 
 from sim import cli
+from sim.analysis import display
 from sim.episodes.house_episodes import Ask, HouseAsks, StartDrawer, find_house_asks, turned_start
 from sim.episodes.recipes import DEFAULT_RECIPE, EPISODE_RECIPES, EpisodeRecipe
 from sim.episodes.splits import LABELS_FILE, Episode, house_files, house_sidecar, labels_of, write_split
@@ -106,7 +107,7 @@ def main(args: Args) -> int:
         goals[house] = found
         instances, asked = sum(map(len, found.listed.values())), len({ask.goal for ask in found.asks})
         print(
-            f"{house}: {len(found.listed)} goals, {asked} of them asked for, {instances} instances, "
+            f"{house}: {display.counted(len(found.listed), 'goal')}, {asked} of them asked for, {instances} instances, "
             f"{len(found.unreachable)} unreachable",
             flush=True,
         )

@@ -48,7 +48,7 @@ MEANING: Mapping[str, str] = {
     "trapped": f"{TRAPPED}.",
     "explore": "The goal never came into view before the steps ran out.",
     "stairs": "The goal is on another storey, or the robot drove over an edge.",
-    "misc": "No other rule applies: ran out of steps on the path to the goal, or an error.",
+    "misc": "No other rule applies: the steps ran out on the path to the goal or at the goal, or there was an error.",
 }
 """The meaning of each cause of failure (the rules are in `sim.task.failures`)."""
 ENDS: Mapping[str, str] = {
@@ -104,6 +104,8 @@ def explain_end(line: Line, goal: str, rule: SuccessRule, nearest_m: float | Non
     left_m = line.get("distance_to_goal")
     cause = _CAUSES.get(line.get("failure") or "", "The goal was in sight.")
     left = "" if left_m is None else f" A place where a STOP counts is {left_m:.1f} m away."
+    if left_m == 0.0:
+        left = " The robot is where a STOP counts, and STOP was not called."
     return Outcome(False, headline, f"All {steps} are used up. {cause}{left}")
 
 
@@ -221,7 +223,7 @@ def _loop(line: Line, trajectory: Trajectory) -> str:
 
 def _explore(line: Line, trajectory: Trajectory) -> str:
     nearest = _nearest(trajectory)
-    near = f"; its smallest distance was {nearest[1]:.1f} m, at step {nearest[0]}" if nearest else ""
+    near = f"; a place where a STOP counts was {nearest[1]:.1f} m away at step {nearest[0]}" if nearest else ""
     return f"{_never_seen(line)} in {trajectory.num_steps} steps and {_driven(trajectory)}{near}."
 
 
@@ -236,7 +238,8 @@ def _other_reason(line: Line, trajectory: Trajectory) -> str:
         distance = _distance_to_instance(_goal(line), trajectory)
         seen = _view(line, trajectory) if len(_seen(trajectory)) else ""
         return f"Called STOP at step {trajectory.num_steps} short of the goal: {distance}. {seen}"
-    return f"{_view(line, trajectory)} {_end(line, trajectory).capitalize()}."
+    at_goal = "It ended where a STOP counts, and STOP was not called. " if line.get("distance_to_goal") == 0.0 else ""
+    return f"{_view(line, trajectory)} {at_goal}{_end(line, trajectory).capitalize()}."
 
 
 _REASONS: Mapping[str, Callable[[Line, Trajectory], str]] = {

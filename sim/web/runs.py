@@ -151,7 +151,8 @@ class Runs:
         for entry in entries:
             file = Path(entry.path) / "results.jsonl"
             try:
-                if entry.is_dir(follow_symlinks=False) and self._there(file):
+                is_report = (Path(entry.path) / "traps.csv").exists()  # of traps: with results, but no run
+                if entry.is_dir(follow_symlinks=False) and not is_report and self._there(file):
                     yield file.stat().st_mtime_ns, Path(entry.path)
             except OSError:  # it has just been removed
                 continue

@@ -69,6 +69,12 @@ class _PixelNote(msgspec.Struct):
     pixels: dict[str, Count]
 
 
+class _CountNote(msgspec.Struct):
+    """The part of a note that says how many views the shard has."""
+
+    views: Count | None = None
+
+
 class _ViewNote(msgspec.Struct):
     """The part of a note that counts views."""
 
@@ -350,6 +356,16 @@ def views_with(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
         counts += [content.views_with.get(name, 0) for name in MPCAT40]
         total += content.views
     return counts / max(total, 1)
+
+
+def stored_views(shards: Sequence[Path]) -> int | None:
+    """Returns the number of views of some shards, from the JSON notes next to them; None if one does not say it."""
+    notes = [shard.with_suffix(".json") for shard in shards]
+    if not all(note.is_file() for note in notes):
+        return None
+    counts = [read_json(note, _CountNote, what="Note of a shard").views for note in notes]
+    known = [count for count in counts if count is not None]
+    return sum(known) if len(known) == len(counts) else None
 
 
 @dataclass(frozen=True)

@@ -96,6 +96,7 @@ def test_every_table_can_be_made_of_its_own_setups(name: str) -> None:
         assert all(len(cells) == len(table.header) - 1 for _, cells in table.rows)
 
 
+@pytest.mark.slow
 def test_explorers_are_compared_by_the_median_time_to_first_sight() -> None:
     setups = TABLES["explorers"].setups(("stubborn", "poni"))
     lines = {

@@ -189,6 +189,7 @@ def test_tables_are_made_again_from_the_folders_without_running_anything(
     assert page.read_bytes() == before
 
 
+@pytest.mark.slow
 def test_runs_of_one_agent_with_other_options_have_folders_of_their_own(args: reproduce.Args) -> None:
     bold = "examples.my_agent:AGENT --config agent.keep_m=0.8"
     agents = replace(args, agents=("oracle", "examples.my_agent:AGENT", bold))
@@ -273,6 +274,7 @@ def test_two_folders_of_runs_are_compared_pair_by_pair(
     assert f'| agent | "{AGENTS[1]}" | "oracle" |' in page
 
 
+@pytest.mark.slow
 def test_several_splits_take_turns_and_share_a_page(
     args: reproduce.Args, split: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -100,6 +100,7 @@ def test_training_writes_curves_and_weights_prints_its_loss_and_continues_a_run(
     assert load_network(tmp_path / "out/last.safetensors")[1]["step"] == 6
 
 
+@pytest.mark.slow
 def test_the_recipe_with_balanced_objects_trains_continues_and_says_what_it_draws_from(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -155,6 +156,7 @@ def test_a_run_that_was_killed_before_its_first_state_begins_its_curves_anew(tmp
         (tmp_path / "out/state.pt").unlink()
 
 
+@pytest.mark.slow
 def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp_path: Path) -> None:
     write_views(tmp_path / "train", 3)
     write_views(tmp_path / "val", 2)
@@ -246,3 +248,12 @@ def test_views_of_different_sizes_are_refused(tmp_path: Path) -> None:
             shard.with_suffix(".json").write_text(json.dumps(note))
     with pytest.raises(ConfigError, match=r"train', '.*val' were shrunk by different factors: \[1, 2\]"):
         main(options(tmp_path))
+
+
+def test_too_few_views_are_refused_before_anything_is_written(tmp_path: Path) -> None:
+    write_views(tmp_path / "train", 3)
+    write_views(tmp_path / "val", 2)
+    (tmp_path / "train" / "views-000000.json").write_text('{"views": 3, "pixels": {}}')
+    with pytest.raises(ConfigError, match="fewer views than one batch of 4"):
+        main(options(tmp_path, batch=4))
+    assert not (tmp_path / "out").exists()

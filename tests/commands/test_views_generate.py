@@ -122,6 +122,7 @@ def test_objects_and_sequences_are_options_that_a_folder_keeps(split: Path, tmp_
         main(options(split, tmp_path, **few))
 
 
+@pytest.mark.slow
 def test_the_wide_pool_has_new_houses_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     main(Args(pool="wide", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
     index = json.loads((tmp_path / "index.json").read_text())

@@ -54,6 +54,7 @@ def test_results_are_the_same_in_one_process_and_in_two_workers(house: Path, tmp
     assert lines_of(tmp_path / "once") == lines_of(tmp_path / "shared")
 
 
+@pytest.mark.slow
 def test_another_seed_draws_other_starts(house: Path, tmp_path: Path) -> None:
     for seed in (0, 1):
         run("--agent", "oracle", "--house", house, "--episodes", 2, "--seed", seed, "--out", tmp_path / str(seed))

@@ -39,6 +39,7 @@ def test_x_goes_right_and_y_up_at_the_scale_of_the_picture() -> None:
     assert (up - corner).tolist() == [0, -draw_trajectories.PX_M]
 
 
+@pytest.mark.slow
 def test_each_failed_episode_gets_a_picture_with_the_end_of_its_path(
     recorded: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -24,6 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from sim import cli
+from sim.analysis import display
 from sim.env.scene import Scene
 from sim.episodes.splits import Split, has_episodes, house_files, labels_of, load_split, split_of_files
 from sim.errors import ConfigError, HouseError
@@ -117,7 +118,7 @@ def main(args: Args) -> int:
     all_tries = [checked.tries for checked in results]
     tries = f"tries: mean {statistics.mean(all_tries):.2f}, most {max(all_tries)}; " if fresh else ""
     print(
-        f"{len(results)} houses, {faulty} with faults; {tries}"
+        f"{display.counted(len(results), 'house')}, {faulty} with faults; {tries}"
         f"median {statistics.median(checked.seconds for checked in results):.2f} s each"
     )
     return int(faulty > 0)

@@ -51,6 +51,7 @@ from stubborn.segmentation.dataset import (
     pixel_counts,
     spread_views,
     stored_block_px,
+    stored_views,
     views_with,
 )
 from stubborn.segmentation.evaluation import Iou, evaluate
@@ -210,6 +211,8 @@ class Trainer:
         self.precision = _precision(args.precision, self.device)
         self.optimiser = torch.optim.AdamW(_groups(self.model, args), lr=args.rate, weight_decay=args.weight_decay)
         shards, val_shards = _all_shards(args.views), _all_shards(args.val_views)
+        if (known := stored_views(shards)) is not None and known < args.batch:
+            raise ConfigError(_too_few(args))
         self.options = options_of(args, may_change=MAY_CHANGE, files={"views": shards, "val_views": val_shards})
         weigh = root_class_weights if args.class_weights == "root" else class_weights
         self.weights = weigh(pixel_counts(shards)).to(self.device)
@@ -330,8 +333,7 @@ class Trainer:
             before = self.step
             yield from loader
             if self.step == before:
-                folders = ", ".join(map(str, self.args.views))
-                raise ConfigError(f"--views {folders}: fewer views than one batch of {self.args.batch}.")
+                raise ConfigError(_too_few(self.args))
             self.data.epoch += 1
 
     def _train_on(self, rgb: Tensor, depth: Tensor, target: Tensor, pixels: Tensor | None = None) -> float:
@@ -457,6 +459,10 @@ class Trainer:
             raise ConfigError(f"--out '{self.args.out}' holds a run of size '{done.size}'; take another folder.")
         if done.options:
             require_options(self.args.out, done.options, self.options)
+
+
+def _too_few(args: Args) -> str:
+    return f"--views {', '.join(map(str, args.views))}: fewer views than one batch of {args.batch} (--batch)."
 
 
 def _all_shards(folders: Sequence[Path]) -> list[Path]:

@@ -107,10 +107,12 @@ def draw_curves(points: Sequence[Point]) -> Figure:
     for column, quantity in enumerate(QUANTITIES):
         for number, agent in enumerate(agents):
             of = [point for point in points if (point.agent, point.quantity) == (agent, quantity.name)]
-            x = np.array([point.middle for point in of]) * (1.0 + 0.006 * (number - 0.5 * (len(agents) - 1)))
+            x = np.array([point.middle for point in of])
             for row, name in enumerate(("success", "collisions")):
                 _bars(axes[row][column], x, of, name, agent, number, line="-")
         axes[1][column].set_xlabel(quantity.label)
+        for row in (0, 1):
+            axes[row][column].locator_params(axis="x", nbins=5)
         if quantity.name == "hidden_objects":
             for row in (0, 1):
                 axes[row][column].set_xscale("log")
@@ -133,6 +135,7 @@ def draw_families(rows: Rows, facts: Mapping[str, TrapFacts]) -> Figure:
         for axis, name in zip(axes, ("success", "collisions"), strict=True):
             _bars(axis, x, [point for _, point in known], name, agent, number, line="")
     axes[1].set_xticks(range(len(families)), families, rotation=20, ha="right")
+    axes[1].set_xlim(-0.6, len(families) - 0.4)
     _finish([axes[0]], [axes[1]])
     return figure
 
@@ -212,7 +215,7 @@ def _finish(above: Sequence[Axes], below: Sequence[Axes]) -> None:
             axes.set_ylim(bottom=0.0)
     for axes in above:
         axes.set_ylim(-0.03, 1.03)
-    above[0].legend(fontsize=8, loc="lower left")
+    above[0].figure.legend(*above[0].get_legend_handles_labels(), fontsize=8, loc="outside upper left", ncols=4)
 
 
 def _figure(width_in: float, height_in: float) -> Figure:

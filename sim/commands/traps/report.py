@@ -61,7 +61,7 @@ class Args:
     agents: tuple[str, ...] = DEFAULT_AGENTS
     """Agents of `stubborn run`, also your own as package.module:NAME."""
     traps: tuple[str, ...] = ()
-    """Names of traps; all if not given."""
+    """Names of scenes; all if not given. A wrong name lists them."""
     headings: cli.Count = 3
     """Number of start headings of each trap."""
     max_steps: cli.Count = 500

@@ -32,6 +32,7 @@ from typing import Any, cast, get_args
 import numpy as np
 
 from sim import cli
+from sim.analysis import display
 from sim.datasets.aimed import AIMS
 from sim.datasets.shards import ShardNote, read_note, shard_name, write_index, write_shard
 from sim.datasets.views import EXTRAS, sample_views
@@ -141,7 +142,8 @@ def main(args: Args) -> int:
     for note in ordered_map(functools.partial(make_shard, args, config), todo, executor=executor):
         made += note.views
         rate = made / (time.perf_counter() - began)
-        print(f"{note.shard}: {note.views} views of {note.house}, {note.size_bytes >> 20} MB, {rate:.1f} views/s")
+        views = display.counted(note.views, "view")
+        print(f"{note.shard}: {views} of {note.house}, {note.size_bytes / 1e6:.1f} MB, {rate:.1f} views/s")
         sys.stdout.flush()
         notes[int(note.shard.rsplit("-", 1)[1])] = note
     # Other machines may have finished shards in the meantime.

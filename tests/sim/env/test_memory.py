@@ -137,6 +137,7 @@ print(before_mb - resident_mb())
 """
 
 
+@pytest.mark.slow
 def test_memory_freed_in_pieces_is_returned_before_the_next_episode() -> None:
     """Runs in a process of its own; the blocks between the freed ones stay allocated."""
     ended = subprocess.run([sys.executable, "-c", SHREDS], capture_output=True, text=True, check=True, cwd=ROOT)

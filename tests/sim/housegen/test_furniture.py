@@ -228,6 +228,7 @@ def test_wide_has_all_styles_of_train_and_more_and_none_held_out(category):
     assert drawn <= wide
 
 
+@pytest.mark.slow
 def test_train_never_shows_a_look_of_the_heldout_pool():
     looks: dict[str, set[tuple]] = {"train": set(), "heldout": set()}
     for style in STYLES:

@@ -65,6 +65,7 @@ def test_seeds_and_pools_give_different_houses() -> None:
     assert generate(0, kind="studio", pool="heldout").to_xml() != generate(0, kind="studio", pool="train").to_xml()
 
 
+@pytest.mark.slow
 def test_a_wide_house_is_in_the_format_and_may_be_too_large_to_ship() -> None:
     house = generate_house(4, HouseConfig(pool="wide", kind="large", area_m2=300.0))
     assert validate_house(House("wide", house.spec), house.spec.compile()).void_geoms == 0

@@ -124,6 +124,7 @@ def speeds_during(world: World, actions: int, body: int) -> Iterator[float]:
         yield float(np.linalg.norm(velocity[3:]))
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes_in_another_process() -> None:
     arguments = f"{seed_of_home()}, kind='flat', area_m2={AREA_M2}, movable=True"
     code = f"from sim.housegen import generate; print(generate({arguments}).to_xml(), end='')"
