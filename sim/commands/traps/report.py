@@ -145,7 +145,8 @@ def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:
 def write_picture(folder: Path, env: ObjectNavEnv, agent: Agent, trial: Trial) -> None:
     """Writes the picture of a trial."""
     belief = map_painter.draw_map(agent, whole=True) if isinstance(agent, StubbornAgent) else None
-    path = folder / f"{trial.episode_id}_{trial.agent}.png"
+    agent_name = trial.agent.replace(":", "-")  # of package.module:NAME; Windows cannot store a colon
+    path = folder / f"{trial.episode_id}_{agent_name}.png"
     save_picture(path, draw_trial(env, trial, belief))
 
 
