@@ -84,7 +84,7 @@ class Hole(Struct):
     openness: Annotated[float, Meta(ge=0.0, le=1.0)] | None = None
 
 
-class Thing(Struct):
+class SceneObject(Struct):
     """An object with the objects on it or in it; `position` is the centre of its box."""
 
     id: Name
@@ -92,7 +92,7 @@ class Thing(Struct):
     position: Vector
     rotation: Turn = msgspec.field(default_factory=Turn)
     kinematic: bool = False
-    children: list[Thing] | None = None
+    children: list[SceneObject] | None = None
 
 
 class SourceHouse(Struct):
@@ -102,7 +102,7 @@ class SourceHouse(Struct):
     walls: Annotated[list[Wall], Meta(max_length=5000)]
     doors: Annotated[list[Hole], Meta(max_length=1000)] = []
     windows: Annotated[list[Hole], Meta(max_length=1000)] = []
-    objects: Annotated[list[Thing], Meta(max_length=5000)] = []
+    objects: Annotated[list[SceneObject], Meta(max_length=5000)] = []
 
 
 class Box(Struct):

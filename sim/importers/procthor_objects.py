@@ -26,7 +26,7 @@ from sim.houses.proposals import category_of_name
 from sim.houses.taxonomies import Entry, entries
 from sim.importers.fitting import Fitted, Fitter, Place
 from sim.importers.losses import Losses
-from sim.importers.procthor_files import Asset, Thing
+from sim.importers.procthor_files import Asset, SceneObject
 from sim.importers.procthor_plan import Layout
 
 ON_WALL_FROM_M = 0.3
@@ -78,38 +78,38 @@ class ObjectPlacer:
     where: str
     standing: list[Standing] = field(default_factory=list)
 
-    def place(self, objects: Sequence[Thing]) -> None:
+    def place(self, objects: Sequence[SceneObject]) -> None:
         """Places objects that stand on the floor or hang on walls, and what is on them.
 
         Raises:
             HouseError: objects are nested too deeply.
         """
-        for thing in objects:
-            found = self._size(thing)
+        for entity in objects:
+            found = self._size(entity)
             if found is None:
-                self._leave_out(thing.children, "what it is on was left out")
+                self._leave_out(entity.children, "what it is on was left out")
                 continue
             kind, entry, size_m, yaw = found
             if entry.category in ("door", "window"):
                 self._count_left_out(kind, "part of a wall")
                 continue
-            bottom_m = max(thing.position.y - size_m[2] / 2, 0.0)
+            bottom_m = max(entity.position.y - size_m[2] / 2, 0.0)
             hangs = bottom_m > ON_WALL_FROM_M
-            parts = list(self._parts(thing, kind, entry, size_m, yaw, "wall" if hangs else "floor", bottom_m))
-            loose = not (thing.kinematic or thing.children or hangs) and parts[0].item.mass_kg is not None
+            parts = list(self._parts(entity, kind, entry, size_m, yaw, "wall" if hangs else "floor", bottom_m))
+            loose = not (entity.kinematic or entity.children or hangs) and parts[0].item.mass_kg is not None
             self.standing += [Standing(kind, part, _footprint(part), loose) for part in parts]
-            self._place_on(thing.children, kind, parts, depth=1)
+            self._place_on(entity.children, kind, parts, depth=1)
 
     def _parts(
-        self, thing: Thing, kind: str, entry: Entry, size_m: tuple[float, float, float], yaw: float, place: Place,
-        bottom_m: float,
+        self, entity: SceneObject, kind: str, entry: Entry, size_m: tuple[float, float, float], yaw: float,
+        place: Place, bottom_m: float,
     ) -> Iterator[PlacedItem]:  # fmt: skip
         """Yields the items of an object that is in no other one: one, but for counters with arms."""
-        x, y = thing.position.x, thing.position.z
-        arms = _arms(thing.assetId, size_m, lambda side: self._wall_gap(x, y, size_m, yaw, side))
-        first = self.fitter.fit(thing.assetId, entry, arms[0][0], place)
+        x, y = entity.position.x, entity.position.z
+        arms = _arms(entity.assetId, size_m, lambda side: self._wall_gap(x, y, size_m, yaw, side))
+        first = self.fitter.fit(entity.assetId, entry, arms[0][0], place)
         for number, (part_m, (along, across), turn) in enumerate(arms):
-            fit = self.fitter.fit(thing.assetId, entry, part_m, place)
+            fit = self.fitter.fit(entity.assetId, entry, part_m, place)
             if number and first.is_furniture:
                 fit = Fitted(fitted(first.item, part_m), is_furniture=True)  # the arms look the same
             at = PlacedItem(fit.item, x, y, bottom_m, yaw)
@@ -123,37 +123,39 @@ class ObjectPlacer:
                 (self.losses.furniture if fit.is_furniture else self.losses.boxes)[kind] += 1
             yield part
 
-    def _place_on(self, things: Sequence[Thing] | None, below: str, parents: Sequence[PlacedItem], depth: int) -> None:
+    def _place_on(
+        self, objects: Sequence[SceneObject] | None, below: str, parents: Sequence[PlacedItem], depth: int
+    ) -> None:
         """Places objects on the tops of the items of another object."""
         if depth > MOST_DEPTH:
             raise HouseError(f"{self.where}: objects are nested more than {MOST_DEPTH} deep.")
-        if below in CLOSED and things:
-            self._leave_out(things, f"inside {below}")
+        if below in CLOSED and objects:
+            self._leave_out(objects, f"inside {below}")
             return
         taken: list[tuple[float, Rect]] = []
-        for thing in things or ():
-            found = self._size(thing)
+        for entity in objects or ():
+            found = self._size(entity)
             if found is None:
-                self._leave_out(thing.children, "what it is on was left out")
+                self._leave_out(entity.children, "what it is on was left out")
                 continue
             kind, entry, size_m, yaw = found
-            fit = self.fitter.fit(thing.assetId, entry, size_m, "top")
-            at = PlacedItem(fit.item, thing.position.x, thing.position.z, thing.position.y - size_m[2] / 2, yaw)
+            fit = self.fitter.fit(entity.assetId, entry, size_m, "top")
+            at = PlacedItem(fit.item, entity.position.x, entity.position.z, entity.position.y - size_m[2] / 2, yaw)
             placed = _on_top(at, parents, taken)
             if placed is None:
-                self._leave_out([thing], f"our {below} has no free top near its place")
+                self._leave_out([entity], f"our {below} has no free top near its place")
                 continue
             (self.losses.furniture if fit.is_furniture else self.losses.boxes)[kind] += 1
             self.losses.moved_m = max(self.losses.moved_m, math.hypot(placed.x_m - at.x_m, placed.y_m - at.y_m))
             taken.append((placed.z_m, _footprint(placed)))
             self.standing.append(Standing(kind, placed, _footprint(placed), is_loose=False))
-            self._place_on(thing.children, kind, [placed], depth + 1)
+            self._place_on(entity.children, kind, [placed], depth + 1)
 
-    def _size(self, thing: Thing) -> tuple[str, Entry, tuple[float, float, float], float] | None:
+    def _size(self, entity: SceneObject) -> tuple[str, Entry, tuple[float, float, float], float] | None:
         """Returns type, entry, size (depth, width, height) and heading of an object; None if its size is unknown."""
-        asset = self.assets.get(thing.assetId)
-        named = thing.id.partition("|")[0]
-        kind = asset.kind if asset is not None else named if named in entries("ai2thor") else thing.assetId or named
+        asset = self.assets.get(entity.assetId)
+        named = entity.id.partition("|")[0]
+        kind = asset.kind if asset is not None else named if named in entries("ai2thor") else entity.assetId or named
         if asset is None:
             self._count_left_out(kind, "its asset is not in the database")
             return None
@@ -163,21 +165,21 @@ class ObjectPlacer:
             entry = Entry(category, "box", "ours")
             self.losses.changes[f"The type {kind} is not in the table; it became {category}."] += 1
         width, height, depth = asset.size_m
-        turn = thing.rotation
+        turn = entity.rotation
         if max(_from_level(turn.x), _from_level(turn.z)) < 5.0:
             return kind, entry, (depth, width, height), math.radians(90.0 - turn.y)
         # An object that lies on its side gets the box around it, parallel to the axes.
         width, height, depth = np.abs(_rotation(turn.x, turn.y, turn.z)) @ np.array(asset.size_m)
         return kind, entry, (float(depth), float(width), float(height)), math.pi / 2
 
-    def _leave_out(self, things: Sequence[Thing] | None, reason: str) -> None:
+    def _leave_out(self, objects: Sequence[SceneObject] | None, reason: str) -> None:
         """Counts objects, and what is on them, as left out."""
-        todo = list(things or ())
+        todo = list(objects or ())
         while todo:
-            thing = todo.pop()
-            asset = self.assets.get(thing.assetId)
-            self._count_left_out(asset.kind if asset else thing.id.partition("|")[0], reason)
-            todo += thing.children or ()
+            entity = todo.pop()
+            asset = self.assets.get(entity.assetId)
+            self._count_left_out(asset.kind if asset else entity.id.partition("|")[0], reason)
+            todo += entity.children or ()
 
     def _count_left_out(self, kind: str, reason: str) -> None:
         self.losses.left_out[f"{kind}: {reason}"] += 1

@@ -1,4 +1,4 @@
-"""Sealed splits: houses and episodes that nobody knows before a deadline, and everybody can check after it.
+"""Sealed splits: houses and episodes that are secret before a deadline and that everybody can check after it.
 
 An organiser makes a split from a secret, publishes the hash of both, and reveals the secret after the deadline. The
 same secret and version of the generator give the same split, whose hash must be the published one.

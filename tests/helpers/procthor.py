@@ -44,7 +44,7 @@ def wall(
     }
 
 
-def thing(
+def entity(
     asset: str, name: str, position: tuple[float, float, float], turn_deg: float = 0.0, **more: Any
 ) -> dict[str, Any]:
     """Returns an object whose box has its middle at a position."""
@@ -86,8 +86,8 @@ def small_house() -> dict[str, Any]:
          "floorPolygon": [{"x": x, "y": 0.0, "z": z} for x, z in room]}
         for name, kind, room in (("A", "LivingRoom", a), ("B", "Bedroom", b))
     ]  # fmt: skip
-    television = thing("Television_1", "Television|1", (2.0, 0.8, 5.75), 180.0, kinematic=False)
-    apple = thing("Apple_1", "Apple|1", (3.5, 1.0, 0.4))
+    television = entity("Television_1", "Television|1", (2.0, 0.8, 5.75), 180.0, kinematic=False)
+    apple = entity("Apple_1", "Apple|1", (3.5, 1.0, 0.4))
     return {
         "rooms": rooms,
         "walls": walls,
@@ -97,12 +97,12 @@ def small_house() -> dict[str, Any]:
         ],
         "windows": [hole("window|B", east, (2.0, 3.0), (0.9, 1.9), assetId="Window_1")],
         "objects": [
-            thing("Sofa_1", "Sofa|1", (0.48, 0.4, 2.5), 90.0),
-            thing("TV_Stand_1", "TVStand|1", (2.0, 0.25, 5.75), 180.0, children=[television]),
-            thing("Fridge_1", "Fridge|1", (3.5, 0.85, 0.4), 0.0, children=[apple]),
-            thing("Bed_1", "Bed|1", (7.9, 0.45, 3.2), 270.0),
-            thing("Painting_1", "Painting|1", (7.0, 1.5, 0.02), 0.0),
-            thing("Gizmo_1", "Gizmo|1", (6.0, 0.15, 0.5)),
+            entity("Sofa_1", "Sofa|1", (0.48, 0.4, 2.5), 90.0),
+            entity("TV_Stand_1", "TVStand|1", (2.0, 0.25, 5.75), 180.0, children=[television]),
+            entity("Fridge_1", "Fridge|1", (3.5, 0.85, 0.4), 0.0, children=[apple]),
+            entity("Bed_1", "Bed|1", (7.9, 0.45, 3.2), 270.0),
+            entity("Painting_1", "Painting|1", (7.0, 1.5, 0.02), 0.0),
+            entity("Gizmo_1", "Gizmo|1", (6.0, 0.15, 0.5)),
         ],
     }  # fmt: skip
 

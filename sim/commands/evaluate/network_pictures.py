@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Int64
 
+from sim.analysis.figures import empty_figure
 from sim.commands.train.training_files import read_columns
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, ConfigError
 from stubborn.segmentation.evaluation import GOAL_CHANNELS
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 BACKGROUND = ("wall", "floor", "ceiling", "door", "window", "mirror", "shelving", "appliances", "lighting")
 """Categories with columns of their own, in addition to the goals: objects are often confused with them."""
@@ -31,7 +32,7 @@ def draw_confusion(matrix: Int64[np.ndarray, "classes classes"], file: Path) -> 
     Raises:
         ConfigError: matplotlib is not installed.
     """
-    figure = _figure(10.5, 7.2)
+    figure = empty_figure(10.5, 7.2, what="The pictures of a card")
     channels = [*GOAL_CHANNELS, *(MPCAT40_ID[name] - 1 for name in BACKGROUND)]
     goals = matrix[GOAL_CHANNELS].astype(np.float64)
     percent = 100.0 * goals / np.maximum(goals.sum(axis=1, keepdims=True), 1.0)
@@ -63,7 +64,7 @@ def draw_curves(trainings: Sequence[Path], file: Path) -> None:
     Raises:
         ConfigError: a folder holds no training, or matplotlib is not installed.
     """
-    figure = _figure(9.0, 3.4)
+    figure = empty_figure(9.0, 3.4, what="The pictures of a card")
     left, right = figure.subplots(1, 2)
     begin_h = 0.0
     for folder in trainings:
@@ -81,19 +82,6 @@ def draw_curves(trainings: Sequence[Path], file: Path) -> None:
         axes.set_xlabel("hours")
         axes.grid(alpha=0.3)
     figure.savefig(file, dpi=DPI)
-
-
-def _figure(width_in: float, height_in: float) -> Figure:
-    """Returns an empty figure that draws to files only.
-
-    Raises:
-        ConfigError: matplotlib is not installed.
-    """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise ConfigError("The pictures of a card need matplotlib: pip install 'stubborn-objectnav[train]'.") from None
-    return Figure(figsize=(width_in, height_in), layout="constrained")
 
 
 def _column(file: Path, name: str) -> np.ndarray:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sim.analysis.figures import empty_figure
 from sim.analysis.report.figures import wilson
 from sim.commands.traps.curves import QUANTITIES, Point, Rows, curve
 from sim.commands.traps.family_picture import draw_family
@@ -27,7 +28,6 @@ from sim.files import write_picture, write_together
 from sim.housegen.traps.families.catalogue import FAMILIES
 from sim.housegen.traps.families.family import DIFFICULTIES
 from sim.houses.sidecar import TrapFacts
-from sim.interface import ConfigError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,7 +47,7 @@ def facts_of(split: Split) -> dict[str, TrapFacts]:
 
 def require_matplotlib() -> None:
     """Raises ConfigError where matplotlib, which draws the curves, is not installed."""
-    _figure(1.0, 1.0)
+    empty_figure(1.0, 1.0, what="The curves of traps")
 
 
 def write_family_report(
@@ -101,7 +101,7 @@ def as_csv(points: Sequence[Point]) -> str:
 
 def draw_curves(points: Sequence[Point]) -> Figure:
     """Returns a figure: success above, collisions below, a column for each quantity, a line for each agent."""
-    figure = _figure(4.4 * len(QUANTITIES), 6.6)
+    figure = empty_figure(4.4 * len(QUANTITIES), 6.6, what="The curves of traps")
     axes = figure.subplots(2, len(QUANTITIES), squeeze=False)
     agents = sorted({point.agent for point in points})
     for column, quantity in enumerate(QUANTITIES):
@@ -126,7 +126,7 @@ def draw_families(rows: Rows, facts: Mapping[str, TrapFacts]) -> Figure:
     """Returns a figure: success above, collisions below, a place for each family, a marker for each agent."""
     families = _families_of(rows, facts)
     agents = sorted({row["agent"] for row in rows})
-    figure = _figure(max(6.0, 1.1 * len(families) + 1.5), 6.6)
+    figure = empty_figure(max(6.0, 1.1 * len(families) + 1.5), 6.6, what="The curves of traps")
     axes = figure.subplots(2, 1, sharex=True)
     for number, agent in enumerate(agents):
         of = [_family_point(_of(rows, facts, agent, family=name), agent, name) for name in families]
@@ -216,16 +216,3 @@ def _finish(above: Sequence[Axes], below: Sequence[Axes]) -> None:
     for axes in above:
         axes.set_ylim(-0.03, 1.03)
     above[0].figure.legend(*above[0].get_legend_handles_labels(), fontsize=8, loc="outside upper left", ncols=4)
-
-
-def _figure(width_in: float, height_in: float) -> Figure:
-    """Returns an empty figure that draws to files only.
-
-    Raises:
-        ConfigError: matplotlib is not installed.
-    """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise ConfigError("The curves of traps need matplotlib: pip install 'stubborn-objectnav[train]'.") from None
-    return Figure(figsize=(width_in, height_in), layout="constrained")

@@ -24,7 +24,7 @@ from sim.importers.procthor_files import Asset, Source, find_assets, parse_house
 from sim.importers.procthor_plan import lay_out
 from sim.importers.rectilinear import Stretch, rectangles
 from sim.world.check import check_own_house
-from tests.helpers.procthor import ASSETS, small_house, thing, write_small_house
+from tests.helpers.procthor import ASSETS, entity, small_house, write_small_house
 
 SAMPLES = next(
     (each for folder in Path(__file__).parents if (each := folder / "shared/worlds/procthor").is_dir()), None
@@ -115,7 +115,7 @@ def test_a_child_stands_on_the_top_of_our_furniture(imported: Imported) -> None:
 
 
 def test_a_counter_with_two_arms_leaves_its_corner_free(tmp_path: Path) -> None:
-    house = {**small_house(), "objects": [thing("Countertop_L_6x6", "CounterTop|1", (7.9, 0.47, 1.0), 270.0)]}
+    house = {**small_house(), "objects": [entity("Countertop_L_6x6", "CounterTop|1", (7.9, 0.47, 1.0), 270.0)]}
     made = import_house(source_of(house), database(tmp_path), ProcthorConfig())
     arms = [each for each in made.spec.worldbody.bodies if each.name.startswith("counter_")]
     places = sorted(tuple(np.round(arm.pos[:2], 1)) for arm in arms)
@@ -163,8 +163,8 @@ def test_a_broken_house_is_one_line_with_file_and_place(
 def test_objects_in_objects_without_end_are_one_line_or_left_out(tmp_path: Path) -> None:
     tower = flat = None
     for level in range(60, 0, -1):
-        tower = [thing("Gizmo_1", "Gizmo|0", (6.0, 0.3 * level - 0.15, 0.5), children=tower)]
-        flat = [thing("Gizmo_1", "Gizmo|0", (6.0, 0.15, 0.5), children=flat)]
+        tower = [entity("Gizmo_1", "Gizmo|0", (6.0, 0.3 * level - 0.15, 0.5), children=tower)]
+        flat = [entity("Gizmo_1", "Gizmo|0", (6.0, 0.15, 0.5), children=flat)]
     with pytest.raises(HouseError, match="objects are nested more than 20 deep"):
         import_house(source_of({**small_house(), "objects": tower}), database(tmp_path), ProcthorConfig())
     made = import_house(source_of({**small_house(), "objects": flat}), database(tmp_path), ProcthorConfig())

@@ -478,6 +478,12 @@ def test_the_shortest_path_of_the_plan_is_as_long_as_the_task_says_and_ends_wher
             True,
             "All 9 steps are used up. The robot was trapped: 100 steps within 1 m of one position.",
         ),
+        (
+            {"end_reason": "max_steps", "failure": "misc", "distance_to_goal": 0.0},
+            0.5,
+            True,
+            "The robot is where a STOP counts, and STOP was not called.",
+        ),
         ({"end_reason": "fallen", "failure": "stairs"}, 3.0, True, "drove over an edge"),
     ],
 )

@@ -73,6 +73,12 @@ def test_a_run_that_cannot_be_read_is_listed_with_the_reason(tmp_path: Path, con
         Runs(tmp_path).episodes("broken")
 
 
+def test_a_report_of_traps_is_not_listed_as_a_run(tmp_path: Path) -> None:
+    (write_run(tmp_path / "traps") / "traps.csv").touch()
+    write_run(tmp_path / "whole")
+    assert [run["name"] for run in Runs(tmp_path).as_json()] == ["whole"]
+
+
 @pytest.mark.parametrize(
     "name", [b"\xff\xfe", b"line\nbreak", b"\x1b[31m", "Häuser ✓".encode(), b"<img src=x>", b"a%2fb"]
 )
