@@ -34,6 +34,7 @@ from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import ExplorerConfig, Ground, ReadsSemantics, run_explorer
 from stubborn.kernels.grids import MAX_REACH
 from stubborn.mapping.collision_marks import CollisionConfig, GpsNoise, is_collision, mark_collision, mark_visited
+from stubborn.mapping.felt import FeelConfig
 from stubborn.mapping.mapper import Mapper, MappingConfig, Sighting
 from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.object_layers import ObjectLayersConfig
@@ -61,6 +62,9 @@ class AgentConfig:
     mapping: MappingConfig = field(default_factory=MappingConfig)
     collisions: CollisionConfig = field(default_factory=CollisionConfig)
     avoidance: CollisionAvoidance = field(default_factory=CollisionAvoidance)
+    feel: FeelConfig | None = None
+    """Conclusions from several collisions about the surfaces that cause them; None: each has its own marks, as in the
+    paper."""
     planning: PlanningConfig = field(default_factory=PlanningConfig)
     untrap: UntrapConfig = field(default_factory=UntrapConfig)
     layers: ObjectLayersConfig = field(default_factory=ObjectLayersConfig)
@@ -117,6 +121,8 @@ class StubbornAgent:
         self.segmenter = segmenter
         self.policies = collision_policies(config.avoidance, config.untrap)
         self.mapper = Mapper(camera, robot, config.mapping, config.layers.make(config.mapping.candidate_score))
+        feel = config.feel if self.policies.marked else None
+        self.felt = None if feel is None else feel.make(robot.radius_m, config.collisions)
         self.planner = Planner(config.planning, self.policies.proven_ground)
         self.explorer = config.explorer.make(camera)
         self.seeker = config.seeker.make(
@@ -149,6 +155,8 @@ class StubbornAgent:
         """The route that is followed; None: the agent turns or pushes."""
         self.approach: Approach | None = None
         """The candidate that is approached; None: the agent explores."""
+        if self.felt is not None:
+            self.felt.reset()
         self.explorer.reset(seed)
         self.seeker.reset(goal)
         self.untrap.reset()
@@ -184,7 +192,9 @@ class StubbornAgent:
         self.gps_noise.observe(self.last_action, moved_m)
         failed = is_collision(self.last_action, moved_m, self.gps_noise.failed_below_m(config))
         mark_visited(self.navmap, before, pose, self.robot.radius_m, config)
-        if failed:
+        if failed and self.felt is not None:
+            self.felt.add(self.navmap, pose, self.gps_noise.std_m())
+        elif failed:
             mark_collision(self.navmap, pose, self.policies.marked, config)
         self.untrap.observe(self.last_action, failed)
 

@@ -22,6 +22,7 @@ from stubborn.exploration.frontier import FrontierConfig
 from stubborn.exploration.poni import PoniConfig
 from stubborn.exploration.semexp import SemExpConfig
 from stubborn.exploration.tour import INFORMED_TOUR, TourConfig
+from stubborn.mapping.felt import FeelConfig
 from stubborn.mapping.object_layers import ObjectLayersConfig
 
 NO_AVOIDANCE = CollisionAvoidance(untrap=False, collision_layers=False, averse_exploration=False, visited_is_free=False)
@@ -60,8 +61,9 @@ EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
 """The explorers by name, for `AgentConfig.explorer`: a configuration, whose `make` returns the explorer."""
 
 
-PLUS = AgentConfig(explorer=INFORMED_TOUR, seeker=TrackSeekerConfig())
-"""`stubborn-plus`: the paper's agent with object tracks, which explores by a tour over the unseen areas."""
+PLUS = AgentConfig(explorer=INFORMED_TOUR, seeker=TrackSeekerConfig(), feel=FeelConfig())
+"""`stubborn-plus`: the paper's agent with object tracks, which explores by a tour over the unseen areas and feels its
+way along surfaces that depth does not show."""
 
 
 PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(
