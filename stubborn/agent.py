@@ -34,12 +34,13 @@ from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import ExplorerConfig, Ground, ReadsSemantics, run_explorer
 from stubborn.kernels.grids import MAX_REACH
 from stubborn.mapping.collision_marks import CollisionConfig, GpsNoise, is_collision, mark_collision, mark_visited
-from stubborn.mapping.felt import FeelConfig
+from stubborn.mapping.felt import FeelConfig, FeltSurfaces
 from stubborn.mapping.mapper import Mapper, MappingConfig, Sighting
 from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.object_layers import ObjectLayersConfig
 from stubborn.planning.avoidance import CollisionAvoidance, collision_policies
 from stubborn.planning.planner import Planner, PlanningConfig, Route
+from stubborn.planning.standstill import Standstill, StandstillConfig
 from stubborn.planning.steering import next_action
 from stubborn.planning.untrap import Untrap, UntrapConfig
 
@@ -65,6 +66,8 @@ class AgentConfig:
     feel: FeelConfig | None = None
     """Conclusions from several collisions about the surfaces that cause them; None: each has its own marks, as in the
     paper."""
+    standstill: StandstillConfig = field(default_factory=StandstillConfig)
+    """With `feel`, the time after which an agent without progress doubts its conclusions."""
     planning: PlanningConfig = field(default_factory=PlanningConfig)
     untrap: UntrapConfig = field(default_factory=UntrapConfig)
     layers: ObjectLayersConfig = field(default_factory=ObjectLayersConfig)
@@ -140,6 +143,7 @@ class StubbornAgent:
             )
         )
         self.untrap = Untrap(self.policies.untrap_after)
+        self.standstill = Standstill(config.standstill)
         self.reset(GOAL_CATEGORIES[0], 0)
 
     def reset(self, goal: str, seed: int) -> None:
@@ -157,6 +161,7 @@ class StubbornAgent:
         """The candidate that is approached; None: the agent explores."""
         if self.felt is not None:
             self.felt.reset()
+        self.standstill.reset()
         self.explorer.reset(seed)
         self.seeker.reset(goal)
         self.untrap.reset()
@@ -192,11 +197,19 @@ class StubbornAgent:
         self.gps_noise.observe(self.last_action, moved_m)
         failed = is_collision(self.last_action, moved_m, self.gps_noise.failed_below_m(config))
         mark_visited(self.navmap, before, pose, self.robot.radius_m, config)
-        if failed and self.felt is not None:
-            self.felt.add(self.navmap, pose, self.gps_noise.std_m())
+        if self.felt is not None:
+            self._feel(self.felt, pose, failed)
         elif failed:
             mark_collision(self.navmap, pose, self.policies.marked, config)
         self.untrap.observe(self.last_action, failed)
+
+    def _feel(self, felt: FeltSurfaces, pose: Pose, failed: bool) -> None:
+        """Enters a failed move into the felt surfaces; without progress, what was avoided is tried again."""
+        news = failed and felt.add(self.navmap, pose, self.gps_noise.std_m())
+        self.navmap.times_felt += news
+        if self.standstill.observe(self.navmap.seen_area_m2(), news):
+            felt.doubt(self.navmap)
+            self.seeker.retry()
 
     def _map(self, observation: Observation, pose: Pose) -> Sighting:
         """Enters the frame into the map, and returns the target points in it."""

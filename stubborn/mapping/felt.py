@@ -45,6 +45,9 @@ class FeelConfig:
     """Neighbouring stops of a pane are at most this far apart."""
     facing: float = 0.4
     """Cosine of the largest angle between the heading at a stop and the direction to the surface."""
+    oblique: float = 0.26
+    """A robot in a gap that drove along the surface, by the sine of its heading, touches the edge on that side; one that
+    drove straight at it touches the edge of the part that is known."""
     least_stops: int = 3
     """A line through this many stops is a pane."""
     spare_m: float = 0.06
@@ -54,8 +57,8 @@ class FeelConfig:
     half_wide_m: float = 0.125
     """The pessimistic mark of a contact extends this far to both sides along its pane."""
     same_m: float = 0.03
-    """A stop this near to an earlier one of about the same heading contradicts the conclusions from that one: both get
-    the marks straight ahead."""
+    """A stop this near to an earlier one of about the same heading shows that the marks did not keep the robot from
+    the same forward: both also get the marks straight ahead."""
     same_heading: float = 0.9
     """Cosine of the largest angle between two such headings."""
 
@@ -103,6 +106,7 @@ class FeltSurfaces:
     def reset(self) -> None:
         """Forgets the last episode."""
         self._poses: list[Pose] = []
+        self._doubted = 0  # stops before this one that are not part of a pane leave no marks
         self._straight_m = self.config.straight_m
         self.panes: list[Pane] = []
         """The panes that follow from all stops so far."""
@@ -117,6 +121,22 @@ class FeltSurfaces:
         """
         self._poses.append(pose)
         self._straight_m = max(self.config.straight_m, self.config.noise_sigmas * noise_m)
+        return self._write(navmap)
+
+    def doubt(self, navmap: NavMap) -> bool:
+        """Drops the weakest conclusions, so that what was avoided is tried again; returns True if marks changed.
+
+        Marks of single stops are dropped first, since the contact may have been elsewhere on the hull; if there are
+        none, all panes are dropped. Later stops count as before.
+        """
+        self._doubted = len(self._poses)
+        if self._write(navmap):
+            return True
+        self._poses, self._doubted = [], 0
+        return self._write(navmap)
+
+    def _write(self, navmap: NavMap) -> bool:
+        """Writes all marks again; returns True if they changed."""
         known = navmap.known_window(margin_cells=20).index
         before = [navmap.collision_marks(layer)[known].copy() for layer in BOTH_LAYERS]
         for layer in BOTH_LAYERS:
@@ -129,24 +149,27 @@ class FeltSurfaces:
 
     def _mark(self, navmap: NavMap) -> None:
         """Writes the marks of all stops."""
+        if not self._poses:
+            self.panes = []
+            return
         centres = np.array([pose.xy_m for pose in self._poses])
         headings = np.array([(np.cos(pose.yaw_rad), np.sin(pose.yaw_rad)) for pose in self._poses])
-        repeated = self._repeated(centres, headings)
-        self.panes = find_panes(centres, headings, ~repeated, replace(self.config, straight_m=self._straight_m))
+        self.panes = find_panes(centres, headings, replace(self.config, straight_m=self._straight_m))
         explained = np.zeros(len(centres), np.bool_)
         for pane in self.panes:
-            edges = self._edges(pane, centres, headings, ~repeated & ~explained)
+            edges = self._edges(pane, centres, headings, ~explained)
             explained |= pane.stops
             explained[list(edges)] = True
             self._mark_pane(navmap, pane, centres, edges)
-        for pose, known in zip(self._poses, explained, strict=True):
-            if not known:
-                mark_collision(navmap, pose, BOTH_LAYERS, self.squares)
+        explained &= ~self._repeated(centres, headings)
+        explained[: self._doubted] = True
+        for stop in np.flatnonzero(~explained).tolist():
+            mark_collision(navmap, self._poses[stop], BOTH_LAYERS, self.squares)
 
     def _repeated(
         self, centres: Float64[np.ndarray, "stops 2"], headings: Float64[np.ndarray, "stops 2"]
     ) -> Bool[np.ndarray, " stops"]:
-        """Returns the stops that happened more than once: the marks did not keep the robot from the same forward."""
+        """Returns the stops that happened more than once."""
         gap_m = np.hypot(*(centres[:, None] - centres[None]).transpose(2, 0, 1))
         same = (gap_m <= self.config.same_m) & (headings @ headings.T >= self.config.same_heading)
         return same.sum(axis=1) > 1
@@ -165,14 +188,14 @@ class FeltSurfaces:
         in_gap = free & ~pane.stops & (beyond_m > self._straight_m) & (beyond_m < self.radius_m)
         for stop in np.flatnonzero(in_gap).tolist():
             away_m = on_pane_m - along_m[stop]
-            nearest_m = float(away_m[np.argmin(np.abs(away_m))])
+            nearest_m, sideways = float(away_m[np.argmin(np.abs(away_m))]), float(headings[stop] @ pane.along)
             if abs(nearest_m) > self.config.link_m:
                 continue
-            side = 1 if nearest_m > 0.0 else -1
+            side = np.sign(nearest_m if abs(sideways) < self.config.oblique else sideways)
             ahead_m = self.radius_m - float(beyond_m[stop])
-            off_m = side * float(np.sqrt(self.radius_m**2 - ahead_m**2))
+            off_m = float(side * np.sqrt(self.radius_m**2 - ahead_m**2))
             if (ahead_m * pane.normal + off_m * pane.along) @ headings[stop] > 0.0:
-                edges[stop] = float(along_m[stop]) + off_m, -side
+                edges[stop] = float(along_m[stop]) + off_m, -int(side)
         return edges
 
     def _mark_pane(
@@ -206,7 +229,6 @@ class FeltSurfaces:
 def find_panes(
     centres: Float64[np.ndarray, "stops 2"],
     headings: Float64[np.ndarray, "stops 2"],
-    counts: Bool[np.ndarray, " stops"],
     config: FeelConfig,
 ) -> list[Pane]:
     """Returns the lines through the most stops, each stop on at most one line.
@@ -214,10 +236,9 @@ def find_panes(
     Args:
         centres: of the robot at each stop, metres.
         headings: unit vectors.
-        counts: the stops that may be used.
         config: the conditions for a line.
     """
-    panes, left = [], counts.copy()
+    panes, left = [], np.ones(len(centres), np.bool_)
     while True:
         lines = (
             _line_through(centres, headings, left, pair, config)
