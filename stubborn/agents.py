@@ -33,7 +33,7 @@ ABLATION: Mapping[str, CollisionAvoidance] = MappingProxyType(
         "stubborn-i": NO_AVOIDANCE,
         "stubborn-ii": replace(NO_AVOIDANCE, untrap=True),
         "stubborn-iii": replace(NO_AVOIDANCE, untrap=True, collision_layers=True),
-        "stubborn-iv": CollisionAvoidance(visited_is_free=False),
+        "stubborn-iv": CollisionAvoidance(optimistic_fallback=False, visited_is_free=False),
         "stubborn-v": CollisionAvoidance(),
     }
 )

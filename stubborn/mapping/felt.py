@@ -53,7 +53,7 @@ class FeelConfig:
     spare_m: float = 0.06
     """A gap is tried if it is wider than the robot by at least this."""
     mark_m: float = 0.03
-    """Half the thickness of a marked pane: at least a cell everywhere."""
+    """Half the thickness of a marked pane, which is a cell at least."""
     half_wide_m: float = 0.125
     """The pessimistic mark of a contact extends this far to both sides along its pane."""
     same_m: float = 0.03
@@ -78,7 +78,7 @@ class FeelConfig:
 class Pane:
     """A straight surface, by the line on which the robot's centre was at each stop."""
 
-    normal: Float64[np.ndarray, "2"]
+    normal: Float64[np.ndarray, 2]
     """Unit vector from the robot to the surface."""
     offset_m: float
     """Distance of the line from the origin along the normal."""
@@ -86,7 +86,7 @@ class Pane:
     """The stops on the line."""
 
     @property
-    def along(self) -> Float64[np.ndarray, "2"]:
+    def along(self) -> Float64[np.ndarray, 2]:
         """Unit vector along the surface."""
         return np.array([-self.normal[1], self.normal[0]])
 
@@ -220,7 +220,8 @@ class FeltSurfaces:
     def _mark_segment(
         self, navmap: NavMap, pane: Pane, span_m: tuple[float, float], layers: tuple[CollisionLayer, ...]
     ) -> None:
-        ends = [pane.point(along_m, self.radius_m) for along_m in span_m]
+        # The mark begins at the surface: where it is nearer, the body has been, and marks do not count.
+        ends = [pane.point(along_m, self.radius_m + self.config.mark_m) for along_m in span_m]
         index, inside = cells_near_segment(navmap.frame, ends[0], ends[1], self.config.mark_m)
         for layer in layers:
             navmap.collision_marks(layer)[index] |= inside
