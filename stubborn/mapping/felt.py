@@ -46,8 +46,8 @@ class FeelConfig:
     facing: float = 0.4
     """Cosine of the largest angle between the heading at a stop and the direction to the surface."""
     oblique: float = 0.26
-    """A robot in a gap that drove along the surface, by the sine of its heading, touches the edge on that side; one that
-    drove straight at it touches the edge of the part that is known."""
+    """A robot in a gap that drove along the surface (sine of its heading) touches the edge on that side; one that drove
+    straight at it touches the edge of the part that is known."""
     least_stops: int = 3
     """A line through this many stops is a pane."""
     spare_m: float = 0.06
