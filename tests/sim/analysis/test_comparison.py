@@ -20,7 +20,7 @@ from sim.analysis.comparison import (
 )
 from sim.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_csv, to_markdown, to_rich
 from sim.commands.compare import Args, compare, main, verdict
-from sim.evaluation.bootstrap import MIN_PAIRS, Estimate, estimate, paired_difference
+from sim.evaluation.intervals import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.evaluation.config_fields import ABSENT
 from sim.interface import ConfigError
 
