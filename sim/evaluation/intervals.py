@@ -139,7 +139,7 @@ def paired_difference(
         return Estimate(mean, None, None, *counts)
     half = _quantile(clusters) * error
     p = 2.0 * float(stdtr(clusters - 1, -abs(mean) / error))
-    return Estimate(mean, mean - half, mean + half, *counts, p=p)
+    return Estimate(mean, max(-most, mean - half), min(most, mean + half), *counts, p=p)
 
 
 def ratio_of_medians(

@@ -26,7 +26,7 @@ Line = dict[str, Any]
 
 def line(**changed: Any) -> Line:
     """Returns the line of a successful episode."""
-    usual = {"house": "h0", "success": 1.0, "spl": 0.5, "end_reason": "stop", "gt_explored": True}
+    usual = {"episode_id": "e0", "house": "h0", "success": 1.0, "spl": 0.5, "end_reason": "stop", "gt_explored": True}
     return usual | {"first_seen_step": 7, "steps_to_first_sight": 7, "collisions": 2} | changed
 
 
