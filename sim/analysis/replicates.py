@@ -17,7 +17,7 @@ def replicate_note(lines: Sequence[Line]) -> str:
 
 
 def difference_note(first: Sequence[Line], second: Sequence[Line]) -> str:
-    """Returns the sentence on the spread of the difference of two runs, whose lines are paired; "" without replicates."""
+    """Returns the sentence on the spread of the difference of two runs with paired lines; "" without replicates."""
     spreads = []
     for metric in (SUCCESS, SPL):
         pairs = zip(*([metric_value(line, metric.key) for line in lines] for lines in (first, second)), strict=True)

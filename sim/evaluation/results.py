@@ -22,8 +22,8 @@ import msgspec
 
 from sim.episodes.replicates import episode_of, replicate_number
 from sim.errors import ConfigError
-from sim.evaluation.intervals import estimate, replicate_spread
 from sim.evaluation.config_fields import ABSENT, differing_fields, field_text, is_same_file
+from sim.evaluation.intervals import estimate, replicate_spread
 from sim.files import open_to_grow, write_atomically
 from sim.reading import (
     MAX_LINES_BYTES,

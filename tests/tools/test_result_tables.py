@@ -16,6 +16,7 @@ from scipy.special import stdtrit
 
 from sim.errors import ConfigError
 from tools.research import result_tables
+from tools.research.resolution import houses_needed, resolution_record, shown_difference, variance_components
 from tools.research.result_archive import ARCHIVE, ArchivedRun, RunKey, newest, read_archive
 from tools.research.result_definitions import comparisons, page_tables
 from tools.research.result_tables import (
@@ -24,7 +25,6 @@ from tools.research.result_tables import (
     RESOLUTION,
     RESULTS,
     TABLES,
-    Record,
     comparison_record,
     fill_page,
     holm,
@@ -36,7 +36,6 @@ from tools.research.result_tables import (
     unknown_quantities,
     with_families,
 )
-from tools.research.resolution import houses_needed, resolution_record, shown_difference, variance_components
 
 CONFIG = {
     "agent": "stubborn",

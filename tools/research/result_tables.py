@@ -37,6 +37,7 @@ from sim.files import write_together
 from sim.reading import read_bytes, read_text
 from sim.reading import read_csv as read_table
 from sim.task.failures import CAUSES
+from tools.research.resolution import paired_lines, resolution_record
 from tools.research.result_archive import ARCHIVE, ROOT, ArchivedRun, RunKey, read_archive
 from tools.research.result_definitions import (
     COMPARED,
@@ -50,7 +51,6 @@ from tools.research.result_definitions import (
     comparisons,
     page_tables,
 )
-from tools.research.resolution import paired_lines, resolution_record
 
 Record = dict[str, str]
 """One row of a CSV file, by column."""

@@ -12,8 +12,8 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from sim.analysis.comparison import LETTERS, Line, Run, differences_table, require_same_episodes
-from sim.analysis.report import distributions
 from sim.analysis.replicates import replicate_note
+from sim.analysis.report import distributions
 from sim.analysis.report.drawings import Drawings, Trajectories, draw_episodes, read_trajectories
 from sim.analysis.report.episodes import Row, by_number, columns_of, facts_of_line, outcome_choices, row_of
 from sim.analysis.report.facts import facts_of

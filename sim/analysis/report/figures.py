@@ -118,9 +118,7 @@ def causes(runs: Runs) -> list[Group]:
     for cause in [*(cause for cause in CAUSES if cause in known), *sorted(known.difference(CAUSES))]:
         failed = [[name == cause for name in names] for names in outcomes]
         shares = [_proportion(values, runs[0]) for values in failed]
-        compared = [
-            paired_difference(failed[0], values, houses, episodes=episodes, most=1.0) for values in failed[1:]
-        ]
+        compared = [paired_difference(failed[0], values, houses, episodes=episodes, most=1.0) for values in failed[1:]]
         against = [Cell(each, percent=True, difference=True) for each in compared]
         found.append(Group(cause, shares, against, MEANING.get(cause, _OTHER.get(cause, ""))))
     return sorted(found, key=lambda group: -sum(share.count for share in group.shares))

@@ -43,8 +43,8 @@ from sim.composition.running import run_missing
 from sim.composition.setup import resolve
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import ConfigError
-from sim.evaluation.intervals import MIN_PAIRS
 from sim.evaluation.config_fields import differing_fields, field_text
+from sim.evaluation.intervals import MIN_PAIRS
 from sim.files import write_atomically, write_together
 from sim.task.failures import cause_of_failure
 from sim.task.trajectory import read_trajectory, trajectory_file

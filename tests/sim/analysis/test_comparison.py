@@ -18,10 +18,11 @@ from sim.analysis.comparison import (
     read_run,
     require_same_episodes,
 )
+from sim.analysis.replicates import replicate_note
 from sim.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_csv, to_markdown, to_rich
 from sim.commands.compare import Args, compare, main, verdict
-from sim.evaluation.intervals import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.evaluation.config_fields import ABSENT
+from sim.evaluation.intervals import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.interface import ConfigError
 
 
@@ -278,3 +279,29 @@ def test_a_comparison_prints_its_verdict_last(tmp_path: Path, capsys: pytest.Cap
     folders = [run_folder(tmp_path / name, "abc") for name in "ab"]
     assert main(Args(first=folders[0], second=folders[1])) == 0
     assert capsys.readouterr().out.strip().splitlines()[-1].startswith("Verdict over 3 episodes.")
+
+
+def test_replicates_of_an_episode_count_once_in_a_comparison_which_states_their_spread(tmp_path: Path) -> None:
+    folders = [run_folder(tmp_path / name, "abcd", spl=0.5) for name in "ab"]
+    for folder, outcomes in zip(folders, ("1100", "1011"), strict=True):
+        lines = [json.loads(line) for line in (folder / "results.jsonl").read_text().splitlines()]
+        own = [line | {"house": f"h_{line['episode_id']}"} for line in lines]
+        again = [
+            line | {"episode_id": f"{line['episode_id']}~1", "success": float(outcome)}
+            for line, outcome in zip(own, outcomes, strict=True)
+        ]
+        (folder / "results.jsonl").write_text("".join(json.dumps(line) + "\n" for line in own + again))
+    first, second = map(read_run, folders)
+    table = compare(first, second)
+    assert "4 episodes of both runs." in table.notes[0]
+    (note,) = (note for note in table.notes if "Chance alone" in note)
+    # differences of the replicates: a 0, 0; b 0, -1; c 0, 1; d 0, 1; variances 0, 1/2, 1/2, 1/2, mean 3/8
+    assert note == (
+        "8 replicates of 4 episodes, each of which counts once. Chance alone gives the difference over one replicate "
+        f"of each a standard deviation of {100 * (3 / 8 / 4) ** 0.5:.1f} points of success and 0.000 of SPL."
+    )
+    assert replicate_note([line for i, line in first.lines.items() if "~" not in i]) == ""
+    assert f" {100 * (1 / 2 / 4 / 4) ** 0.5:.1f} points of success" in replicate_note(list(second.lines.values()))
+    cells = dict(table.rows)["success %"]
+    assert [cell.estimate.count for cell in cells if isinstance(cell, Cell)] == [4, 4, 4]
+    assert verdict(first, second).startswith("Verdict over 4 episodes.")

@@ -109,10 +109,12 @@ def test_a_difference_becomes_significant_with_about_the_number_of_pairs_that_it
         needed = one.pairs_needed
         assert needed is not None
         assert needed > 200
+        low, high = interval(one)
+        of_house = 0.5 * (high - low) / stats.t.ppf(0.975, one.houses - 1) * math.sqrt(one.houses)
         for factor, significant in ((1.02, True), (0.98, False)):
             houses = round(factor * needed / per_house)
             means = np.random.default_rng(4).normal(0.0, 1.0, houses)
-            means *= (one.high - one.low) / 2 / stats.t.ppf(0.975, one.houses - 1) * math.sqrt(one.houses) / means.std(ddof=1)  # type: ignore
+            means *= of_house / means.std(ddof=1)
             values = np.repeat(means - means.mean() + off, per_house)
             assert of_differences(values, houses_of(houses, per_house)).significant == significant
 
@@ -171,7 +173,9 @@ def test_the_spread_of_replicates_is_that_of_repeated_means() -> None:
     draws = rng.random((450, 100)) < rates  # each row: one replicate of 100 episodes
     ids = [str(i) for i in range(100)] * 3
     found = [replicate_spread(rows.ravel().tolist(), ids) for rows in draws.reshape(-1, 3, 100)]
-    assert np.mean([each or 0.0 for each in found]) == pytest.approx(math.sqrt((rates * (1.0 - rates)).sum()) / 100, rel=0.03)
+    assert np.mean([each or 0.0 for each in found]) == pytest.approx(
+        math.sqrt((rates * (1.0 - rates)).sum()) / 100, rel=0.03
+    )
     assert replicate_spread([1.0, 0.0, None], ["a", "b", "a"]) is None
 
 
@@ -191,7 +195,9 @@ def test_a_ratio_of_medians_is_significant_when_its_interval_excludes_one() -> N
     assert half.mean == pytest.approx(0.5)
     assert half.low == half.high == pytest.approx(0.5)  # each resample keeps the pairs together
     assert (half.significant, same.mean, same.significant) == (True, 1.0, False)
-    twice = ratio_of_medians(first.tolist() * 2, first.tolist() * 2, names * 2, episodes=[str(i) for i in range(200)] * 2)
+    twice = ratio_of_medians(
+        first.tolist() * 2, first.tolist() * 2, names * 2, episodes=[str(i) for i in range(200)] * 2
+    )
     assert twice == same
 
 

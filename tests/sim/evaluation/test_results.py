@@ -159,11 +159,16 @@ def test_a_summary_states_over_what_its_intervals_are() -> None:
 def test_the_intervals_of_a_summary_are_over_houses() -> None:
     alike = [line(n, house=f"h{n // 10}", success=float(n // 10 % 2)) for n in range(80)]
     low, high = summarise(alike)["success"]["ci95"]
-    assert (low, high) == pytest.approx((0.167, 0.833), abs=0.001)  # Wilson with Student's t: 7 effective episodes, not 80
+    assert (low, high) == pytest.approx(
+        (0.167, 0.833), abs=0.001
+    )  # Wilson with Student's t: 7 effective episodes, not 80
 
 
 def test_a_summary_has_the_means_of_each_replicate_and_their_spread() -> None:
-    lines = [line(0, success=s, spl=s) | {"episode_id": f"val_0000{mark}"} for mark, s in (("", 1.0), ("~1", 0.0), ("~2", 1.0))]
+    lines = [
+        line(0, success=s, spl=s) | {"episode_id": f"val_0000{mark}"}
+        for mark, s in (("", 1.0), ("~1", 0.0), ("~2", 1.0))
+    ]
     summary = summarise(lines)
     assert (summary["episodes"], summary["success"]["mean"]) == (1, pytest.approx(2 / 3))
     assert summary["replicates"]["success"]["means"] == [1.0, 0.0, 1.0]
