@@ -26,8 +26,8 @@ from sim.geometry.numbers import require_numbers
 from sim.geometry.pose import wrap_angle
 
 __all__ = [
-    "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS", "SENSORS",
-    "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation",
+    "CLIMB_M", "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS",
+    "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation",
     "Perceived", "RobotModel", "Scores", "SegmentationSpec", "Segmenter", "SegmenterFactory", "SegmenterSpec",
     "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule", "wrap_angle",
 ]  # fmt: skip
@@ -46,6 +46,8 @@ FORWARD_M = 0.25
 """Commanded displacement of MOVE_FORWARD."""
 TURN_RAD = math.radians(30.0)
 """Commanded rotation of TURN_LEFT (positive) and TURN_RIGHT (negative)."""
+CLIMB_M = 0.012
+"""Height of an edge that the default robot climbs, as a Kobuki does."""
 MAX_SIDE_PX = 4096
 """Largest width and height of an image."""
 MAX_STEPS = 500
@@ -121,13 +123,17 @@ class RobotModel:
     height_m: float = 0.88
     camera_forward_m: float = 0.0
     """Camera mount ahead of the wheel axis; 0 for the default robot, whose camera turns on the spot."""
-    clearance_m: float = 0.03
-    """Height of the body's lower side above the floor: lower objects pass under it."""
+    clearance_m: float = 0.0128
+    """Height of the body's lower side above the floor."""
+    climb_m: float = CLIMB_M
+    """Height of the highest edge that the wheels climb, of whatever object; anything higher is an obstacle."""
 
     def __post_init__(self) -> None:
         require_numbers(self)
         if self.radius_m <= 0 or self.height_m <= 0:
             raise ConfigError(f"RobotModel needs positive sizes, got {self.radius_m} m and {self.height_m} m.")
+        if not 0.0 <= self.climb_m < self.height_m:
+            raise ConfigError(f"RobotModel.climb_m must lie in [0, height_m = {self.height_m}), got {self.climb_m} m.")
 
 
 @dataclass(frozen=True, kw_only=True)

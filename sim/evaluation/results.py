@@ -96,6 +96,7 @@ class ResultLine(msgspec.Struct):
     area_seen_m2: Measured = None
     area_per_metre: float | None = None  # not bounded: older runs divided by path lengths near 0
     trapped: Measured = None
+    simulated_s: Measured = None
     stop_confidence: Measured = None
     stop_target_xy_m: tuple[Number, Number] | None = None
     stop_target_to_goal_m: Measured = None
@@ -350,6 +351,15 @@ class RunDirectory:
         self._results.close()
         self._lock.close()
 
+    def _require_same_physics(self, existing: Mapping[str, Any], config: Mapping[str, Any]) -> None:
+        """Raises ConfigError where the run was made with another version of the physics; the first wrote none."""
+        before, now = existing.get("physics") or 1, config.get("physics")
+        if now is not None and before != now:
+            raise ConfigError(
+                f"--out '{self.path}' holds a run of physics version {before}, this program has version {now}: the "
+                "robot moves differently, so that the run cannot be resumed; choose another folder."
+            )
+
     def _write_or_compare_config(self) -> None:
         file = self.path / "config.json"
         config = json.loads(json.dumps(dict(self.config)))
@@ -360,8 +370,7 @@ class RunDirectory:
             _write_json(file, config)  # it is on the disk before the first line
             return
         existing = read_record(file)
-        if "physics" in config:
-            existing.setdefault("physics", 1)  # runs of the first version do not have it
+        self._require_same_physics(existing, config)
         for path, before, now in differing_fields(existing, config):
             unset = all(value is None or value is ABSENT for value in (before, now))
             if path.partition(".")[0] not in NOT_COMPARED and not unset and not is_same_file(path, existing, config):
@@ -433,15 +442,13 @@ def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
 def _replicates(lines: Sequence[Mapping[str, Any]], episodes: Sequence[str]) -> dict[str, Any]:
     """Returns, under `replicates`, the mean of each replicate of all episodes and their spread; {} without any."""
     numbers = [replicate_number(line["episode_id"]) for line in lines]
-    if not any(numbers):
+    if len(set(numbers)) < 2:
         return {}
     found = {}
     for metric in ("success", "spl"):
-        values = [metric_value(line, metric) or 0.0 for line in lines]
-        by_number: dict[int, list[float]] = {}
-        for number, value in zip(numbers, values, strict=True):
-            by_number.setdefault(number, []).append(value)
-        means = [sum(by_number[number]) / len(by_number[number]) for number in sorted(by_number)]
+        values = [float(line[metric]) for line in lines]
+        each = [[v for v, of in zip(values, numbers, strict=True) if of == number] for number in sorted(set(numbers))]
+        means = [sum(of_number) / len(of_number) for of_number in each]
         found[metric] = {"means": means, "std": replicate_spread(values, episodes)}
     return {"replicates": found}
 

@@ -16,10 +16,12 @@ from dataclasses import dataclass
 
 from sim.gl import mujoco
 from sim.interface import Action, wrap_angle
-from sim.robot.body import PREFIX, Body
+from sim.robot.body import Body
+from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import RobotConfig
 from sim.robot.contacts import ContactLog
 from sim.robot.drive import Motion
+from sim.robot.motors import Motors
 
 BLOCKED_S = 0.2
 """The robot is blocked if the command has pushed for this long ..."""
@@ -71,13 +73,14 @@ class VelocityDrive:
         self._radius_m, self._half_track_m = config.wheels.radius_m, config.wheels.half_track_m
         self._reach_rad_s = config.wheels.max_torque_nm / config.wheels.motor_gain_nm_s
         self._touch_ticks = math.ceil(self._drive.touch_memory_s / self._tick_s)
-        self._motors = tuple(model.actuator(f"{PREFIX}{side}_motor").id for side in ("left", "right"))
+        self._motors = Motors(config, model, body)
         self._moves: deque[tuple[float, float]] = deque(maxlen=round(BLOCKED_S / self._tick_s))
         """Distance (m) and angle (rad) of each of the last ticks in which the command pushed, without sign."""
-        self.reset()
+        self.reset(NOMINAL)
 
-    def reset(self) -> None:
+    def reset(self, conditions: Conditions) -> None:
         """Starts a new episode, at rest."""
+        self._motors.reset(conditions)
         self._speed_m_s = self._rate_rad_s = 0.0
         self._blocked, self._last = False, Velocity(0.0, 0.0)
         self._moves.clear()
@@ -101,6 +104,7 @@ class VelocityDrive:
         x, y, yaw, _, _ = self._body.state()
         contacts = self._log.contacts(self._tick_s)
         if begins:
+            self._log.sample(ticks, all_parts=True)
             side = math.copysign(1.0, command.speed_m_s) if command.pushes_forward else 0.0
             direction = side * math.cos(yaw), side * math.sin(yaw)
             contacts = self._log.contacts_of_aborted(self._tick_s, ticks - self._touch_ticks, direction)
@@ -120,12 +124,11 @@ class VelocityDrive:
         speed = _towards(self._speed_m_s, command.speed_m_s, drive.acceleration_m_s2 * self._tick_s)
         rate = _towards(self._rate_rad_s, command.rate_rad_s, drive.turn_acceleration_rad_s2 * self._tick_s)
         wheels = []
-        for motor, side in zip(self._motors, (-1.0, 1.0), strict=True):
-            measured = float(self._data.actuator_velocity[motor])
+        for measured, side in zip(self._body.wheel_speeds(), (-1.0, 1.0), strict=True):
             wanted = (speed + side * rate * self._half_track_m) / self._radius_m
             wheels.append(_towards(measured, wanted, self._reach_rad_s))
-            self._data.ctrl[motor] = wheels[-1]
         left, right = wheels
+        self._motors.command(left, right)
         self._speed_m_s = 0.5 * (left + right) * self._radius_m
         self._rate_rad_s = 0.5 * (right - left) * self._radius_m / self._half_track_m
         x0, y0, yaw0, _, _ = self._body.state()

@@ -68,7 +68,17 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 compass_std_rad=math.radians(0.3),
                 compass_walk_rad=math.radians(0.03),
             ),
-            actuation=ActuationNoise(floor_friction_scale=(0.3, 1.1), motor_gain_scale=(0.9, 1.1)),
+            # About half of the errors of a LoCoBot with the ILQR controller (PyRobot): 14 mm a forward, 1.3 deg a turn.
+            actuation=ActuationNoise(
+                floor_friction_scale=(0.3, 1.1),
+                motor_gain_scale=(0.9, 1.1),
+                motor_bias_rad_s=0.05,
+                motor_latency_s=0.04,
+                encoder_scale=(0.95, 1.05),
+                encoder_mismatch=0.01,
+                gyro_scale=(0.97, 1.03),
+                gyro_bias_rad_s=math.radians(0.01),
+            ),
             scan=ScanNoise(std_share=0.01),
         ),
         # An old camera in poor light on a robot with slippery wheels: 2.5 times the depth error, and a compass drift
@@ -93,7 +103,17 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 compass_std_rad=math.radians(1.0),
                 compass_walk_rad=math.radians(0.2),
             ),
-            actuation=ActuationNoise(floor_friction_scale=(0.06, 1.0), motor_gain_scale=(0.6, 1.1)),
+            # The errors of that LoCoBot, on floors that may be wet.
+            actuation=ActuationNoise(
+                floor_friction_scale=(0.2, 1.0),
+                motor_gain_scale=(0.6, 1.1),
+                motor_bias_rad_s=0.15,
+                motor_latency_s=0.06,
+                encoder_scale=(0.9, 1.1),
+                encoder_mismatch=0.03,
+                gyro_scale=(0.92, 1.08),
+                gyro_bias_rad_s=math.radians(0.03),
+            ),
             scan=ScanNoise(std_m=0.015, std_share=0.025, dropout=0.02),
         ),
     }

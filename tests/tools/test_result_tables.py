@@ -169,6 +169,23 @@ def test_the_run_with_more_episodes_is_shown_for_a_row(tmp_path: Path) -> None:
         newest([run, ArchivedRun(run.key, run.run, "c")], said.append)
 
 
+def test_replicates_are_no_episodes_and_their_spread_is_in_the_table(tmp_path: Path) -> None:
+    lines = [
+        LINE
+        | {"episode_id": f"val_000{i}{mark}", "house": f"val_0{i}", "success": float(success), "spl": 0.5 * success}
+        for i, outcomes in enumerate(((1, 0), (1, 1), (0, 0)))
+        for mark, success in zip(("", "~1"), outcomes, strict=True)
+    ]
+    text = "".join(json.dumps(line) + "\n" for line in lines)
+    files = {"a/config.json": json.dumps(CONFIG | {"replicates": 2}), "a/results.jsonl": text}
+    (run,) = read_archive(archive_of(tmp_path, files), tmp_path / "runs", lambda _: None).values()
+    assert [line["episode_id"] for line in run.first_lines(2)] == ["val_0000", "val_0000~1", "val_0001", "val_0001~1"]
+    record = result_record(run, 3)
+    assert (record["episodes"], record["options"], record["success"]) == ("3", "--replicates 2", "0.500000")
+    assert float(record["success_replicates_sd"]) == pytest.approx((0.5 / 3 / 3) ** 0.5, abs=1e-6)
+    assert "--replicates 2" in record["command"]
+
+
 def test_a_row_has_the_command_that_repeats_it(tmp_path: Path) -> None:
     config = CONFIG | {
         "explorer": "tour",

@@ -114,7 +114,7 @@ def row_keys(runs: Mapping[RunKey, ArchivedRun]) -> list[RowKey]:
     Raises:
         ConfigError: a table needs a run that the archive does not have.
     """
-    keys = {RowKey(key, len(run.run.lines)) for key, run in runs.items()}
+    keys = {RowKey(key, run.episodes) for key, run in runs.items()}
     for table in page_tables():
         for key in table.needed():
             if key.run not in runs:

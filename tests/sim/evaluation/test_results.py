@@ -398,3 +398,12 @@ def test_a_run_resumed_with_another_library_names_it(tmp_path: Path) -> None:
     run = RunDirectory(tmp_path, CONFIG | {"versions": {"mujoco": "4.1.0", "numpy": "2.4.6", "code": "b"}})
     assert run.other_versions() == {"mujoco": ("4.0.0", "4.1.0")}
     run.close()
+
+
+def test_a_run_of_other_physics_is_not_resumed(tmp_path):
+    RunDirectory(tmp_path / "run", {"agent": "oracle"}).close()  # the first version wrote no number
+    with pytest.raises(
+        ConfigError, match=r"physics version 1, this program has version 2.*choose another folder"
+    ) as error:
+        RunDirectory(tmp_path / "run", {"agent": "oracle", "physics": 2})
+    assert "\n" not in str(error.value)
