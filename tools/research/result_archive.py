@@ -19,6 +19,7 @@ import msgspec
 from sim.analysis.comparison import Line, Run, read_run
 from sim.composition.agents import find_agent
 from sim.composition.options import RunOptions
+from sim.episodes.replicates import episode_of
 from sim.errors import ConfigError
 from sim.reading import PlainMember, convert, open_plain
 
@@ -41,6 +42,7 @@ class _Setup(msgspec.Struct):
     verification: str | None = None
     noise: str | None = None
     seed: int | None = None
+    replicates: int | None = None
     settings: dict[str, Any] = msgspec.field(default_factory=dict)
 
 
@@ -70,15 +72,22 @@ class ArchivedRun:
     """Its folder in the archive."""
 
     def first_lines(self, count: int | None = None) -> list[Line]:
-        """Returns the lines of the first episodes of the split; their ids are numbered in the order of the split.
+        """Returns the lines of the first episodes of the split, with their replicates.
+
+        The ids of episodes are numbered in the order of the split.
 
         Raises:
             ConfigError: the run has fewer episodes.
         """
-        ids = sorted(self.run.lines)
-        if count is not None and count > len(ids):
-            raise ConfigError(f"'{self.folder}' has {len(ids)} episodes; a table needs {count}.")
-        return [self.run.lines[each] for each in ids[:count]]
+        if count is not None and count > self.episodes:
+            raise ConfigError(f"'{self.folder}' has {self.episodes} episodes; a table needs {count}.")
+        wanted = set(sorted({episode_of(each) for each in self.run.lines})[:count])
+        return [self.run.lines[each] for each in sorted(self.run.lines) if episode_of(each) in wanted]
+
+    @property
+    def episodes(self) -> int:
+        """The number of episodes; replicates are not counted."""
+        return len({episode_of(each) for each in self.run.lines})
 
     @property
     def uses_ground_truth(self) -> bool:
@@ -169,7 +178,7 @@ def _options(run: Run) -> Iterator[str]:
     """Yields the words of the options of `stubborn run` that are not the default, in a fixed order."""
     setup = convert(dict(run.config), _Setup, where=f"Config '{run.path / 'config.json'}'")
     defaults = RunOptions()
-    for name in ("explorer", "verification", "noise", "seed"):
+    for name in ("explorer", "verification", "noise", "seed", "replicates"):
         value = getattr(setup, name)
         if value is not None and value != getattr(defaults, name):
             yield from (f"--{name}", str(value))

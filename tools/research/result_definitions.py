@@ -18,6 +18,8 @@ MEANS = (SUCCESS, SPL, SOFT_SPL, DISTANCE, EXPLORED, COLLISIONS, TRAPPED, STEPS)
 """Metrics whose mean and interval each row of results.csv has."""
 COMPARED = (SUCCESS, SPL, COLLISIONS, TRAPPED, FIRST_SIGHT, STEPS)
 """Metrics whose paired difference each row of comparisons.csv has."""
+PRIMARY_METRICS = (SUCCESS, SPL)
+"""Metrics of the primary comparisons of a table; their p-values are corrected together (Holm 1979)."""
 MEDIAN = "median_first_sight"
 """Column of results.csv: median steps to first sight; an episode that never shows the goal counts with the limit."""
 FAILED = "failed_"
@@ -42,6 +44,8 @@ class Comparison:
     first: RunKey
     second: RunKey
     episodes: int
+    primary: bool = True
+    """It answers the question of its table. All others are exploratory: their intervals are not corrected."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +92,8 @@ EXPLORERS = {
     "oracle": "`oracle`",
 }
 EXPLORER_EPISODES = {"val": 200, "large": 300}
+PRIMARY_EXPLORERS = ("stubborn --explorer informed-tour", "poni", "semexp")
+"""Explorers whose comparison with corners is primary."""
 CONTROLS = tuple(
     f"semexp --config agent.explorer.{control}" for control in ("goal=wrong", "semantics=shuffled", "semantics=none")
 )
@@ -119,7 +125,8 @@ def comparisons() -> Iterator[Comparison]:
     for split, episodes in HEADLINE_EPISODES.items():
         present = [run_key(split, *agent.split()) for agent in HEADLINE[split]]
         for second, first in itertools.combinations(present, 2):
-            yield Comparison("headline", first, second, episodes)
+            primary = second.agent == "stubborn" and first.semantics == second.semantics
+            yield Comparison("headline", first, second, episodes, primary)
     *rows, whole = ABLATION
     for split in ABLATION_SPLITS:
         for name in rows:
@@ -128,10 +135,10 @@ def comparisons() -> Iterator[Comparison]:
     for split, episodes in EXPLORER_EPISODES.items():
         for name in list(EXPLORERS)[1:]:
             first, second = run_key(split, name, "gt"), run_key(split, "stubborn", "gt")
-            yield Comparison("explorers", first, second, episodes)
+            yield Comparison("explorers", first, second, episodes, name in PRIMARY_EXPLORERS)
         for name in CONTROLS:
             first, second = run_key(split, name, "gt"), run_key(split, "semexp", "gt")
-            yield Comparison("explorers", first, second, episodes)
+            yield Comparison("explorers", first, second, episodes, name == CONTROLS[0])
     yield from _network_comparisons()
 
 

@@ -53,7 +53,10 @@ class FloorMap:
         labels, self.rooms = read_labels(model, ignore_prefix=""), read_rooms(model)
         low, high = (
             FreeSpace(
-                model, data, labels, rooms=self.rooms,
+                model,
+                data,
+                labels,
+                rooms=self.rooms,
                 robot=RobotModel(radius_m=_DRAWN_RADIUS_M, height_m=height, climb_m=LOW_M),
             )
             for height in (0.88, TALL_M)

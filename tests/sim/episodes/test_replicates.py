@@ -31,7 +31,9 @@ def test_replicates_are_the_same_in_every_process_and_for_every_count():
     assert with_replicates(EPISODES, 3)[:3] == with_replicates(EPISODES, 5)[:3]
 
 
-@pytest.mark.parametrize(("episode_id", "number"), [("val_0003", 0), ("val_0003~12", 12), ("a~b", 0), ("~1", 0), ("a~\u00b2", 0)])
+@pytest.mark.parametrize(
+    ("episode_id", "number"), [("val_0003", 0), ("val_0003~12", 12), ("a~b", 0), ("~1", 0), ("a~\u00b2", 0)]
+)
 def test_an_id_names_its_replicate(episode_id, number):
     assert replicate_number(episode_id) == number
 

@@ -42,7 +42,10 @@ def test_a_robot_keeps_its_own_masses_and_shapes(carrier: Path, capfd: pytest.Ca
     assert world.model.body_subtreemass[base] == pytest.approx(9 + 2 * 0.5 + 0.1 + 1.5 + 0.8)
     np.testing.assert_allclose(world.data.geom("stubborn_robot/file/deck").xpos, (1.0, 2.02, 0.135), atol=1e-3)
     np.testing.assert_allclose(_tyres(world), [(0.85, 2.0, 0.075), (1.15, 2.0, 0.075)], atol=1e-3)
-    ours, hull = World(open_floor()).model.geom("stubborn_robot/lower_hull"), world.model.geom("stubborn_robot/file/hull_1")
+    ours, hull = (
+        World(open_floor()).model.geom("stubborn_robot/lower_hull"),
+        world.model.geom("stubborn_robot/file/hull_1"),
+    )
     for field in ("friction", "condim", "solref", "priority", "contype", "conaffinity", "group"):
         np.testing.assert_array_equal(getattr(hull, field), getattr(ours, field))
     assert hull.margin[0] == world.config.body.skin_m == 0.005
