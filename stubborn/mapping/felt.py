@@ -17,10 +17,11 @@ where the body has been (`ProvenGround`).
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float64
+from jaxtyping import Bool, Float64, Int
 
 from sim.geometry.grid import cells_near_segment
 from sim.geometry.pose import Pose
@@ -44,7 +45,7 @@ class FeelConfig:
     link_m: float = 0.90
     """Neighbouring stops of a pane are at most this far apart."""
     facing: float = 0.4
-    """Cosine of the largest angle between the heading at a stop and the direction to the surface."""
+    """Cosine of the largest angle between the heading (or `contact_direction`) at a stop and the surface's normal."""
     oblique: float = 0.26
     """A robot in a gap that drove along the surface (sine of its heading) touches the edge on that side; one that drove
     straight at it touches the edge of the part that is known."""
@@ -72,6 +73,25 @@ class FeelConfig:
     def make(self, radius_m: float, squares: CollisionConfig) -> FeltSurfaces:
         """Returns an empty memory for a robot of this radius; stops outside of panes get the marks of `squares`."""
         return FeltSurfaces(self, radius_m, squares)
+
+
+def contact_direction(yaw_rad: float, bumper: Int[np.ndarray, " sectors"] | None) -> float | None:
+    """Returns the world angle from the robot to the contact that stopped it; None if nothing in front touched it.
+
+    Without a bumper, or with a contact in its sector 0, this is the heading.
+
+    Args:
+        yaw_rad: heading of the robot.
+        bumper: 1 for each sector of the hull with a contact, sector 0 ahead, the others counter-clockwise; None: the
+            robot has no bumper.
+    """
+    if bumper is None or bumper[0]:
+        return yaw_rad
+    angles_rad = np.flatnonzero(bumper) * (math.tau / bumper.size)
+    angles_rad = angles_rad[np.cos(angles_rad) > 0.0]
+    if angles_rad.size == 0:
+        return None
+    return yaw_rad + math.atan2(np.sin(angles_rad).sum(), np.cos(angles_rad).sum())
 
 
 @dataclass(frozen=True)
@@ -116,7 +136,7 @@ class FeltSurfaces:
 
         Args:
             navmap: the map; its collision marks are replaced.
-            pose: of the robot where it was stopped.
+            pose: of the robot where it was stopped; its heading is `contact_direction`.
             noise_m: standard deviation of a measured move.
         """
         self._poses.append(pose)

@@ -11,7 +11,7 @@ from sim.geometry.pose import Pose
 from sim.interface import RobotModel
 from stubborn import agents
 from stubborn.mapping.collision_marks import CollisionConfig, mark_collision, mark_visited
-from stubborn.mapping.felt import BOTH_LAYERS, FeelConfig, FeltSurfaces
+from stubborn.mapping.felt import BOTH_LAYERS, FeelConfig, FeltSurfaces, contact_direction
 from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import visited_ground
 from stubborn.planning.planner import Planner, PlanningConfig
@@ -132,6 +132,23 @@ def test_doubt_drops_single_marks_first_and_panes_next():
     assert surfaces.doubt(navmap)
     assert not navmap.pessimistic_marks.any()
     assert not surfaces.doubt(navmap)
+
+
+@pytest.mark.parametrize(
+    ("touched", "degrees"), [((0, 1), 0), ((1,), 60), ((5,), -60), ((1, 5), 0), ((2, 1), 60), ((3,), None), ((), None)]
+)
+def test_the_bumper_shows_where_the_contact_is(touched: tuple[int, ...], degrees: float | None):
+    bumper = np.zeros(6, np.int8)
+    bumper[list(touched)] = 1
+    direction = contact_direction(0.5, bumper)
+    if degrees is None:
+        assert direction is None
+    else:
+        assert direction == pytest.approx(0.5 + math.radians(degrees))
+
+
+def test_without_a_bumper_the_contact_is_ahead():
+    assert contact_direction(0.5, None) == 0.5
 
 
 def test_an_episode_forgets_the_last_one():
