@@ -86,7 +86,7 @@ class ChaseView:
             self._context = make_frame_buffer(model, self._size, profile)
         self._finalizer = weakref.finalize(self, free_contexts, self._gl, {self._context})
         self._finalizer.atexit = False  # OpenGL may be unloaded before the process ends
-        robot = np.flatnonzero(geoms_of(model, PREFIX))
+        robot = np.flatnonzero(geoms_of(model, PREFIX) & (opacity(model) > 0.0))
         visual = rendered_geoms(model)
         self._geoms = np.union1d(np.flatnonzero(visual), robot)
         self._hidden = np.flatnonzero(hidden_obstacles(scene.world))
@@ -178,14 +178,15 @@ class ChaseView:
         return picture, self._depth[::-1] * np.float32(_depth_slope(near_m)) + np.float32(1.0 / Z_FAR_M)
 
     def _mark_front(self, pose: Pose) -> None:
-        """Adds a band with a lens and an arrow to the robot, which show where its front is."""
+        """Adds an arrow, and a band with a lens to the default robot, which show where the robot's front is."""
         robot = self._world.robot
         forward = np.array([math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), 0.0])
         top_m = np.array([pose.x_m, pose.y_m, pose.floor_z_m + robot.height_m])
         band_m = top_m - np.array([0.0, 0.0, 2.2 * _BAND_M])
         lens_m, reach = band_m + robot.radius_m * forward, 0.8 * robot.radius_m * forward
-        self._add(mujoco.mjtGeom.mjGEOM_CYLINDER, (robot.radius_m + 0.003, _BAND_M, 0.0), band_m, _DARK)
-        self._add(mujoco.mjtGeom.mjGEOM_SPHERE, (_LENS_M, 0.0, 0.0), lens_m, _LENS)
+        if self._world.config.file is None:
+            self._add(mujoco.mjtGeom.mjGEOM_CYLINDER, (robot.radius_m + 0.003, _BAND_M, 0.0), band_m, _DARK)
+            self._add(mujoco.mjtGeom.mjGEOM_SPHERE, (_LENS_M, 0.0, 0.0), lens_m, _LENS)
         lid_m = top_m + np.array([0.0, 0.0, 0.03])
         arrow = self._add(mujoco.mjtGeom.mjGEOM_ARROW, (0.01, 0.01, 0.01), lid_m, _ARROW)
         mujoco.mjv_connector(arrow, mujoco.mjtGeom.mjGEOM_ARROW, 0.022, lid_m - reach, lid_m + reach)

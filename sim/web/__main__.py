@@ -56,8 +56,8 @@ class Args:
     """With --house: another folder whose files the houses may use, in addition to their own folder."""
     weights: Path | None = None
     """Your network in place of the shipped one, for segmentation by rednet."""
-    robot: Path | None = None
-    """Replaces the default robot: an MJCF file with its sidecar next to it (docs/worlds.md)."""
+    robot: str | None = None
+    """Replaces the default robot: an MJCF file with its sidecar next to it, or menagerie:NAME (docs/worlds.md)."""
     seed: cli.Seed = 0
     """Seed of agents, noise and, with --house, starts and goals."""
     profile: str = "fast"
