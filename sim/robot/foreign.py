@@ -81,6 +81,11 @@ def robot_sha256(robot: Path | str) -> str:
     return hashlib.sha256(b"".join(read_bytes(file, what=f"--robot: the {what}") for file, what in files)).hexdigest()
 
 
+def absolute_robot(robot: Path | str) -> str:
+    """Returns the name or path of a robot that stays valid if the current folder changes."""
+    return str(robot if is_menagerie(robot) else Path(robot).absolute())
+
+
 def _files_of(robot: Path | str) -> tuple[Path, Path]:
     """Returns the MJCF file of a robot and its sidecar."""
     if is_menagerie(robot):
