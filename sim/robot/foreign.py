@@ -139,8 +139,8 @@ def _body(sidecar: dict[str, Any], measured: RobotMeasurements) -> BodyConfig:
     """Returns the upright cylinder around the body and its skin."""
     if measured.bottom_m - SKIN_M < MIN_CLEARANCE_M - 1e-6:
         raise ConfigError(
-            f"its body reaches down to {measured.bottom_m:.3f} m above the floor with '{measured.lowest}', but must stay "
-            f"at least {MIN_CLEARANCE_M + SKIN_M:.3f} m above it; name sliding parts in casters."
+            f"its body reaches down to {measured.bottom_m:.3f} m above the floor with '{measured.lowest}', but must "
+            f"stay at least {MIN_CLEARANCE_M + SKIN_M:.3f} m above it; name sliding parts in casters."
         )
     radius_m = _positive(sidecar, "radius_m", measured.reach_m + SKIN_M)
     height_m = _positive(sidecar, "height_m", measured.top_m + SKIN_M)

@@ -14,7 +14,7 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -137,7 +137,7 @@ def errors(world: World) -> Row:
 
 
 def bump(config: RobotConfig, angle_rad: float) -> tuple[float, float]:
-    """Drives against a wall, and returns the largest overlap, mm, and the change of heading, deg; nan without a bump."""
+    """Drives against a wall; returns the largest overlap, mm, and the change of heading, deg, nan without a bump."""
     spec = floor(FRICTION)
     spec.worldbody.add_geom(
         name="wall_00", type=mujoco.mjtGeom.mjGEOM_BOX, pos=(WALL_M + 0.1, 0.0, 1.25), size=(0.1, 6.0, 1.25)
