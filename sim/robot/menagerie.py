@@ -2,7 +2,13 @@
 
 The package downloads the files of a robot when they are needed for the first time, or reads a checkout of Menagerie
 that the environment variable MENAGERIE_ROOT names. What is not in these files is in a sidecar of ours
-(`sidecars/<name>.json`, in the format of `sim.robot.foreign`). Only robots with a differential drive have one.
+(`sidecars/<name>.json`, in the format of `sim.robot.foreign`). Only robots with a differential drive have one. Sources:
+
+| robot | pose of the arms | track and speed |
+|---|---|---|
+| Stretch 2, 3 | "stow" of Hello Robot's `stretch_body` 0.7.31 | `wheel_separation_m` and largest motion there |
+| TIAGo | the keyframe "home" of its model | of its model; the default speed, which is about the actuators' range |
+| RBY1-A | hanging, as in its model | of its model, and the actuators' range |
 """
 
 from __future__ import annotations
