@@ -36,7 +36,7 @@ BEHIND_M, ABOVE_M = 1.9, 1.95
 AIM_M = (0.45, 0.45)
 """The optical axis goes through the point this far ahead of the robot, at this height."""
 CUT_M = 0.45
-"""The near plane is this much nearer to the eye than the robot's axis."""
+"""The near plane is at least this much nearer to the eye than the robot's axis."""
 FAR_M = 9.0
 """Geoms farther from the eye than this are left out."""
 HFOV_RAD = math.radians(70.0)
@@ -106,7 +106,7 @@ class ChaseView:
         data, pose = self._world.data, self._world.pose
         eye_m, axes = eye_and_axes(pose)
         robot_m = np.array([pose.x_m, pose.y_m, pose.floor_z_m + 0.5 * self._world.robot.height_m])
-        near_m = max(Z_NEAR_M, float((robot_m - eye_m) @ axes[0]) - CUT_M)
+        near_m = max(Z_NEAR_M, float((robot_m - eye_m) @ axes[0]) - max(CUT_M, self._reach_m(axes[0])))
         shown, hidden = (self._in_range(geoms, eye_m, axes, near_m) for geoms in (self._geoms, self._hidden))
         lamps = self._lamps.choose(data, robot_m, axes[0] * np.array([1.0, 1.0, 0.0]))
         self._lamps.switch_on(lamps)
@@ -121,6 +121,11 @@ class ChaseView:
     def close(self) -> None:
         """Frees the renderer."""
         self._finalizer()
+
+    def _reach_m(self, direction: NDArray) -> float:
+        """Returns how far the cylinder around the robot reaches from its middle along a direction, (3,)."""
+        robot = self._world.robot
+        return robot.radius_m * math.hypot(direction[0], direction[1]) + 0.5 * robot.height_m * abs(float(direction[2]))
 
     def _in_range(self, geoms: NDArray[np.intp], eye_m: NDArray, axes: NDArray, near_m: float) -> NDArray[np.intp]:
         """Returns those of the given geoms that are near enough to be drawn and in front of the near plane."""
