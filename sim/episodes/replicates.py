@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -40,4 +40,25 @@ def replicate(episode: Episode, number: int) -> Episode:
 def replicate_number(episode_id: str) -> int:
     """Returns the number of the replicate that an episode's id names; 0 for the episode itself."""
     stem, mark, number = episode_id.rpartition(MARK)
-    return int(number) if stem and mark and number.isdigit() else 0
+    return int(number) if stem and mark and number.isdecimal() else 0
+
+
+def episode_of(episode_id: str) -> str:
+    """Returns the id of the episode of which this is a replicate; of the episode itself, its own id."""
+    return episode_id.rpartition(MARK)[0] if replicate_number(episode_id) else episode_id
+
+
+def find_episode(episodes: Mapping[str, Episode], episode_id: str) -> Episode | None:
+    """Returns the episode or the replicate with an id; None where there is none.
+
+    Args:
+        episodes: the episodes of a split by id, without replicates.
+        episode_id: for example `val_0003` or `val_0003~1`. Numbers are written in one way: `val_0003~01` is no id.
+    """
+    if episode_id in episodes:
+        return episodes[episode_id]
+    original = episodes.get(episode_id.rpartition(MARK)[0])
+    if original is None:
+        return None
+    found = replicate(original, replicate_number(episode_id))
+    return found if found.episode_id == episode_id else None

@@ -143,7 +143,7 @@ class DriveConfig:
     blocked_rad: float = math.radians(0.7)
     """... or has turned by less than this."""
     blocked_tilt_rad: float = math.radians(2.3)
-    """A motion is also blocked when the body leans this much ..."""
+    """A motion is also blocked when the body leans this much (a turn: this much more than at its start) ..."""
     tipping_force_n: float = 5.0
     """... and its hull pushes sideways more than this: it is about to tip over at a table top."""
     pushing_m_s: float = 0.05

@@ -55,10 +55,11 @@ class Driver:
     """Drives one robot in one world; its memory between actions is odometry and the heading reference."""
 
     def __init__(
-        self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, log: ContactLog
-    ) -> None:
+        self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, odometry: Odometry,
+        log: ContactLog,
+    ) -> None:  # fmt: skip
         self._model, self._data, self._body, self._log = model, data, body, log
-        self._motors, self._odometry = Motors(config, model, body), Odometry(config, body)
+        self._motors, self._odometry = Motors(config, model, body), odometry
         self._drive = config.drive
         self._steps = config.steps_per_tick
         self._tick_s = config.drive.tick_s
@@ -73,6 +74,7 @@ class Driver:
         self._turns = 0
         self._ticks = 0
         self._touched_until = 0
+        self._tipping_rad = self._drive.blocked_tilt_rad
 
     def reset(self, yaw_rad: float, conditions: Conditions = NOMINAL) -> None:
         """Starts a new episode: the headings are `yaw_rad` plus multiples of a turn."""
@@ -86,6 +88,7 @@ class Driver:
             return Motion(action, 0.0, 0.0, 0.0, "reached", ())
         self._log.clear()
         self._ticks = self._touched_until = 0
+        self._tipping_rad = self._tipping_limit(turning=action != Action.MOVE_FORWARD)
         x0, y0, yaw0, _, _ = self._body.state()
         if action == Action.MOVE_FORWARD:
             ended = self._forward()
@@ -165,9 +168,18 @@ class Driver:
             self._turns -= side
         return ended
 
+    def _tipping_limit(self, *, turning: bool) -> float:
+        """Returns the lean from which a motion that starts now is about to tip the body over.
+
+        A body that came to rest against the edge of a table leans already. It must be able to leave: a turn pushes no
+        further, and a forward may lead along the edge, but must not add to the lean again and again.
+        """
+        leans, limit = self._body.tilt_rad, self._drive.blocked_tilt_rad
+        return leans + limit if turning else min(max(limit, 1.2 * leans), 2.0 * limit)
+
     def _is_tipping(self) -> bool:
         """Returns whether the body leans because of an object against which the hull pushes."""
-        if not self._touching or self._body.tilt_rad <= self._drive.blocked_tilt_rad:
+        if not self._touching or self._body.tilt_rad <= self._tipping_rad:
             return False
         _, x_n, y_n, _ = self._body.touch.tolist()
         return math.hypot(x_n, y_n) > self._drive.tipping_force_n

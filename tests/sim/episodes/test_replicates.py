@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from sim.episodes.replicates import MOVED_M, replicate_number, with_replicates
+from sim.episodes.replicates import MOVED_M, find_episode, replicate_number, with_replicates
 from sim.episodes.splits import Episode
 from sim.geometry.pose import Pose
 
@@ -31,6 +31,16 @@ def test_replicates_are_the_same_in_every_process_and_for_every_count():
     assert with_replicates(EPISODES, 3)[:3] == with_replicates(EPISODES, 5)[:3]
 
 
-@pytest.mark.parametrize(("episode_id", "number"), [("val_0003", 0), ("val_0003~12", 12), ("a~b", 0), ("~1", 0)])
+@pytest.mark.parametrize(
+    ("episode_id", "number"), [("val_0003", 0), ("val_0003~12", 12), ("a~b", 0), ("~1", 0), ("a~\u00b2", 0)]
+)
 def test_an_id_names_its_replicate(episode_id, number):
     assert replicate_number(episode_id) == number
+
+
+def test_each_id_finds_its_replicate_and_no_other_way_to_write_it_does():
+    known = {each.episode_id: each for each in EPISODES}
+    for each in with_replicates(EPISODES, 3):
+        assert find_episode(known, each.episode_id) == each
+    for other in ("val_0000~0", "val_0000~01", "val_0000~", "val_0000~1~1", "val_0009~1", "~1", ""):
+        assert find_episode(known, other) is None

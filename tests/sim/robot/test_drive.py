@@ -270,6 +270,16 @@ def test_height_and_not_friction_decides_which_edge_is_climbed(edge_m, friction,
     assert climbed or any(motion.collided for motion in motions)
 
 
+def test_a_robot_that_leans_against_a_table_can_turn_and_drive_away():
+    """It grazes the edge of the top at 0.72 m, leans aside by 3 degrees and is stopped."""
+    house = with_box(open_floor(), "table_00", centre_m=(2.63, 2.26, 0.74), half_m=(0.4876, 0.8313, 0.025))
+    world = world_with(house, base="free", start=Pose(2.53, 1.193, 2.907))
+    assert drive(world, FORWARD, FORWARD)[-1].collided
+    motions = drive(world, *[LEFT] * 4)
+    assert not any(motion.collided for motion in motions)
+    assert drive(world, FORWARD)[0].displacement_m == pytest.approx(FORWARD_M, abs=0.005)
+
+
 def test_odometry_sees_wheels_that_slip_as_a_motion():
     """The encoders turn by 0.25 m while the robot is held back by a heavy object on a slippery floor."""
     world = world_with(with_movable(open_floor(friction=0.15), "chair_00", xy_m=(0.5, 0.0), mass_kg=2.5))
