@@ -11,23 +11,26 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Annotated, Any, Generic, TypeVar
 
 import numpy as np
+from msgspec import Meta
 from rich.console import Console
 
+from sim import cli
 from sim.episodes.splits import LABELS_FILE, labels_of
 from sim.errors import ConfigError, ObjectNavError
 from sim.evaluation.parallel import ordered_map
 from sim.files import inside, write_atomically, write_picture
 from sim.houses.load import load_house
+from sim.houses.references import files_of
 from sim.importers.losses import added
-from sim.reading import printable, read_json
+from sim.reading import printable, read_json, sha256_of
 from sim.viewers.house_pictures import draw_top, draw_views, titled
 
 SourceT = TypeVar("SourceT")
 REPORT_FILE = "import.json"
-VERSION = 1
+VERSION = 2
 """Increased when the same source gives another house."""
 CHUNK = 64
 """Houses that are in memory at a time."""
@@ -35,6 +38,32 @@ PROGRESS_S = 5.0
 """A line on the progress is printed about this often."""
 MOST_TYPES = 12
 """Most types that a line of the result lists."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImportArgs:
+    """The options of every command that imports houses."""
+
+    out: cli.OutFolder
+    """Folder of the houses; created if missing."""
+    houses: cli.Count | None = None
+    """Import only the first houses."""
+    pictures: cli.Amount = 3
+    """Draw the first houses from above, and views of them."""
+    workers: cli.Count = 1
+    """Number of processes."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SceneArgs(ImportArgs):
+    """The options of commands that import MJCF scenes with files of their own."""
+
+    root: Path | None = None
+    """A folder whose files the houses may use in addition to their own folder."""
+    texture_px: Annotated[int, Meta(ge=16, le=8192)] = 1024
+    """Longest side of a texture; larger ones are reduced."""
+    pack: bool = False
+    """Copy all meshes and textures; by default, unchanged ones are hard links to the source's files if possible."""
 
 
 @dataclass(frozen=True)
@@ -129,6 +158,21 @@ def _run(
         results = ordered_map(functools.partial(_tried, make), new, workers=workers) if new else iter(())
         for work, key, done in zip(chunk, keys, there, strict=True):
             yield work, key, _again(before[work.name]) if done else next(results)
+
+
+def scene_works(files: Iterable[Path], root: Path | None, *more: Callable[[Path], Path]) -> Iterator[Work[Path]]:
+    """Yields the houses of MJCF files, which depend on all files that they use.
+
+    Args:
+        files: the MJCF files.
+        root: another folder whose files they may use.
+        more: each returns another file on which the house of a file depends.
+    """
+    for file in files:
+        others = [each(file) for each in more]
+        used = [file, *others, *files_of(file, root)] if file.is_file() else []
+        sums = [sha256_of(each, what="File") for each in used if each.is_file()]
+        yield Work(file.stem, " ".join(sums).encode(), file)
 
 
 def _tried(make: Callable[[SourceT], Made], source: SourceT) -> Made | _Failed:
