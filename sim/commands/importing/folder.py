@@ -36,6 +36,8 @@ CHUNK = 64
 """Houses that are in memory at a time."""
 PROGRESS_S = 5.0
 """A line on the progress is printed about this often."""
+VIEWS = 8
+"""Least number of views of a house."""
 MOST_TYPES = 12
 """Most types that a line of the result lists."""
 
@@ -229,7 +231,7 @@ def _draw(out: Path, name: str) -> None:
     house = load_house(out / f"{name}.xml", labels_path=labels_of(out))
     folder = out / "pictures"
     write_picture(inside(folder, f"{name}_top.png", what="name of a house"), titled(draw_top(house), name))
-    views = draw_views(house)
+    views = draw_views(house, 4, least=VIEWS)
     if views is not None:
         write_picture(inside(folder, f"{name}_views.png", what="name of a house"), np.ascontiguousarray(views))
     print(f"Drew {folder / name}_top.png and _views.png.", flush=True)
