@@ -111,9 +111,7 @@ def _surface(found: _Content, vertices_m: NDArray[np.float64], node: str, materi
     return Surface(node, material, vertices_m[used[:, 0]], faces.reshape(-1, 3).astype(np.int32), paint)
 
 
-def _read_materials(
-    folder: Path, name: str, texture_px: int, paints: dict[str, Paint], losses: Counter[str]
-) -> None:
+def _read_materials(folder: Path, name: str, texture_px: int, paints: dict[str, Paint], losses: Counter[str]) -> None:
     """Adds the materials of an MTL file; one that is missing is reported, one outside of the folder is refused."""
     content = _file_inside(folder, name, losses)
     if content is None:

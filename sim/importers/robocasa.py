@@ -248,7 +248,9 @@ def _holds_fixtures(model: mujoco.MjModel, body: int, category: str) -> bool:
     if (model.geom_bodyid == body).any():
         return False
     inner = (child for child in range(body + 1, model.nbody) if model.body_parentid[child] == body)
-    return any(category_of_fixture(model.body(child).name) not in (None, category, "door", "shelving") for child in inner)
+    return any(
+        category_of_fixture(model.body(child).name) not in (None, category, "door", "shelving") for child in inner
+    )
 
 
 def _any_number(name: str) -> str:

@@ -76,6 +76,8 @@ class Work(Generic[SourceT]):
     content: bytes
     """What its result depends on, in addition to the options."""
     source: SourceT
+    share: float = 0.0
+    """Share of the input that has been read up to this house; 0: unknown."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +99,7 @@ def import_all(
     make: Callable[[SourceT], Made],
     out: Path,
     *,
-    total: int,
+    total: int | None,
     options: str,
     pictures: int,
     workers: int,
@@ -108,7 +110,7 @@ def import_all(
         works: the houses.
         make: writes a house into the folder; picklable.
         out: the folder.
-        total: number of houses, for the time left.
+        total: largest number of houses, for the time left; None: `Work.share` says it.
         options: all that the result depends on, in addition to the houses.
         pictures: number of houses that are drawn.
         workers: number of processes.
@@ -131,8 +133,9 @@ def import_all(
         if time.monotonic() - said_s > PROGRESS_S:
             said_s = time.monotonic()
             done = len(reports) + failed
-            left_s = (said_s - began_s) / done * max(total - done, 0)
-            print(f"{done} of {total} houses, about {left_s / 60:.0f} min {left_s % 60:.0f} s left.", flush=True)
+            share = max(work.share, done / total if total else 0.0)
+            left_s = round((said_s - began_s) * (1.0 / max(share, 1e-6) - 1.0))
+            print(f"{done} houses, about {left_s // 60} min {left_s % 60} s left.", flush=True)
     if not reports and not failed:
         raise ConfigError("There is no house to import.")
     _write(out, before, reports, rules)

@@ -53,17 +53,16 @@ def main(args: Args) -> int:
     database = find_assets(args.path, args.assets)
     config = ProcthorConfig(doors=args.doors, pool=args.pool, seed=args.seed)
     options = f"procthor {config} {sha256_of(database, what='Asset database')}"
-    there = sum(1 for _ in itertools.islice(read_houses(args.path), args.houses))
     return import_all(
         itertools.islice(_works(args.path), args.houses),
         functools.partial(_make, args.out, database, config),
-        args.out, total=there, options=options, pictures=args.pictures, workers=args.workers,
+        args.out, total=args.houses, options=options, pictures=args.pictures, workers=args.workers,
     )  # fmt: skip
 
 
 def _works(path: Path) -> Iterator[Work[Source]]:
     for source in read_houses(path):
-        yield Work(source.name, source.content, source)
+        yield Work(source.name, source.content, source, source.share)
 
 
 def _make(out: Path, database: Path, config: ProcthorConfig, source: Source) -> Made:

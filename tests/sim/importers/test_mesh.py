@@ -112,7 +112,9 @@ def test_an_obj_file_keeps_its_objects_and_colours(tmp_path: Path) -> None:
 
 
 def test_a_home_in_one_node_gets_a_floor_and_walls(tmp_path: Path) -> None:
-    whole = trimesh.util.concatenate([triangles_of(piece, edge_m=0.5) for piece in PIECES if piece.kind in ("floor", "wall")])
+    whole = trimesh.util.concatenate(
+        [triangles_of(piece, edge_m=0.5) for piece in PIECES if piece.kind in ("floor", "wall")]
+    )
     (tmp_path / "scan.ply").write_bytes(whole.export(file_type="ply"))
     scene = import_mesh(tmp_path / "scan.ply", rules={}, up="auto", config=MeshConfig())
     assert scene.house.report["area_m2"] == pytest.approx(32.0, abs=2.0)
@@ -145,8 +147,8 @@ def test_a_folder_without_meshes_is_refused(tmp_path: Path) -> None:
 
 
 LINES = st.sampled_from(
-    ["v 0 0 0", "v 9 0 0", "v 9 9 0", "v 1e3 0 2", "vt 0 1", "f 1 2 3", "f 1/1 2/1 -1/1 4", "f 1//2 2 3", "f", "o floor",
-     "g chair", "usemtl m", "mtllib m.mtl", "mtllib", "v 1", "f 1 2 99999999999999", "vt nan nan", "\x00 \ud800"]
+    ["v 0 0 0", "v 9 0 0", "v 9 9 0", "v 1e3 0 2", "vt 0 1", "f 1 2 3", "f 1/1 2/1 -1/1 4", "f 1//2 2 3", "f",
+     "o floor", "g chair", "usemtl m", "mtllib m.mtl", "mtllib", "v 1", "f 1 2 99999999999999", "vt nan nan", "\x00 \ud800"]
 )  # fmt: skip
 
 
