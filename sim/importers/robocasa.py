@@ -174,7 +174,7 @@ def _outermost(body: mujoco.MjsBody) -> mujoco.MjsBody | None:
 
 def _remove_unused_textures(spec: mujoco.MjSpec, changes: Counter[str]) -> None:
     """Removes textures and meshes that no geom shows."""
-    shown = {geom.material for geom in spec.geoms}
+    shown = {each.material for each in (*spec.geoms, *spec.sites)}
     for material in list(spec.materials):
         if material.name not in shown:
             spec.delete(material)
@@ -195,7 +195,8 @@ def _hide_collision_geoms(spec: mujoco.MjSpec, model: mujoco.MjModel, changes: C
     clear, specks = opacity(model) == 0.0, []
     for geom in spec.geoms:
         index = geom.id
-        if clear[index] and model.geom_size[index].max() <= SPECK_M:
+        plane = model.geom_type[index] == mujoco.mjtGeom.mjGEOM_PLANE
+        if clear[index] and not plane and model.geom_size[index].max() <= SPECK_M:
             specks.append(geom)
         elif model.geom_group[index] == 0 and collides[index] and int(model.geom_bodyid[index]) in shown:
             geom.group = RENDERED_GROUPS

@@ -62,8 +62,11 @@ def write_scene(out: Path, scene: Scene, *, pack: bool) -> None:
     write_files(out, scene.files, pack=pack)
     written = inside(out, f"{scene.name}.xml", what="name of a house")
     write_atomically(written, scene.text)
-    spec = read_spec(written)
-    validate_house(House(scene.name, spec, scene.rules, written), compiled(spec))
+    try:
+        spec = read_spec(written)
+        validate_house(House(scene.name, spec, scene.rules, written), compiled(spec))
+    except HouseError as error:
+        raise HouseError(f"House '{scene.report['source']}': {error}") from None
 
 
 def floor_height(model: mujoco.MjModel, name: str = "floor") -> float:

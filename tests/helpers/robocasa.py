@@ -1,4 +1,4 @@
-"""A kitchen in RoboCasa's format, written here by its rules: named fixtures, collision geoms of groups 0 and 3, a robot."""
+"""A kitchen in RoboCasa's format, written here by its rules: named fixtures, collision geoms in group 0 or 3, a robot."""
 
 from __future__ import annotations
 

@@ -224,7 +224,9 @@ def _print_result(console: Console, reports: Sequence[Mapping[str, Any]], failed
         if counts:
             lines.append(f"{title}: {sum(counts.values())} objects ({most}{more})")
     lines += [f"{sentence} ({count} x)" for sentence, count in total.changes.most_common()]
-    lines.append(f"Objects were moved by at most {total.moved_m:.2f} m. {REPORT_FILE} has the counts of each house.")
+    if total.moved_m > 0.0:
+        lines.append(f"Objects were moved by at most {total.moved_m:.2f} m.")
+    lines.append(f"{REPORT_FILE} has the counts of each house.")
     for line in lines:
         console.print(line, markup=False)
 

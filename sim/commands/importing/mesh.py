@@ -26,6 +26,7 @@ from sim.houses.load import read_rules, validate_house
 from sim.houses.mjcf import read_spec
 from sim.importers.mesh import Axis, find_files, import_mesh
 from sim.importers.mesh_house import MeshConfig
+from sim.importers.scenes import compiled
 from sim.importers.surfaces import check_installed
 
 TABLES = "categories"
@@ -52,7 +53,7 @@ def main(args: Args) -> int:
     rules = {} if args.categories is None else read_rules(args.categories)
     files = find_files(args.path)[: args.houses]
     return import_all(
-        scene_works(files, None), functools.partial(_make, args, rules), args.out, total=len(files),
+        scene_works(files, None, lambda file: file.with_suffix(".mtl")), functools.partial(_make, args, rules), args.out, total=len(files),
         options=f"mesh {args.mesh} {args.up} {json.dumps(rules)}", pictures=args.pictures, workers=args.workers,
     )  # fmt: skip
 
@@ -65,5 +66,5 @@ def _make(args: Args, rules: dict[str, str], file: Path) -> Made:
     write_together({**files, table: json.dumps(dict(scene.table), indent=1, ensure_ascii=False) + "\n"})
     written = args.out / f"{file.stem}.xml"
     spec = read_spec(written)
-    validate_house(House(file.stem, spec, None, written), spec.compile())
+    validate_house(House(file.stem, spec, None, written), compiled(spec))
     return Made(scene.house.report)

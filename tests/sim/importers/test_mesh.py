@@ -148,7 +148,8 @@ def test_a_folder_without_meshes_is_refused(tmp_path: Path) -> None:
 
 LINES = st.sampled_from(
     ["v 0 0 0", "v 9 0 0", "v 9 9 0", "v 1e3 0 2", "vt 0 1", "f 1 2 3", "f 1/1 2/1 -1/1 4", "f 1//2 2 3", "f",
-     "o floor", "g chair", "usemtl m", "mtllib m.mtl", "mtllib", "v 1", "f 1 2 99999999999999", "vt nan nan", "\x00 \ud800"]
+     "o floor", "g chair", "usemtl m", "mtllib m.mtl", "mtllib", "v 1", "f 1 2 99999999999999", "vt nan nan",
+     "\x00 \ud800"]
 )  # fmt: skip
 
 
