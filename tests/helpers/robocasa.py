@@ -1,4 +1,4 @@
-"""A kitchen in RoboCasa's format, written here by its rules: named fixtures, collision geoms in group 0 or 3, a robot."""
+"""A kitchen in RoboCasa's format, written here by its rules: named fixtures, a robot, geoms that only collide."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ FIXTURES = "".join((
     fixture("stack_1_main_group_1_main", ".3 .3 .4", "2.6 -.32 .4"),
     fixture("cab_1_main_group_main", ".2 .2 .4", ".4 -.2 1.9", DOOR),
     fixture("fridge_main_group_main", ".4 .35 .9", "3.5 -.37 .9"),
-    fixture("distr_counter_main", ".05 .05 .05", "1 -.4 .951", "<freejoint/>"),
     '<body name="gadget"><geom type="box" size=".1 .1 .1" pos="3.5 -1 .1"/></body>',
 ))  # fmt: skip
+OBJECT = fixture("distr_counter_main", ".05 .05 .05", "1 -.4 .951", "<freejoint/>")
 
 
 def write_kitchen(folder: Path, *, name: str = "kitchen", fixtures: str = FIXTURES, robot: str = ROBOT) -> Path:
@@ -52,7 +52,7 @@ def write_kitchen(folder: Path, *, name: str = "kitchen", fixtures: str = FIXTUR
         '<mujoco model="kitchen"><compiler angle="radian"/><asset>'
         '<texture name="wood" type="2d" file="../assets/wood.png"/><material name="wood" texture="wood"/>'
         '<texture name="unused" type="2d" file="../assets/wood.png"/><material name="unused" texture="unused"/></asset>'
-        f'<worldbody><light pos="2 -2 3"/><body name="kitchen">{fixtures}</body>{robot}</worldbody>'
+        f'<worldbody><light pos="2 -2 3"/><body name="kitchen">{fixtures}</body>{OBJECT}{robot}</worldbody>'
         f"{drives if robot else ''}</mujoco>"
     )
     return file

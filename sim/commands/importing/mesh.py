@@ -52,8 +52,9 @@ def main(args: Args) -> int:
     check_installed()
     rules = {} if args.categories is None else read_rules(args.categories)
     files = find_files(args.path)[: args.houses]
+    works = scene_works(files, None, lambda file: file.with_suffix(".mtl"))
     return import_all(
-        scene_works(files, None, lambda file: file.with_suffix(".mtl")), functools.partial(_make, args, rules), args.out, total=len(files),
+        works, functools.partial(_make, args, rules), args.out, total=len(files),
         options=f"mesh {args.mesh} {args.up} {json.dumps(rules)}", pictures=args.pictures, workers=args.workers,
     )  # fmt: skip
 
