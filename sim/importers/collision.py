@@ -41,7 +41,7 @@ def collision_boxes(
         cell_m: edge of a cell.
         is_filled: the inside of closed outlines of each level is filled too, so that no free place remains there.
     """
-    points = samples(corners_m, 0.5 * cell_m)[0]
+    points = np.vstack([samples(corners_m, 0.5 * cell_m)[0], _on_edges(corners_m, 0.5 * cell_m)])
     while np.prod(np.ptp(points, axis=0) / cell_m + 2.0) > MOST_CELLS:
         cell_m *= 1.5
     index = np.floor(points / cell_m + SHIFT_CELLS).astype(np.int64)
@@ -61,6 +61,15 @@ def collision_boxes(
             grown = _around((corner + low) * cell_m, of_cell[tuple(cells.T)], len(ranges))
             boxes = np.hstack([np.minimum(boxes[:, :3], grown[:, :3]), np.maximum(boxes[:, 3:], grown[:, 3:])])
     return _thick_enough(boxes)
+
+
+def _on_edges(corners_m: NDArray[np.float64], spacing_m: float) -> NDArray[np.float64]:
+    """Returns points (k, 3) on the edges of triangles: a surface that ends between two cells has only these in one."""
+    ends = np.stack([corners_m, corners_m[:, [1, 2, 0]]], axis=2).reshape(-1, 2, 3)
+    count = np.maximum(1, np.ceil(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / spacing_m)).astype(np.int64)
+    edge = np.repeat(np.arange(len(ends)), count)
+    share = (np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)) / count[edge]
+    return np.asarray(ends[edge, 0] + share[:, None] * (ends[edge, 1] - ends[edge, 0]), dtype=np.float64)
 
 
 def _around(points: NDArray[np.float64], group: NDArray[np.int64], count: int) -> NDArray[np.float64]:
