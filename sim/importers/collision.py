@@ -21,8 +21,8 @@ from sim.importers.visual import samples, welded
 CELL_M = 0.05
 LEAST_SIDE_M = 0.01
 """Thinner boxes are made as thick as this."""
-SHIFT_CELLS = 1e-4
-"""Surfaces between two cells belong to the upper one, in spite of rounding."""
+SHIFTS = 5
+"""Places of the grid that are tried along each axis: with the best one, uneven walls stay within one layer of cells."""
 MOST_CELLS = 60_000_000
 """Cells of the grid of one object; of a larger object the cells are larger."""
 CONCAVITY_M = 0.03
@@ -41,10 +41,11 @@ def collision_boxes(
         cell_m: edge of a cell.
         is_filled: the inside of closed outlines of each level is filled too, so that no free place remains there.
     """
-    points = samples(corners_m, 0.5 * cell_m)[0]
+    points = np.vstack([samples(corners_m, 0.5 * cell_m)[0], _on_edges(corners_m, 0.5 * cell_m)])
     while np.prod(np.ptp(points, axis=0) / cell_m + 2.0) > MOST_CELLS:
         cell_m *= 1.5
-    index = np.floor(points / cell_m + SHIFT_CELLS).astype(np.int64)
+    origin = _origin(points, cell_m)
+    index = np.floor((points - origin) / cell_m).astype(np.int64)
     low = index.min(axis=0)
     index -= low
     filled = np.zeros(tuple(index.max(axis=0) + 1), dtype=np.bool_)
@@ -58,9 +59,41 @@ def collision_boxes(
     if inner.any():
         cells = np.argwhere(inner)
         for corner in (cells, cells + 1):
-            grown = _around((corner + low) * cell_m, of_cell[tuple(cells.T)], len(ranges))
+            grown = _around((corner + low) * cell_m + origin, of_cell[tuple(cells.T)], len(ranges))
             boxes = np.hstack([np.minimum(boxes[:, :3], grown[:, :3]), np.maximum(boxes[:, 3:], grown[:, 3:])])
     return _thick_enough(boxes)
+
+
+def _origin(points: NDArray[np.float64], cell_m: float) -> NDArray[np.float64]:
+    """Returns the origin (3,) of a grid in which the points fill few cells."""
+    step_m = cell_m / SHIFTS
+    cells = np.floor(points / step_m + 1e-4).astype(np.int64)
+    fine = _distinct(cells)
+    best = np.zeros(3, dtype=np.int64)
+    for axis in range(3):
+        filled = []
+        for shift in range(SHIFTS):
+            best[axis] = shift
+            filled.append(len(_distinct((fine - best) // SHIFTS)))
+        best[axis] = int(np.argmin(filled))
+    return np.asarray((cells.min(axis=0) + best - 1e-4) * step_m, dtype=np.float64)
+
+
+def _distinct(cells: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Returns the different rows of cells (n, 3), relative to the lowest."""
+    cells = cells - cells.min(axis=0)
+    _, y, z = (cells.max(axis=0) + 1).tolist()
+    code = np.unique((cells[:, 0] * y + cells[:, 1]) * z + cells[:, 2])
+    return np.stack([code // (y * z), code // z % y, code % z], axis=1)
+
+
+def _on_edges(corners_m: NDArray[np.float64], spacing_m: float) -> NDArray[np.float64]:
+    """Returns points (k, 3) on the edges of triangles: a surface that ends between two cells has only these in one."""
+    ends = np.stack([corners_m, corners_m[:, [1, 2, 0]]], axis=2).reshape(-1, 2, 3)
+    count = np.maximum(1, np.ceil(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / spacing_m)).astype(np.int64)
+    edge = np.repeat(np.arange(len(ends)), count)
+    share = (np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)) / count[edge]
+    return np.asarray(ends[edge, 0] + share[:, None] * (ends[edge, 1] - ends[edge, 0]), dtype=np.float64)
 
 
 def _around(points: NDArray[np.float64], group: NDArray[np.int64], count: int) -> NDArray[np.float64]:

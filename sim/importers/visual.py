@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from sim.housegen.imported.meshes import Part, areas, library
-from sim.housegen.imported.reduction import reduced
+from sim.housegen.imported.reduction import is_alike, reduced
 from sim.housegen.imported.sources import Skipped
-from sim.importers.surfaces import Paint, Surface
+from sim.importers.surfaces import WHITE, Paint, Surface
 
 WELD_M = 5e-4
 """Vertices nearer to each other than this are one when triangles are reduced."""
@@ -110,7 +110,7 @@ def _baked_all(surfaces: Sequence[Surface], triangles: int, texture_px: int) -> 
     uv = squares.uv_px.reshape(-1, 2) / (width, height)
     normals = _normals(corners, of_vertex, len(vertices))
     return [Skin(corners.reshape(-1, 3), np.arange(3 * len(corners), dtype=np.int32).reshape(-1, 3),
-                 (1.0, 1.0, 1.0, 1.0), np.stack([uv[:, 0], 1.0 - uv[:, 1]], axis=1), picture,
+                 WHITE, np.stack([uv[:, 0], 1.0 - uv[:, 1]], axis=1), picture,
                  normals.reshape(-1, 3))]  # fmt: skip
 
 
@@ -135,12 +135,16 @@ def _simplified(
         return vertices, faces
     # Its limits on the error are for lengths of about 100.
     middle, scale = vertices.mean(axis=0), 100.0 / max(1e-6, float(np.ptp(vertices, axis=0).max()))
-    points, made = library("fast_simplification").simplify(
-        ((vertices - middle) * scale).astype(np.float32), faces, target_count=max(4, triangles)
-    )
-    points, made = np.asarray(points, dtype=np.float64) / scale + middle, np.asarray(made, dtype=np.int32)
-    large = areas(points, made) > 1e-10
-    return (points, made[large]) if large.sum() >= 2 else (vertices, faces)
+    small, source = ((vertices - middle) * scale).astype(np.float32), Part(vertices, faces, WHITE)
+    target = max(4, triangles)
+    while target < len(faces):
+        points, made = library("fast_simplification").simplify(small, faces, target_count=target)
+        points, made = np.asarray(points, dtype=np.float64) / scale + middle, np.asarray(made, dtype=np.int32)
+        made = made[areas(points, made) > 1e-10]
+        if len(made) >= 2 and is_alike(Part(points, made, WHITE), source):
+            return points, made
+        target *= 2
+    return vertices, faces
 
 
 # ---- baking ----------------------------------------------------------------------------------------------------------
