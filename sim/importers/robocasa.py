@@ -8,6 +8,7 @@ does. Visible geoms are in group 1 and have no contact; those that collide are i
 
 from __future__ import annotations
 
+import functools
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -123,6 +124,7 @@ def import_kitchen(file: Path, *, root: Path | None = None, texture_px: int | No
     return Scene(file.stem, text, files, rules, report)
 
 
+@functools.cache
 def category_of_fixture(body: str) -> str | None:
     """Returns the category that the name of a fixture's body says, or None.
 
@@ -209,13 +211,14 @@ def _hide_collision_geoms(spec: mujoco.MjSpec, model: mujoco.MjModel, changes: C
 def _rules(model: mujoco.MjModel) -> dict[str, str]:
     """Returns label rules: one for each fixture, then those of other visible objects by their words or sizes."""
     fixtures: dict[str, str] = {}
+    filled = _filled_bodies(model)
     for body in range(1, model.nbody):
         name = model.body(body).name
         around = _names_around(model, body)
         if not name or any(each in fixtures for each in around):
             continue
         movable = model.body_dofnum[body] == 6 and int(model.body_parentid[body]) == 0
-        category = category_of_fixture(name) if _holds_geoms(model, body) else None
+        category = category_of_fixture(name) if body in filled else None
         if movable and (category is None or name.startswith(PLACED)):
             category = "objects"
         if category is not None and not _holds_fixtures(model, body, category):
@@ -234,14 +237,13 @@ def _names_around(model: mujoco.MjModel, body: int) -> Iterator[str]:
         yield model.body(body).name
 
 
-def _holds_geoms(model: mujoco.MjModel, body: int) -> bool:
-    """Returns whether a body or one in it has a geom."""
-    return any(geom_body == body or body in _ids_around(model, geom_body) for geom_body in set(model.geom_bodyid))
-
-
-def _ids_around(model: mujoco.MjModel, body: int) -> Iterator[int]:
-    while (body := int(model.body_parentid[body])) != 0:
-        yield body
+def _filled_bodies(model: mujoco.MjModel) -> set[int]:
+    """Returns the bodies that have a geom, in themselves or in a body inside of them."""
+    filled = set(model.geom_bodyid.tolist())
+    for body in range(model.nbody - 1, 0, -1):  # a body has a higher number than the one around it
+        if body in filled:
+            filled.add(int(model.body_parentid[body]))
+    return filled
 
 
 def _holds_fixtures(model: mujoco.MjModel, body: int, category: str) -> bool:
