@@ -48,6 +48,7 @@ COMMANDS: Mapping[str, Command] = {
     "import furniture": Command("sim.commands.importing.furniture", "Import models of furniture for generated houses"),
     "import procthor": Command("sim.commands.importing.procthor", "Import houses of ProcTHOR"),
     "import molmospaces": Command("sim.commands.importing.molmospaces", "Import houses of MolmoSpaces"),
+    "import habitat": Command("sim.commands.importing.habitat", "Import houses of Habitat's data sets"),
     "views": Command("sim.commands.views.generate", "Generate labelled views for training segmentation"),
     "views show": Command("sim.commands.views.show", "Draw a sheet of views"),
     "views unpack": Command("sim.commands.views.unpack", "Unpack views into PNG files"),

@@ -1,0 +1,79 @@
+"""Imports houses of Habitat's data sets as a folder of houses: scene data sets, and scans of HM3D and Matterport3D.
+
+    stubborn import habitat hssd-hab --out runs/hssd --houses 5
+    stubborn import habitat hm3d/val --out runs/hm3d
+    stubborn episodes --split runs/hm3d
+
+Meshes are divided by instance and reduced to --triangles; floors are made flat; what collides are boxes of a grid of
+5 cm, or convex parts. Rooms become sites, and the names of bodies are labels. With --episodes, Habitat's own ObjectNav
+episodes of these houses become the episodes of the split, and import.json says which of them do not fit.
+
+This command needs the extra `import`. The formats were tested with files that follow their rules; real scans of HM3D
+and Matterport3D were not at hand.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from sim import cli
+from sim.commands.importing.folder import Made, Work, import_all
+from sim.files import inside, write_together
+from sim.houses.load import load_house
+from sim.importers.habitat import Source, find_sources, import_source
+from sim.importers.mesh_house import Collision, MeshConfig
+from sim.importers.surfaces import check_installed
+from sim.reading import sha256_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Import houses of Habitat's data sets."""
+
+    path: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="PATH")]
+    """A data set or its folder, a scene, a scan (X.semantic.txt, X.house), or a folder of scans."""
+    out: cli.OutFolder
+    """Folder of the houses; created if missing."""
+    houses: cli.Count | None = None
+    """Import only the first houses."""
+    collision: Collision = "boxes"
+    """What collides: boxes of a grid, or convex parts by CoACD, which take much longer."""
+    triangles: cli.Count = 100_000
+    """About the largest number of visual triangles of a house."""
+    texture_px: cli.Count = 1024
+    """Largest side of a picture."""
+    pictures: cli.Amount = 3
+    """Draw the first houses from above, and views of them."""
+    workers: cli.Count = 1
+    """Number of processes."""
+
+
+def main(args: Args) -> int:
+    """Writes the houses, pictures and import.json; returns 1 if a house could not be imported."""
+    check_installed()
+    sources = find_sources(args.path)[: args.houses]
+    config = MeshConfig(collision=args.collision, triangles=args.triangles, texture_px=args.texture_px)
+    return import_all(
+        _works(sources), functools.partial(_make, args.out, config), args.out, total=len(sources),
+        options=f"habitat {config}", pictures=args.pictures, workers=args.workers,
+    )  # fmt: skip
+
+
+def _works(sources: list[Source]) -> Iterator[Work[Source]]:
+    for source in sources:
+        sums = [sha256_of(file, what="File") for file in source.files()]
+        yield Work(source.name, " ".join(sums).encode(), source)
+
+
+def _make(out: Path, config: MeshConfig, source: Source) -> Made:
+    """Writes one house; returns its report."""
+    made = import_source(source, config)
+    write_together({inside(out, name, what="name of a file"): content for name, content in made.files.items()})
+    load_house(out / f"{source.name}.xml")
+    return Made(made.report)
