@@ -112,6 +112,8 @@ class Template:
     name: str
     attributes: Attributes
     asset: Path
+    file: Path | None = None
+    """The configuration."""
 
 
 @dataclass(frozen=True)
@@ -152,30 +154,31 @@ class SceneDataset:
         for config in section.configs:
             if config.get("template_handle") == short:
                 original = config.get("original_file")
-                base = self.folder
+                base, source = self.folder, None
                 if isinstance(original, str):
-                    base = self.inside(self.folder / original, where).parent
-                    values |= read_json(
-                        base / Path(original).name, dict[str, Any], what="Configuration", error=HouseError
-                    )
+                    source = self.inside(self.folder / original, where)
+                    base = source.parent
+                    values |= read_json(source, dict[str, Any], what="Configuration", error=HouseError)
                 own = config.get("attributes", {})
                 values |= own if isinstance(own, dict) else {}
                 renamed = isinstance(own, dict) and "render_asset" in own
-                return self._template(short, values, self.folder if renamed else base, where)
+                return self._template(short, values, self.folder if renamed else base, where, source)
         file = self.files[kind].get(short)
         if file is None:
             raise HouseError(f"{where}: there is no configuration '{printable(name)[:80]}' among the {kind}.")
         if not file.name.endswith(".json"):
             return self._template(short, values | {"render_asset": file.name}, file.parent, where)
         values |= read_json(file, dict[str, Any], what="Configuration", error=HouseError)
-        return self._template(short, values, file.parent, where)
+        return self._template(short, values, file.parent, where, file)
 
-    def _template(self, name: str, values: dict[str, Any], base: Path, where: str) -> Template:
+    def _template(
+        self, name: str, values: dict[str, Any], base: Path, where: str, file: Path | None = None
+    ) -> Template:
         what = f"Configuration '{printable(name)}' of {self.file.name}"
         attributes = convert(values, Attributes, where=what, error=HouseError)
         if attributes.render_asset is None:
             raise HouseError(f"{what} has no field 'render_asset'.")
-        return Template(name, attributes, self.inside(base / attributes.render_asset, where))
+        return Template(name, attributes, self.inside(base / attributes.render_asset, where), file)
 
     def inside(self, file: Path, where: str) -> Path:
         """Returns the path of a file; raises HouseError if it is outside of the folder of the data set."""

@@ -238,8 +238,9 @@ class _Builder:
         found, counts = [], Counter[str]()
         for room in rooms:
             storey = min(storeys, key=lambda each: abs(each.z_m - room.z_m))
+            rects = storey.floor.within(room.rects)
             kind = _KIND.sub("_", room.kind.lower()).strip("_") or "room"
-            for part, rect in enumerate(room.rects):
+            for part, rect in enumerate(rects):
                 x, y = rect.centre
                 name = f"room_{kind}_{counts[kind]:02d}" + (f"_{part}" if part else "")
                 self.spec.worldbody.add_site(
@@ -247,9 +248,9 @@ class _Builder:
                     pos=_rounded(x, y, storey.z_m - self._down_m + room.height_m / 2),
                     size=_rounded(rect.width_m / 2, rect.depth_m / 2, room.height_m / 2),
                 )  # fmt: skip
-            if room.rects:
+            if rects:
                 counts[kind] += 1
-                found.append(sum(rect.area_m2 for rect in room.rects))
+                found.append(sum(rect.area_m2 for rect in rects))
         return found
 
     def add_objects(self, objects: Sequence[MeshObject]) -> None:
