@@ -112,8 +112,6 @@ class MeshHouse:
     files: Mapping[str, bytes | str]
     """Content by name in the folder of the split."""
     report: Mapping[str, Any]
-    lowered_m: float
-    """By how much everything was moved down."""
 
 
 def build_house(
@@ -147,10 +145,11 @@ def build_house(
     areas_m2 = builder.add_rooms(rooms or _whole_storeys(storeys, top_m), storeys)
     report = {
         "house": name, "source": source, "rooms": len(areas_m2), "area_m2": round(sum(areas_m2), 2),
-        "storeys": len(levels), "triangles": builder.triangles, "collision_geoms": builder.collision_geoms,
+        "storeys": len(levels),
+        "lowered_m": round(levels[0], 4), "triangles": builder.triangles, "collision_geoms": builder.collision_geoms,
         "texture_mb": round(builder.texture_bytes / 1e6, 1), **losses.as_json(),
     }  # fmt: skip
-    return MeshHouse(builder.files(), report, levels[0])
+    return MeshHouse(builder.files(), report)
 
 
 def _together(objects: Sequence[MeshObject]) -> NDArray[np.float64]:

@@ -15,21 +15,31 @@ and Matterport3D were not at hand.
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator
+import json
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import tyro
 
 from sim import cli
-from sim.commands.importing.folder import Made, Work, import_all
-from sim.files import inside, write_together
+from sim.commands.importing.folder import REPORT_FILE, Made, Work, import_all
+from sim.episodes.imported import Fitted, SceneEpisodes, fit_episodes, read_scenes
+from sim.episodes.splits import write_split
+from sim.errors import EpisodeError
+from sim.files import inside, write_atomically, write_together
 from sim.houses.load import load_house
 from sim.importers.habitat import Source, find_sources, import_source
 from sim.importers.mesh_house import Collision, MeshConfig
 from sim.importers.surfaces import check_installed
-from sim.reading import sha256_of
+from sim.reading import read_json, sha256_of
+from sim.task.objectnav import Task
+from sim.world.world import World
+
+VERSION = "habitat"
+"""Version of a split with Habitat's own episodes."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,6 +50,8 @@ class Args:
     """A data set or its folder, a scene, a scan (X.semantic.txt, X.house), or a folder of scans."""
     out: cli.OutFolder
     """Folder of the houses; created if missing."""
+    episodes: Path | None = None
+    """Habitat's ObjectNav episodes of these houses: a .json.gz file, or a folder with content/*.json.gz."""
     houses: cli.Count | None = None
     """Import only the first houses."""
     collision: Collision = "boxes"
@@ -59,9 +71,40 @@ def main(args: Args) -> int:
     check_installed()
     sources = find_sources(args.path)[: args.houses]
     config = MeshConfig(collision=args.collision, triangles=args.triangles, texture_px=args.texture_px)
-    return import_all(
+    scenes = None if args.episodes is None else read_scenes(args.episodes)
+    status = import_all(
         _works(sources), functools.partial(_make, args.out, config), args.out, total=len(sources),
         options=f"habitat {config}", pictures=args.pictures, workers=args.workers,
+    )  # fmt: skip
+    if scenes is not None:
+        _write_episodes(args.out, [source.name for source in sources], scenes)
+    return status
+
+
+def _write_episodes(out: Path, names: list[str], scenes: Mapping[str, SceneEpisodes]) -> None:
+    """Writes the episodes of the houses as those of the split; prints and reports what does not fit."""
+    reports = read_json(out / REPORT_FILE, dict[str, dict[str, Any]], what="Report of an import")
+    fitted: dict[str, Fitted] = {}
+    for name in (each for each in names if each in reports and each in scenes):
+        fitted[name] = fit_episodes(
+            Task(World(load_house(out / f"{name}.xml"))), scenes[name], reports[name]["lowered_m"]
+        )
+        reports[name]["episodes"] = dict(fitted[name].report)
+    total = Counter[str]()
+    for each in fitted.values():
+        total.update(each.report)
+    other = set(scenes) - set(fitted)
+    for sentence, count in sorted(total.items()):
+        print(f"{sentence} ({count} x)")
+    if other:
+        print(f"Episodes of {len(other)} scenes that are not here were left out.")
+    write_atomically(out / REPORT_FILE, json.dumps(reports, indent=1, ensure_ascii=False) + "\n")
+    episodes = [episode for each in fitted.values() for episode in each.episodes]
+    if not episodes:
+        raise EpisodeError("No episode of the files fits a house that was imported.")
+    write_split(
+        out, episodes, {name: each.asks.listed for name, each in fitted.items()}, version=VERSION,
+        unreachable={name: each.asks.unreachable for name, each in fitted.items()},
     )  # fmt: skip
 
 
