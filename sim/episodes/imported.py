@@ -140,7 +140,8 @@ def _fitted(task: Task, entry: habitat.EpisodeEntry, lowered_m: float, counts: C
     if distance_m is None:
         counts["Episode left out: its goal cannot be reached from its start."] += 1
         return None
-    counts["A start was moved to a free place."] += (pose.x_m, pose.y_m) != (there.x_m, there.y_m)
+    if (pose.x_m, pose.y_m) != (there.x_m, there.y_m):
+        counts["A start was moved to a free place."] += 1
     name = f"{task.world.house.name}_{entry.episode_id}"
     return Episode(name, task.world.house.name, goal, pose, distance_m)
 

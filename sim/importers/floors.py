@@ -113,7 +113,7 @@ def find_levels(floors_m: NDArray[np.float64]) -> list[float]:
         HouseError: there is no floor of some square metres at one height.
     """
     level = floors_m[level_triangles(floors_m)] if len(floors_m) else floors_m
-    area = 0.5 * np.abs(np.cross((level[:, 1] - level[:, 0])[:, :2], (level[:, 2] - level[:, 0])[:, :2]))
+    area = 0.5 * np.abs(np.cross(level[:, 1] - level[:, 0], level[:, 2] - level[:, 0])[:, 2])
     z = level[:, :, 2].mean(axis=1)
     found: list[tuple[float, float]] = []
     left = np.ones(len(z), dtype=np.bool_)
