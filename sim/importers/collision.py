@@ -105,10 +105,14 @@ def _origin(points: NDArray[np.float64], cell_m: float) -> NDArray[np.float64]:
     fine = _distinct(cells)
     best = np.zeros(3, dtype=np.int64)
     for axis in range(3):
-        filled = []
+        columns = fine // SHIFTS
+        columns[:, axis] = fine[:, axis]
+        columns, filled = _distinct(columns), []
         for shift in range(SHIFTS):
-            best[axis] = shift
-            filled.append(len(_distinct((fine - best) // SHIFTS)))
+            columns[:, axis] -= shift > 0
+            layers = columns.copy()
+            layers[:, axis] //= SHIFTS
+            filled.append(len(_distinct(layers)))
         best[axis] = int(np.argmin(filled))
     return np.asarray((cells.min(axis=0) + best - 1e-4) * step_m, dtype=np.float64)
 

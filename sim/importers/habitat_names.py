@@ -35,10 +35,8 @@ def category_of(name: str) -> str | None:
     found = entries("habitat").get(key)
     if found is not None:
         return found.category
-    category = category_of_name(name)
-    if category is None and "/" in name:
-        return category_of(name.partition("/")[0])
-    return category
+    first, slash, _ = name.partition("/")
+    return category_of(first) if slash and first.strip() else category_of_name(name)
 
 
 def category_of_label(label: str) -> str:
