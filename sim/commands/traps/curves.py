@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.analysis.report.figures import wilson
-from sim.evaluation.bootstrap import estimate
+from sim.evaluation.intervals import estimate
 from sim.housegen.traps.families.catalogue import FAMILIES
 from sim.houses.sidecar import TrapFacts
 

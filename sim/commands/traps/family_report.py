@@ -23,7 +23,7 @@ from sim.commands.traps.family_picture import draw_family
 from sim.commands.traps.grid import markdown_of
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Split
-from sim.evaluation.bootstrap import estimate
+from sim.evaluation.intervals import estimate
 from sim.files import write_picture, write_together
 from sim.housegen.traps.families.catalogue import FAMILIES
 from sim.housegen.traps.families.family import DIFFICULTIES
