@@ -50,6 +50,7 @@ COMMANDS: Mapping[str, Command] = {
     "import molmospaces": Command("sim.commands.importing.molmospaces", "Import houses of MolmoSpaces"),
     "import robocasa": Command("sim.commands.importing.robocasa", "Import kitchens of RoboCasa and others in MJCF"),
     "import mesh": Command("sim.commands.importing.mesh", "Import a home that is one GLB, OBJ or PLY file"),
+    "import habitat": Command("sim.commands.importing.habitat", "Import houses of Habitat's data sets"),
     "views": Command("sim.commands.views.generate", "Generate labelled views for training segmentation"),
     "views show": Command("sim.commands.views.show", "Draw a sheet of views"),
     "views unpack": Command("sim.commands.views.unpack", "Unpack views into PNG files"),

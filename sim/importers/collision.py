@@ -21,6 +21,8 @@ from sim.importers.visual import samples, welded
 CELL_M = 0.05
 LEAST_SIDE_M = 0.01
 """Thinner boxes are made as thick as this."""
+ALIKE_M = 0.025
+"""Layers of a box whose sides differ by less are one box."""
 SHIFTS = 5
 """Places of the grid that are tried along each axis: with the best one, uneven walls stay within one layer of cells."""
 MOST_CELLS = 60_000_000
@@ -54,14 +56,46 @@ def collision_boxes(
     if is_filled:
         for level in range(filled.shape[2]):
             inner[:, :, level] = np.asarray(binary_fill_holes(filled[:, :, level])) & ~filled[:, :, level]
-    ranges, of_cell = joined_cells(filled | inner)
-    boxes = _around(points, of_cell[tuple(index.T)], len(ranges))
     if inner.any():
         cells = np.argwhere(inner)
-        for corner in (cells, cells + 1):
-            grown = _around((corner + low) * cell_m + origin, of_cell[tuple(cells.T)], len(ranges))
-            boxes = np.hstack([np.minimum(boxes[:, :3], grown[:, :3]), np.maximum(boxes[:, 3:], grown[:, 3:])])
-    return _thick_enough(boxes)
+        index = np.vstack([index, cells, cells])
+        points = np.vstack([points, *((corner + low) * cell_m + origin for corner in (cells, cells + 1))])
+    ranges, of_cell = joined_cells(filled | inner)
+    return _thick_enough(_tight(points, index, ranges, of_cell[tuple(index.T)]))
+
+
+def _tight(
+    points: NDArray[np.float64], index: NDArray[np.int64], ranges: NDArray[np.int64], group: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Returns the boxes (n, 6) around the points of boxes of cells.
+
+    A box is divided across its longest side where its layers differ: above a doorway, the cell at its edge has the
+    lintel in it, which would make the doorway narrower.
+
+    Args:
+        points: (k, 3) metres.
+        index: (k, 3) the cell of each point.
+        ranges: (m, 6) cells of the boxes.
+        group: (k,) the box of each point.
+    """
+    axis = (ranges[:, 3:] - ranges[:, :3]).argmax(axis=1)
+    layers = (ranges[:, 3:] - ranges[:, :3]).max(axis=1)
+    first = np.cumsum(layers) - layers
+    layer = np.take_along_axis(index - ranges[group, :3], axis[group][:, None], axis=1)[:, 0]
+    of_layer = _around(points, first[group] + layer, int(layers.sum()))
+    made = []
+    for start, count, along in zip(first.tolist(), layers.tolist(), axis.tolist(), strict=True):
+        others = [n for n in range(6) if n % 3 != along]
+        begin = None
+        for box in of_layer[start : start + count]:
+            if not np.isfinite(box[0]):
+                continue
+            if begin is not None and np.abs(box[others] - begin[others]).max() <= ALIKE_M:
+                made[-1] = np.concatenate([np.minimum(made[-1][:3], box[:3]), np.maximum(made[-1][3:], box[3:])])
+            else:
+                begin = box
+                made.append(box)
+    return np.array(made)
 
 
 def _origin(points: NDArray[np.float64], cell_m: float) -> NDArray[np.float64]:
@@ -71,10 +105,14 @@ def _origin(points: NDArray[np.float64], cell_m: float) -> NDArray[np.float64]:
     fine = _distinct(cells)
     best = np.zeros(3, dtype=np.int64)
     for axis in range(3):
-        filled = []
+        columns = fine // SHIFTS
+        columns[:, axis] = fine[:, axis]
+        columns, filled = _distinct(columns), []
         for shift in range(SHIFTS):
-            best[axis] = shift
-            filled.append(len(_distinct((fine - best) // SHIFTS)))
+            columns[:, axis] -= shift > 0
+            layers = columns.copy()
+            layers[:, axis] //= SHIFTS
+            filled.append(len(_distinct(layers)))
         best[axis] = int(np.argmin(filled))
     return np.asarray((cells.min(axis=0) + best - 1e-4) * step_m, dtype=np.float64)
 
@@ -162,7 +200,7 @@ def convex_parts(surfaces: Sequence[Surface]) -> list[NDArray[np.float64]]:
     Raises:
         HouseError: CoACD fails on the object.
     """
-    coacd = library("coacd")
+    coacd = library("coacd", extra="import")
     vertices, faces = welded(surfaces)
     coacd.set_log_level("error")
     try:

@@ -60,6 +60,17 @@ class Plan:
             chosen.append(rect)
         return chosen
 
+    def within(self, rects: Sequence[Rect]) -> list[Rect]:
+        """Returns rectangles that cover the cells of this plan that are in one of some rectangles."""
+        mask = np.zeros_like(self.mask)
+        for rect in rects:
+            (x0, x1), (y0, y1) = (
+                np.clip(np.rint((np.array(ends) - origin) / PLAN_CELL_M), 0, None).astype(int).tolist()
+                for ends, origin in (((rect.x0, rect.x1), self.origin_m[0]), ((rect.y0, rect.y1), self.origin_m[1]))
+            )
+            mask[x0:x1, y0:y1] = True
+        return Plan(self.origin_m, mask & self.mask).rectangles(covered=0.99)
+
     def _joined(self) -> list[Rect]:
         ranges, _ = joined_cells(self.mask[:, :, None])
         (x, y), cell = self.origin_m, PLAN_CELL_M
@@ -102,7 +113,7 @@ def find_levels(floors_m: NDArray[np.float64]) -> list[float]:
         HouseError: there is no floor of some square metres at one height.
     """
     level = floors_m[level_triangles(floors_m)] if len(floors_m) else floors_m
-    area = 0.5 * np.abs(np.cross((level[:, 1] - level[:, 0])[:, :2], (level[:, 2] - level[:, 0])[:, :2]))
+    area = 0.5 * np.abs(np.cross(level[:, 1] - level[:, 0], level[:, 2] - level[:, 0])[:, 2])
     z = level[:, :, 2].mean(axis=1)
     found: list[tuple[float, float]] = []
     left = np.ones(len(z), dtype=np.bool_)

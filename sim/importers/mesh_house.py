@@ -112,8 +112,6 @@ class MeshHouse:
     files: Mapping[str, bytes | str]
     """Content by name in the folder of the split."""
     report: Mapping[str, Any]
-    lowered_m: float
-    """By how much everything was moved down."""
 
 
 def build_house(
@@ -147,10 +145,11 @@ def build_house(
     areas_m2 = builder.add_rooms(rooms or _whole_storeys(storeys, top_m), storeys)
     report = {
         "house": name, "source": source, "rooms": len(areas_m2), "area_m2": round(sum(areas_m2), 2),
-        "storeys": len(levels), "triangles": builder.triangles, "collision_geoms": builder.collision_geoms,
+        "storeys": len(levels),
+        "lowered_m": round(levels[0], 4), "triangles": builder.triangles, "collision_geoms": builder.collision_geoms,
         "texture_mb": round(builder.texture_bytes / 1e6, 1), **losses.as_json(),
     }  # fmt: skip
-    return MeshHouse(builder.files(), report, levels[0])
+    return MeshHouse(builder.files(), report)
 
 
 def _together(objects: Sequence[MeshObject]) -> NDArray[np.float64]:
@@ -238,8 +237,9 @@ class _Builder:
         found, counts = [], Counter[str]()
         for room in rooms:
             storey = min(storeys, key=lambda each: abs(each.z_m - room.z_m))
+            rects = storey.floor.within(room.rects)
             kind = _KIND.sub("_", room.kind.lower()).strip("_") or "room"
-            for part, rect in enumerate(room.rects):
+            for part, rect in enumerate(rects):
                 x, y = rect.centre
                 name = f"room_{kind}_{counts[kind]:02d}" + (f"_{part}" if part else "")
                 self.spec.worldbody.add_site(
@@ -247,9 +247,9 @@ class _Builder:
                     pos=_rounded(x, y, storey.z_m - self._down_m + room.height_m / 2),
                     size=_rounded(rect.width_m / 2, rect.depth_m / 2, room.height_m / 2),
                 )  # fmt: skip
-            if room.rects:
+            if rects:
                 counts[kind] += 1
-                found.append(sum(rect.area_m2 for rect in room.rects))
+                found.append(sum(rect.area_m2 for rect in rects))
         return found
 
     def add_objects(self, objects: Sequence[MeshObject]) -> None:

@@ -98,7 +98,7 @@ class Surface:
 def check_installed() -> None:
     """Raises ConfigError if a package of the extra `import` is missing."""
     for module in ("trimesh", "fast_simplification", "PIL"):
-        library(module)
+        library(module, extra="import")
 
 
 def read_surfaces(
@@ -116,7 +116,7 @@ def read_surfaces(
         HouseError: the file cannot be read, is too large, or has a number that is not allowed; one line.
         ConfigError: a package is not installed.
     """
-    trimesh, kind = library("trimesh"), file.suffix.lower().lstrip(".")
+    trimesh, kind = library("trimesh", extra="import"), file.suffix.lower().lstrip(".")
     where = f"Mesh '{printable(str(file))}'"
     if kind not in FORMATS:
         raise HouseError(f"{where}: its format '{printable(kind)}' is none of {', '.join(FORMATS)}.")

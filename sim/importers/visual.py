@@ -138,7 +138,7 @@ def _simplified(
     small, source = ((vertices - middle) * scale).astype(np.float32), Part(vertices, faces, WHITE)
     target = max(4, triangles)
     while target < len(faces):
-        points, made = library("fast_simplification").simplify(small, faces, target_count=target)
+        points, made = library("fast_simplification", extra="import").simplify(small, faces, target_count=target)
         points, made = np.asarray(points, dtype=np.float64) / scale + middle, np.asarray(made, dtype=np.int32)
         made = made[areas(points, made) > 1e-10]
         if len(made) >= 2 and is_alike(Part(points, made, WHITE), source):

@@ -25,6 +25,7 @@ from sim.files import inside, write_atomically, write_picture
 from sim.houses.load import load_house
 from sim.houses.references import files_of
 from sim.importers.losses import added
+from sim.importers.mesh_house import Collision, MeshConfig
 from sim.reading import printable, read_json, sha256_of
 from sim.viewers.house_pictures import draw_top, draw_views, titled
 
@@ -66,6 +67,23 @@ class SceneArgs(ImportArgs):
     """Longest side of a texture; larger ones are reduced."""
     pack: bool = False
     """Copy all meshes and textures; by default, unchanged ones are hard links to the source's files if possible."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshArgs(ImportArgs):
+    """The options of commands that make houses of triangles."""
+
+    collision: Collision = "boxes"
+    """What collides: boxes of a grid, or convex parts by CoACD, which take much longer."""
+    triangles: cli.Count = 100_000
+    """About the largest number of visual triangles of a house."""
+    texture_px: cli.Count = 1024
+    """Longest side of a picture; larger ones are reduced."""
+
+    @property
+    def config(self) -> MeshConfig:
+        """The options of a house."""
+        return MeshConfig(collision=self.collision, triangles=self.triangles, texture_px=self.texture_px)
 
 
 @dataclass(frozen=True)

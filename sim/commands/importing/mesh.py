@@ -13,19 +13,18 @@ from __future__ import annotations
 
 import functools
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import tyro
 
-from sim.commands.importing.folder import ImportArgs, Made, import_all, scene_works
+from sim.commands.importing.folder import Made, MeshArgs, import_all, scene_works
 from sim.files import inside, write_together
 from sim.houses.house import House
 from sim.houses.load import read_rules, validate_house
 from sim.houses.mjcf import read_spec
 from sim.importers.mesh import Axis, find_files, import_mesh
-from sim.importers.mesh_house import MeshConfig
 from sim.importers.scenes import compiled
 from sim.importers.surfaces import check_installed
 
@@ -34,7 +33,7 @@ TABLES = "categories"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Args(ImportArgs):
+class Args(MeshArgs):
     """Import homes that are one mesh each."""
 
     path: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="PATH")]
@@ -43,8 +42,6 @@ class Args(ImportArgs):
     """A JSON file {"regex over node names": "category"}; nodes of the category "void" are left out."""
     up: Axis = "auto"
     """The axis that points up; by default z in PLY files and y in others."""
-    mesh: Annotated[MeshConfig, tyro.conf.arg(name="")] = field(default_factory=MeshConfig)
-    """How the triangles become a house."""
 
 
 def main(args: Args) -> int:
@@ -55,13 +52,13 @@ def main(args: Args) -> int:
     works = scene_works(files, None, lambda file: file.with_suffix(".mtl"))
     return import_all(
         works, functools.partial(_make, args, rules), args.out, total=len(files),
-        options=f"mesh {args.mesh} {args.up} {json.dumps(rules)}", pictures=args.pictures, workers=args.workers,
+        options=f"mesh {args.config} {args.up} {json.dumps(rules)}", pictures=args.pictures, workers=args.workers,
     )  # fmt: skip
 
 
 def _make(args: Args, rules: dict[str, str], file: Path) -> Made:
     """Writes one house and its table; returns its report."""
-    scene = import_mesh(file, rules=rules, up=args.up, config=args.mesh)
+    scene = import_mesh(file, rules=rules, up=args.up, config=args.config)
     files = {inside(args.out, name, what="name of a file"): each for name, each in scene.house.files.items()}
     table = inside(args.out / TABLES, f"{file.stem}.json", what="name of a house")
     write_together({**files, table: json.dumps(dict(scene.table), indent=1, ensure_ascii=False) + "\n"})
