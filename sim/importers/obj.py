@@ -105,9 +105,10 @@ def _surface(found: _Content, vertices_m: NDArray[np.float64], node: str, materi
     used, faces = np.unique(corners, axis=0, return_inverse=True)
     paint = found.paints.get(material, Paint(GREY))
     if paint.picture is not None:
-        has_uv = len(found.uv) > 0 and bool((used[:, 1] >= 0).all())
-        uv = np.array(found.uv, dtype=np.float64)[used[:, 1]] if has_uv else None
-        paint = replace(paint, picture=paint.picture if has_uv and np.isfinite(uv).all() else None, uv=uv)
+        if found.uv and bool((used[:, 1] >= 0).all()):
+            paint = replace(paint, uv=np.nan_to_num(np.array(found.uv, dtype=np.float64)[used[:, 1]]))
+        else:
+            paint = Paint(GREY)  # no part of the picture belongs to a triangle
     return Surface(node, material, vertices_m[used[:, 0]], faces.reshape(-1, 3).astype(np.int32), paint)
 
 
