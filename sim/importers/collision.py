@@ -54,7 +54,7 @@ def collision_boxes(
     filled[tuple(index.T)] = True
     inner = np.zeros_like(filled)
     if is_filled:
-        for level in range(filled.shape[2]):
+        for level in range(int(index[:, 2].max()) + 1):
             inner[:, :, level] = np.asarray(binary_fill_holes(filled[:, :, level])) & ~filled[:, :, level]
     if inner.any():
         cells = np.argwhere(inner)

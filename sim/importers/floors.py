@@ -182,12 +182,15 @@ def _near(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _closed(mask: NDArray[np.bool_], *, is_lowest: bool) -> NDArray[np.bool_]:
     """Returns a floor without gaps and holes; large holes stay above the lowest storey."""
     size = round(CLOSED_M / PLAN_CELL_M)
-    closed = np.asarray(binary_closing(np.pad(mask, size), np.ones((size, size))))[size:-size, size:-size] | mask
+    closed = (
+        np.asarray(binary_closing(np.pad(mask, size), np.ones((size, size))), dtype=np.bool_)[size:-size, size:-size]
+        | mask
+    )
     whole = np.asarray(binary_fill_holes(closed))
     if is_lowest:
         return whole
-    holes, count = label(whole & ~closed)  # type: ignore[misc]
-    sizes_m2 = np.bincount(holes.ravel(), minlength=count + 1) * PLAN_CELL_M**2
+    holes = np.asarray(label(whole & ~closed)[0], dtype=np.int64)  # type: ignore[index]
+    sizes_m2 = np.bincount(holes.ravel()) * PLAN_CELL_M**2
     return np.asarray(closed | ((holes > 0) & (sizes_m2[holes] <= LARGEST_HOLE_M2)))
 
 

@@ -313,8 +313,9 @@ class _Builder:
                               size=_rounded(*(0.5 * (box[3:] - box[:3])))) for box in parts.boxes_m]  # fmt: skip
         made += [body.add_geom(self._hit, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name) for name in parts.hulls]
         self.collision_geoms += len(made)
-        for geom in made if each.mass_kg is not None else ():
-            geom.mass = each.mass_kg / len(made)
+        mass = each.mass_kg
+        for geom in made if mass is not None else ():
+            geom.mass = (mass or 0.0) / len(made)
 
     def _parts_of(self, each: MeshObject, budget: int) -> _Parts:
         """Returns what the shape of an object became; computed once for objects of one shape and category."""

@@ -205,7 +205,7 @@ def _packed(side: NDArray[np.int64]) -> _Squares:
     right, down = near.copy(), near.copy()
     right[:, 0] = down[:, 1] = edge - 2.5
     uv = np.stack([near, right, down], axis=1)
-    uv = np.where(second[:, None, None], edge[:, None, None] - uv, uv) + corner[:, None]
+    uv = np.asarray(np.where(second[:, None, None], edge[:, None, None] - uv, uv) + corner[:, None], dtype=np.float64)
     return _Squares(corner, side, second, uv, (width, height))
 
 

@@ -11,13 +11,16 @@ import json
 import struct
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 from PIL import Image
 
+from sim.housegen.imported.meshes import library
+
+trimesh = library("trimesh")
+Mesh: TypeAlias = Any
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 DOOR_Y_M = (1.6, 2.4)
 CEILING_M = 2.5
@@ -54,14 +57,14 @@ PIECES = (
 )  # fmt: skip
 
 
-def triangles_of(piece: Piece, *, edge_m: float = 10.0) -> trimesh.Trimesh:
+def triangles_of(piece: Piece, *, edge_m: float = 10.0) -> Mesh:
     """Returns a piece as triangles with edges of at most `edge_m`."""
     made = trimesh.util.concatenate([trimesh.creation.box(bounds=np.array(box)) for box in piece.boxes])
     vertices, faces = trimesh.remesh.subdivide_to_size(made.vertices, made.faces, edge_m, max_iter=12)
     return trimesh.Trimesh(vertices, faces, process=False)
 
 
-def painted(mesh: trimesh.Trimesh, rgb: tuple[int, int, int]) -> trimesh.Trimesh:
+def painted(mesh: Mesh, rgb: tuple[int, int, int]) -> Mesh:
     """Returns a mesh with a picture: its colour with darker lines every metre, and texture coordinates."""
     pixels = np.full((64, 64, 3), rgb, np.uint8)
     pixels[:4], pixels[:, :4] = np.array(rgb) // 2, np.array(rgb) // 2
@@ -193,7 +196,7 @@ def write_dataset(folder: Path, *, scene: dict[str, Any] | None = None) -> Path:
     return file
 
 
-def _y_up(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+def _y_up(mesh: Mesh) -> Mesh:
     """Returns a mesh in a frame whose y points up: (x, y, z) becomes (x, z, -y)."""
     turned = mesh.copy()
     turned.apply_transform(np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1.0]]))

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -18,13 +17,13 @@ from sim.importers.collision import CELL_M, collision_boxes, convex_parts, joine
 from sim.importers.floors import find_levels, make_storeys
 from sim.importers.surfaces import Paint, Surface, read_surfaces
 from sim.importers.visual import make_skins, pixels_at, samples
-from tests.helpers.scanned import DOOR_Y_M, PIECES, Piece, painted, triangles_of, uneven
+from tests.helpers.scanned import DOOR_Y_M, PIECES, Mesh, Piece, painted, triangles_of, trimesh, uneven
 
 WALLS = next(piece for piece in PIECES if piece.kind == "wall")
 INNER_WALL = Piece("wall", 0, WALLS.boxes[3:], WALLS.rgb)
 
 
-def surface_of(mesh: trimesh.Trimesh, paint: Paint | None = None) -> Surface:
+def surface_of(mesh: Mesh, paint: Paint | None = None) -> Surface:
     return Surface("", "", np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int32), paint or Paint())
 
 
@@ -45,8 +44,8 @@ def test_boxes_contain_the_surface_and_leave_a_doorway_its_width() -> None:
     assert doorway_m(boxes) > DOOR_Y_M[1] - DOOR_Y_M[0] - 0.03
     assert len(boxes) < 30  # the grid is placed so that the noise does not spread a wall over two layers
     points = samples(scan[::7], CELL_M)[0]
-    inside = ((points[:, None] >= boxes[:, :3] - 2e-4) & (points[:, None] <= boxes[:, 3:] + 2e-4)).all(axis=2)
-    assert inside.any(axis=1).mean() > 0.995
+    inside = np.all((points[:, None] >= boxes[:, :3] - 2e-4) & (points[:, None] <= boxes[:, 3:] + 2e-4), axis=2)
+    assert np.asarray(inside).any(axis=1).mean() > 0.995
 
 
 def test_the_inside_of_furniture_is_filled_and_that_of_walls_is_not() -> None:
