@@ -59,6 +59,12 @@ class Estimate:
     """Of a difference: the two-sided p-value that its true value is 0; below 0.05 where the interval excludes 0."""
 
     @property
+    def ends(self) -> tuple[float, float]:
+        """The ends of the interval for a picture; both are the mean where there is no interval, and 0 without one."""
+        mean = 0.0 if self.mean is None else self.mean
+        return mean if self.low is None else self.low, mean if self.high is None else self.high
+
+    @property
     def significant(self) -> bool:
         """True for a significant comparison: its interval excludes `neutral` and it has at least `MIN_PAIRS` pairs."""
         if self.low is None or self.high is None or self.count < MIN_PAIRS:
@@ -171,7 +177,7 @@ def ratio_of_medians(
     values = [numbers for numbers, _ in rows]
     index = np.unique(_clusters(names), return_inverse=True)[1]
     count = int(index.max()) + 1
-    middle = _ratio(np.median(values[0])[None], np.median(values[1])[None])[0]
+    middle = _ratio(*(np.array([np.median(each)]) for each in values))[0]
     counts = (len(names), len(set(names)))
     if count < 2:
         return Estimate(float(middle), None, None, *counts, neutral=1.0)
