@@ -17,7 +17,7 @@ from scipy.special import stdtrit
 from sim.errors import ConfigError
 from tools.research import result_tables
 from tools.research.resolution import houses_needed, resolution_record, shown_difference, variance_components
-from tools.research.result_archive import ARCHIVE, ArchivedRun, RunKey, newest, read_archive
+from tools.research.result_archive import ARCHIVES, ArchivedRun, RunKey, newest, read_archive, read_archives
 from tools.research.result_definitions import comparisons, page_tables
 from tools.research.result_tables import (
     COMPARISONS,
@@ -49,7 +49,7 @@ LINE = {"episode_id": "val_0000", "house": "val_00", "goal": "bed", "end_reason"
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> Mapping[RunKey, ArchivedRun]:
-    return read_archive(ARCHIVE, tmp_path_factory.mktemp("archive"), lambda text: None)
+    return read_archives(ARCHIVES, tmp_path_factory.mktemp("archive"), lambda text: None)
 
 
 def test_the_tables_of_the_page_are_rows_of_the_shipped_csv_file() -> None:
@@ -94,7 +94,7 @@ def test_check_reports_a_page_and_a_csv_file_that_differ(
     tmp_path: Path, runs: Mapping[RunKey, ArchivedRun], monkeypatch: pytest.MonkeyPatch, capsys
 ) -> None:
     few = sorted({key for table in page_tables() for key in table.needed()}, key=lambda key: (key.run, key.episodes))
-    monkeypatch.setattr(result_tables, "read_archive", lambda *_: runs)
+    monkeypatch.setattr(result_tables, "read_archives", lambda *_: runs)
     monkeypatch.setattr(result_tables, "row_keys", lambda _: few)
     monkeypatch.setattr(result_tables, "comparisons", lambda: [each for each in comparisons() if each.primary][:1])
     page = tmp_path / "results.md"

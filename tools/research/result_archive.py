@@ -1,8 +1,8 @@
-"""Reads the archive of result lines, and chooses the runs that the tables of results are made from.
+"""Reads the archives of result lines, and chooses the runs that the tables of results are made from.
 
-The archive, `docs/tables/splits-2.0.0.tar.gz`, holds one folder for each run, with the `config.json` and
-`results.jsonl` that `stubborn run` wrote. Runs that newer ones replace are in its folder `older`; tables do not use
-them.
+An archive, such as `docs/tables/splits-2.0.0.tar.gz` for version 2.0.0 of the splits, holds one folder for each run,
+with the `config.json` and `results.jsonl` that `stubborn run` wrote. Runs that newer ones replace are in its folder
+`older`; tables do not use them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from sim.errors import ConfigError
 from sim.reading import PlainMember, convert, open_plain
 
 ROOT = Path(__file__).resolve().parents[2]
-ARCHIVE = ROOT / "docs" / "tables" / "splits-2.0.0.tar.gz"
+ARCHIVES = tuple(sorted((ROOT / "docs" / "tables").glob("splits-*.tar.gz")))
 OLDER = "older"
 """The folder of the archive with the runs that newer ones replace."""
 RUN_FILES = ("config.json", "results.jsonl")
@@ -55,6 +55,8 @@ class RunKey:
     options: str
     """Options of `stubborn run` that are not the default, such as "--explorer informed-tour"."""
     semantics: str
+    version: str
+    """Version of the splits: results of different ones are of different houses or physics."""
 
     @property
     def name(self) -> str:
@@ -111,6 +113,14 @@ class ArchivedRun:
         source = self.run.recorded("split")
         parts = ["stubborn run --agent", self.key.agent, self.key.options, "--semantics", self.key.semantics]
         return " ".join(filter(None, [*parts, "--split", shlex.quote(source), f"--episodes {episodes}"]))
+
+
+def read_archives(archives: Iterable[Path], folder: Path, say: Say) -> dict[RunKey, ArchivedRun]:
+    """Returns the runs of several archives, each of another version of the splits; see `read_archive`."""
+    runs: dict[RunKey, ArchivedRun] = {}
+    for archive in archives:
+        runs |= read_archive(archive, folder / archive.name.removesuffix(".tar.gz"), say)
+    return runs
 
 
 def read_archive(archive: Path, folder: Path, say: Say) -> dict[RunKey, ArchivedRun]:
@@ -171,7 +181,8 @@ def key_of(run: Run) -> RunKey:
     """
     agent, semantics = str(run.recorded("agent")), str(run.recorded("semantics"))
     find_agent(agent)
-    return RunKey(str(run.recorded("split_identity")["name"]), agent, shlex.join(_options(run)), semantics)
+    split = run.recorded("split_identity")
+    return RunKey(str(split["name"]), agent, shlex.join(_options(run)), semantics, str(split["version"]))
 
 
 def _options(run: Run) -> Iterator[str]:

@@ -62,6 +62,10 @@ class PageTable:
             yield from (row for row, _ in cells)
 
 
+VERSION = "2.0.0"
+"""Version of the splits of the headline table."""
+EARLIER = "2.0.0"
+"""That of the other tables, whose robot had the physics of version 0.2.0."""
 HEADLINE_EPISODES = {"val": 200, "large": 100, "hazards": 100, "test": 500}
 HEADLINE = {
     "val": ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet"),
@@ -109,10 +113,16 @@ NETWORK = (
 )
 
 
-def run_key(split: str, name: str, semantics: str) -> RunKey:
+def run_key(split: str, name: str, semantics: str, version: str = EARLIER) -> RunKey:
     """Returns the key of an agent with options, such as "stubborn --explorer tour"."""
     agent, _, options = name.partition(" ")
-    return RunKey(split, agent, options, semantics)
+    return RunKey(split, agent, options, semantics, version)
+
+
+def _headline_key(split: str, agent: str) -> RunKey:
+    """Returns the key of an entry of `HEADLINE`, such as "stubborn gt"."""
+    name, semantics = agent.split()
+    return run_key(split, name, semantics, VERSION)
 
 
 def page_tables() -> tuple[PageTable, ...]:
@@ -123,7 +133,7 @@ def page_tables() -> tuple[PageTable, ...]:
 def comparisons() -> Iterator[Comparison]:
     """Yields the comparisons that the page may quote."""
     for split, episodes in HEADLINE_EPISODES.items():
-        present = [run_key(split, *agent.split()) for agent in HEADLINE[split]]
+        present = [_headline_key(split, agent) for agent in HEADLINE[split]]
         for second, first in itertools.combinations(present, 2):
             primary = second.agent == "stubborn" and first.semantics == second.semantics
             yield Comparison("headline", first, second, episodes, primary)
@@ -156,7 +166,10 @@ def _headline() -> PageTable:
     rows = []
     for split, agent in ((split, agent) for split, agents in HEADLINE.items() for agent in agents):
         name, semantics = agent.split()
-        row, count = RowKey(run_key(split, name, semantics), HEADLINE_EPISODES[split]), HEADLINE_EPISODES[split]
+        row, count = (
+            RowKey(run_key(split, name, semantics, VERSION), HEADLINE_EPISODES[split]),
+            HEADLINE_EPISODES[split],
+        )
         shown = "-" if name == "oracle" else "truth" if semantics == "gt" else "network"
         rows.append(((f"{split}, {count}", f"`{name}`", shown), _cells(row, (SUCCESS, SPL))))
     header = ("split, episodes", "agent", "segmentation", "success %", "SPL")

@@ -1,4 +1,4 @@
-"""Makes the tables of results: `docs/tables/*.csv` and the tables of docs/results.md, from the archive of result lines.
+"""Makes the tables of results: `docs/tables/*.csv` and the tables of docs/results.md, from archives of result lines.
 
     python -m tools.research.result_tables            # writes them
     python -m tools.research.result_tables --check    # exit status 1 where a file differs from what it would write
@@ -38,7 +38,7 @@ from sim.reading import read_bytes, read_text
 from sim.reading import read_csv as read_table
 from sim.task.failures import CAUSES
 from tools.research.resolution import paired_lines, resolution_record
-from tools.research.result_archive import ARCHIVE, ROOT, ArchivedRun, RunKey, read_archive
+from tools.research.result_archive import ARCHIVES, ROOT, ArchivedRun, RunKey, read_archives
 from tools.research.result_definitions import (
     COMPARED,
     FAILED,
@@ -63,12 +63,12 @@ QUANTITY = re.compile(r"([-+]?\d[\d.]*)(?: (?:points|steps|%|of SPL))? (\[[-+]?\
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Write the tables of results from the archive of result lines, or check them."""
+    """Write the tables of results from the archives of result lines, or check them."""
 
     check: bool = False
     """Write nothing; the exit status is 1 where a file differs."""
-    archive: Path = ARCHIVE
-    """The archive of result lines."""
+    archives: tuple[Path, ...] = ARCHIVES
+    """Archives of result lines, each of one version of the splits."""
     tables: Path = TABLES
     """Folder of the CSV files."""
     page: Path = PAGE
@@ -83,7 +83,7 @@ def main(args: Args) -> int:
         console.print(text, markup=False, highlight=False, soft_wrap=True)
 
     with tempfile.TemporaryDirectory() as folder:
-        runs = read_archive(args.archive, Path(folder), say)
+        runs = read_archives(args.archives, Path(folder), say)
         results = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
         pairs = list(comparisons())
         compared = with_families(pairs, [comparison_record(each, runs) for each in pairs])
@@ -120,7 +120,7 @@ def row_keys(runs: Mapping[RunKey, ArchivedRun]) -> list[RowKey]:
             if key.run not in runs:
                 raise ConfigError(
                     f"Table '{table.name}' needs a run of '{key.run.name}' with {key.run.semantics} segmentation on "
-                    f"{key.run.split}; the archive has none."
+                    f"{key.run.split} {key.run.version}; the archives have none."
                 )
             keys.add(key)
     return sorted(keys, key=lambda key: (key.run, key.episodes))
@@ -143,7 +143,7 @@ def result_record(run: ArchivedRun, episodes: int) -> Record:
     return record | {
         "package": versions.get("stubborn-objectnav", ""),
         "mujoco": versions.get("mujoco", ""),
-        "split_version": f"{split['version']} {split['sha256'][:8]}",
+        "split_sha256": split["sha256"][:8],
         "code": run.codes,
         "network": run.network,
         "command": run.command(episodes),
@@ -157,7 +157,9 @@ def comparison_record(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> R
         ConfigError: a run is not in the archive, or the runs are of different episodes.
     """
     first, second = paired_lines(pair, runs)
-    minus = {f"minus_{name}": value for name, value in _identity(pair.second).items() if name != "split"}
+    minus = {
+        f"minus_{name}": value for name, value in _identity(pair.second).items() if name not in ("split", "version")
+    }
     record = {"table": pair.table, **_identity(pair.first), **minus, **_counts(first)}
     for metric in COMPARED:
         found = metric.difference(second, first).estimate
@@ -261,11 +263,17 @@ def read_csv(file: Path) -> list[Record]:
 
 
 def _identity(key: RunKey) -> Record:
-    return {"split": key.split, "agent": key.agent, "options": key.options, "semantics": key.semantics}
+    return {
+        "split": key.split,
+        "version": key.version,
+        "agent": key.agent,
+        "options": key.options,
+        "semantics": key.semantics,
+    }
 
 
 def _identity_names() -> Iterator[str]:
-    yield from _identity(RunKey("", "", "", ""))
+    yield from _identity(RunKey("", "", "", "", ""))
 
 
 def _counts(lines: Sequence[Line]) -> Record:

@@ -310,7 +310,7 @@ def test_two_runs_are_shown_side_by_side_with_paired_differences(pair: tuple[Pat
     assert data["runs"] == ["A", "B"]
     assert [path is None for path in data["episodes"][0]["paths"]] == [False, False]
     assert [path is None for path in data["episodes"][1]["paths"]] == [False, True]
-    assert '-50.0</span> <span class="ci">[-100.0, +100.0]*</span>' in page.replace("\n", "")
+    assert '-50.0</span> <span class="ci">[-100.0, +41.9]*</span>' in page.replace("\n", "")
     assert page.count('data-outcome="only-a') == 2
 
 
