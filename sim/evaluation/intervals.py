@@ -11,8 +11,11 @@ houses and n episodes (Cochran 1977, section 6.3). Student's t with H - 1 degree
 - a difference: around the mean. Of two values between 0 and 1, its variance is at least that of one changed episode,
   `1 / n^2`, because no difference in n episodes does not show that there is none in others.
 
-`tools/research/interval_coverage.py` chose these by simulation from recorded results; it states their coverage. A mean
-that one episode in hundreds determines (collisions of a robot that gets stuck once) has none that holds.
+`tools/research/interval_coverage.py` chose these by simulation from recorded results, with 10 to 30 houses of 7 to 15
+episodes. They hold the true value in 93 to 97 % of the samples for success and SPL between 0.08 and 0.94 and for paired
+differences, in 94 to 99 % for success of 0.98 and above or 0.01, and in 91 to 96 % for collisions. A mean that one
+episode in hundreds determines (collisions of a robot that is stuck once in 200 episodes) has no interval that holds:
+theirs does in 45 to 79 %.
 
 With one house the interval is over its episodes and describes other episodes in this house only; `Estimate.houses` is
 then 1, and tables mark the interval with an asterisk.
@@ -57,6 +60,12 @@ class Estimate:
     """The value that two equal runs give: 0 for a difference, 1 for a ratio."""
     p: float | None = field(default=None, compare=False)
     """Of a difference: the two-sided p-value that its true value is 0; below 0.05 where the interval excludes 0."""
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The ends of the interval for a picture; both are the mean where there is no interval, and 0 without one."""
+        mean = 0.0 if self.mean is None else self.mean
+        return mean if self.low is None else self.low, mean if self.high is None else self.high
 
     @property
     def significant(self) -> bool:
@@ -171,7 +180,7 @@ def ratio_of_medians(
     values = [numbers for numbers, _ in rows]
     index = np.unique(_clusters(names), return_inverse=True)[1]
     count = int(index.max()) + 1
-    middle = _ratio(np.median(values[0])[None], np.median(values[1])[None])[0]
+    middle = _ratio(*(np.array([np.median(each)]) for each in values))[0]
     counts = (len(names), len(set(names)))
     if count < 2:
         return Estimate(float(middle), None, None, *counts, neutral=1.0)

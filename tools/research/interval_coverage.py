@@ -141,8 +141,7 @@ def ours(scenario: Scenario, drawn: Values) -> Interval:
     names = [f"{i // episodes:02d}" for i in range(houses * episodes)]
     ends = np.empty((2, samples))
     for number, values in enumerate(drawn.reshape(samples, -1).tolist()):
-        found = scenario.estimate(values, names)
-        ends[:, number] = [found.mean if end is None else end for end in (found.low, found.high)]
+        ends[:, number] = scenario.estimate(values, names).ends
     return ends[0], ends[1]
 
 
