@@ -77,7 +77,7 @@ PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(
             for name, row in ABLATION.items()
         },
         "stubborn-plus": (
-            "ours: tracks objects, verifies doubtful ones first, tours unseen areas (informed-tour), feels along panes",
+            "ours: tracks objects, verifies doubtful ones, tours unseen areas, feels along panes",
             PLUS,
         ),
         "single-frame": (

@@ -579,6 +579,18 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _FOREIGN.replace("foreign", "molmospaces") + 'write_scene(Path("{tmp}/scenes"))\'',
         "stubborn import molmospaces {tmp}/scenes --out {tmp}/houses",
     ),
+    "stubborn import robocasa kitchen.xml --root assets --out runs/kitchen": (
+        _FOREIGN.replace("foreign", "robocasa") + 'write_kitchen(Path("{tmp}/source"))\'',
+        "stubborn import robocasa {tmp}/source/scenes --root {tmp}/source --out {tmp}/houses --pictures 0",
+    ),
+    "stubborn import habitat hm3d/val --out runs/hm3d": (
+        _FOREIGN.replace("foreign", "scanned") + 'write_hm3d(Path("{tmp}/source"), pictures=False)\'',
+        "stubborn import habitat {tmp}/source --out {tmp}/houses --pictures 0",
+    ),
+    "stubborn import mesh flat.glb --out runs/flat": (
+        _FOREIGN.replace("foreign", "scanned") + 'write_glb(Path("{tmp}/source"))\'',
+        "stubborn import mesh {tmp}/source/flat.glb --out {tmp}/houses --pictures 0",
+    ),
     "stubborn houses check --house runs/mine/houses/house_00000.xml": (
         _HOUSES,
         "stubborn houses check --house {tmp}/houses/house_00000.xml --views 2",
@@ -622,6 +634,10 @@ STAND_INS = (
     "my_traps",
     "my_models",
     "train.jsonl.gz",
+    "kitchen.xml",
+    "assets",
+    "hm3d/val",
+    "flat.glb",
     "scenes",
     "/usr/share/sweethome3d/furniture",
     "my_house.xml",

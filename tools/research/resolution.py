@@ -66,6 +66,7 @@ def resolution_record(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> d
     of_house = between + within / per_house
     record = {
         "split": pair.first.split,
+        "version": pair.first.version,
         "agent": pair.first.name,
         "minus_agent": pair.second.name,
         "semantics": pair.first.semantics,
