@@ -17,7 +17,12 @@ Interface = Literal["stubborn", "habitat"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class ProcessConfig:
+class BridgeConfig:
+    """Base class of the options of agents whose code cannot declare sensors: `--config sensors=[...]` declares them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProcessConfig(BridgeConfig):
     """The options of an agent in a process of its own. `--step-timeout` limits each of its calls."""
 
     start_timeout_s: float = 120.0

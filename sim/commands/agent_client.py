@@ -11,8 +11,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim import cli
-from sim.bridges import stubborn_client
+from sim.bridges import habitat_client, stubborn_client
 from sim.files import write_atomically
+
+IMPORT = "from sim.bridges.stubborn_client import HABITAT_ACTIONS, Link, serve\n"
+"""The line of `habitat_client` that one file does not need."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,9 +28,17 @@ class Args:
 
 def main(args: Args) -> int:
     """Writes the file."""
-    content = Path(stubborn_client.__file__).read_text(encoding="utf-8")
+    content = client_file()
     if args.out is None:
         sys.stdout.write(content)
     else:
         write_atomically(args.out, content)
     return 0
+
+
+def client_file() -> str:
+    """Returns the content of the file: the module `stubborn_client`, and `habitat_client` without its import of it."""
+    protocol, habitat = (
+        Path(module.__file__).read_text(encoding="utf-8") for module in (stubborn_client, habitat_client)
+    )
+    return f"{protocol}\n\n{habitat.replace(IMPORT, '')}"
