@@ -6,6 +6,8 @@ STAMP := $(VENV)/.installed
 # `make setup TORCH_INDEX=URL` installs torch from this package index, such as PyTorch's index of CPU wheels, which need
 # no CUDA packages; all else comes from the default index. Empty: torch comes from the default index, too.
 TORCH_INDEX :=
+# Bytecode is written at the first use: without it, each process of the tests would compile all packages again (3 s).
+unexport PYTHONDONTWRITEBYTECODE
 TORCH := $(shell grep '^torch==' constraints.txt)
 
 .PHONY: setup system-libraries run test test-all lint types docs clean

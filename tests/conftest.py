@@ -23,6 +23,16 @@ def pytest_configure(config: pytest.Config) -> None:
     sampling.ALL_CASES = config.getoption("--all-cases")
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leaves a third of the tests that are marked `costly`; a test named on the command line always runs."""
+    if any("::" in argument for argument in config.args):
+        return
+    costly = [item for item in items if item.get_closest_marker("costly")]
+    left_out = set(costly) - set(sampling.sample(costly, -(-len(costly) // 3)))
+    config.hook.pytest_deselected(items=[item for item in items if item in left_out])
+    items[:] = [item for item in items if item not in left_out]
+
+
 def pytest_report_header() -> str:
     return f"cases: {'all' if sampling.ALL_CASES else f'samples of commit {sampling.commit()[:12]}'}"
 

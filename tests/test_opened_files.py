@@ -91,6 +91,7 @@ def _opened() -> Iterator[tuple[str, str]]:
                     yield str(file.relative_to(ROOT)), name
 
 
+@pytest.mark.costly
 def test_named_files_are_opened_in_one_place() -> None:
     assert sorted(opened() - set(EXCEPTIONS)) == []
 

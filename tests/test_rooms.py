@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import graphlib
 from collections.abc import Iterator
 from pathlib import Path
@@ -68,6 +69,12 @@ def module_files() -> dict[str, Path]:
 FILES = module_files()
 
 
+@functools.cache
+def imported_by() -> dict[str, tuple[str, ...]]:
+    """Returns the modules that each module imports."""
+    return {name: tuple(imports(name)) for name in FILES}
+
+
 def imports(module: str, *, at_import_time: bool = False) -> Iterator[str]:
     """Returns the modules that a module imports, with those inside functions unless only import time counts."""
     tree = ast.parse(FILES[module].read_text())
@@ -83,7 +90,7 @@ def imports(module: str, *, at_import_time: bool = False) -> Iterator[str]:
 
 def pairs_of(package: str) -> Iterator[tuple[str, str]]:
     """Yields each module of a package with each module that it imports."""
-    yield from ((name, imported) for name in FILES if within(name, package) for imported in IMPORTS[name])
+    yield from ((name, imported) for name in FILES if within(name, package) for imported in imported_by()[name])
 
 
 def top_level(tree: ast.Module) -> Iterator[ast.stmt]:
@@ -103,16 +110,13 @@ def rank(module: str, rooms: tuple[tuple[str, ...], ...]) -> int:
     raise AssertionError(f"'{module}' is in no room: put it into one, or add its room to this table.")
 
 
-IMPORTS = {name: tuple(imports(name)) for name in FILES}
-
-
 @pytest.mark.parametrize(("package", "rooms"), [("sim", ROOMS), ("stubborn", AGENT_ROOMS)])
 def test_a_module_imports_its_own_room_and_those_below(package: str, rooms: tuple[tuple[str, ...], ...]) -> None:
     modules = [name for name in FILES if within(name, package) and name != package]
     above = [
         f"{module} imports {imported}, which is above it."
         for module in modules
-        for imported in IMPORTS[module]
+        for imported in imported_by()[module]
         if within(imported, package) and rank(imported, rooms) > rank(module, rooms)
     ]
     assert above == []

@@ -224,7 +224,7 @@ class AgentProcess:
             self._received += content
         elif number == self._printed:
             self._keep(content)
-        else:
+        elif not self._end:  # `_wait_for_end` may have read the line already
             self._end = _end_in_words(content)
             self._drain()
 

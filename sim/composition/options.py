@@ -45,6 +45,8 @@ class RunOptions:
     """With --house: the start pose "X Y YAW" in metres and degrees."""
     episodes: cli.Count = 5
     """The first N episodes of the split; with --house, N episodes are sampled."""
+    replicates: cli.Count = 1
+    """Runs of each episode: the first from its start, the others from starts 1 cm away, to see what chance does."""
     only: tuple[str, ...] = ()
     """IDs of the episodes of the split to run, in place of the first N: for example a failure that you want to film."""
     seed: cli.Seed = 0

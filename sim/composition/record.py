@@ -93,7 +93,7 @@ def _files_in(tree: Any, name: str) -> Iterator[tuple[str, Path]]:
 def error_line(setup: Setup, episode: Episode, error: str) -> dict[str, Any]:
     """Returns the result line of an episode that could not be run to its end."""
     nothing = {"distance_to_goal": None, "shortest_path": episode.shortest_path_m, "trapped": None, "failure": None}
-    counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "wall_time_s": 0.0}
+    counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "simulated_s": 0.0, "wall_time_s": 0.0}
     nothing |= dict.fromkeys(
         ("gt_explored", "first_seen_step", "steps_to_first_sight", "area_seen_m2", "area_per_metre")
     )

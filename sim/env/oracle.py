@@ -16,6 +16,7 @@ from typing import Protocol
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.interface import FORWARD_M, TURN_RAD, Action, Observation
 from sim.task.objectnav import Task
@@ -75,9 +76,7 @@ class Oracle:
         self._clearance_m = cv2.distanceTransform(space.free.astype(np.uint8), cv2.DIST_L2, 5) * CELL_M  # 0: not free
         inner = cv2.erode(target.reached.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(np.bool_)
         self._goal_cells = inner if inner.any() else target.reached
-        yaws = task.start.yaw_rad + np.arange(HEADINGS) * TURN_RAD
-        along = np.linspace(CELL_M, FORWARD_M, round(FORWARD_M / CELL_M))
-        self._swept_m = along[None, :, None] * np.stack([np.cos(yaws), np.sin(yaws)], axis=1)[:, None, :]
+        self._swept_m = np.zeros((HEADINGS, 0, 2))
         self._route: deque[tuple[Action, Node]] = deque()
         self._expected: Node | None = None
         self._blocked: set[Key] = set()
@@ -103,8 +102,19 @@ class Oracle:
         turned = (pose.yaw_rad - self._env.scene.task.start.yaw_rad) / TURN_RAD
         return pose.x_m, pose.y_m, round(turned) % HEADINGS
 
+    def _swept(self, heading: int) -> NDArray[np.float64]:
+        """Returns the positions (headings, samples, 2) of a MOVE_FORWARD on each heading, relative to its start.
+
+        The headings are turns away from the present one, since a gyro with an error makes turns of another angle.
+        """
+        yaw_rad = self._env.scene.task.world.pose.yaw_rad
+        yaws = yaw_rad + (np.arange(HEADINGS) - heading) * TURN_RAD
+        along = np.linspace(CELL_M, FORWARD_M, round(FORWARD_M / CELL_M))
+        return along[None, :, None] * np.stack([np.cos(yaws), np.sin(yaws)], axis=1)[:, None, :]
+
     def _search(self, begin: Node) -> list[tuple[Action, Node]]:
         """Returns the actions to a goal cell, or to the reachable node nearest to one; each with its end node."""
+        self._swept_m = self._swept(begin[2])
         came: dict[Key, Node] = {}
         cost = {_key(begin): 0.0}
         tie = itertools.count()

@@ -18,7 +18,9 @@ from pathlib import Path
 from typing import IO, Annotated, Any, Literal
 
 import msgspec
+import numpy as np
 
+from sim.episodes.replicates import replicate_number
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import estimate
 from sim.evaluation.config_fields import ABSENT, differing_fields, field_text, is_same_file
@@ -92,6 +94,7 @@ class ResultLine(msgspec.Struct):
     area_seen_m2: Measured = None
     area_per_metre: float | None = None  # not bounded: older runs divided by path lengths near 0
     trapped: Measured = None
+    simulated_s: Measured = None
     stop_confidence: Measured = None
     stop_target_xy_m: tuple[Number, Number] | None = None
     stop_target_to_goal_m: Measured = None
@@ -346,6 +349,15 @@ class RunDirectory:
         self._results.close()
         self._lock.close()
 
+    def _require_same_physics(self, existing: Mapping[str, Any], config: Mapping[str, Any]) -> None:
+        """Raises ConfigError where the run was made with another version of the physics; the first wrote none."""
+        before, now = existing.get("physics") or 1, config.get("physics")
+        if now is not None and before != now:
+            raise ConfigError(
+                f"--out '{self.path}' holds a run of physics version {before}, this program has version {now}: the "
+                "robot moves differently, so that the run cannot be resumed; choose another folder."
+            )
+
     def _write_or_compare_config(self) -> None:
         file = self.path / "config.json"
         config = json.loads(json.dumps(dict(self.config)))
@@ -356,8 +368,7 @@ class RunDirectory:
             _write_json(file, config)  # it is on the disk before the first line
             return
         existing = read_record(file)
-        if "physics" in config:
-            existing.setdefault("physics", 1)  # runs of the first version do not have it
+        self._require_same_physics(existing, config)
         for path, before, now in differing_fields(existing, config):
             unset = all(value is None or value is ABSENT for value in (before, now))
             if path.partition(".")[0] not in NOT_COMPARED and not unset and not is_same_file(path, existing, config):
@@ -417,9 +428,24 @@ def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     for metric in SUMMARY_METRICS:
         value = estimate([metric_value(line, metric) for line in lines], houses)
         summary[metric] = {"mean": value.mean, "ci95": [value.low, value.high]}
+    summary |= _replicates(lines)
     causes = Counter(line["failure"] for line in lines if line.get("failure") is not None)
     summary["failures"] = dict(causes.most_common())
     return summary
+
+
+def _replicates(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """Returns the means of each replicate of all episodes (`--replicates`), whose spread is chance; {} without any."""
+    found: dict[int, list[Mapping[str, Any]]] = {}
+    for line in lines:
+        found.setdefault(replicate_number(line["episode_id"]), []).append(line)
+    if len(found) < 2:
+        return {}
+    means = {
+        name: [float(np.mean([float(line[name]) for line in found[number]])) for number in sorted(found)]
+        for name in ("success", "spl")
+    }
+    return {"replicates": {name: {"means": each, "std": float(np.std(each, ddof=1))} for name, each in means.items()}}
 
 
 def _as_bytes(line: Mapping[str, Any]) -> bytes:

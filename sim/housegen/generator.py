@@ -40,7 +40,7 @@ from sim.housegen.upper_storey import Stairs, UpperStorey, draw_stairs, draw_upp
 from sim.houses.writing import house_text
 from sim.world.check import check_house
 
-GENERATOR_VERSION = 3
+GENERATOR_VERSION = 4
 """Increased whenever the same seed gives another house; the effect of `HouseConfig.exact` is recorded separately."""
 MAX_TRIES = 12
 MAX_REASONS = 3

@@ -26,7 +26,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from sim.interface import CameraModel, ConfigError
+from sim.interface import CLIMB_M, CameraModel, ConfigError
 from sim.reading import read_bytes, read_json
 from sim.robot.config import BodyConfig, RobotConfig, RobotFile, WheelConfig
 from sim.robot.measurement import RobotMeasurements, measure
@@ -35,10 +35,14 @@ KEYS = ("wheel_joints", "wheel_radius_m", "casters", "heading_deg", "radius_m", 
 CAMERA_KEYS = ("camera_height_m", "camera_forward_m", "camera_hfov_deg")
 LARGEST_M = 1000.0
 """Largest number of a sidecar, also of degrees."""
+SKIN_M = 0.005
+"""`BodyConfig.skin_m` of third-party bodies, whose shapes may be of any kind."""
 MIN_CLEARANCE_M = 0.005
 """Least distance between the body's skin and the floor, so that the body does not rub on the floor."""
 WHEEL_MASS_SHARE = 0.01
 """Share of the robot's mass that is declared for each wheel; the simulated masses are those of the file."""
+CLIMBED_SHARE = 0.18
+"""Height that a wheel climbs from rest with friction 0.7, relative to its radius."""
 CASTER_OFFSET_SHARE = 0.8
 """Declared distance of the casters from the centre, relative to the body's radius."""
 
@@ -76,7 +80,12 @@ def _robot_config(path: Path, sidecar: dict[str, Any]) -> RobotConfig:
     body = _body(sidecar, measured)
     wheels = _wheels(measured, wheel_radius_m, body)
     return RobotConfig(
-        body=body, wheels=wheels, file=file, camera_forward_m=_number(sidecar, "camera_forward_m", "metres")
+        base="planar",
+        climb_m=_climb_m(body, wheels),
+        body=body,
+        wheels=wheels,
+        file=file,
+        camera_forward_m=_number(sidecar, "camera_forward_m", "metres"),
     )
 
 
@@ -98,29 +107,34 @@ def _wheels(measured: RobotMeasurements, radius_m: float, body: BodyConfig) -> W
 
 def _body(sidecar: dict[str, Any], measured: RobotMeasurements) -> BodyConfig:
     """Returns the upright cylinder around the body and its skin."""
-    skin_m = BodyConfig().skin_m
-    if measured.bottom_m - skin_m < MIN_CLEARANCE_M - 1e-6:
+    if measured.bottom_m - SKIN_M < MIN_CLEARANCE_M - 1e-6:
         raise ConfigError(
             f"its body reaches down to {measured.bottom_m:.3f} m above the floor, but must stay at least "
-            f"{MIN_CLEARANCE_M + skin_m:.3f} m above it; name sliding parts in casters."
+            f"{MIN_CLEARANCE_M + SKIN_M:.3f} m above it; name sliding parts in casters."
         )
-    radius_m = _positive(sidecar, "radius_m", measured.reach_m + skin_m)
-    height_m = _positive(sidecar, "height_m", measured.top_m + skin_m)
+    radius_m = _positive(sidecar, "radius_m", measured.reach_m + SKIN_M)
+    height_m = _positive(sidecar, "height_m", measured.top_m + SKIN_M)
     for name, given, needed in (("radius_m", radius_m, measured.reach_m), ("height_m", height_m, measured.top_m)):
-        if given < needed + skin_m - 1e-6:
+        if given < needed + SKIN_M - 1e-6:
             raise ConfigError(
                 f"{name} in the sidecar is {given:.3f} m, but the collision geoms reach {needed:.3f} m and have a skin "
-                f"of {skin_m:.3f} m: give at least {needed + skin_m:.3f}."
+                f"of {SKIN_M:.3f} m: give at least {needed + SKIN_M:.3f}."
             )
-    clearance_m = min(measured.bottom_m - skin_m, 0.4 * height_m)
+    clearance_m = min(measured.bottom_m - SKIN_M, 0.4 * height_m)
     return BodyConfig(
         radius_m=radius_m,
         height_m=height_m,
         clearance_m=clearance_m,
         waist_m=0.5 * (clearance_m + height_m),
+        skin_m=SKIN_M,
         mass_kg=measured.mass_kg,
         com_height_m=measured.com_height_m,
     )
+
+
+def _climb_m(body: BodyConfig, wheels: WheelConfig) -> float:
+    """Returns the height of the highest edge that the robot climbs, at most that of the default robot."""
+    return min(CLIMB_M, CLIMBED_SHARE * wheels.radius_m, body.clearance_m)
 
 
 def _camera(sidecar: dict[str, Any]) -> CameraModel:

@@ -32,6 +32,7 @@ OUTPUTS = ("out", "log", "card")
 SHIPPED = [(split, recipe.name) for split, recipes in SPLITS.items() for recipe in recipes]
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(("split", "name"), sample(SHIPPED, 2))
 def test_a_house_made_again_is_the_shipped_file_to_the_byte(split: str, name: str) -> None:
     recipe = next(recipe for recipe in SPLITS[split] if recipe.name == name)
@@ -147,6 +148,7 @@ def test_files_that_documented_commands_read_exist_or_are_written_by_another_com
             assert name in OUTPUTS or there, f"{command}: no command of the docs makes '{path}'"
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("command", sample(TRIED, 1))
 def test_a_documented_command_runs(command: str, tmp_path: Path) -> None:
     _try(command, tmp_path)

@@ -39,6 +39,7 @@ def weights(tmp_path: Path) -> Path:
     return tmp_path / "tiny.safetensors"
 
 
+@pytest.mark.costly
 def test_a_calibration_is_fitted_written_and_improves_calibration(tmp_path: Path, weights: Path) -> None:
     for name in ("one", "two"):
         write_views(tmp_path / name, 4)

@@ -37,6 +37,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.costly
 def test_a_row_an_episode_shows_the_picture_of_the_stop(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = recorded / "sheets" / "false.png"
     assert show_mistakes.main(Args(run=recorded / "run", out=out)) == 0

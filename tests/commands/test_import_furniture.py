@@ -56,6 +56,7 @@ def test_views_with_models_are_of_new_houses_only(tmp_path: Path) -> None:
     assert generate_views.plan(generate_views.Args(out=tmp_path, views=1), split)[0].fresh_seed is None  # type: ignore[arg-type]
 
 
+@pytest.mark.costly
 def test_a_view_house_shows_models(tmp_path: Path) -> None:
     import_furniture.main(
         import_furniture.Args(source=write_folder(tmp_path / "source", chairs=12), out=tmp_path / "out")

@@ -72,6 +72,7 @@ def test_a_training_learns_a_rule_and_is_continued(tmp_path: Path, capsys: pytes
     assert 999999 not in steps
 
 
+@pytest.mark.costly
 def test_training_lowers_the_loss_on_the_demonstrated_actions(tmp_path: Path):
     shown = [train_cloned.labelled_steps_of(rule("house_1", seed=seed), Path("a")) for seed in range(20)]
     args = train_cloned.Args(demonstrations=(), out=tmp_path, streams=6, length=12, rate=5e-3)
@@ -134,6 +135,7 @@ def test_searches_in_plans_are_rendered_once(tmp_path: Path, capsys: pytest.Capt
         twin_demonstrations.main(replace(args, episodes=3))
 
 
+@pytest.mark.costly
 def test_the_episodes_of_a_run_are_rendered_at_their_poses(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     run = tmp_path / "oracle"
     words = ["--agent", "oracle", "--split", "val", "--episodes", "1", "--record", "--out", str(run)]

@@ -37,6 +37,7 @@ def log_after(split: Path, log: Path, episodes: int) -> list[dict]:
     return [json.loads(line) for line in (log / "results.jsonl").read_text().splitlines()]
 
 
+@pytest.mark.costly
 def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(split: Path, tmp_path: Path):
     first = log_after(split, tmp_path, 2)
     assert [line["steps"] for line in first] == [30, 30]

@@ -40,6 +40,7 @@ def rows(file: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
+@pytest.mark.costly
 def test_training_makes_samples_curves_and_weights_and_continues_a_run(
     tmp_path: Path, plans: Path, capsys: pytest.CaptureFixture[str]
 ):

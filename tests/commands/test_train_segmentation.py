@@ -76,6 +76,7 @@ def options(tmp_path: Path, **changes: object) -> Args:
     return Args(**{**base, "batch": 2, "steps": 4, "evaluate_every": 2, "device": "cpu", **changes})  # type: ignore[arg-type]
 
 
+@pytest.mark.costly
 def test_training_writes_curves_and_weights_prints_its_loss_and_continues_a_run(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -147,6 +148,7 @@ def test_a_killed_run_keeps_its_best_network_and_has_no_row_twice(
         assert [row["step"] for row in rows(out / "val.csv")] == ["2", "3", "4"]
 
 
+@pytest.mark.costly
 def test_a_run_that_was_killed_before_its_first_state_begins_its_curves_anew(tmp_path: Path) -> None:
     write_views(tmp_path / "train", 3)
     write_views(tmp_path / "val", 2)

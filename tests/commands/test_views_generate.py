@@ -40,6 +40,7 @@ def sums(out: Path) -> dict[str, str]:
     return {entry["shard"]: entry["sha256"] for entry in json.loads((out / "index.json").read_text())["shards"]}
 
 
+@pytest.mark.costly
 def test_workers_and_machines_write_the_same_shards_as_one_process(split: Path, tmp_path: Path) -> None:
     assert main(options(split, tmp_path / "one")) == 0
     command = [

@@ -104,6 +104,7 @@ def test_a_vector_of_two_equals_two_single_environments(options: dict[str, Any],
         alone.close()
 
 
+@pytest.mark.costly
 def test_the_id_without_module_makes_async_vectors_with_gymnasiums_own_context(house: Path) -> None:
     """Runs in a process of its own, because other tests have rendered in this one."""
     code = (
@@ -232,6 +233,7 @@ def _stand_in_for_moviepy(monkeypatch: pytest.MonkeyPatch, given: list[tuple[int
     monkeypatch.setitem(sys.modules, "moviepy.video.io.ImageSequenceClip", clip)
 
 
+@pytest.mark.costly
 def test_the_example_runs_both_agents_in_one_episode() -> None:
     from examples.gym_agents import run_episode
 

@@ -44,6 +44,7 @@ def run(*options: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command(*options), capture_output=True, text=True, check=False)
 
 
+@pytest.mark.costly
 def test_results_are_the_same_in_one_process_and_in_two_workers(house: Path, tmp_path: Path) -> None:
     for name, workers in (("once", 1), ("shared", 2)):
         options = ("--house", house, "--episodes", 3, "--workers", workers, "--config", "task.max_steps=40")
@@ -63,6 +64,7 @@ def test_another_seed_draws_other_starts(house: Path, tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.costly
 def test_a_line_and_the_summary_have_the_fields_of_the_contract(house: Path, tmp_path: Path) -> None:
     run("--agent", "oracle", "--house", house, "--episodes", 2, "--out", tmp_path)
     (line, _), summary = lines_of(tmp_path), json.loads((tmp_path / "summary.json").read_text())
@@ -81,6 +83,7 @@ def test_a_line_and_the_summary_have_the_fields_of_the_contract(house: Path, tmp
     assert {"mujoco", "numpy", "gl_renderer"} <= set(config["versions"])
 
 
+@pytest.mark.costly
 def test_a_killed_run_resumes_without_lost_or_doubled_lines(house: Path, tmp_path: Path) -> None:
     options = ("--agent", "oracle", "--house", house, "--episodes", 6)
     results = tmp_path / "killed" / "results.jsonl"
@@ -99,6 +102,7 @@ def test_a_killed_run_resumes_without_lost_or_doubled_lines(house: Path, tmp_pat
     assert lines_of(tmp_path / "killed") == lines_of(tmp_path / "whole")
 
 
+@pytest.mark.costly
 def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path, tmp_path: Path) -> None:
     options = ("--agent", "random", "--house", house, "--seed-key", "k", "--config", "task.max_steps=60")
     run(*options, "--episodes", 2, "--out", tmp_path / "plain")
@@ -123,6 +127,7 @@ def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path
         assert {"split", "noise", "profile", "versions", "start"} <= set(trajectory.about)
 
 
+@pytest.mark.costly
 def test_an_episode_whose_goal_is_upstairs_runs_and_fails_by_stairs(tmp_path: Path) -> None:
     folder = tmp_path / "tiny"
     folder.mkdir()
@@ -140,6 +145,7 @@ def test_an_episode_whose_goal_is_upstairs_runs_and_fails_by_stairs(tmp_path: Pa
     assert [line["gt_explored"] for line in lines] == [True, False, False, True]
 
 
+@pytest.mark.costly
 def test_the_shipped_network_is_used_unless_another_segmentation_is_requested(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -152,6 +158,7 @@ def test_the_shipped_network_is_used_unless_another_segmentation_is_requested(
     assert "weights" in json.loads((tmp_path / "config.json").read_text())["files_sha256"]
 
 
+@pytest.mark.costly
 def test_an_agent_of_a_user_runs_episodes(house: Path, tmp_path: Path) -> None:
     done = run("--agent", "examples.my_agent:make", "--house", house, "--episodes", 1, "--out", tmp_path)
     assert done.returncode == 0, done.stderr
@@ -323,6 +330,7 @@ def test_a_house_that_is_replaced_while_a_run_is_planned_is_noticed(
     assert "its files have changed since this run was planned" in capsys.readouterr().out
 
 
+@pytest.mark.costly
 def test_an_agent_that_kills_its_process_costs_no_line_and_is_not_run_again_without_a_request(
     house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -343,6 +351,7 @@ def test_an_agent_that_kills_its_process_costs_no_line_and_is_not_run_again_with
     assert marker.read_text() == "xx"  # two tries, once
 
 
+@pytest.mark.costly
 def test_a_folder_made_with_other_options_is_refused(house: Path, tmp_path: Path) -> None:
     options = ("--agent", "random", "--house", house, "--config", "task.max_steps=20", "--out", tmp_path)
     assert run(*options, "--episodes", 1).returncode == 0

@@ -214,6 +214,7 @@ def test_without_a_terminal_one_line_says_so() -> None:
         Terminal(nothing, nothing)
 
 
+@pytest.mark.costly
 def test_the_command_is_driven_through_a_terminal(pty: tuple[int, int], split: Path, tmp_path: Path) -> None:
     master, slave = pty
     command = [sys.executable, "-m", "sim.teleop", "--split", str(split), "--out", str(tmp_path), "--episode-id", "e1"]

@@ -105,6 +105,7 @@ def test_walled_in_it_keeps_pushing_instead_of_freezing():
     assert {Action.TURN_LEFT, Action.TURN_RIGHT} & set(trace.actions)
 
 
+@pytest.mark.costly
 def test_the_same_house_turned_by_the_start_heading_is_still_solved():
     for yaw in np.arange(4) * np.pi / 2 + 0.2:
         trace, _ = run(APARTMENT, (4.0, 2.9, float(yaw)), "bed")

@@ -93,6 +93,7 @@ def test_penetration_is_small_and_no_forward_action_is_too_long(short_env, trap,
                 assert motion.collided or motion.displacement_m > FAILED_M, "a short move that nothing stopped"
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("trap", sample(BLIND, 1))
 def test_the_full_agent_escapes_where_the_one_without_collision_avoidance_does_not(short_env, trap):
     full, _ = run_in_trap(short_env, trap, 0, "stubborn-v")
@@ -116,6 +117,7 @@ def test_each_mark_has_a_contact_within_reach(short_env, trap, heading):
         assert gap_m <= reach_m, f"step {i}: {gap_m:.3f} m from mark to contact at {math.degrees(bearing_rad):.0f} deg"
 
 
+@pytest.mark.costly
 def test_on_wet_tiles_forward_actions_are_short_without_contact(agent_env):
     trial, _ = run_in_trap(agent_env, "slippery_floor", 0, "stubborn-v")
     slips = [m for m in trial.motions if m.action == Action.MOVE_FORWARD and m.displacement_m < FAILED_M]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:  # loading a house needs no furniture
     from sim.housegen.furniture.item import Pool
     from sim.housegen.generator import GeneratedHouse, HouseConfig
 
-SPLIT_VERSION = "2.0.0"
+SPLIT_VERSION = "2.1.0"
 """Version of all shipped splits; results contain it with a hash over houses and episodes. It is increased in
 
 - the last number when a house or an episode changed without an effect on agents (a colour, the layout of a file);

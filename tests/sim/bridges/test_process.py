@@ -138,6 +138,32 @@ def test_a_fault_ends_its_episode_and_leaves_no_process_and_the_next_episode_run
     require_gone(tmp_path)
 
 
+class LatePoll:
+    """A poll object that is asked late, when all events of the end of a process have come."""
+
+    def __init__(self, poll: Any) -> None:
+        self._poll = poll
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._poll, name)
+
+    def poll(self, limit_ms: float) -> list[tuple[int, int]]:
+        time.sleep(0.3)
+        return self._poll.poll(limit_ms)
+
+
+def test_the_status_is_told_when_the_end_of_the_output_and_the_line_of_the_guard_arrive_together(
+    tmp_path: Path,
+) -> None:
+    process = process_pipe.AgentProcess(command("exit_0", tmp_path))
+    process.ask({"type": "start", "memory": None}, within_s=20)
+    process.ask({"type": "reset"}, within_s=20)
+    process._poll = LatePoll(process._poll)
+    with pytest.raises(AgentError, match="its process ended with status 0 before it answered"):
+        process.ask({"type": "act"}, within_s=20)
+    process.close()
+
+
 @pytest.mark.parametrize(
     ("fault", "message"),
     [

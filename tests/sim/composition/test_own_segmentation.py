@@ -49,6 +49,7 @@ def test_a_segmentation_of_ones_own_is_run_recorded_and_named(
     assert set.union(*segmentations.ASKED) == {"rgb", "depth", "gps", "compass", "objectgoal"}
 
 
+@pytest.mark.costly
 def test_a_segmentation_that_reads_the_truth_is_marked(house: Path, tmp_path: Path) -> None:
     assert run(house, tmp_path, "--semantics", "tests.helpers.segmentations:Truth") == 0
     assert json.loads((tmp_path / "results.jsonl").read_text())["uses_ground_truth"] is True

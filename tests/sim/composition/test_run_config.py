@@ -116,6 +116,7 @@ def test_the_record_has_a_checksum_of_each_file_that_the_agent_reads(tmp_path: P
     assert [name for name in before if before[name] != after[name]] == ["agent.seeker.tracks.evidence.fusion"]
 
 
+@pytest.mark.costly
 def test_a_run_is_resumed_only_with_the_same_tree(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     options = ["--agent", "random", "--semantics", "gt", "--episodes", "1", "--out", str(tmp_path)]
     settings = ["--config", "task.max_steps=3", "camera.width_px=160", "camera.height_px=120"]

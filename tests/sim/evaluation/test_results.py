@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 import re
 import shutil
@@ -383,3 +384,23 @@ def test_a_run_resumed_with_another_library_names_it(tmp_path: Path) -> None:
     run = RunDirectory(tmp_path, CONFIG | {"versions": {"mujoco": "4.1.0", "numpy": "2.4.6", "code": "b"}})
     assert run.other_versions() == {"mujoco": ("4.0.0", "4.1.0")}
     run.close()
+
+
+def test_a_run_of_other_physics_is_not_resumed(tmp_path):
+    RunDirectory(tmp_path / "run", {"agent": "oracle"}).close()  # the first version wrote no number
+    with pytest.raises(
+        ConfigError, match=r"physics version 1, this program has version 2.*choose another folder"
+    ) as error:
+        RunDirectory(tmp_path / "run", {"agent": "oracle", "physics": 2})
+    assert "\n" not in str(error.value)
+
+
+def test_a_summary_has_the_means_of_each_replicate_and_their_spread():
+    lines = [
+        {"episode_id": f"val_0000{mark}", "house": "h", "goal": "bed", "end_reason": "stop", "success": s, "spl": s}
+        for mark, s in (("", 1.0), ("~1", 0.0), ("~2", 1.0))
+    ]
+    found = summarise(lines)["replicates"]["success"]
+    assert found["means"] == [1.0, 0.0, 1.0]
+    assert found["std"] == pytest.approx(math.sqrt(1 / 3))
+    assert "replicates" not in summarise(lines[:1])

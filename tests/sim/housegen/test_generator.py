@@ -52,6 +52,7 @@ def small(seed: int) -> GeneratedHouse:
     return generate_house(seed, HouseConfig(kind="studio", area_m2=55.0))
 
 
+@pytest.mark.costly
 def test_the_same_seed_gives_the_same_bytes_in_another_process() -> None:
     xml = generate(3, kind="studio", area_m2=55.0).to_xml()
     code = "from sim.housegen import generate; print(generate(3, kind='studio', area_m2=55.0).to_xml(), end='')"
@@ -59,6 +60,7 @@ def test_the_same_seed_gives_the_same_bytes_in_another_process() -> None:
     assert xml == other
 
 
+@pytest.mark.costly
 def test_seeds_and_pools_give_different_houses() -> None:
     xml = {small(seed).spec.to_xml() for seed in range(3)}
     assert len(xml) == 3

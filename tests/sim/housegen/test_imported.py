@@ -345,6 +345,7 @@ def test_the_shipped_catalogue_does_not_change(tmp_path: Path) -> None:
     assert [style.name for category in CATALOGUE.categories for style in CATALOGUE.styles(category)] == before
 
 
+@pytest.mark.costly
 def test_a_house_shows_models_passes_its_check_and_names_authors(tmp_path: Path) -> None:
     import_all(write_folder(tmp_path / "source", chairs=12), tmp_path / "out")
     furniture = ImportedFurniture(tmp_path / "out", "transfer")

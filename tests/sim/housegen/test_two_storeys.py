@@ -39,6 +39,7 @@ def upper_floor_m(world: World) -> float:
     return max(room.floor_z_m for room in world.rooms)
 
 
+@pytest.mark.costly
 def test_the_house_passes_its_check_and_its_file_is_small_enough(house: House):
     assert check_house(house.spec, furnished=True) == []
     assert len(house_text(house.spec)) <= 1_300_000

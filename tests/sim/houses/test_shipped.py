@@ -104,6 +104,7 @@ def pushing(model: mujoco.MjModel, data: mujoco.MjData) -> list[int]:
     return found
 
 
+@pytest.mark.costly
 def test_the_check_finds_no_fault(case: Case) -> None:
     assert check_house(case.scene.world.house.spec, furnished=True) == []
 

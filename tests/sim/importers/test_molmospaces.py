@@ -87,6 +87,7 @@ def test_broken_houses_are_one_line_with_their_file(tmp_path: Path, capsys: pyte
     assert all(f"train_{number}" in line and str(file.parent) in line for number, line in enumerate(lines, start=1))
 
 
+@pytest.mark.costly
 @settings(max_examples=8, deadline=None)
 @given(
     st.recursive(

@@ -46,8 +46,9 @@ def test_a_robot_keeps_its_own_masses_and_shapes(carrier: Path, capfd: pytest.Ca
         World(open_floor()).model.geom("stubborn_robot/lower_hull"),
         world.model.geom("stubborn_robot/file/hull_1"),
     )
-    for field in ("friction", "condim", "solref", "margin", "priority", "contype", "conaffinity", "group"):
+    for field in ("friction", "condim", "solref", "priority", "contype", "conaffinity", "group"):
         np.testing.assert_array_equal(getattr(hull, field), getattr(ours, field))
+    assert hull.margin[0] == world.config.body.skin_m == 0.005
     assert capfd.readouterr().err == ""  # MuJoCo gave no warning
 
 
@@ -206,3 +207,9 @@ def test_a_missing_sidecar_is_reported_with_its_name(carrier: Path, tmp_path: Pa
     (tmp_path / "carrier.xml").write_text(carrier.read_text())
     with pytest.raises(ConfigError, match=r"sidecar of the robot '.*carrier\.json' does not exist"):
         load_robot(tmp_path / "carrier.xml")
+
+
+def test_small_wheels_climb_less_than_ours(carrier: Path, tmp_path: Path) -> None:
+    assert load_robot(carrier)[0].model.climb_m == RobotConfig().climb_m
+    small = write_robot(tmp_path / "r", wheel_radius_m=0.06)
+    assert load_robot(small)[0].model.climb_m == pytest.approx(0.18 * 0.06)

@@ -299,7 +299,7 @@ def test_slip_and_short_moves_come_from_physics() -> None:
     spinning = drive(world, Conditions(floor_friction_scale=0.01))
     assert spinning[0] < 0.1
     sliding = drive(world, Conditions(floor_friction_scale=0.05))
-    assert sliding[0] > 0.3
+    assert abs(sliding[0] - 0.25) > 0.02  # the wheels have turned by 0.25 m
     uneven = drive(world, Conditions(motor_gain_scale=(0.8, 1.2)))
     assert abs(uneven[4] - nominal[4]) > 0.005
     assert drive(world, NOMINAL) == nominal

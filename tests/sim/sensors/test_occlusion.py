@@ -246,6 +246,7 @@ def house_poses() -> list[tuple[Path, int]]:
     return [(path, number) for path in HOUSES for number in range(POSES_A_HOUSE)]
 
 
+@pytest.mark.costly
 def test_in_shipped_houses_no_pixel_changes() -> None:
     """500 poses in 20 houses under `--all-cases`."""
     by_house: dict[Path, list[int]] = {}

@@ -69,6 +69,7 @@ def test_the_reward_of_an_episode_is_the_path_to_the_target_and_the_floor_seen(p
     assert plain.step(cell)[1] == pytest.approx(0.1 * (before - plain.episode.distance_m()))
 
 
+@pytest.mark.costly
 def test_the_policy_gets_the_same_input_in_training_and_in_episodes(plans: Path):
     """The agent follows the first goal of a policy, then the environment gets the same goal; both see the same map."""
     given: list[PolicyInput] = []

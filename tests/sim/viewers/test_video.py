@@ -78,6 +78,7 @@ def frames_of(file: Path) -> list[NDArray[np.uint8]]:
     return frames
 
 
+@pytest.mark.costly
 def test_filming_changes_no_result_line_with_noise_of_any_sensor(house: Path, tmp_path: Path) -> None:
     options = ["--semantics", "gt", "--house", str(house), "--noise", "realsense", "--episodes", "1", "--out"]
     assert entry([*options, str(tmp_path / "plain")]) == 0

@@ -144,6 +144,7 @@ def test_an_episode_of_a_run_is_repeated_exactly(own: Choices, house: Path, tmp_
     assert (last["step"], last["driven_m"]) == (line["num_steps"], line["path_length"])
 
 
+@pytest.mark.costly
 def test_an_episode_of_a_run_without_noise_in_a_house_with_two_goals_begins_where_it_began(tmp_path: Path) -> None:
     built = with_box(room(5, 5), "sofa_00", centre_m=(2.0, 0, 0.4), half_m=(0.3, 0.6, 0.4))
     built = with_box(built, "bed_00", centre_m=(-2.0, 0, 0.3), half_m=(0.3, 0.6, 0.3))

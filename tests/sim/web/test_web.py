@@ -459,6 +459,7 @@ def test_the_page_comes_back_when_the_server_is_killed_and_started_again(
     assert browser.run("return document.body.dataset.phase") == "idle"
 
 
+@pytest.mark.costly
 def test_a_port_in_use_gives_one_sentence(server: Server) -> None:
     command = [sys.executable, "-m", "sim.web", "--port", str(server.port)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -44,7 +44,8 @@ def test_a_threshold_is_not_an_edge(drop_m):
 def test_a_robot_that_drives_along_an_edge_with_one_wheel_over_it_stands_on_its_casters():
     world = World(ledge(0.6))
     assert not any(falls(world, Pose(-0.10, -1.0, 0.5 * np.pi), 4))
-    assert any(falls(world, Pose(0.01, -1.0, 0.5 * np.pi), 1))
+    held_upright = World(ledge(0.6), robot=RobotConfig(base="planar"))  # a free base falls before its first action
+    assert any(falls(held_upright, Pose(0.01, -1.0, 0.5 * np.pi), 1))
 
 
 def test_a_rug_and_its_edges_carry_the_robot():

@@ -140,6 +140,7 @@ def sampled(n: int, *, chairs_called_tables: float = 0.0, far_lies: bool = False
     return result
 
 
+@pytest.mark.costly
 def test_the_fit_finds_how_often_a_category_is_missed():
     samples = sampled(400, chairs_called_tables=0.4)
     fusion = fit(samples)

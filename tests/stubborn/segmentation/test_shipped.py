@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 
 from sim.datasets.views import sample_views
 from sim.env.scene import Scene
@@ -35,6 +36,7 @@ def test_it_is_small_and_its_card_agrees_with_it() -> None:
         assert heading in card
 
 
+@pytest.mark.costly
 def test_a_process_that_uses_it_does_not_load_the_compilers_of_pytorch() -> None:
     use = (
         "import sys; from stubborn.segmentation.network import NetworkSegmenter; "
