@@ -24,7 +24,7 @@ from sim.bridges.stubborn_client import HABITAT_ACTIONS, Link, serve
 
 LOG = logging.getLogger("habitat")
 HABITAT_MODULES = {
-    "habitat": "Agent Benchmark Challenge Config Env get_config read_write logger",
+    "habitat": "Agent Benchmark Challenge Config Env RLEnv get_config read_write logger",
     "habitat.config": "Config get_config read_write",
     "habitat.config.default": "Config get_config read_write",
     "habitat.config.read_write": "read_write",
@@ -32,7 +32,7 @@ HABITAT_MODULES = {
     "habitat.core.agent": "Agent",
     "habitat.core.benchmark": "Benchmark",
     "habitat.core.challenge": "Challenge",
-    "habitat.core.env": "Env",
+    "habitat.core.env": "Env RLEnv",
     "habitat.core.logging": "logger",
     "habitat.core.simulator": "Observations",
     "habitat.sims": "",
@@ -342,7 +342,8 @@ def _provide_habitat():
     objects = {
         "Agent": Agent, "Benchmark": _Benchmark, "Challenge": _Challenge, "Config": Config, "Env": _Env,
         "HabitatSimActions": HabitatActions(), "ObjectGoal": _Record, "ObjectGoalNavEpisode": _Record,
-        "Observations": _Observations, "get_config": _get_config, "logger": LOG, "read_write": read_write,
+        "Observations": _Observations, "RLEnv": _Env, "get_config": _get_config, "logger": LOG,
+        "read_write": read_write,
     }  # fmt: skip
     sys.meta_path.insert(0, StandIn(objects))
 

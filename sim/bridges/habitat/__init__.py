@@ -10,6 +10,7 @@ from sim.bridges.habitat.config import get_config
 from sim.bridges.habitat.conversions import HabitatSimActions, Observations
 from sim.bridges.habitat.env import Env
 from sim.bridges.habitat.episodes import ObjectGoal, ObjectGoalNavEpisode
+from sim.bridges.habitat.rl_env import RLEnv
 from sim.bridges.habitat_client import Agent, Config, read_write
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "ObjectGoal",
     "ObjectGoalNavEpisode",
     "Observations",
+    "RLEnv",
     "get_config",
     "read_write",
 ]
