@@ -597,8 +597,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn habitat examples/benchmark.py --episodes 10": Only(_PUBLISHED),
     "stubborn habitat 'agent.py --evaluation local' --split val --episodes 5": Only(_PUBLISHED),
     f"{_RUN} --agent habitat:agent:RandomAgent": Only(_PUBLISHED),
-    f"{_RUN} --agent 'process:env/bin/python stubborn_client.py Stubborn/eval.py --evaluation local --timestep_limit 451'"
-    " --config agent.interface=habitat": Only(_PUBLISHED),
+    f"{_RUN} --agent 'process:env/bin/python stubborn_client.py Stubborn/eval.py --evaluation local --timestep_limit"
+    " 451' --config agent.interface=habitat": Only(_PUBLISHED),
     "env/bin/pip install torch torchvision scikit-fmm scikit-image scikit-learn gym matplotlib pyyaml"
     " opencv-python-headless": Only(_PUBLISHED),
     "python3 -m venv env": Only(_PUBLISHED),
