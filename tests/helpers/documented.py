@@ -599,9 +599,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --agent habitat:agent:RandomAgent": Only(_PUBLISHED),
     f"{_RUN} --agent 'process:env/bin/python stubborn_client.py Stubborn/eval.py --evaluation local --timestep_limit"
     " 451' --config agent.interface=habitat": Only(_PUBLISHED),
-    "env/bin/pip install torch torchvision scikit-fmm scikit-image scikit-learn gym matplotlib pyyaml"
-    " opencv-python-headless": Only(_PUBLISHED),
-    "python3 -m venv env": Only(_PUBLISHED),
     "stubborn bench --parts a,b,d --out runs/bench.json": Only(
         "takes minutes; tests/commands/test_bench.py runs its parts"
     ),
