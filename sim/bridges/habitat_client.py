@@ -101,6 +101,23 @@ def merge(config: Config, changes: Any) -> None:
             config[str(key)] = to_config(value)
 
 
+def add(config: Config, entries: Any) -> None:
+    """Adds entries of nested dicts that a run's configuration lacks, in place; logs those that it has otherwise."""
+    others = list(_added(config, entries, ""))
+    if others:
+        LOG.warning("The run determines %s.", ", ".join(others))
+
+
+def _added(config: Config, entries: Any, place: str) -> Any:
+    """Adds entries, and yields text on each that has another value already."""
+    for key, value in entries.items():
+        present = config.setdefault(str(key), to_config(value))
+        if isinstance(present, Config) and isinstance(value, dict):
+            yield from _added(present, value, f"{place}{key}.")
+        elif present != value:
+            yield f"{place}{key}={present!r}, not {value!r}"
+
+
 def override(config: Config, overrides: Any) -> None:
     """Changes a configuration, in place, by texts `path=value`, or by paths and values alternately.
 
@@ -307,21 +324,26 @@ class _Observations(dict):
 
 
 def _get_config(config_paths=None, overrides=None, *_: Any, **__: Any) -> Config:
-    """Returns the configuration of the run, changed by YAML files and by overrides."""
+    """Returns the configuration of the run, with what YAML files add to it, changed by overrides."""
     config = _config_of_the_run()
     paths = config_paths.split(",") if isinstance(config_paths, str) else [str(path) for path in config_paths or ()]
     for path in paths:
         if not os.path.isfile(path):
             LOG.warning("There is no configuration file '%s': the task of the run is used.", path)
             continue
-        yaml = importlib.import_module("yaml")  # of the agent's environment
-        with open(path) as file:
-            merge(config, yaml.safe_load(file) or {})
+        add(config, _read_yaml(path))
     override(config, overrides)
     removed = remove_other_actions(config)
     if removed:
         LOG.warning("This robot has no action %s: removed from the configuration.", ", ".join(sorted(removed)))
     return config
+
+
+def _read_yaml(path: str) -> Any:
+    """Returns the content of a file, read with PyYAML of the agent's environment."""
+    yaml = importlib.import_module("yaml")
+    with open(path) as file:
+        return yaml.safe_load(file) or {}
 
 
 def _config_of_the_run() -> Config:
@@ -357,8 +379,10 @@ def _maker_of(name, words):
         given = dict(word.split("=", 1) for word in words)
         given = {key: called(parsed(text)) for key, text in given.items()}
         for argument in inspect.signature(found).parameters.values():
-            if argument.name in OF_THE_RUN and argument.default is argument.empty:
-                given.setdefault(argument.name, _config_of_the_run())
+            if argument.name in OF_THE_RUN and argument.default is argument.empty and argument.annotation is not str:
+                file = given.get(argument.name)
+                if file is None or isinstance(file, str):
+                    given[argument.name] = _get_config(file)
         return found(**given)
 
     return make

@@ -50,7 +50,7 @@ def main(args: Args) -> int:
     write_atomically(out / "stubborn_client.py", client_file())
     words = [str(args.python.absolute()), str(out / "stubborn_client.py"), "published_stubborn:WithTrueMasks"]
     published = ["--agent", f"process:{shlex.join(words)}", "--config", "agent.interface=habitat"]
-    published.append('sensors=["rgb", "depth", "semantic"]')
+    published += ['sensors=["rgb", "depth", "semantic"]', "agent.start_timeout_s=1800", "--step-timeout", "600"]
     for split, episodes in args.episodes.items():
         common = ["--split", split, "--episodes", str(episodes), "--workers", str(args.workers)]
         runs = [out / split / name for name in ("published", "stubborn")]
@@ -64,7 +64,7 @@ def stubborn(*words: str, folder: Path) -> None:
     """Runs `stubborn WORDS` in the folder of the published repository; raises CalledProcessError if it fails."""
     root = Path(__file__).parents[2]
     paths = [root, Path(__file__).parent, folder / "Stubborn"]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, paths))}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, paths)), "OMP_NUM_THREADS": "1"}
     subprocess.run([sys.executable, "-m", "sim.commands.main", *words], cwd=folder, env=environment, check=True)
 
 

@@ -2,8 +2,8 @@
 
 The fields of the agent's configuration are the arguments of the class's constructor and `BRIDGE_FIELDS`;
 `--config agent.KEY=VALUE` sets them. A required argument called `config` or `task_config` gets the configuration of the
-run (`sim.bridges.habitat.config.make_config`). A value of the form `module:NAME()` is replaced by the result of that
-function.
+run (`sim.bridges.habitat.config.make_config`), with the entries of a YAML file if its value names one. A value of the
+form `module:NAME()` is replaced by the result of that function.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.bridges.habitat.config import make_config
+from sim.bridges.habitat.config import make_config, with_entries_of
 from sim.bridges.habitat.conversions import Conversion, to_action
 from sim.bridges.habitat_client import OF_THE_RUN, called
 from sim.bridges.process_command import BridgeConfig
@@ -219,6 +219,8 @@ def _values(
         required = argument.default is inspect.Parameter.empty
         if value is None and required and argument.name in OF_THE_RUN:
             value = of_the_run
+        elif required and argument.name in OF_THE_RUN and _names_file(argument, value):
+            value = with_entries_of(of_the_run, Path(value))
         elif value is None and required:
             missing.append(argument.name)
         if value is None or (not required and value == _shown(argument)):
@@ -236,6 +238,11 @@ def _values(
             + "."
         )
     return positional, by_name
+
+
+def _names_file(argument: inspect.Parameter, value: Any) -> bool:
+    """Returns whether the value of an argument that takes a configuration names a YAML file."""
+    return argument.annotation not in (str, "str") and isinstance(value, str) and value.endswith((".yaml", ".yml"))
 
 
 def _result(value: Any) -> Any:

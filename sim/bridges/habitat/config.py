@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from sim.bridges.habitat_client import Config, merge, override, remove_other_actions, to_config
+from sim.bridges.habitat_client import Config, add, merge, override, remove_other_actions, to_config
 from sim.errors import ConfigError
 from sim.interface import FORWARD_M, MAX_STEPS, TURN_RAD, Action, CameraModel, RobotModel, SuccessRule
 from sim.reading import read_bytes
@@ -123,6 +123,17 @@ def get_config(
     if removed:
         _LOG.warning("This robot has no action %s: removed from the configuration.", ", ".join(sorted(removed)))
     return config
+
+
+def with_entries_of(config: Config, file: Path) -> Config:
+    """Returns the configuration of a run with the entries that only a YAML file has; a warning names the others.
+
+    Raises:
+        ConfigError: the file cannot be read.
+    """
+    found = config.clone()
+    add(found, _read_yaml(file))
+    return found
 
 
 def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:

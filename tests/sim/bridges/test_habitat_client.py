@@ -43,6 +43,7 @@ class Own(habitat.Agent):
     def __init__(self, args, task_config: habitat.Config, keep: float = 0.5):
         self.args, self.actions, self.keep = args, task_config.TASK.POSSIBLE_ACTIONS, keep
         self.width = task_config.SIMULATOR.RGB_SENSOR.WIDTH
+        self.keep = task_config.OWN.KEEP if "OWN" in task_config else keep
 
     def reset(self) -> None:
         self.steps = 0
@@ -66,11 +67,13 @@ def get_args():
 
 if __name__ == "__main__":
     config = get_config(os.environ["CHALLENGE_CONFIG_FILE"], overrides=["habitat.dataset.split=mine"])
-    assert config.ENVIRONMENT.MAX_EPISODE_STEPS == 7 and config.habitat.dataset.split == "mine"
+    assert config.ENVIRONMENT.MAX_EPISODE_STEPS == 5 and config.habitat.dataset.split == "mine"
+    assert config.OWN.KEEP == 0.75
     habitat.Challenge(eval_remote=False).submit(Own(get_args(), config))
 """
 CONFIG = """
 ENVIRONMENT: {MAX_EPISODE_STEPS: 7}
+OWN: {KEEP: 0.75}
 TASK: {POSSIBLE_ACTIONS: [STOP, MOVE_FORWARD, TURN_LEFT, TURN_RIGHT, LOOK_UP]}
 """
 
@@ -105,8 +108,10 @@ def first_actions(words: str) -> list[Action]:
 
 @pytest.mark.usefixtures("folder")
 def test_an_evaluation_script_and_a_class_run_unchanged() -> None:
-    assert first_actions("published.py --action 2") == [Action.TURN_RIGHT, Action.TURN_LEFT]
+    assert first_actions("published.py --action 2") == [Action.TURN_LEFT, Action.TURN_LEFT]
     made = "published:Own args=published:get_args() keep=0.75"
+    assert first_actions(made) == [Action.TURN_LEFT, Action.MOVE_FORWARD]
+    made = "published:Own args=published:get_args() task_config=task.yaml"
     assert first_actions(made) == [Action.TURN_LEFT, Action.MOVE_FORWARD]
 
 
