@@ -66,7 +66,6 @@ EXCEPTIONS = {
     ("sim/bridges/process_guard.py", "os.open"): "/dev/null",
     ("sim/bridges/stubborn_client.py", "os.open"): "runs in the agent's process; memory that the simulator names",
     ("sim/bridges/habitat_client.py", "open"): "runs in the agent's process; a file that the agent's code names",
-    ("sim/commands/agent_client.py", "Path(module.__file__).read_text"): "files of this project",
 }
 
 

@@ -16,6 +16,7 @@ import os
 import re
 import runpy
 import sys
+from importlib.abc import Loader
 from importlib.machinery import ModuleSpec
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -160,7 +161,7 @@ def remove_other_actions(config: Config) -> "set[str]":
     return removed
 
 
-class StandIn:
+class StandIn(Loader):
     """An entry of `sys.meta_path` that provides `HABITAT_MODULES`.
 
     Args:
@@ -200,7 +201,7 @@ class _Module(ModuleType):
         raise AttributeError(f"'{self.__name__}.{name}' {NOT_IN_THE_STAND_IN}")
 
 
-class EmptyModules:
+class EmptyModules(Loader):
     """The last entry of `sys.meta_path`: it provides `EMPTY_PACKAGES` that are not installed."""
 
     def __init__(self):

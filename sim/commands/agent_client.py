@@ -6,9 +6,9 @@ stubborn agent-client > stubborn_client.py          # does the same
 
 from __future__ import annotations
 
+import inspect
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 from sim import cli
 from sim.bridges import habitat_client, stubborn_client
@@ -38,7 +38,5 @@ def main(args: Args) -> int:
 
 def client_file() -> str:
     """Returns the content of the file: the module `stubborn_client`, and `habitat_client` without its import of it."""
-    protocol, habitat = (
-        Path(module.__file__).read_text(encoding="utf-8") for module in (stubborn_client, habitat_client)
-    )
+    protocol, habitat = inspect.getsource(stubborn_client), inspect.getsource(habitat_client)
     return f"{protocol}\n\n{habitat.replace(IMPORT, '')}"

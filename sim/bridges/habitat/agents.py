@@ -219,7 +219,7 @@ def _values(
         required = argument.default is inspect.Parameter.empty
         if value is None and required and argument.name in OF_THE_RUN:
             value = of_the_run
-        elif required and argument.name in OF_THE_RUN and _names_file(argument, value):
+        elif required and argument.name in OF_THE_RUN and isinstance(value, str) and _names_file(argument, value):
             value = with_entries_of(of_the_run, Path(value))
         elif value is None and required:
             missing.append(argument.name)
@@ -240,9 +240,9 @@ def _values(
     return positional, by_name
 
 
-def _names_file(argument: inspect.Parameter, value: Any) -> bool:
+def _names_file(argument: inspect.Parameter, value: str) -> bool:
     """Returns whether the value of an argument that takes a configuration names a YAML file."""
-    return argument.annotation not in (str, "str") and isinstance(value, str) and value.endswith((".yaml", ".yml"))
+    return argument.annotation not in (str, "str") and value.endswith((".yaml", ".yml"))
 
 
 def _result(value: Any) -> Any:
