@@ -131,7 +131,7 @@ def reduced_image(content: bytes, most_px: int, *, cells: bool, where: str) -> b
     if image is None:
         raise HouseError(f"{where} is not an image that can be read.")
     if image.dtype == np.uint16:
-        image = (image >> 8).astype(np.uint8)
+        image = np.right_shift(np.asarray(image, np.uint16), 8).astype(np.uint8)
     factor = most_px / max(width, height)
     size = max(1, round(width * factor)), max(1, round(height * factor))
     if cells:

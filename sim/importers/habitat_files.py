@@ -8,6 +8,7 @@ folder of the data set.
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -191,6 +192,12 @@ class SceneDataset:
             raise HouseError(f"{where}: '{printable(str(file))[:200]}' is outside of the data set '{self.folder}'.")
         return target
 
+    def _has(self, file: Path) -> bool:
+        """Returns whether a file exists and is in the folder of the data set."""
+        with contextlib.suppress(HouseError):
+            return self.inside(file, "").is_file()
+        return False
+
     def semantics(self, scene: SceneInstance, stem: str) -> Semantics:
         """Returns the names of classes and the regions of a scene; empty where the data set has none.
 
@@ -198,36 +205,28 @@ class SceneDataset:
             scene: the scene.
             stem: its name.
         """
-        section = self.content.semantic_scene_descriptor_instances
         name = scene.semantic_scene_instance or str(
             self.content.scene_instances.default_attributes.get("semantic_scene_instance", "")
         )
         name = name.replace("%%CONFIG_NAME_AS_ASSET_FILENAME%%", stem)
-        defaults = section.get("default_attributes")
-        named = section.get(name) or (
-            defaults.get("semantic_descriptor_filename") if isinstance(defaults, dict) else None
+        section = self.content.semantic_scene_descriptor_instances
+        paths, defaults = section.get("paths", {}), section.get("default_attributes", {})
+        where = f"Data set '{self.file}'"
+        listed = _listed(self.file, convert(paths, dict[str, list[str]], where=where), "")
+        own = next((file for file in listed if name and file.name in (name, f"{name}.semantic_config.json")), None)
+        found = Semantics() if own is None else read_json(own, Semantics, what="Semantics", error=HouseError)
+        shared = section.get(name) or (
+            defaults.get("semantic_descriptor_filename") if isinstance(defaults, dict) else ""
         )
-        made = Semantics()
-        paths = section.get("paths")
-        own = {}
-        if isinstance(paths, dict):
-            own = {
-                file.name: file for file in _listed(self.file, convert(paths, dict[str, list[str]], where="paths"), "")
-            }
-        for file in (own.get(name), own.get(f"{name}.semantic_config.json")):
-            if file is not None:
-                made = read_json(file, Semantics, what="Semantics", error=HouseError)
-                break
-        if isinstance(named, str) and not made.classes:
-            where = f"Data set '{self.file}'"
-            names = [self.inside(self.folder / named.lstrip("./"), where)]
-            names += [file.parent / named for file in own.values()][:1]
-            file = next((each for each in names if each.is_file()), None)
-            if file is not None:
-                file = self.inside(file, where)
-                more = read_json(file, Semantics, what="Semantics", error=HouseError)
-                made = Semantics(more.classes, made.region_annotations or more.region_annotations)
-        return made
+        if found.classes or not isinstance(shared, str) or not shared:
+            return found
+        # A default is relative to the descriptor of the scene, another name to the data set.
+        base = self.folder if own is None else own.parent
+        file = next((each for each in (base / shared, self.folder / shared) if self._has(each)), None)
+        if file is None:
+            return found
+        more = read_json(file, Semantics, what="Semantics", error=HouseError)
+        return Semantics(more.classes, found.region_annotations or more.region_annotations)
 
 
 def read_dataset(file: Path) -> SceneDataset:

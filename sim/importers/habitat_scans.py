@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import csv
 import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -267,8 +266,3 @@ def _rooms(floors: Mapping[int, Sequence[NDArray[np.float64]]], kinds: Mapping[i
         if sum(rect.area_m2 for rect in rects) >= 0.5:
             rooms.append(RoomArea(kinds.get(region, "room"), tuple(rects), z_m))
     return rooms
-
-
-def counts_of(objects: Sequence[MeshObject]) -> Counter[str]:
-    """Returns the number of objects of each category."""
-    return Counter(each.category for each in objects)

@@ -278,5 +278,5 @@ def _room(region: Region) -> RoomArea:
     at = np.rint((polygon / PLAN_CELL_M - low - 0.5) * 16.0).astype(np.int32)
     cv2.fillPoly(picture, [at[:, None]], (1,), shift=4)
     origin = (float(low[0] * PLAN_CELL_M), float(low[1] * PLAN_CELL_M))
-    rects = Plan(origin, picture.T > 0).rectangles(covered=0.98, most=40)
+    rects = Plan(origin, picture.T > 0).rectangles(covered=1.0, most=5_000)  # cut to the floor, then fewer
     return RoomArea(region.label, tuple(rects), region.floor_height, region.extrusion_height)

@@ -159,4 +159,4 @@ def _pixels(content: bytes, name: str, texture_px: int) -> NDArray[np.uint8]:
     if factor < 1.0:
         size = max(1, round(picture.shape[1] * factor)), max(1, round(picture.shape[0] * factor))
         picture = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
-    return np.ascontiguousarray(picture[..., ::-1])
+    return np.ascontiguousarray(picture[..., ::-1], np.uint8)

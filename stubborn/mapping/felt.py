@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Bool, Float64, Int
@@ -28,6 +28,7 @@ from sim.geometry.pose import Pose
 from sim.interface import ConfigError
 from stubborn.mapping.collision_marks import CollisionConfig, mark_collision
 from stubborn.mapping.navmap import CollisionLayer, NavMap
+from stubborn.mapping.panes import LineRule, Pane, find_panes
 
 BOTH_LAYERS = (CollisionLayer.PESSIMISTIC, CollisionLayer.OPTIMISTIC)
 
@@ -36,21 +37,13 @@ BOTH_LAYERS = (CollisionLayer.PESSIMISTIC, CollisionLayer.OPTIMISTIC)
 class FeelConfig:
     """Parameters of the surfaces that are felt."""
 
-    straight_m: float = 0.01
-    """Stops whose centres are at most this far from a line belong to it."""
+    line: LineRule = field(default_factory=LineRule)
+    """The stops that make a pane."""
     noise_sigmas: float = 2.5
-    """With a noisy gps, this many standard deviations of a measured move are allowed if they are larger."""
-    apart_m: float = 0.10
-    """Two stops must be at least this far apart to define a line."""
-    link_m: float = 0.90
-    """Neighbouring stops of a pane are at most this far apart."""
-    facing: float = 0.4
-    """Cosine of the largest angle between the heading (or `contact_direction`) at a stop and the surface's normal."""
+    """With a noisy gps, stops may be this many standard deviations of a measured move from the line if this is more."""
     oblique: float = 0.26
     """A robot in a gap that drove along the surface (sine of its heading) touches the edge on that side; one that drove
     straight at it touches the edge of the part that is known."""
-    least_stops: int = 3
-    """A line through this many stops is a pane."""
     spare_m: float = 0.06
     """A gap is tried if it is wider than the robot by at least this."""
     mark_m: float = 0.03
@@ -64,10 +57,10 @@ class FeelConfig:
     """Cosine of the largest angle between two such headings."""
 
     def __post_init__(self) -> None:
-        if self.least_stops < 2 or min(self.straight_m, self.apart_m, self.link_m, self.mark_m) <= 0.0:
+        if self.mark_m <= 0.0 or min(self.noise_sigmas, self.spare_m, self.half_wide_m, self.same_m) < 0.0:
             raise ConfigError(
-                "FeelConfig needs least_stops >= 2 and straight_m, apart_m, link_m and mark_m > 0 m, got "
-                f"{self.least_stops}, {self.straight_m}, {self.apart_m}, {self.link_m} and {self.mark_m}."
+                "FeelConfig needs mark_m > 0 m, and noise_sigmas, spare_m, half_wide_m and same_m >= 0, got "
+                f"{self.mark_m}, {self.noise_sigmas}, {self.spare_m}, {self.half_wide_m} and {self.same_m}."
             )
 
     def make(self, radius_m: float, squares: CollisionConfig) -> FeltSurfaces:
@@ -94,28 +87,6 @@ def contact_direction(yaw_rad: float, bumper: Int[np.ndarray, " sectors"] | None
     return yaw_rad + math.atan2(np.sin(angles_rad).sum(), np.cos(angles_rad).sum())
 
 
-@dataclass(frozen=True)
-class Pane:
-    """A straight surface, by the line on which the robot's centre was at each stop."""
-
-    normal: Float64[np.ndarray, 2]
-    """Unit vector from the robot to the surface."""
-    offset_m: float
-    """Distance of the line from the origin along the normal."""
-    stops: Bool[np.ndarray, " stops"]
-    """The stops on the line."""
-
-    @property
-    def along(self) -> Float64[np.ndarray, 2]:
-        """Unit vector along the surface."""
-        return np.array([-self.normal[1], self.normal[0]])
-
-    def point(self, along_m: float, ahead_m: float) -> tuple[float, float]:
-        """Returns the point at a position along the surface and a distance beyond the line, metres."""
-        x_m, y_m = along_m * self.along + (self.offset_m + ahead_m) * self.normal
-        return float(x_m), float(y_m)
-
-
 class FeltSurfaces:
     """The stops of an episode, and the marks that follow from them."""
 
@@ -127,7 +98,7 @@ class FeltSurfaces:
         """Forgets the last episode."""
         self._poses: list[Pose] = []
         self._doubted = 0  # stops before this one that are not part of a pane leave no marks
-        self._straight_m = self.config.straight_m
+        self._straight_m = self.config.line.straight_m
         self.panes: list[Pane] = []
         """The panes that follow from all stops so far."""
 
@@ -140,7 +111,7 @@ class FeltSurfaces:
             noise_m: standard deviation of a measured move.
         """
         self._poses.append(pose)
-        self._straight_m = max(self.config.straight_m, self.config.noise_sigmas * noise_m)
+        self._straight_m = max(self.config.line.straight_m, self.config.noise_sigmas * noise_m)
         return self._write(navmap)
 
     def doubt(self, navmap: NavMap) -> bool:
@@ -174,7 +145,7 @@ class FeltSurfaces:
             return
         centres = np.array([pose.xy_m for pose in self._poses])
         headings = np.array([(np.cos(pose.yaw_rad), np.sin(pose.yaw_rad)) for pose in self._poses])
-        self.panes = find_panes(centres, headings, replace(self.config, straight_m=self._straight_m))
+        self.panes = find_panes(centres, headings, replace(self.config.line, straight_m=self._straight_m))
         explained = np.zeros(len(centres), np.bool_)
         for pane in self.panes:
             edges = self._edges(pane, centres, headings, ~explained)
@@ -187,7 +158,7 @@ class FeltSurfaces:
             mark_collision(navmap, self._poses[stop], BOTH_LAYERS, self.squares)
 
     def _repeated(
-        self, centres: Float64[np.ndarray, "stops 2"], headings: Float64[np.ndarray, "stops 2"]
+        self, centres: Float64[np.ndarray, "stops xy"], headings: Float64[np.ndarray, "stops xy"]
     ) -> Bool[np.ndarray, " stops"]:
         """Returns the stops that happened more than once."""
         gap_m = np.hypot(*(centres[:, None] - centres[None]).transpose(2, 0, 1))
@@ -197,8 +168,8 @@ class FeltSurfaces:
     def _edges(
         self,
         pane: Pane,
-        centres: Float64[np.ndarray, "stops 2"],
-        headings: Float64[np.ndarray, "stops 2"],
+        centres: Float64[np.ndarray, "stops xy"],
+        headings: Float64[np.ndarray, "stops xy"],
         free: Bool[np.ndarray, " stops"],
     ) -> dict[int, tuple[float, int]]:
         """Returns the stops in gaps of a pane: the position of the edge along it, and the side of the gap, +1 or -1."""
@@ -209,7 +180,7 @@ class FeltSurfaces:
         for stop in np.flatnonzero(in_gap).tolist():
             away_m = on_pane_m - along_m[stop]
             nearest_m, sideways = float(away_m[np.argmin(np.abs(away_m))]), float(headings[stop] @ pane.along)
-            if abs(nearest_m) > self.config.link_m:
+            if abs(nearest_m) > self.config.line.link_m:
                 continue
             side = np.sign(nearest_m if abs(sideways) < self.config.oblique else sideways)
             ahead_m = self.radius_m - float(beyond_m[stop])
@@ -222,7 +193,7 @@ class FeltSurfaces:
         self,
         navmap: NavMap,
         pane: Pane,
-        centres: Float64[np.ndarray, "stops 2"],
+        centres: Float64[np.ndarray, "stops xy"],
         edges: dict[int, tuple[float, int]],
     ) -> None:
         """Marks the contacts of a pane, and the parts between them that are too narrow for the robot."""
@@ -245,55 +216,3 @@ class FeltSurfaces:
         index, inside = cells_near_segment(navmap.frame, ends[0], ends[1], self.config.mark_m)
         for layer in layers:
             navmap.collision_marks(layer)[index] |= inside
-
-
-def find_panes(
-    centres: Float64[np.ndarray, "stops 2"],
-    headings: Float64[np.ndarray, "stops 2"],
-    config: FeelConfig,
-) -> list[Pane]:
-    """Returns the lines through the most stops, each stop on at most one line.
-
-    Args:
-        centres: of the robot at each stop, metres.
-        headings: unit vectors.
-        config: the conditions for a line.
-    """
-    panes, left = [], np.ones(len(centres), np.bool_)
-    while True:
-        lines = (
-            _line_through(centres, headings, left, pair, config)
-            for pair in itertools.combinations(np.flatnonzero(left).tolist(), 2)
-        )
-        best = max((line for line in lines if line is not None), key=lambda line: int(line.stops.sum()), default=None)
-        if best is None or best.stops.sum() < config.least_stops:
-            return panes
-        panes.append(best)
-        left &= ~best.stops
-
-
-def _line_through(
-    centres: Float64[np.ndarray, "stops 2"],
-    headings: Float64[np.ndarray, "stops 2"],
-    counts: Bool[np.ndarray, " stops"],
-    pair: tuple[int, int],
-    config: FeelConfig,
-) -> Pane | None:
-    """Returns the pane on the line through two stops, with the other stops on it; None if they cannot belong to one."""
-    between = centres[pair[1]] - centres[pair[0]]
-    length_m = float(np.hypot(*between))
-    if not config.apart_m <= length_m <= config.link_m:
-        return None
-    normal = np.array([-between[1], between[0]]) / length_m
-    normal *= np.sign(headings[pair[0]] @ normal) or 1.0
-    offset_m = float(centres[pair[0]] @ normal)
-    on_line = counts & (np.abs(centres @ normal - offset_m) <= config.straight_m)
-    on_line &= headings @ normal >= config.facing
-    if not (on_line[pair[0]] and on_line[pair[1]]):
-        return None
-    along_m = centres @ np.array([-normal[1], normal[0]])
-    order = np.flatnonzero(on_line)[np.argsort(along_m[on_line])]
-    part = np.concatenate([[0], np.cumsum(np.diff(along_m[order]) > config.link_m)])
-    stops = np.zeros_like(counts)
-    stops[order[part == part[order.tolist().index(pair[0])]]] = True
-    return Pane(normal, float((centres[stops] @ normal).mean()), stops)

@@ -25,6 +25,7 @@ from sim.houses.labels import read_labels
 from sim.houses.load import load_house
 from sim.houses.proposals import geom_box
 from sim.importers.habitat import find_sources, import_source
+from sim.importers.habitat_files import ObjectInstance, SceneInstance, read_dataset
 from sim.importers.habitat_names import category_of
 from sim.importers.habitat_scans import read_hm3d, read_hm3d_text, read_house_text
 from sim.importers.losses import Losses
@@ -147,6 +148,26 @@ def test_scenes_are_named_by_their_file() -> None:
 )  # fmt: skip
 def test_names_of_the_data_sets_have_categories(name: str, category: str | None) -> None:
     assert category_of(name) == category
+
+
+def test_classes_and_regions_are_found_as_hssd_names_them(tmp_path: Path) -> None:
+    for folder in ("semantics/scenes", "scenes"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "semantics" / "words.json").write_text('{"classes": [{"id": 3, "name": "couch"}]}')
+    region = {"label": "den", "poly_loop": [[0, 0, 0], [1, 0, 0], [0, 0, 1]], "floor_height": 0}
+    own = tmp_path / "semantics" / "scenes" / "a.semantic_config.json"
+    own.write_text(json.dumps({"region_annotations": [region]}))
+    file, name = tmp_path / "x.scene_dataset_config.json", "%%CONFIG_NAME_AS_ASSET_FILENAME%%.semantic_config.json"
+    for named, section in (
+        (name, {"default_attributes": {"semantic_descriptor_filename": "../words.json"},
+                "paths": {".json": ["semantics/scenes/*"]}}),
+        ("map", {"map": "semantics/words.json"}), ("map", {"map": "../../words.json"}),
+    ):  # fmt: skip
+        scenes = {"default_attributes": {"semantic_scene_instance": named}}
+        file.write_text(json.dumps({"scene_instances": scenes, "semantic_scene_descriptor_instances": section}))
+        found = read_dataset(file).semantics(SceneInstance(ObjectInstance("home")), "a")
+        assert [each.name for each in found.classes] == ([] if ".." in section.get("map", "") else ["couch"])
+        assert [each.label for each in found.region_annotations] == (["den"] if named == name else [])
 
 
 # ---- broken files ----------------------------------------------------------------------------------------------------

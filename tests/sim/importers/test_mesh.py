@@ -36,7 +36,7 @@ def write_glb(folder: Path, *, names: dict[str, str] | None = None) -> Path:
         made.apply_transform(Y_UP)
         scene.add_geometry(made, node_name=f"{name}.{number:03d}", geom_name=f"{name}.{number:03d}")
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "flat.glb").write_bytes(scene.export(file_type="glb"))
+    scene.export(folder / "flat.glb")
     return folder / "flat.glb"
 
 
@@ -115,7 +115,7 @@ def test_a_home_in_one_node_gets_a_floor_and_walls(tmp_path: Path) -> None:
     whole = trimesh.util.concatenate(
         [triangles_of(piece, edge_m=0.5) for piece in PIECES if piece.kind in ("floor", "wall")]
     )
-    (tmp_path / "scan.ply").write_bytes(whole.export(file_type="ply"))
+    whole.export(tmp_path / "scan.ply")
     scene = import_mesh(tmp_path / "scan.ply", rules={}, up="auto", config=MeshConfig())
     assert scene.house.report["area_m2"] == pytest.approx(32.0, abs=2.0)
     assert any("level triangles of the walls" in each for each in scene.house.report["changes"])

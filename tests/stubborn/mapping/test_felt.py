@@ -13,6 +13,7 @@ from stubborn import agents
 from stubborn.mapping.collision_marks import CollisionConfig, mark_collision, mark_visited
 from stubborn.mapping.felt import BOTH_LAYERS, FeelConfig, FeltSurfaces, contact_direction
 from stubborn.mapping.navmap import CollisionLayer, NavMap
+from stubborn.mapping.panes import LineRule
 from stubborn.planning.avoidance import visited_ground
 from stubborn.planning.planner import Planner, PlanningConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
@@ -161,7 +162,7 @@ def test_an_episode_forgets_the_last_one():
 
 def test_a_line_needs_two_stops():
     with pytest.raises(ConfigError, match="least_stops"):
-        FeelConfig(least_stops=1)
+        LineRule(least_stops=1)
 
 
 def test_stubborn_plus_finds_the_gap_in_a_pane_of_glass():
