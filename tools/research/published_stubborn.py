@@ -1,12 +1,12 @@
 """The published code of the Stubborn agent, with true masks in place of its network: no weights, no verification.
 
-Its repository is https://github.com/Improbable-AI/Stubborn; docs/habitat.md has the commands. This file runs in the
-environment of that agent, in the folder of its repository, and imports nothing of this project:
+Its repository is https://github.com/Improbable-AI/Stubborn. This file runs in the environment of that agent, in the
+folder of its repository, and imports nothing of this project; `tools.research.compare_published` starts it:
 
-    echo | python -c "import pickle; pickle.dump([], open('Stubborn/obj_id_data.pickle', 'wb'))"
-    PYTHONPATH=Stubborn python stubborn_client.py published_stubborn:WithTrueMasks
+    PYTHONPATH=Stubborn:FOLDER_OF_THIS_FILE python stubborn_client.py published_stubborn:WithTrueMasks
 
-Without examples in `obj_id_data.pickle` it accepts every candidate, as this project's agent does with true masks.
+Its file `obj_id_data.pickle` must exist: without examples in it (an empty list), the agent accepts every candidate, as
+this project's agent does with true masks.
 """
 
 from typing import Any
