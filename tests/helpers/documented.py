@@ -609,6 +609,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn habitat examples/benchmark.py --episodes 10": Only(_PUBLISHED),
     "stubborn habitat 'agent.py --evaluation local' --split val --episodes 5": Only(_PUBLISHED),
     f"{_RUN} --agent habitat:agent:RandomAgent": Only(_PUBLISHED),
+    f"{_RUN} --agent 'process:env/bin/python stubborn_client.py Stubborn/eval.py --evaluation local --timestep_limit"
+    " 451' --config agent.interface=habitat": Only(_PUBLISHED),
     "stubborn bench --parts a,b,d --out runs/bench.json": Only(
         "takes minutes; tests/commands/test_bench.py runs its parts"
     ),
