@@ -25,7 +25,9 @@ from stubborn.exploration.tour import INFORMED_TOUR, TourConfig
 from stubborn.mapping.felt import FeelConfig
 from stubborn.mapping.object_layers import ObjectLayersConfig
 
-NO_AVOIDANCE = CollisionAvoidance(untrap=False, collision_layers=False, averse_exploration=False, visited_is_free=False)
+NO_AVOIDANCE = CollisionAvoidance(
+    untrap=False, collision_layers=False, averse_exploration=False, optimistic_fallback=False, visited_is_free=False
+)
 """The configuration without the paper's measures against collisions."""
 
 ABLATION: Mapping[str, CollisionAvoidance] = MappingProxyType(

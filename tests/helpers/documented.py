@@ -464,11 +464,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _SCENE,
         _PACKED,
     ),
-    f"{_RUN} --split runs/flat_split --episodes 20": (
-        _SCENE,
-        _PACKED,
-        f"{_RUN} --split {{tmp}}/split --episodes 1 --agent oracle --out {{tmp}}/run",
-    ),
     f"{_RUN} --root {_KITCHEN} --house {_KITCHEN}/kitchen_assets/kitchen_env_model.xml"
     " --labels examples/worlds/kitchen.json --goal counter --semantics gt --episodes 2": _PACKAGE,
     f"{_RUN} --robot carrier.xml --episodes 20": (
