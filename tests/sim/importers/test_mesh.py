@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 import trimesh
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from sim.commands.importing import mesh as command
@@ -139,6 +139,8 @@ LINES = st.sampled_from(
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(LINES, max_size=12))
+@example(["v 0 0 0", "v 0 0 0", "v 1", "f 1 2 3"])
+@example(["v 0 0 0", "v 1 0 0", "v 0 1 0", "vt", "vt 1", "f 1/1 2/2 3/1"])
 def test_any_lines_of_an_obj_file_give_surfaces_or_one_line(
     tmp_path_factory: pytest.TempPathFactory, lines: list[str]
 ) -> None:
