@@ -139,6 +139,8 @@ def test_odd_folders_of_an_archive_are_skipped_with_a_message(tmp_path: Path) ->
         "older/good/results.jsonl": line,
         "../outside/config.json": config,
         "half/config.json": config,
+        "begun/config.json": config,
+        "begun/results.jsonl": "",
         "broken/config.json": "[",
         "broken/results.jsonl": line,
         "settings/config.json": json.dumps(CONFIG | {"settings": 3}),
@@ -152,7 +154,7 @@ def test_odd_folders_of_an_archive_are_skipped_with_a_message(tmp_path: Path) ->
     found = read_archive(archive_of(tmp_path, files), folder, said.append)
     assert [run.folder for run in found.values()] == ["good"]
     skipped = ["'../outside/config.json'", "'notes.txt'", "'linked/config.json'", "'half'", "'broken'", "'settings'"]
-    for name in (*skipped, "'unknown'"):
+    for name in (*skipped, "'unknown'", "'begun'"):
         assert sum(text.startswith(f"Skipped {name}") for text in said) == 1, name
     assert not (tmp_path / "in" / "outside").exists()
 
