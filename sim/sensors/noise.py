@@ -64,12 +64,7 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 hole_share=0.8,
             ),
             rgb=RgbNoise(gain_std=0.02, shot_electrons_1=1 / 5000, read_std=1.0),
-            pose=PoseNoise(
-                gps_std_m=0.01,
-                gps_walk_m=0.002,
-                compass_std_rad=math.radians(0.3),
-                compass_walk_rad=math.radians(0.03),
-            ),
+            pose=PoseNoise(from_odometry=True),
             # About half of the errors of a LoCoBot with the ILQR controller (PyRobot): 14 mm a forward, 1.3 deg a turn.
             actuation=ActuationNoise(
                 floor_friction_scale=(0.3, 1.1),
@@ -91,8 +86,7 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 rate_bias_rad_s=math.radians(0.1),
             ),
         ),
-        # An old camera in poor light on a robot with slippery wheels: 2.5 times the depth error, and a compass drift
-        # of 4.5 deg after 500 actions.
+        # An old camera in poor light on a robot with slippery wheels: 2.5 times the depth error.
         "harsh": NoiseConfig(
             depth=DepthNoise(
                 axial_m=0.003,
@@ -107,12 +101,7 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 hole_patch_px=12.0,
             ),
             rgb=RgbNoise(gain_std=0.08, shot_electrons_1=1 / 500, read_std=5.0),
-            pose=PoseNoise(
-                gps_std_m=0.03,
-                gps_walk_m=0.006,
-                compass_std_rad=math.radians(1.0),
-                compass_walk_rad=math.radians(0.2),
-            ),
+            pose=PoseNoise(from_odometry=True),
             # The errors of that LoCoBot, on floors that may be wet.
             actuation=ActuationNoise(
                 floor_friction_scale=(0.2, 1.0),
@@ -197,6 +186,8 @@ class SensorNoise:
             camera: camera of the images.
             sensors: all sensors of the observation; their own noise is applied after that of `config`.
         """
+        self.sensors = config.pose.sensors(sensors)
+        """The sensors that are read for an observation: those given, or others of the same names and spaces."""
         self._actuation = config.actuation
         names = [each.name for each in fields(config)]
         self._actuation_part = names.index("actuation")
@@ -230,7 +221,7 @@ class SensorNoise:
         """Returns an observation with noise; the true readings are not changed.
 
         Args:
-            readings: true reading of each sensor by name.
+            readings: reading of each of `sensors` by name, without noise.
             images: rendered images, among them those of `images`.
         """
         noisy = dict(readings)

@@ -16,7 +16,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.labels import read_labels
-from sim.interface import SENSORS, Action, CameraModel, ConfigError, wrap_angle
+from sim.interface import FORWARD_M, SENSORS, Action, CameraModel, ConfigError, wrap_angle
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.sensors.actuation_noise import ActuationNoise
 from sim.sensors.depth_noise import DepthNoise, NoisyDepth
@@ -227,34 +227,35 @@ def test_dark_and_bright_saturate() -> None:
         assert abs(seen.astype(int) - grey).max() < 30
 
 
-def readings(config: PoseNoise, *, episodes: int, actions: int) -> tuple[np.ndarray, np.ndarray]:
-    """Returns errors of gps (episodes, actions + 1, 2) and compass (episodes, actions + 1) at (1, -2) m and 3.1 rad."""
-    noisy, rng = NoisyPose(config), np.random.default_rng(0)
-    true = {"gps": np.array([1.0, -2.0], np.float32), "compass": np.array([3.1], np.float32)}
-    seen = []
-    for _ in range(episodes):
-        noisy.begin(np.empty(0, np.float32))
-        seen.append([noisy.apply(true, {}, rng) for _ in range(actions + 1)])
-    errors = np.array([[reading["gps"] - true["gps"] for reading in episode] for episode in seen])
-    yaws = [[wrap_angle(float(reading["compass"][0]) - 3.1) for reading in episode] for episode in seen]
-    assert all(-np.pi < reading["compass"][0] <= np.float32(np.pi) for episode in seen for reading in episode)
-    return errors, np.array(yaws)
-
-
 def test_gps_and_compass_have_the_configured_white_noise() -> None:
-    gps, compass = readings(PoseNoise(gps_std_m=0.05, compass_std_rad=0.03), episodes=4, actions=1000)
-    assert gps[..., 0].std() == pytest.approx(0.05, rel=0.05)
-    assert gps[..., 1].std() == pytest.approx(0.05, rel=0.05)
-    assert compass.std() == pytest.approx(0.03, rel=0.05)
-    assert abs(np.corrcoef(gps[0, 1:, 0], gps[0, :-1, 0])[0, 1]) < 0.1
+    noisy, rng = NoisyPose(PoseNoise(gps_std_m=0.05, compass_std_rad=0.03)), np.random.default_rng(0)
+    true = {"gps": np.array([1.0, -2.0], np.float32), "compass": np.array([3.1], np.float32)}
+    seen = [noisy.apply(true, {}, rng) for _ in range(4000)]
+    gps = np.array([reading["gps"] - true["gps"] for reading in seen])
+    yaws = np.array([wrap_angle(float(reading["compass"][0]) - 3.1) for reading in seen])
+    assert all(-np.pi < reading["compass"][0] <= np.float32(np.pi) for reading in seen)
+    np.testing.assert_allclose(gps.std(axis=0), 0.05, rtol=0.05)
+    assert yaws.std() == pytest.approx(0.03, rel=0.05)
+    assert abs(np.corrcoef(gps[1:, 0], gps[:-1, 0])[0, 1]) < 0.1
 
 
-def test_drift_starts_at_zero_and_grows_with_the_square_root_of_actions() -> None:
-    gps, compass = readings(PoseNoise(gps_walk_m=0.01, compass_walk_rad=0.004), episodes=1500, actions=64)
-    np.testing.assert_allclose(gps[:, 0], 0.0, atol=1e-6)
-    for actions in (4, 16, 64):
-        assert gps[:, actions].std() == pytest.approx(0.01 * math.sqrt(actions), rel=0.05)
-        assert compass[:, actions].std() == pytest.approx(0.004 * math.sqrt(actions), rel=0.05)
+@pytest.mark.parametrize("preset", ["realsense", "harsh"])
+def test_a_noisy_robot_knows_its_pose_by_odometry_only(preset: str, house: Path) -> None:
+    """Encoders that measure 20 % too much move the robot by less, while gps and compass read whole actions."""
+    drive_errors = ActuationNoise(encoder_scale=(1.2, 1.2), gyro_scale=(1.1, 1.1))
+    noise = replace(get_noise(preset), actuation=drive_errors)
+    sensors, start = ("odometry",), Pose(-1.0, -1.0, 0.3)
+    env = ObjectNavEnv(house=house, goal="sofa", start=start, camera=SMALL, noise=noise, sensors=sensors)
+    first = env.reset(seed=0)[0]
+    seen = [env.step(action)[0] for action in (Action.TURN_LEFT, Action.MOVE_FORWARD)][-1]
+    true = env.scene.world.pose.relative_to(start)
+    assert env.observation_space.contains(seen)
+    env.close()
+    for reading in (first, seen):
+        np.testing.assert_array_equal([*reading["gps"], *reading["compass"]], reading["odometry"])
+    assert np.hypot(*seen["gps"]) == pytest.approx(FORWARD_M, abs=0.01)
+    assert math.hypot(true.x_m, true.y_m) == pytest.approx(FORWARD_M / 1.2, abs=0.01)
+    assert seen["compass"][0] == pytest.approx(1.1 * true.yaw_rad, abs=0.01)
 
 
 def test_conditions_are_sampled_from_their_ranges() -> None:
@@ -435,7 +436,8 @@ def test_the_true_readings_are_not_changed() -> None:
         (DepthNoise, {"step_1_m": "fine"}, "fine"),
         (RgbNoise, {"gain_std": 2.0}, "gain_std"),
         (RgbNoise, {"read_std": -1.0}, "read_std"),
-        (PoseNoise, {"gps_walk_m": math.inf}, "gps_walk_m"),
+        (PoseNoise, {"gps_std_m": math.inf}, "gps_std_m"),
+        (PoseNoise, {"from_odometry": "yes"}, "from_odometry"),
         (ActuationNoise, {"floor_friction_scale": (1.0, 0.5)}, "floor_friction_scale"),
         (ActuationNoise, {"motor_gain_scale": 0.9}, "motor_gain_scale"),
         (ActuationNoise, {"motor_gain_scale": (0.0, 1.0)}, "motor_gain_scale"),
