@@ -51,15 +51,18 @@ _D435_FOCAL_BASELINE = 388.0 * 0.05
 NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
     {
         "none": NoiseConfig(),
-        # Depth error 0.08 px and steps of 1/32 px (Intel); jitter 0.5 px (Handa). The shares at edges, the holes and
-        # the numbers of the other sensors are assumptions for a good wheeled robot indoors.
+        # Depth error 0.08 px over windows of 7 px and steps of 1/32 px (Intel); jitter 0.5 px (Handa). The data sheet's
+        # 2 % at 2 m are two standard deviations of the systematic error. The share at edges, the holes and the
+        # numbers of the other sensors are assumptions for a good wheeled robot indoors.
         "realsense": NoiseConfig(
             depth=DepthNoise(
                 axial_m=0.001,
                 axial_1_m=round(0.08 / _D435_FOCAL_BASELINE, 5),
+                window_px=7,
+                bias_1_m=0.005,
                 step_1_m=round(1.0 / 32.0 / _D435_FOCAL_BASELINE, 5),
                 lateral_px=0.5,
-                edge_dropout=0.3,
+                baseline_m=0.05,
                 edge_flying=0.05,
                 hole_share=0.8,
             ),
@@ -86,14 +89,17 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 rate_bias_rad_s=math.radians(0.1),
             ),
         ),
-        # An old camera in poor light on a robot with slippery wheels: 2.5 times the depth error.
+        # An old camera in poor light on a robot with slippery wheels: 2.5 times the random and twice the systematic
+        # depth error, window and baseline of a Kinect.
         "harsh": NoiseConfig(
             depth=DepthNoise(
                 axial_m=0.003,
                 axial_1_m=0.01,
+                window_px=9,
+                bias_1_m=0.01,
                 step_1_m=0.005,
                 lateral_px=1.0,
-                edge_dropout=0.5,
+                baseline_m=0.075,
                 edge_flying=0.3,
                 edge_radius_px=2,
                 hole_share=1.0,
