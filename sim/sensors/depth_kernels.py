@@ -59,6 +59,48 @@ def shift_pixels(
             shifted_m[row, col] = depth_m[from_row, from_col]
 
 
+@njit(cache=True)
+def find_edges(
+    near_m: NDArray[np.float32], far_m: NDArray[np.float32], jump_1_m: np.float32, found: NDArray[np.int64]
+) -> int:
+    """Finds the pixels in whose neighbourhood 1 / z jumps; returns their number.
+
+    Args:
+        near_m: (n,) smallest depth of each neighbourhood; 0, no return, is no edge.
+        far_m: (n,) largest depth.
+        jump_1_m: smallest difference of 1 / z.
+        found: (n + 1,) the first entries become the indices of the edge pixels.
+    """
+    count = 0
+    for pixel in range(near_m.size):
+        near, far = near_m[pixel], far_m[pixel]
+        found[count] = pixel  # without a branch: the next edge overwrites it
+        count += (near > np.float32(0.0)) & (far - near > jump_1_m * near * far)
+    return count
+
+
+@njit(cache=True)
+def make_holes(
+    depth_m: NDArray[np.float32], geom: NDArray[np.int32], level: NDArray[np.float32], field: NDArray[np.float32]
+) -> None:
+    """Sets the depth to 0 where a random field is below the level of the geom that the pixel shows.
+
+    Args:
+        depth_m: (h, w) is changed.
+        geom: (h, w) geom of each pixel, or -1.
+        level: (ngeom + 1,) of each geom; the last entry is for -1.
+        field: (h, w) or more rows and columns.
+    """
+    rows, cols = depth_m.shape
+    last = level.size - 1
+    for row in range(rows):
+        values, ids, random = depth_m[row], geom[row], field[row]
+        for col in range(cols):
+            which = ids[col]
+            limit = level[which if which >= 0 else last]
+            values[col] = np.float32(0.0) if random[col] < limit else values[col]
+
+
 @njit(cache=True, error_model="numpy")
 def add_errors(
     depth_m: NDArray[np.float32],

@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interface import CameraModel, ConfigError
-from sim.sensors.depth_kernels import add_errors, cast_shadows, shift_pixels
+from sim.sensors.depth_kernels import add_errors, cast_shadows, find_edges, make_holes, shift_pixels
 from sim.sensors.random_fields import levels, shift_pairs, smooth_normal, uniform_bytes
 from sim.sensors.ranges import require_range
 
@@ -114,8 +114,8 @@ class NoisyDepth:
         self._config, self._camera = config, camera
         self.images = ("geom",) if config.hole_share > 0.0 else ()
         shape = (camera.height_px, camera.width_px)
-        self._seen_m, self._near_m, self._far_m, self._work = (np.empty(shape, np.float32) for _ in range(4))
-        self._mask = np.empty(shape, np.bool_)
+        self._seen_m, self._near_m, self._far_m = (np.empty(shape, np.float32) for _ in range(3))
+        self._edges = np.empty(camera.height_px * camera.width_px + 1, np.int64)
         side = 2 * int(config.edge_radius_px) + 1
         self._neighbours = np.ones((side, side), np.uint8)
         self._window = int(config.window_px)
@@ -169,14 +169,11 @@ class NoisyDepth:
             return
         cv2.erode(depth_m, self._neighbours, dst=self._near_m)
         cv2.dilate(depth_m, self._neighbours, dst=self._far_m)
-        least_jump_m = np.multiply(self._near_m, self._far_m, out=self._work)  # no division: near may be 0
-        least_jump_m *= np.float32(config.edge_jump_1_m)
-        jump_m = np.subtract(self._far_m, self._near_m, out=self._far_m).reshape(-1)
-        edges = np.flatnonzero(np.greater(self._far_m, least_jump_m, out=self._mask))
-        pixels, near_m = noisy_m.reshape(-1), self._near_m.reshape(-1)
+        near_m, far_m = self._near_m.reshape(-1), self._far_m.reshape(-1)
+        edges = self._edges[: find_edges(near_m, far_m, np.float32(config.edge_jump_1_m), self._edges)]
         fly = edges[rng.random(edges.size, np.float32) < config.edge_flying]
-        fly = fly[near_m[fly] > 0.0]  # a surface next to pixels without return has no flying pixels
-        pixels[fly] = near_m[fly] + jump_m[fly] * rng.random(fly.size, np.float32)
+        between = rng.random(fly.size, np.float32)
+        noisy_m.reshape(-1)[fly] = near_m[fly] + (far_m[fly] - near_m[fly]) * between
 
     def _add_errors(self, noisy_m: NDArray[np.float32], rng: np.random.Generator) -> None:
         """Adds random and systematic errors, rounds 1 / z, and keeps the range of the camera."""
@@ -196,14 +193,12 @@ class NoisyDepth:
 
     def _draw_bias(self, rng: np.random.Generator) -> NDArray[np.float32]:
         """Returns the systematic error (h, w) of 1 / z of an episode's camera."""
-        config, shape = self._config, self._mask.shape
+        config, shape = self._config, self._seen_m.shape
         if config.bias_1_m == 0.0:
             return np.zeros(shape, np.float32)
         return np.float32(config.bias_1_m) * smooth_normal(rng, shape, config.bias_patch_px)
 
     def _add_holes(self, noisy_m: NDArray[np.float32], geom: NDArray[np.int32], rng: np.random.Generator) -> None:
         """Writes patches without return on glossy and glass surfaces."""
-        level = np.take(self._hole_level, geom, mode="wrap", out=self._work)
-        if level.max() > -np.inf:
-            field = smooth_normal(rng, noisy_m.shape, self._config.hole_patch_px)
-            np.copyto(noisy_m, 0.0, where=np.less(field, level, out=self._mask))
+        field = smooth_normal(rng, noisy_m.shape, self._config.hole_patch_px)
+        make_holes(noisy_m, geom, self._hole_level, field)
