@@ -92,7 +92,7 @@ def survey(spec: mujoco.MjSpec) -> Survey:
     return Survey(
         rooms,
         _doorways(spec, bodies, rooms),
-        tuple(_rug(body) for body in floors if not _is_room_floor(body)),
+        tuple(rug for body in floors if not _is_room_floor(body) and (rug := _rug(body)) is not None),
         _fixtures(bodies, rooms),
     )
 
@@ -148,8 +148,8 @@ def _doorways(spec: mujoco.MjSpec, bodies: list[mujoco.MjsBody], rooms: tuple[Ro
     return tuple(found)
 
 
-def _rug(body: mujoco.MjsBody) -> RugShape:
-    """Returns the outline and the height of a rug."""
+def _rug(body: mujoco.MjsBody) -> RugShape | None:
+    """Returns the outline and the height of a rug; None for one of meshes only, which stays a picture."""
     half, height, is_round = np.zeros(2), 0.0, False
     for geom in body.geoms:
         if geom.type == _CYLINDER:
@@ -160,7 +160,7 @@ def _rug(body: mujoco.MjsBody) -> RugShape:
         else:  # bands and fringes: parts of a rug that has a box or a cylinder too
             continue
         half, height = np.maximum(half, reach), max(height, float(top))
-    return RugShape(body.name, (float(half[0]), float(half[1])), height, is_round)
+    return RugShape(body.name, (float(half[0]), float(half[1])), height, is_round) if height > 0.0 else None
 
 
 def _fixtures(bodies: list[mujoco.MjsBody], rooms: tuple[RoomFloor, ...]) -> tuple[Fixture, ...]:
