@@ -163,7 +163,7 @@ class SuccessRule:
 
 
 Observation = Mapping[str, NDArray]
-"""The observation of one step: those of `SENSORS` and `scan` that were requested, plus `POSE_SENSORS`.
+"""The observation of one step: those of `SENSORS` and `ROBOT_SENSORS` that were requested, plus `POSE_SENSORS`.
 
 | key | shape | dtype | meaning |
 |---|---|---|---|
@@ -174,15 +174,20 @@ Observation = Mapping[str, NDArray]
 | compass | (1,) | float32 | yaw against the start heading, in (-pi, pi] |
 | objectgoal | (1,) | int64 | index into `GOAL_CATEGORIES` |
 | scan | (rays,) | float32 | lidar, metres; 0: nearer than its range, the maximum range: no return in it |
+| bumper | (6,) | int8 | 1: contact in the last action; sector 0 is ahead, the others follow counter-clockwise |
+| odometry | (3,) | float32 | pose by wheels and gyro: metres forward and left of the start, yaw in (-pi, pi] |
+| imu | (6,) | float32 | accelerations, m/s2, and turn rates, rad/s, in the robot's frame |
 """
 
 SENSORS: tuple[str, ...] = ("rgb", "depth", "semantic")
 """Image sensors, which are rendered only when requested."""
 SCAN = "scan"
-"""The lidar (`sim.sensors.scan`), which is in the observation only when requested."""
+"""The lidar (`sim.sensors.scan`)."""
+ROBOT_SENSORS: tuple[str, ...] = (SCAN, "bumper", "odometry", "imu")
+"""The lidar and what a robot measures of itself (`sim.sensors.measured`), in the observation only when requested."""
 POSE_SENSORS: tuple[str, ...] = ("gps", "compass", "objectgoal")
 """Always present."""
-CONTEXT_FIELDS: tuple[str, ...] = ("goal", "collided", "pose", "start", "motion", "model", "data")
+CONTEXT_FIELDS: tuple[str, ...] = ("goal", "collided", "odometry", "pose", "start", "motion", "model", "data")
 """Fields of `sim.sensors.sensor.SensorContext` that a user's sensor may declare in `reads`."""
 TRUE_FIELDS = frozenset({"pose", "start", "motion", "model", "data"})
 """The fields that hold ground truth, which a robot cannot measure."""
@@ -195,15 +200,20 @@ def reads_truth(sensor: Any) -> bool:
 
     Args:
         sensor: name of a standard sensor, or an object with the interface `sim.sensors.sensor.Sensor`. `gps`, `compass`
-            and `objectgoal` are part of the task, and `scan` is a measurement: they do not count, although they are
-            computed from the true state.
+            and `objectgoal` are part of the task, and those of `ROBOT_SENSORS` are measurements: they do not count,
+            although they are computed from the true state.
     """
     if isinstance(sensor, str):
         return sensor == "semantic"
-    if getattr(sensor, "name", "") in (*POSE_SENSORS, SCAN):
+    if getattr(sensor, "name", "") in (*POSE_SENSORS, *ROBOT_SENSORS) and _is_standard(sensor):
         return False
     declared = {*getattr(sensor, "images", ()), *getattr(sensor, "reads", ())}
     return not declared.isdisjoint(TRUE_IMAGES | TRUE_FIELDS)
+
+
+def _is_standard(sensor: Any) -> bool:
+    """Returns whether a sensor is one of ours; a user's may have the name of one of them."""
+    return type(sensor).__module__.startswith("sim.sensors.")
 
 
 class Scores(NamedTuple):

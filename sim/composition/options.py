@@ -37,8 +37,8 @@ class RunOptions:
     """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
     root: Path | None = None
     """With --house: another folder whose files the house may use, in addition to its own folder."""
-    robot: Path | None = None
-    """Replaces the default robot: an MJCF file with its sidecar next to it (docs/worlds.md)."""
+    robot: str | None = None
+    """Replaces the default robot: an MJCF file with its sidecar next to it, or menagerie:NAME (docs/worlds.md)."""
     goal: str | None = None
     """Only this goal category."""
     start_deg: str | None = None

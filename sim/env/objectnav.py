@@ -299,6 +299,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         fields = {
             "goal": self.episode.goal,
             "collided": self._motion is not None and self._motion.collided,
+            "odometry": world.odometry,
             "pose": world.pose,
             "start": self.episode.start,
             "motion": self._motion,

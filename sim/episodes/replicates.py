@@ -43,6 +43,11 @@ def replicate_number(episode_id: str) -> int:
     return int(number) if stem and mark and number.isdecimal() else 0
 
 
+def episode_of(episode_id: str) -> str:
+    """Returns the id of the episode of which this is a replicate; of the episode itself, its own id."""
+    return episode_id.rpartition(MARK)[0] if replicate_number(episode_id) else episode_id
+
+
 def find_episode(episodes: Mapping[str, Episode], episode_id: str) -> Episode | None:
     """Returns the episode or the replicate with an id; None where there is none.
 

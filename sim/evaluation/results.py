@@ -10,20 +10,20 @@ import contextlib
 import fcntl
 import hashlib
 import json
+import math
 import os
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Annotated, Any, Literal
 
 import msgspec
-import numpy as np
 
-from sim.episodes.replicates import replicate_number
+from sim.episodes.replicates import episode_of, replicate_number
 from sim.errors import ConfigError
-from sim.evaluation.bootstrap import estimate
 from sim.evaluation.config_fields import ABSENT, differing_fields, field_text, is_same_file
+from sim.evaluation.intervals import estimate, replicate_spread
 from sim.files import open_to_grow, write_atomically
 from sim.reading import (
     MAX_LINES_BYTES,
@@ -47,8 +47,10 @@ SUMMARY_METRICS = (
 """Metrics (`metric_value`) that the summary averages."""
 OF_ERRORS = ("success", "spl", "soft_spl")
 """Metrics in which an episode that ended with an error counts."""
-RESAMPLED, RESAMPLED_IN_ONE_HOUSE = "houses, then the episodes of each", "the episodes of the one house"
-"""The units that the intervals of a summary resample."""
+AT_MOST_ONE = frozenset({"success", "spl", "soft_spl", "gt_explored", "never_seen", "trapped"})
+"""Metrics between 0 and 1."""
+OVER_HOUSES, OVER_ONE_HOUSE = "houses", "the episodes of the one house"
+"""The units over which the intervals of a summary are taken."""
 PLACEMENT_OPTIONS = ("executor", "address", "shard")
 """Options that say where episodes are run; they change no result."""
 VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save", "mcap")
@@ -410,42 +412,45 @@ def metric_value(line: Mapping[str, Any], metric: str) -> float | None:
 
 
 def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """Returns the number of episodes and, for each of `SUMMARY_METRICS`, the mean and its 95 % bootstrap interval.
+    """Returns the number of episodes and, for each of `SUMMARY_METRICS`, the mean and its 95 % interval.
 
-    Intervals resample houses, then the episodes of each (`sim.evaluation.bootstrap`); `ci95_resamples` says so, and
-    says when one house leaves only its episodes to resample. `failures` counts the failed episodes by cause
-    (`sim.task.failures`), the most frequent first. Episodes whose value is null do not count for that metric.
+    Intervals are over houses (`sim.evaluation.intervals`); `ci95_over` says so, and says when one house leaves only its
+    episodes. `failures` counts the failed lines by cause (`sim.task.failures`), the most frequent first. Episodes whose
+    value is null do not count for that metric. An episode with replicates (`--replicates`) counts once, with their
+    mean; `replicates` then has the means of each replicate and their standard deviation (`replicate_spread`).
     """
     lines = list(lines)
     houses = [str(line["house"]) for line in lines]
+    episodes = [episode_of(line["episode_id"]) for line in lines]
     summary: dict[str, Any] = {
-        "episodes": len(lines),
+        "episodes": len(set(episodes)),
         "errors": sum(line["end_reason"] == "error" for line in lines),
         "falls": sum(line["end_reason"] == "fallen" for line in lines),
         "houses": len(set(houses)),
-        "ci95_resamples": RESAMPLED_IN_ONE_HOUSE if len(set(houses)) == 1 else RESAMPLED,
+        "ci95_over": OVER_ONE_HOUSE if len(set(houses)) == 1 else OVER_HOUSES,
     }
     for metric in SUMMARY_METRICS:
-        value = estimate([metric_value(line, metric) for line in lines], houses)
+        values = [metric_value(line, metric) for line in lines]
+        value = estimate(values, houses, episodes=episodes, most=1.0 if metric in AT_MOST_ONE else math.inf)
         summary[metric] = {"mean": value.mean, "ci95": [value.low, value.high]}
-    summary |= _replicates(lines)
+    summary |= _replicates(lines, episodes)
     causes = Counter(line["failure"] for line in lines if line.get("failure") is not None)
     summary["failures"] = dict(causes.most_common())
     return summary
 
 
-def _replicates(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """Returns the means of each replicate of all episodes (`--replicates`), whose spread is chance; {} without any."""
-    found: dict[int, list[Mapping[str, Any]]] = {}
-    for line in lines:
-        found.setdefault(replicate_number(line["episode_id"]), []).append(line)
-    if len(found) < 2:
+def _replicates(lines: Sequence[Mapping[str, Any]], episodes: Sequence[str]) -> dict[str, Any]:
+    """Returns, under `replicates`, the mean of each replicate of all episodes and their spread; {} without any."""
+    numbers = [replicate_number(line["episode_id"]) for line in lines]
+    if len(set(numbers)) < 2:
         return {}
-    means = {
-        name: [float(np.mean([float(line[name]) for line in found[number]])) for number in sorted(found)]
-        for name in ("success", "spl")
-    }
-    return {"replicates": {name: {"means": each, "std": float(np.std(each, ddof=1))} for name, each in means.items()}}
+    found = {}
+    for metric in ("success", "spl"):
+        values = [float(line[metric]) for line in lines]
+        each = [[v for v, of in zip(values, numbers, strict=True) if of == number] for number in sorted(set(numbers))]
+        means = [sum(of_number) / len(of_number) for of_number in each]
+        found[metric] = {"means": means, "std": replicate_spread(values, episodes)}
+    return {"replicates": found}
 
 
 def _as_bytes(line: Mapping[str, Any]) -> bytes:

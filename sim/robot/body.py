@@ -121,9 +121,14 @@ def _add_spring(wheel: mujoco.MjsBody, name: str, config: RobotConfig) -> None:
     )
 
 
-def add_tyre(wheel: mujoco.MjsBody, name: str, radius_m: float, centre_m: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
-    """Adds the collision geom of a wheel. Its friction is 0, so the larger friction of the floor counts."""
-    wheel.add_geom(
+def add_tyre(
+    wheel: mujoco.MjsBody,
+    name: str,
+    radius_m: float,
+    centre_m: Sequence[float] | NDArray[np.float64] = (0.0, 0.0, 0.0),
+) -> mujoco.MjsGeom:
+    """Adds the collision geom of a wheel and returns it. Its friction is 0: the larger one of the floor counts."""
+    return wheel.add_geom(
         name=f"{name}_tyre",
         type=mujoco.mjtGeom.mjGEOM_SPHERE,
         size=(radius_m, 0, 0),

@@ -224,6 +224,10 @@ class RobotFile:
     """Names of geoms or bodies that slide on the floor."""
     heading_rad: float = 0.0
     """Direction that is ahead in the file, counter-clockwise from +x."""
+    track_m: float | None = None
+    """Distance between the middles of the tyres; None: that of the wheels' joints."""
+    pose: tuple[tuple[str, float], ...] = ()
+    """Names of other joints and their positions, rad or m, in which they are fixed; those not named stay at zero."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -55,10 +55,11 @@ class Driver:
     """Drives one robot in one world; its memory between actions is odometry and the heading reference."""
 
     def __init__(
-        self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, log: ContactLog
-    ) -> None:
+        self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, odometry: Odometry,
+        log: ContactLog,
+    ) -> None:  # fmt: skip
         self._model, self._data, self._body, self._log = model, data, body, log
-        self._motors, self._odometry = Motors(config, model, body), Odometry(config, body)
+        self._motors, self._odometry = Motors(config, model, body), odometry
         self._drive = config.drive
         self._steps = config.steps_per_tick
         self._tick_s = config.drive.tick_s

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from sim.geometry.pose import Pose
+from sim.interface import wrap_angle
 from sim.robot.body import Body
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import RobotConfig
@@ -32,7 +34,7 @@ class Odometry:
             compression_m: of the loaded tyres; a wheel rolls at the middle of it, for which a base is calibrated.
         """
         self.x_m = self.y_m = 0.0
-        self.yaw_rad = yaw_rad
+        self.yaw_rad = self._start_yaw_rad = yaw_rad
         self.speed_m_s = self.rate_rad_s = 0.0
         left, right = conditions.encoder_scale
         rolling_m = self._radius_m - 0.5 * compression_m
@@ -40,6 +42,13 @@ class Odometry:
         self._gyro_scale, self._gyro_bias_rad_s = conditions.gyro_scale, conditions.gyro_bias_rad_s
         self._wheels_rad = self._body.wheel_angles()
         self._gyro_rad = self._body.yaw_rad
+
+    @property
+    def since_start(self) -> Pose:
+        """The pose relative to the start of the episode: x ahead, y left, yaw in (-pi, pi]."""
+        cos, sin = math.cos(self._start_yaw_rad), math.sin(self._start_yaw_rad)
+        x_m, y_m = cos * self.x_m + sin * self.y_m, cos * self.y_m - sin * self.x_m
+        return Pose(x_m, y_m, wrap_angle(self.yaw_rad - self._start_yaw_rad))
 
     def update(self) -> None:
         """Adds the motion of one tick."""

@@ -22,6 +22,7 @@ from sim.robot.config import RobotConfig
 from sim.robot.contacts import ContactLog
 from sim.robot.drive import Motion
 from sim.robot.motors import Motors
+from sim.robot.odometry import Odometry
 
 BLOCKED_S = 0.2
 """The robot is blocked if the command has pushed for this long ..."""
@@ -66,14 +67,15 @@ class VelocityDrive:
     """Drives one robot in one world; it remembers the command and what blocks the robot."""
 
     def __init__(
-        self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, log: ContactLog
-    ) -> None:
+        self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, odometry: Odometry,
+        log: ContactLog,
+    ) -> None:  # fmt: skip
         self._model, self._data, self._body, self._log = model, data, body, log
         self._drive, self._steps, self._tick_s = config.drive, config.steps_per_tick, config.drive.tick_s
         self._radius_m, self._half_track_m = config.wheels.radius_m, config.wheels.half_track_m
         self._reach_rad_s = config.wheels.max_torque_nm / config.wheels.motor_gain_nm_s
         self._touch_ticks = math.ceil(self._drive.touch_memory_s / self._tick_s)
-        self._motors = Motors(config, model, body)
+        self._motors, self._odometry = Motors(config, model, body), odometry
         self._moves: deque[tuple[float, float]] = deque(maxlen=round(BLOCKED_S / self._tick_s))
         """Distance (m) and angle (rad) of each of the last ticks in which the command pushed, without sign."""
         self.reset(NOMINAL)
@@ -133,6 +135,7 @@ class VelocityDrive:
         self._rate_rad_s = 0.5 * (right - left) * self._radius_m / self._half_track_m
         x0, y0, yaw0, _, _ = self._body.state()
         mujoco.mj_step(self._model, self._data, self._steps)
+        self._odometry.update()
         x, y, yaw, _, _ = self._body.state()
         self._moves.append((math.hypot(x - x0, y - y0), abs(wrap_angle(yaw - yaw0))))
 

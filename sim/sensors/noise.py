@@ -22,6 +22,7 @@ from sim.interface import CameraModel, ConfigError
 from sim.robot.conditions import Conditions
 from sim.sensors.actuation_noise import ActuationNoise
 from sim.sensors.depth_noise import DepthNoise
+from sim.sensors.measured import ImuNoise
 from sim.sensors.pose_noise import PoseNoise
 from sim.sensors.rgb_noise import RgbNoise
 from sim.sensors.scan import ScanSensor
@@ -41,6 +42,7 @@ class NoiseConfig:
     pose: PoseNoise = field(default_factory=PoseNoise)
     actuation: ActuationNoise = field(default_factory=ActuationNoise)
     scan: ScanNoise = field(default_factory=ScanNoise)
+    imu: ImuNoise = field(default_factory=ImuNoise)
 
 
 _D435_FOCAL_BASELINE = 388.0 * 0.05
@@ -80,6 +82,14 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 gyro_bias_rad_s=math.radians(0.01),
             ),
             scan=ScanNoise(std_share=0.01),
+            # Noise densities of a Bosch BMI055, the IMU of a RealSense D435i, at 100 Hz: 0.014 deg/s and 150 ug per
+            # root of 1 Hz; offsets are assumed to be calibrated to a tenth of its data sheet's 1 deg/s and 70 mg.
+            imu=ImuNoise(
+                acceleration_std_m_s2=0.0147,
+                rate_std_rad_s=math.radians(0.14),
+                acceleration_bias_m_s2=0.069,
+                rate_bias_rad_s=math.radians(0.1),
+            ),
         ),
         # An old camera in poor light on a robot with slippery wheels: 2.5 times the depth error, and a compass drift
         # of 4.5 deg after 500 actions.
@@ -115,6 +125,12 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 gyro_bias_rad_s=math.radians(0.03),
             ),
             scan=ScanNoise(std_m=0.015, std_share=0.025, dropout=0.02),
+            imu=ImuNoise(
+                acceleration_std_m_s2=0.05,
+                rate_std_rad_s=math.radians(0.5),
+                acceleration_bias_m_s2=0.69,
+                rate_bias_rad_s=math.radians(1.0),
+            ),
         ),
     }
 )

@@ -18,6 +18,7 @@ from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import RobotConfig
 from sim.robot.contacts import ContactLog
 from sim.robot.drive import Driver, Motion
+from sim.robot.odometry import Odometry
 from sim.robot.velocity import Velocity, VelocityDrive
 from sim.world.compile import compile_world
 from sim.world.storeys import floor_geoms, floor_levels
@@ -51,8 +52,9 @@ class World:
         self.data = mujoco.MjData(self.model)
         self._body = Body.find(self.model, self.data)
         log = ContactLog(self.model, self.data, self.labels, self._body)
-        self._driver = Driver(self.config, self.model, self.data, self._body, log)
-        self._velocity_drive = VelocityDrive(self.config, self.model, self.data, self._body, log)
+        self._odometry = Odometry(self.config, self._body)
+        self._driver = Driver(self.config, self.model, self.data, self._body, self._odometry, log)
+        self._velocity_drive = VelocityDrive(self.config, self.model, self.data, self._body, self._odometry, log)
         self._levels_m = floor_levels(self.model, self.labels)
         self._floors = floor_geoms(self.model, self.labels)
         self._support = FloorSupport(self.model, self.data, self._floors, self.config)
@@ -65,6 +67,11 @@ class World:
         x, y, yaw, _, _ = self._body.state()
         z = self._body.z_m
         return Pose(x, y, wrap_angle(yaw), min(self._levels_m, key=lambda floor: abs(floor - z)))
+
+    @property
+    def odometry(self) -> Pose:
+        """The robot's pose by its own odometry, relative to the start of the episode."""
+        return self._odometry.since_start
 
     @property
     def camera_pose(self) -> Pose:

@@ -114,6 +114,7 @@ class TrackSeeker:
         self._hidden: dict[int, Bool[np.ndarray, " sectors"]] = {}  # directions from which a look did not show a track
         # The pose at which the count of patience began, and the steps of pursuit since then.
         self._pursuit: tuple[Pose, int] | None = None
+        self._times_felt = 0  # collisions that had changed the map when the count of patience began
         # The pose at the last approach, whether it led along a route, and the steps in which the robot did not move.
         self._approached_from: Pose | None = None
         self._drove = False
@@ -142,6 +143,8 @@ class TrackSeeker:
         """See `Seeker`: accepted tracks come first, then doubtful ones; without progress another track is chosen."""
         self._count_pushes(pose)
         found = self._pursue(navmap, window, pose, step)
+        if navmap.times_felt != self._times_felt:  # a surface that is followed to its end takes its time
+            self._times_felt, self._pursuit = navmap.times_felt, None
         if self._is_stuck(pose, pursuing=found is not None):
             self._leave_spot()
             self.postpone(navmap, step)
@@ -208,6 +211,11 @@ class TrackSeeker:
     def postpone(self, navmap: NavMap, step: int) -> None:
         """See `Seeker`."""
         self._set_aside(self._targets if self.pursued is None else [*self._targets, self.pursued])
+
+    def retry(self) -> None:
+        """See `Seeker`."""
+        self._retry_step.clear()
+        self._wait_steps.clear()
 
     def cells_of(self, navmap: NavMap, tracks: Iterable[int]) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map that some tracks own and that look like the goal."""

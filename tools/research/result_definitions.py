@@ -18,6 +18,8 @@ MEANS = (SUCCESS, SPL, SOFT_SPL, DISTANCE, EXPLORED, COLLISIONS, TRAPPED, STEPS)
 """Metrics whose mean and interval each row of results.csv has."""
 COMPARED = (SUCCESS, SPL, COLLISIONS, TRAPPED, FIRST_SIGHT, STEPS)
 """Metrics whose paired difference each row of comparisons.csv has."""
+PRIMARY_METRICS = (SUCCESS, SPL)
+"""Metrics of the primary comparisons of a table; their p-values are corrected together (Holm 1979)."""
 MEDIAN = "median_first_sight"
 """Column of results.csv: median steps to first sight; an episode that never shows the goal counts with the limit."""
 FAILED = "failed_"
@@ -42,6 +44,8 @@ class Comparison:
     first: RunKey
     second: RunKey
     episodes: int
+    primary: bool = True
+    """It answers the question of its table. All others are exploratory: their intervals are not corrected."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +62,10 @@ class PageTable:
             yield from (row for row, _ in cells)
 
 
+VERSION = "2.0.0"
+"""Version of the splits of the headline table."""
+EARLIER = "2.0.0"
+"""That of the other tables, whose robot had the physics of version 0.2.0."""
 HEADLINE_EPISODES = {"val": 200, "large": 100, "hazards": 100, "test": 500}
 HEADLINE = {
     "val": ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet"),
@@ -88,6 +96,8 @@ EXPLORERS = {
     "oracle": "`oracle`",
 }
 EXPLORER_EPISODES = {"val": 200, "large": 300}
+PRIMARY_EXPLORERS = ("stubborn --explorer informed-tour", "poni", "semexp")
+"""Explorers whose comparison with corners is primary."""
 CONTROLS = tuple(
     f"semexp --config agent.explorer.{control}" for control in ("goal=wrong", "semantics=shuffled", "semantics=none")
 )
@@ -103,10 +113,16 @@ NETWORK = (
 )
 
 
-def run_key(split: str, name: str, semantics: str) -> RunKey:
+def run_key(split: str, name: str, semantics: str, version: str = EARLIER) -> RunKey:
     """Returns the key of an agent with options, such as "stubborn --explorer tour"."""
     agent, _, options = name.partition(" ")
-    return RunKey(split, agent, options, semantics)
+    return RunKey(split, agent, options, semantics, version)
+
+
+def _headline_key(split: str, agent: str) -> RunKey:
+    """Returns the key of an entry of `HEADLINE`, such as "stubborn gt"."""
+    name, semantics = agent.split()
+    return run_key(split, name, semantics, VERSION)
 
 
 def page_tables() -> tuple[PageTable, ...]:
@@ -117,9 +133,10 @@ def page_tables() -> tuple[PageTable, ...]:
 def comparisons() -> Iterator[Comparison]:
     """Yields the comparisons that the page may quote."""
     for split, episodes in HEADLINE_EPISODES.items():
-        present = [run_key(split, *agent.split()) for agent in HEADLINE[split]]
+        present = [_headline_key(split, agent) for agent in HEADLINE[split]]
         for second, first in itertools.combinations(present, 2):
-            yield Comparison("headline", first, second, episodes)
+            primary = second.agent == "stubborn" and first.semantics == second.semantics
+            yield Comparison("headline", first, second, episodes, primary)
     *rows, whole = ABLATION
     for split in ABLATION_SPLITS:
         for name in rows:
@@ -128,10 +145,10 @@ def comparisons() -> Iterator[Comparison]:
     for split, episodes in EXPLORER_EPISODES.items():
         for name in list(EXPLORERS)[1:]:
             first, second = run_key(split, name, "gt"), run_key(split, "stubborn", "gt")
-            yield Comparison("explorers", first, second, episodes)
+            yield Comparison("explorers", first, second, episodes, name in PRIMARY_EXPLORERS)
         for name in CONTROLS:
             first, second = run_key(split, name, "gt"), run_key(split, "semexp", "gt")
-            yield Comparison("explorers", first, second, episodes)
+            yield Comparison("explorers", first, second, episodes, name == CONTROLS[0])
     yield from _network_comparisons()
 
 
@@ -149,7 +166,10 @@ def _headline() -> PageTable:
     rows = []
     for split, agent in ((split, agent) for split, agents in HEADLINE.items() for agent in agents):
         name, semantics = agent.split()
-        row, count = RowKey(run_key(split, name, semantics), HEADLINE_EPISODES[split]), HEADLINE_EPISODES[split]
+        row, count = (
+            RowKey(run_key(split, name, semantics, VERSION), HEADLINE_EPISODES[split]),
+            HEADLINE_EPISODES[split],
+        )
         shown = "-" if name == "oracle" else "truth" if semantics == "gt" else "network"
         rows.append(((f"{split}, {count}", f"`{name}`", shown), _cells(row, (SUCCESS, SPL))))
     header = ("split, episodes", "agent", "segmentation", "success %", "SPL")

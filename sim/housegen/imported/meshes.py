@@ -67,14 +67,14 @@ def read_parts(entry: Entry) -> tuple[Part, ...]:
     return _joined(_fitted([part for part in raw if part.rgba[3] > 0.02], entry))
 
 
-def library(name: str) -> Any:
-    """Returns a package of the extra `models`; raises ConfigError if it is not installed."""
+def library(name: str, *, extra: str = "models") -> Any:
+    """Returns a package of an extra; raises ConfigError if it is not installed."""
     try:
         return importlib.import_module(name)
     except ImportError:
         raise ConfigError(
             f"Reading models needs the package '{name}', which is not installed: pip install "
-            "'stubborn-objectnav[models]'."
+            f"'stubborn-objectnav[{extra}]'."
         ) from None
 
 

@@ -157,7 +157,7 @@ def test_the_status_is_told_when_the_end_of_the_output_and_the_line_of_the_guard
     process = process_pipe.AgentProcess(command("exit_0", tmp_path))
     process.ask({"type": "start", "memory": None}, within_s=20)
     process.ask({"type": "reset"}, within_s=20)
-    process._poll = LatePoll(process._poll)
+    process._poll = LatePoll(process._poll)  # pyright: ignore[reportAttributeAccessIssue]
     with pytest.raises(AgentError, match="its process ended with status 0 before it answered"):
         process.ask({"type": "act"}, within_s=20)
     process.close()

@@ -150,16 +150,30 @@ def test_a_summary_of_nothing_is_valid_json() -> None:
     assert json.loads(json.dumps(summarise([]), allow_nan=False))["success"] == {"mean": None, "ci95": [None, None]}
 
 
-def test_a_summary_states_what_its_intervals_resample() -> None:
+def test_a_summary_states_over_what_its_intervals_are() -> None:
     two_houses, one_house = summarise([line(1), line(2)]), summarise([line(1), line(3)])
-    assert (two_houses["houses"], two_houses["ci95_resamples"]) == (2, "houses, then the episodes of each")
-    assert (one_house["houses"], one_house["ci95_resamples"]) == (1, "the episodes of the one house")
+    assert (two_houses["houses"], two_houses["ci95_over"]) == (2, "houses")
+    assert (one_house["houses"], one_house["ci95_over"]) == (1, "the episodes of the one house")
 
 
 def test_the_intervals_of_a_summary_are_over_houses() -> None:
     alike = [line(n, house=f"h{n // 10}", success=float(n // 10 % 2)) for n in range(80)]
     low, high = summarise(alike)["success"]["ci95"]
-    assert (low, high) == (pytest.approx(0.125, abs=0.01), pytest.approx(0.875, abs=0.01))  # 8 fair coins, not 80
+    assert (low, high) == pytest.approx(
+        (0.167, 0.833), abs=0.001
+    )  # Wilson with Student's t: 7 effective episodes, not 80
+
+
+def test_a_summary_has_the_means_of_each_replicate_and_their_spread() -> None:
+    lines = [
+        line(0, success=s, spl=s) | {"episode_id": f"val_0000{mark}"}
+        for mark, s in (("", 1.0), ("~1", 0.0), ("~2", 1.0))
+    ]
+    summary = summarise(lines)
+    assert (summary["episodes"], summary["success"]["mean"]) == (1, pytest.approx(2 / 3))
+    assert summary["replicates"]["success"]["means"] == [1.0, 0.0, 1.0]
+    assert summary["replicates"]["success"]["std"] == pytest.approx(math.sqrt(1 / 3))
+    assert "replicates" not in summarise(lines[:1])
 
 
 def test_a_field_inside_the_configuration_that_differs_is_named(tmp_path: Path) -> None:
@@ -393,14 +407,3 @@ def test_a_run_of_other_physics_is_not_resumed(tmp_path):
     ) as error:
         RunDirectory(tmp_path / "run", {"agent": "oracle", "physics": 2})
     assert "\n" not in str(error.value)
-
-
-def test_a_summary_has_the_means_of_each_replicate_and_their_spread():
-    lines = [
-        {"episode_id": f"val_0000{mark}", "house": "h", "goal": "bed", "end_reason": "stop", "success": s, "spl": s}
-        for mark, s in (("", 1.0), ("~1", 0.0), ("~2", 1.0))
-    ]
-    found = summarise(lines)["replicates"]["success"]
-    assert found["means"] == [1.0, 0.0, 1.0]
-    assert found["std"] == pytest.approx(math.sqrt(1 / 3))
-    assert "replicates" not in summarise(lines[:1])
