@@ -135,7 +135,7 @@ def _threshold(rng: np.random.Generator, doorway: Doorway, share: float) -> list
     steps, quat = _steps(height_m), _about((0.0, 0.0, 1.0), doorway.yaw_rad)
     widest_m = top_m + steps[-1][0]
     return [
-        Piece(one.body, _rounded((doorway.x_m, doorway.y_m, 0.5 * step_m)),
+        Piece(one.body, _point(doorway.x_m, doorway.y_m, 0.5 * step_m),
               _rounded((0.5 * doorway.width_m - 0.001, widest_m - inset_m, 0.5 * step_m)),
               friction, quat, doorway.material)
         for inset_m, step_m in steps
@@ -162,7 +162,7 @@ def _wet_spot(rng: np.random.Generator, fixture: Fixture) -> list[Piece]:
         return []
     size = (0.5 * (high_x - low_x), 0.5 * (high_y - low_y), 0.5 * FILM_M)
     middle = (0.5 * (low_x + high_x), 0.5 * (low_y + high_y), 0.5 * FILM_M)
-    return [Piece(room.body, _rounded(middle), _rounded(size), friction, material="water")]
+    return [Piece(room.body, _point(*middle), _rounded(size), friction, material="water")]
 
 
 def _uneven_tiles(rng: np.random.Generator, room: RoomFloor, friction: float, m2_per_tile: float) -> list[Piece]:
@@ -175,7 +175,7 @@ def _uneven_tiles(rng: np.random.Generator, room: RoomFloor, friction: float, m2
         axis = [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)][int(rng.integers(4))]
         quat = _about(axis, lip_m / (2.0 * half))
         pos = (round(x, 3), round(y, 3), 0.5 * lip_m - half_height_m)
-        pieces.append(Piece(room.body, _rounded(pos), _rounded((half, half, half_height_m)), friction, quat))
+        pieces.append(Piece(room.body, _point(*pos), _rounded((half, half, half_height_m)), friction, quat))
     return pieces
 
 
@@ -193,3 +193,8 @@ def _uniform(rng: np.random.Generator, limits: tuple[float, float]) -> float:
 def _rounded(values: tuple[float, ...]) -> tuple[float, ...]:
     """Returns lengths rounded to 0.01 mm."""
     return tuple(round(value, 5) + 0.0 for value in values)
+
+
+def _point(x_m: float, y_m: float, z_m: float) -> tuple[float, float, float]:
+    """Returns a position rounded to 0.01 mm."""
+    return round(x_m, 5) + 0.0, round(y_m, 5) + 0.0, round(z_m, 5) + 0.0
