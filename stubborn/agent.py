@@ -163,6 +163,7 @@ class StubbornAgent:
         """The candidate that is approached; None: the agent explores."""
         if self.felt is not None:
             self.felt.reset()
+        self.planner.own_ground_m = self.config.planning.own_ground_m
         self.standstill.reset()
         self.explorer.reset(seed)
         self.seeker.reset(goal)
@@ -212,6 +213,9 @@ class StubbornAgent:
         if touched_rad is not None:  # else the wheels slipped, if there is a bumper
             stop = replace(pose, yaw_rad=touched_rad)
             news = felt.add(self.navmap, stop, self.gps_noise.std_m())
+        if self.last_action is Action.MOVE_FORWARD:
+            own_m = 0.0 if failed and felt.pushes else self.config.planning.own_ground_m
+            self.planner.own_ground_m = own_m  # the ground ahead is not free
         self.navmap.times_felt += news
         if self.standstill.observe(self.navmap.seen_area_m2(), news):
             felt.doubt(self.navmap)

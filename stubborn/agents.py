@@ -25,7 +25,9 @@ from stubborn.exploration.tour import INFORMED_TOUR, TourConfig
 from stubborn.mapping.felt import FeelConfig
 from stubborn.mapping.object_layers import ObjectLayersConfig
 
-NO_AVOIDANCE = CollisionAvoidance(untrap=False, collision_layers=False, averse_exploration=False, visited_is_free=False)
+NO_AVOIDANCE = CollisionAvoidance(
+    untrap=False, collision_layers=False, averse_exploration=False, optimistic_fallback=False, visited_is_free=False
+)
 """The configuration without the paper's measures against collisions."""
 
 ABLATION: Mapping[str, CollisionAvoidance] = MappingProxyType(
@@ -77,7 +79,7 @@ PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(
             for name, row in ABLATION.items()
         },
         "stubborn-plus": (
-            "ours: tracks objects, verifies doubtful ones first, tours unseen areas (informed-tour), feels along panes",
+            "ours: tracks objects, verifies doubtful ones, tours unseen areas, feels along panes",
             PLUS,
         ),
         "single-frame": (

@@ -56,9 +56,9 @@ def read_obj(file: Path, *, texture_px: int, losses: Counter[str]) -> list[Surfa
             continue
         try:
             if words[0] == "v":
-                found.vertices.append([float(word) for word in words[1:4]])
+                found.vertices.append(_vertex(words[1:4]))
             elif words[0] == "vt":
-                found.uv.append([float(word) for word in [*words[1:3], "0"][:2]])
+                found.uv.append([float(word) for word in [*words[1:3], "0", "0"][:2]])
             elif words[0] == "f":
                 _add_face(found, node, material, words[1:])
             elif words[0] in ("o", "g") and len(words) > 1:
@@ -75,6 +75,13 @@ def read_obj(file: Path, *, texture_px: int, losses: Counter[str]) -> list[Surfa
     if not bool((np.abs(vertices) <= FARTHEST_M).all()):
         raise HouseError(f"{where}: a vertex is not finite or beyond {FARTHEST_M:g} m.")
     return [_surface(found, vertices, *key) for key in found.faces]
+
+
+def _vertex(words: list[str]) -> list[float]:
+    """Returns a vertex; raises ValueError if it is broken."""
+    if len(words) < 3:
+        raise ValueError("a vertex needs three coordinates")
+    return [float(word) for word in words]
 
 
 def _add_face(found: _Content, node: str, material: str, words: list[str]) -> None:

@@ -20,7 +20,8 @@ from msgspec import Meta, Struct
 from numpy.typing import NDArray
 
 from sim.errors import ConfigError, HouseError, ObjectNavError
-from sim.housegen.imported.meshes import library
+from sim.housegen.imported.meshes import library, resolver
+from sim.housegen.imported.sources import Skipped
 from sim.reading import MAX_PIXELS, parse_json, printable, read_bytes, reason_of
 
 FORMATS = ("glb", "gltf", "obj", "ply")
@@ -300,34 +301,17 @@ def _resolver(trimesh: Any, folder: Path) -> Any:
     """Returns trimesh's access to the files that a mesh names: buffers, materials, pictures of its own folder."""
     base = folder.resolve()
 
-    class Inside(trimesh.resolvers.Resolver):
-        def __init__(self) -> None: ...
+    def read(name: str) -> bytes:
+        try:
+            target = (base / name).resolve()
+            outside = not target.is_relative_to(base)
+        except (OSError, ValueError, RuntimeError):
+            raise HouseError(f"A mesh in '{folder}' uses '{printable(name)[:100]}', which is no file name.") from None
+        if outside:
+            raise HouseError(f"A mesh in '{folder}' uses '{printable(name)[:100]}', which is outside of its folder.")
+        try:
+            return read_bytes(target, what="File", most=MAX_FILE_BYTES)
+        except ConfigError as error:
+            raise Skipped(str(error)) from None
 
-        def get(self, name: str) -> bytes:
-            wanted = str(name).strip().replace("\\", "/")
-            try:
-                target = (base / wanted).resolve()
-                outside = not target.is_relative_to(base)
-            except (OSError, ValueError, RuntimeError):
-                raise HouseError(
-                    f"A mesh in '{folder}' uses '{printable(wanted)[:100]}', which is no file name."
-                ) from None
-            if outside:
-                raise HouseError(
-                    f"A mesh in '{folder}' uses '{printable(wanted)[:100]}', which is outside of its folder."
-                )
-            try:
-                return read_bytes(target, what="File", most=MAX_FILE_BYTES)
-            except ConfigError as error:  # trimesh goes without a material or a picture that is missing
-                raise FileNotFoundError(str(error)) from None
-
-        def write(self, name: str, data: object) -> None:
-            raise PermissionError(name)
-
-        def keys(self) -> list[str]:
-            return []
-
-        def namespaced(self, namespace: str) -> Any:
-            return _resolver(trimesh, folder / namespace)
-
-    return Inside()
+    return resolver(trimesh, read, "")

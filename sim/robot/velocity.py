@@ -4,8 +4,8 @@ The limits of speed and acceleration are those of `DriveConfig`. The wheels' mot
 position or heading, which is the caller's task. The commanded speed of a wheel stays as near to the measured one as
 the torque of the motor can act on, so that a robot that was held up does not first have to slow down to turn back.
 
-A contact blocks the robot if the command pushes for `BLOCKED_S` and the body hardly moves. It is a collision once, in
-the period in which it begins to block.
+A contact blocks the robot if the command pushes for `DriveConfig.blocked_s` and the body hardly moves. It is a
+collision once, in the period in which it begins to block.
 """
 
 from __future__ import annotations
@@ -24,12 +24,8 @@ from sim.robot.drive import Motion
 from sim.robot.motors import Motors
 from sim.robot.odometry import Odometry
 
-BLOCKED_S = 0.2
-"""The robot is blocked if the command has pushed for this long ..."""
 BLOCKED_M = 0.0025
-"""... and the body has moved by less than this ..."""
-BLOCKED_RAD = math.radians(0.7)
-"""... or, turning on the spot, has turned by less than this."""
+"""The robot is blocked if it has moved by less than this, or if a turn on the spot is blocked as `DriveConfig` says."""
 PUSHING_M_S = 0.05
 """A command of at least this speed pushes ..."""
 PUSHING_RAD_S = 0.15
@@ -76,7 +72,7 @@ class VelocityDrive:
         self._reach_rad_s = config.wheels.max_torque_nm / config.wheels.motor_gain_nm_s
         self._touch_ticks = math.ceil(self._drive.touch_memory_s / self._tick_s)
         self._motors, self._odometry = Motors(config, model, body), odometry
-        self._moves: deque[tuple[float, float]] = deque(maxlen=round(BLOCKED_S / self._tick_s))
+        self._moves: deque[tuple[float, float]] = deque(maxlen=round(self._drive.blocked_s / self._tick_s))
         """Distance (m) and angle (rad) of each of the last ticks in which the command pushed, without sign."""
         self.reset(NOMINAL)
 
@@ -146,7 +142,7 @@ class VelocityDrive:
         if len(self._moves) < (self._moves.maxlen or 0):
             return False
         moved_m, turned_rad = (sum(each) for each in zip(*self._moves, strict=True))
-        return moved_m < BLOCKED_M if command.pushes_forward else turned_rad < BLOCKED_RAD
+        return moved_m < BLOCKED_M if command.pushes_forward else turned_rad < self._drive.blocked_rad
 
 
 def _towards(value: float, goal: float, step: float) -> float:

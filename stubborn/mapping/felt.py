@@ -99,6 +99,8 @@ class FeltSurfaces:
         self._poses: list[Pose] = []
         self._doubted = 0  # stops before this one that are not part of a pane leave no marks
         self._straight_m = self.config.line.straight_m
+        self.pushes = False
+        """True: the last stop repeated an earlier one, so that the marks do not keep the robot from this forward."""
         self.panes: list[Pane] = []
         """The panes that follow from all stops so far."""
 
@@ -141,7 +143,7 @@ class FeltSurfaces:
     def _mark(self, navmap: NavMap) -> None:
         """Writes the marks of all stops."""
         if not self._poses:
-            self.panes = []
+            self.panes, self.pushes = [], False
             return
         centres = np.array([pose.xy_m for pose in self._poses])
         headings = np.array([(np.cos(pose.yaw_rad), np.sin(pose.yaw_rad)) for pose in self._poses])
@@ -152,7 +154,9 @@ class FeltSurfaces:
             explained |= pane.stops
             explained[list(edges)] = True
             self._mark_pane(navmap, pane, centres, edges)
-        explained &= ~self._repeated(centres, headings)
+        repeated = self._repeated(centres, headings)
+        self.pushes = bool(repeated[-1])
+        explained &= ~repeated
         explained[: self._doubted] = True
         for stop in np.flatnonzero(~explained).tolist():
             mark_collision(navmap, self._poses[stop], BOTH_LAYERS, self.squares)

@@ -464,21 +464,16 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _SCENE,
         _PACKED,
     ),
-    f"{_RUN} --split runs/flat_split --episodes 20": (
-        _SCENE,
-        _PACKED,
-        f"{_RUN} --split {{tmp}}/split --episodes 1 --agent oracle --out {{tmp}}/run",
-    ),
     f"{_RUN} --root {_KITCHEN} --house {_KITCHEN}/kitchen_assets/kitchen_env_model.xml"
     " --labels examples/worlds/kitchen.json --goal counter --semantics gt --episodes 2": _PACKAGE,
     f"{_RUN} --robot carrier.xml --episodes 20": (
         _ROBOT,
         f"{_RUN} --robot {{tmp}}/r/carrier.xml {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/run",
     ),
-    "stubborn reproduce splits --agents stubborn stubborn-plus oracle": (
+    "stubborn reproduce splits --episodes 60 --agents stubborn stubborn-plus oracle": (
         "stubborn reproduce splits --agents random oracle --episodes 1 --out {tmp}/paper",
     ),
-    "stubborn reproduce splits --agents stubborn stubborn-plus --semantics rednet": (
+    "stubborn reproduce splits --episodes 60 --agents stubborn stubborn-plus --semantics rednet": (
         "stubborn reproduce splits --agents random --semantics rednet --episodes 1 --out {tmp}/paper",
     ),
     f"{_RUN} --agent my_agent:make --semantics gt --episodes 2 --video --out runs/me": (
@@ -579,6 +574,18 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _FOREIGN.replace("foreign", "molmospaces") + 'write_scene(Path("{tmp}/scenes"))\'',
         "stubborn import molmospaces {tmp}/scenes --out {tmp}/houses",
     ),
+    "stubborn import robocasa kitchen.xml --root assets --out runs/kitchen": (
+        _FOREIGN.replace("foreign", "robocasa") + 'write_kitchen(Path("{tmp}/source"))\'',
+        "stubborn import robocasa {tmp}/source/scenes --root {tmp}/source --out {tmp}/houses --pictures 0",
+    ),
+    "stubborn import habitat hm3d/val --out runs/hm3d": (
+        _FOREIGN.replace("foreign", "scanned") + 'write_hm3d(Path("{tmp}/source"), pictures=False)\'',
+        "stubborn import habitat {tmp}/source --out {tmp}/houses --pictures 0",
+    ),
+    "stubborn import mesh flat.glb --out runs/flat": (
+        _FOREIGN.replace("foreign", "scanned") + 'write_glb(Path("{tmp}/source"))\'',
+        "stubborn import mesh {tmp}/source/flat.glb --out {tmp}/houses --pictures 0",
+    ),
     "stubborn houses check --house runs/mine/houses/house_00000.xml": (
         _HOUSES,
         "stubborn houses check --house {tmp}/houses/house_00000.xml --views 2",
@@ -597,6 +604,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn habitat examples/benchmark.py --episodes 10": Only(_PUBLISHED),
     "stubborn habitat 'agent.py --evaluation local' --split val --episodes 5": Only(_PUBLISHED),
     f"{_RUN} --agent habitat:agent:RandomAgent": Only(_PUBLISHED),
+    f"{_RUN} --agent 'process:env/bin/python stubborn_client.py Stubborn/eval.py --evaluation local --timestep_limit"
+    " 451' --config agent.interface=habitat": Only(_PUBLISHED),
     "stubborn bench --parts a,b,d --out runs/bench.json": Only(
         "takes minutes; tests/commands/test_bench.py runs its parts"
     ),
@@ -622,6 +631,10 @@ STAND_INS = (
     "my_traps",
     "my_models",
     "train.jsonl.gz",
+    "kitchen.xml",
+    "assets",
+    "hm3d/val",
+    "flat.glb",
     "scenes",
     "/usr/share/sweethome3d/furniture",
     "my_house.xml",

@@ -57,6 +57,9 @@ PIECES = (
 )  # fmt: skip
 
 
+Y_UP = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+
+
 def triangles_of(piece: Piece, *, edge_m: float = 10.0) -> Mesh:
     """Returns a piece as triangles with edges of at most `edge_m`."""
     made = trimesh.util.concatenate([trimesh.creation.box(bounds=np.array(box)) for box in piece.boxes])
@@ -115,6 +118,19 @@ def write_hm3d(folder: Path, *, name: str = "00800-two", edge_m: float = 10.0, p
 
 LABELS = {"potted plant": (14, "plant"), "office chair": (3, "chair")}
 """mpcat40 of the pieces whose name is not their category."""
+
+
+def write_glb(folder: Path, *, names: dict[str, str] | None = None) -> Path:
+    """Writes the home of two rooms as a GLB file, y up, a node for each piece."""
+    scene = trimesh.Scene()
+    for number, piece in enumerate(PIECES):
+        name = (names or {}).get(piece.kind, piece.kind.replace(" ", "_"))
+        made = triangles_of(piece)
+        made.apply_transform(Y_UP)
+        scene.add_geometry(made, node_name=f"{name}.{number:03d}", geom_name=f"{name}.{number:03d}")
+    folder.mkdir(parents=True, exist_ok=True)
+    scene.export(folder / "flat.glb")
+    return folder / "flat.glb"
 
 
 def write_mp3d(folder: Path, *, name: str = "two", edge_m: float = 10.0) -> Path:

@@ -18,7 +18,7 @@ from sim.errors import ConfigError
 from tools.research import result_tables
 from tools.research.resolution import houses_needed, resolution_record, shown_difference, variance_components
 from tools.research.result_archive import ARCHIVES, ArchivedRun, RunKey, newest, read_archive, read_archives
-from tools.research.result_definitions import comparisons, page_tables
+from tools.research.result_definitions import RESOLVED, comparisons, page_tables
 from tools.research.result_tables import (
     COMPARISONS,
     PAGE,
@@ -64,7 +64,7 @@ def test_the_shipped_csv_files_are_those_of_the_archive(runs: Mapping[RunKey, Ar
     assert read_csv(TABLES / RESULTS) == made
     pairs = list(comparisons())
     assert read_csv(TABLES / COMPARISONS) == with_families(pairs, [comparison_record(each, runs) for each in pairs])
-    resolved = [resolution_record(each, runs) for each in pairs if each.table == "headline" and each.primary]
+    resolved = [resolution_record(each, runs) for each in pairs if each.table in RESOLVED and each.primary]
     assert read_csv(TABLES / RESOLUTION) == resolved
 
 
@@ -139,6 +139,8 @@ def test_odd_folders_of_an_archive_are_skipped_with_a_message(tmp_path: Path) ->
         "older/good/results.jsonl": line,
         "../outside/config.json": config,
         "half/config.json": config,
+        "begun/config.json": config,
+        "begun/results.jsonl": "",
         "broken/config.json": "[",
         "broken/results.jsonl": line,
         "settings/config.json": json.dumps(CONFIG | {"settings": 3}),
@@ -152,7 +154,7 @@ def test_odd_folders_of_an_archive_are_skipped_with_a_message(tmp_path: Path) ->
     found = read_archive(archive_of(tmp_path, files), folder, said.append)
     assert [run.folder for run in found.values()] == ["good"]
     skipped = ["'../outside/config.json'", "'notes.txt'", "'linked/config.json'", "'half'", "'broken'", "'settings'"]
-    for name in (*skipped, "'unknown'"):
+    for name in (*skipped, "'unknown'", "'begun'"):
         assert sum(text.startswith(f"Skipped {name}") for text in said) == 1, name
     assert not (tmp_path / "in" / "outside").exists()
 

@@ -30,6 +30,7 @@ from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.house import House
 from sim.interface import FORWARD_M, TURN_RAD, Action, CameraModel
+from sim.reading import read_text
 from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot
 from sim.robot.menagerie import ENTRIES, PREFIX
@@ -185,7 +186,7 @@ def episode(args: Args, robot: str, agent: str, house: Path) -> Mapping[str, Any
         options += ["--robot", PREFIX + robot]
     if run.entry(options) != 0 or not (out / "results.jsonl").is_file():
         return None
-    return json.loads((out / "results.jsonl").read_text().splitlines()[0])
+    return json.loads(read_text(out / "results.jsonl", what="Results").splitlines()[0])
 
 
 def draw(args: Args, robot: str) -> None:

@@ -66,6 +66,7 @@ def resolution_record(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> d
     of_house = between + within / per_house
     record = {
         "split": pair.first.split,
+        "version": pair.first.version,
         "agent": pair.first.name,
         "minus_agent": pair.second.name,
         "semantics": pair.first.semantics,
@@ -86,7 +87,7 @@ def variance_components(values: NDArray[np.float64], index: NDArray[np.intp]) ->
     sizes = np.bincount(index)
     count, total = len(sizes), len(values)
     means = np.bincount(index, values) / sizes
-    within = float(((values - means[index]) ** 2).sum()) / (total - count)
+    within = float(((values - means[index]) ** 2).sum()) / max(total - count, 1)  # 0 with one episode in each house
     of_means = float((sizes * (means - values.mean()) ** 2).sum()) / (count - 1)
     size = (total - float((sizes**2).sum()) / total) / (count - 1)
     return max(0.0, (of_means - within) / size), within

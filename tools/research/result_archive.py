@@ -143,6 +143,8 @@ def read_archive(archive: Path, folder: Path, say: Say) -> dict[RunKey, Archived
     for name in names:
         try:
             run = read_run(folder / name)
+            if not run.lines:
+                raise ConfigError("it has no episode.")
             found.append(ArchivedRun(key_of(run), run, name))
         except ConfigError as error:
             say(f"Skipped '{name}': {error}")

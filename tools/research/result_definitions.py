@@ -6,7 +6,7 @@ A table shows only rows of `docs/tables/results.csv`, and all rows of one split 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from sim.analysis.metrics import COLLISIONS, EXPLORED, FIRST_SIGHT, SPL, STEPS, SUCCESS, TRAPPED, Metric
@@ -62,18 +62,26 @@ class PageTable:
             yield from (row for row, _ in cells)
 
 
-VERSION = "2.0.0"
+VERSION = "2.1.0"
 """Version of the splits of the headline table."""
 EARLIER = "2.0.0"
-"""That of the other tables, whose robot had the physics of version 0.2.0."""
-HEADLINE_EPISODES = {"val": 200, "large": 100, "hazards": 100, "test": 500}
+"""That of the other tables, which were measured with the physics of version 0.2.0."""
+HEADLINE_EPISODES = {"val": 60, "contact-val": 150, "contact-heldout": 60}
 HEADLINE = {
     "val": ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet"),
+    "contact-val": ("stubborn-plus gt",),
+    "contact-heldout": ("stubborn gt", "stubborn-plus gt"),
+}
+"""Agents and segmentation, by split."""
+FURTHER_EPISODES = {"large": 100, "hazards": 100, "test": 500}
+FURTHER = {
     "large": ("oracle gt", "stubborn gt", "stubborn rednet", "stubborn-plus rednet"),
     "hazards": ("oracle gt", "stubborn gt", "stubborn rednet", "stubborn-plus rednet"),
     "test": ("stubborn rednet", "stubborn-plus rednet"),
 }
-"""Agents and segmentation, by split."""
+"""The same on further splits, of the earlier version."""
+RESOLVED = ("headline", "further")
+"""Tables whose primary comparisons have a row in resolution.csv."""
 ABLATION = {
     "stubborn-i": "I: none",
     "stubborn-ii": "II: untrap moves",
@@ -119,24 +127,27 @@ def run_key(split: str, name: str, semantics: str, version: str = EARLIER) -> Ru
     return RunKey(split, agent, options, semantics, version)
 
 
-def _headline_key(split: str, agent: str) -> RunKey:
+def _of_agent(split: str, agent: str, version: str) -> RunKey:
     """Returns the key of an entry of `HEADLINE`, such as "stubborn gt"."""
     name, semantics = agent.split()
-    return run_key(split, name, semantics, VERSION)
+    return run_key(split, name, semantics, version)
 
 
 def page_tables() -> tuple[PageTable, ...]:
     """Returns the tables of the page."""
-    return _headline(), _ablation(), _explorers(), _network()
+    return (
+        _agents("headline", HEADLINE, HEADLINE_EPISODES, VERSION),
+        _agents("further", FURTHER, FURTHER_EPISODES, EARLIER),
+        _ablation(),
+        _explorers(),
+        _network(),
+    )
 
 
 def comparisons() -> Iterator[Comparison]:
     """Yields the comparisons that the page may quote."""
-    for split, episodes in HEADLINE_EPISODES.items():
-        present = [_headline_key(split, agent) for agent in HEADLINE[split]]
-        for second, first in itertools.combinations(present, 2):
-            primary = second.agent == "stubborn" and first.semantics == second.semantics
-            yield Comparison("headline", first, second, episodes, primary)
+    yield from _agents_compared("headline", HEADLINE, HEADLINE_EPISODES, VERSION)
+    yield from _agents_compared("further", FURTHER, FURTHER_EPISODES, EARLIER)
     *rows, whole = ABLATION
     for split in ABLATION_SPLITS:
         for name in rows:
@@ -152,6 +163,17 @@ def comparisons() -> Iterator[Comparison]:
     yield from _network_comparisons()
 
 
+def _agents_compared(
+    table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int], version: str
+) -> Iterator[Comparison]:
+    """Yields each pair of agents of a split; those of our two agents with the same segmentation are primary."""
+    for split, names in agents.items():
+        present = [_of_agent(split, agent, version) for agent in names]
+        for second, first in itertools.combinations(present, 2):
+            primary = second.agent == "stubborn" and first.semantics == second.semantics
+            yield Comparison(table, first, second, episodes[split], primary)
+
+
 def _network_comparisons() -> Iterator[Comparison]:
     """Yields, for each split and segmentation of the table, each row minus the first one."""
     keys: dict[tuple[str, str, int], list[RunKey]] = {}
@@ -162,18 +184,15 @@ def _network_comparisons() -> Iterator[Comparison]:
         yield from (Comparison("network", first, second, episodes) for first in others)
 
 
-def _headline() -> PageTable:
+def _agents(table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int], version: str) -> PageTable:
     rows = []
-    for split, agent in ((split, agent) for split, agents in HEADLINE.items() for agent in agents):
+    for split, agent in ((split, agent) for split, names in agents.items() for agent in names):
         name, semantics = agent.split()
-        row, count = (
-            RowKey(run_key(split, name, semantics, VERSION), HEADLINE_EPISODES[split]),
-            HEADLINE_EPISODES[split],
-        )
+        row = RowKey(_of_agent(split, agent, version), episodes[split])
         shown = "-" if name == "oracle" else "truth" if semantics == "gt" else "network"
-        rows.append(((f"{split}, {count}", f"`{name}`", shown), _cells(row, (SUCCESS, SPL))))
+        rows.append(((f"{split}, {row.episodes}", f"`{name}`", shown), _cells(row, (SUCCESS, SPL))))
     header = ("split, episodes", "agent", "segmentation", "success %", "SPL")
-    return PageTable("headline", header, tuple(rows))
+    return PageTable(table, header, tuple(rows))
 
 
 def _ablation() -> PageTable:

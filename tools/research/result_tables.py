@@ -45,6 +45,7 @@ from tools.research.result_definitions import (
     MEANS,
     MEDIAN,
     PRIMARY_METRICS,
+    RESOLVED,
     Comparison,
     PageTable,
     RowKey,
@@ -87,7 +88,7 @@ def main(args: Args) -> int:
         results = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
         pairs = list(comparisons())
         compared = with_families(pairs, [comparison_record(each, runs) for each in pairs])
-        resolved = [resolution_record(each, runs) for each in pairs if each.table == "headline" and each.primary]
+        resolved = [resolution_record(each, runs) for each in pairs if each.table in RESOLVED and each.primary]
     page = fill_page(read_text(args.page, what="--page"), results)
     wanted = {
         args.tables / RESULTS: to_csv(results),

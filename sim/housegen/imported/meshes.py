@@ -54,9 +54,9 @@ def read_parts(entry: Entry) -> tuple[Part, ...]:
     if kind not in _FORMATS:
         raise Skipped(f"its format '{kind}' is none of {', '.join(_FORMATS)}")
     content = entry.read(entry.file)
-    resolver = _resolver(trimesh, entry.read, posixpath.dirname(entry.file))
+    files = resolver(trimesh, entry.read, posixpath.dirname(entry.file))
     try:
-        scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, resolver=resolver, process=False)
+        scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, resolver=files, process=False)
         raw = [_coloured(mesh) for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)]
     except Exception as error:  # a reader meets any error in a broken file
         raise Skipped(f"its mesh cannot be read ({type(error).__name__}: {str(error)[:80]})") from None
@@ -78,7 +78,7 @@ def library(name: str, *, extra: str = "models") -> Any:
         ) from None
 
 
-def _resolver(trimesh: Any, read: Callable[[str], bytes], folder: str) -> Any:
+def resolver(trimesh: Any, read: Callable[[str], bytes], folder: str) -> Any:
     """Returns trimesh's access to the files that a model names: materials, textures, buffers."""
 
     class Inside(trimesh.resolvers.Resolver):
@@ -97,7 +97,7 @@ def _resolver(trimesh: Any, read: Callable[[str], bytes], folder: str) -> Any:
             return []
 
         def namespaced(self, namespace: str) -> Any:
-            return _resolver(trimesh, read, posixpath.join(folder, namespace))
+            return resolver(trimesh, read, posixpath.join(folder, namespace))
 
     return Inside()
 

@@ -121,7 +121,7 @@ def test_a_missing_mesh_is_reported_in_one_sentence(tmp_path: Path) -> None:
 
 def test_a_house_may_have_names_that_begin_with_robot_but_not_with_our_prefix(tmp_path: Path) -> None:
     spec = room(6, 6).spec
-    for number, name in enumerate(("stubborn_robot/base", "stubborn_robot/arm")):
+    for number, name in enumerate(("robot/base", "robot/arm")):
         body = spec.worldbody.add_body(name=name, pos=[1.0 + number, 1.0, 0.4])
         body.add_geom(name=f"table_{number:02d}", type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.2, 0.2, 0.4])
     file = tmp_path / "house.xml"

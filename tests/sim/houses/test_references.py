@@ -238,8 +238,10 @@ def test_attached_models_are_part_of_the_house_with_their_meshes_and_names(tmp_p
         ('<asset><model name="m" file="lamp.xml"/></asset><worldbody><attach model="m"/></worldbody>',
          '<attach model="m"/>', "included more than once"),
         ("<worldbody>" + '<body name="b"/>' * 2 + "</worldbody>", '<attach model="m"/>', "repeated name"),
-        ("<worldbody>" + "<geom/>" * 60_000 + "</worldbody>", '<attach model="m"/><attach model="m" prefix="b"/>',
-         "more than 100000 elements"),
+        pytest.param(
+            "<worldbody>" + "<geom/>" * 60_000 + "</worldbody>", '<attach model="m"/><attach model="m" prefix="b"/>',
+            "more than 100000 elements", marks=pytest.mark.slow,
+        ),
     ],
 )  # fmt: skip
 def test_attached_models_are_checked_like_the_house(lamp: str, world: str, message: str, tmp_path: Path) -> None:

@@ -72,6 +72,7 @@ def homes(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Path, Pat
     return made
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(
     ("name", "kinds", "chairs"),
     [("hm3d", ["room", "room"], 1), ("mp3d", ["living_room", "bedroom"], 1),

@@ -5,10 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 import trimesh
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from sim.commands.importing import mesh as command
@@ -22,22 +21,7 @@ from sim.importers.mesh import find_files, import_mesh
 from sim.importers.mesh_house import MeshConfig
 from sim.importers.obj import read_obj
 from sim.world.check import check_own_house
-from tests.helpers.scanned import PIECES, triangles_of
-
-Y_UP = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
-
-
-def write_glb(folder: Path, *, names: dict[str, str] | None = None) -> Path:
-    """Writes the home of two rooms as a GLB file, y up, a node for each piece."""
-    scene = trimesh.Scene()
-    for number, piece in enumerate(PIECES):
-        name = (names or {}).get(piece.kind, piece.kind.replace(" ", "_"))
-        made = triangles_of(piece)
-        made.apply_transform(Y_UP)
-        scene.add_geometry(made, node_name=f"{name}.{number:03d}", geom_name=f"{name}.{number:03d}")
-    folder.mkdir(parents=True, exist_ok=True)
-    scene.export(folder / "flat.glb")
-    return folder / "flat.glb"
+from tests.helpers.scanned import PIECES, triangles_of, write_glb
 
 
 def write_obj(folder: Path) -> Path:
@@ -155,6 +139,8 @@ LINES = st.sampled_from(
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(LINES, max_size=12))
+@example(["v 0 0 0", "v 0 0 0", "v 1", "f 1 2 3"])
+@example(["v 0 0 0", "v 1 0 0", "v 0 1 0", "vt", "vt 1", "f 1/1 2/2 3/1"])
 def test_any_lines_of_an_obj_file_give_surfaces_or_one_line(
     tmp_path_factory: pytest.TempPathFactory, lines: list[str]
 ) -> None:

@@ -44,7 +44,7 @@ def test_the_bumper_says_where_the_wall_touches(house: Path, yaw_rad: float, sec
     assert last.tolist() == [int(sector == number) for number in range(6)]
 
 
-def test_odometry_is_the_true_pose_on_a_dry_floor_and_drifts_with_encoders_that_err(house: Path) -> None:
+def test_odometry_is_the_true_pose_on_a_dry_floor_and_drifts_with_wrong_encoders(house: Path) -> None:
     start, actions = Pose(-2.0, 0.0, 0.5), [LEFT, FORWARD, FORWARD, RIGHT, FORWARD]
     exact = readings(house, "odometry", actions, start)
     np.testing.assert_allclose(exact[0], 0.0, atol=1e-3)

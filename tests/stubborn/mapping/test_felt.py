@@ -115,8 +115,13 @@ def test_stops_that_face_apart_are_no_pane():
 def test_the_same_stop_twice_also_gets_the_marks_straight_ahead():
     poses = [before_pane(0.0), before_pane(0.3), before_pane(0.6)]
     again = before_pane(0.61)
-    assert not marked(felt(*poses)[0], again.ahead(0.22)[0] + 0.05, again.y_m)
-    assert marked(felt(*poses, again)[0], again.ahead(0.22)[0] + 0.05, again.y_m)
+    once, twice = felt(*poses), felt(*poses, again)
+    assert not marked(once[0], again.ahead(0.27)[0], again.y_m)
+    assert marked(twice[0], again.ahead(0.27)[0], again.y_m)
+    assert not once[1].pushes
+    assert twice[1].pushes
+    twice[1].add(twice[0], before_pane(1.0))
+    assert not twice[1].pushes
 
 
 def test_doubt_drops_single_marks_first_and_panes_next():
