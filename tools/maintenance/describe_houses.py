@@ -73,6 +73,7 @@ folder.
 | `test` | a final measurement: nothing is chosen by its results | 34 | 2 to 30 |
 | `large` | houses of more than 300 m2, five of them with two storeys | 30 | 12 to 60 |
 | `hazards` | obstacles that depth misses or shows as passable | 30 | 2 to 30 |
+| `large-test`, `hazards-test` | other houses by the same rules, for a final measurement | 30 | as above |
 | `train` | training | 10 | 2 to 30 |
 | `contact-*` | traps, 30 a family: [val, test and heldout](../../docs/traps.md) | 1 | 2 to 11 |
 

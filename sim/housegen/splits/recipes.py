@@ -276,6 +276,8 @@ SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
         "test": _heldout("test", 20_000, _TEST),
         "large": _heldout("large", 30_000, _LARGE),
         "hazards": _heldout("hazards", 40_000, _HAZARDS),
+        "large-test": _heldout("large-test", 70_000, _LARGE),
+        "hazards-test": _heldout("hazards-test", 60_000, _HAZARDS),
     }
 )
 """Recipes of the houses shipped as files, by split, in the order of the episodes; a quarter of the houses of val and

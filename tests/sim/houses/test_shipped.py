@@ -36,7 +36,7 @@ from tests.helpers.sampling import sample
 FIRST_FRESH_SEED = 900_000
 """No split has such a seed."""
 FRESH: list[tuple[Pool, int]] = [(pool, FIRST_FRESH_SEED + n) for n in range(15) for pool in ("train", "heldout")]
-SPLITS = ("val", "test", "large", "hazards")
+SPLITS = ("val", "test", "large", "large-test", "hazards", "hazards-test")
 SHIPPED = [(split, house) for split in SPLITS for house in load_split(split).houses]
 LISTED = [("train", house) for house in load_split("train").houses[::10]] if "train" in shipped_splits() else []
 CASES = [*sample([*SHIPPED, *LISTED], 1), *sample(FRESH, 1)]
