@@ -33,6 +33,10 @@ class LookConfig:
     """A look continues until the probability falls below this share of `visit`."""
     most_looks: int = 2
     """A track is looked at no more than this many times."""
+    unseen_steps: float = 120.0
+    """The probability that no goal was in view falls with this number of steps, exponentially; see `believed`."""
+    missed: float = 0.15
+    """Probability that a goal that was in view is none of the tracks."""
     look_m: tuple[float, float] = (1.3, 2.2)
     """Distances to look from: the camera sees the floor, and so a whole low object, from 1.43 m on."""
     apart_rad: float = math.radians(45.0)
@@ -60,6 +64,10 @@ class LookConfig:
                 "LookConfig needs slack and keep in [0, 1] and visit in (0, 1], "
                 f"got {self.slack}, {self.keep} and {self.visit}."
             )
+        if not (self.unseen_steps > 0.0 and 0.0 <= self.missed <= 1.0):
+            raise ConfigError(
+                f"LookConfig needs unseen_steps > 0 and missed in [0, 1], got {self.unseen_steps} and {self.missed}."
+            )
         if not 0.0 < self.look_m[0] < self.look_m[1]:
             raise ConfigError(f"LookConfig.look_m must be two growing distances > 0 m, got {self.look_m}.")
         for name in ("most_looks", "per_metre", "step_back_steps", "steps_per_metre", "patience_steps", "patience_m"):
@@ -70,6 +78,20 @@ class LookConfig:
         """Returns the probability from which a track is accepted when this many steps are left."""
         left, bar = zip(*self.bar, strict=True)
         return float(np.interp(steps_left, left, bar))
+
+
+def believed(
+    probability: Float32[np.ndarray, " numbers"], step: int, config: LookConfig
+) -> Float32[np.ndarray, " numbers"]:
+    """Returns the probability of the goal for each track, given that the house has a goal.
+
+    The tracks are taken as independent, and so is a goal that is none of them: it was not in view so far, or it was
+    missed. The more was seen without another candidate, the more probable is the one that was seen.
+    """
+    unseen = math.exp(-step / config.unseen_steps)
+    elsewhere = unseen + config.missed * (1.0 - unseen)
+    nothing = (1.0 - elsewhere) * np.prod(1.0 - probability.astype(np.float64))
+    return (probability / max(1.0 - nothing, 1e-6)).clip(max=1.0).astype(np.float32)
 
 
 class Verdicts:
@@ -94,6 +116,8 @@ class Verdicts:
         self.looks: dict[int, int] = {}
         self.bar = 1.0
         """The probability from which a track is accepted now."""
+        self.rated: Float32[np.ndarray, " numbers"] = np.zeros(1, np.float32)
+        """The probability by which each track is decided on: that of `believed` for tracks that had a look."""
 
     def update(
         self,
@@ -115,9 +139,10 @@ class Verdicts:
         c = self.config
         steps_left = self.max_steps - step
         self.bar = 0.5 if self.exact else c.bar_with(steps_left)
+        self.rated = probability if self.exact else self._rated(probability, evidence, step)
         in_time = c.steps_per_metre * distance_m <= steps_left
-        passes = (probability >= self.bar) & (in_time | self.exact)
-        remains = probability >= (1.0 - c.slack) * self.bar
+        passes = (self.rated >= self.bar) & (in_time | self.exact)
+        remains = self.rated >= (1.0 - c.slack) * self.bar
         for track in np.flatnonzero(passes & (distance_m <= evidence.config.rings_m[0])).tolist():
             passes[track] = not self._needs_a_step_back(track, evidence, steps_left)
         self.accepted = {t for t in self.accepted if remains[t]} | set(np.flatnonzero(passes).tolist())
@@ -133,6 +158,16 @@ class Verdicts:
                 self.rejected.add(track)
             else:
                 self.doubtful.append(track)
+
+    def _rated(
+        self, probability: Float32[np.ndarray, " numbers"], evidence: Evidence, step: int
+    ) -> Float32[np.ndarray, " numbers"]:
+        """Returns the probabilities, in place of those of `believed` for tracks that were seen well in a look."""
+        result, believed_in = probability.copy(), believed(probability, step, self.config)
+        for track in {*self.looks, *self.rejected, *self.accepted}:
+            if track in self.rejected or evidence.near_sectors(track).any():
+                result[track] = believed_in[track]
+        return result
 
     def _needs_a_step_back(self, track: int, evidence: Evidence, steps_left: int) -> bool:
         """Returns True for a near track that was never seen whole, if it has had no look yet and there is time."""

@@ -19,7 +19,8 @@ from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, ConfigError
 from stubborn.detection.evidence import Evidence, EvidenceConfig
 from stubborn.detection.fusion import Fusion
-from stubborn.kernels.tracks import claim, label_pixels, means_by_track, overlaps_of, regions_of, voxels_of
+from stubborn.detection.shape import features_of
+from stubborn.kernels.tracks import claim, label_pixels, means_by_track, overlaps_of, regions_of, shapes_of, voxels_of
 from stubborn.mapping.projection import Rays
 
 STRUCTURE = (
@@ -151,7 +152,8 @@ class Tracks:
         if self.in_view.size:
             x_m, y_m = self.middles(self.in_view)
             seen = means[self.in_view], pixels[self.in_view]
-            self.evidence.add(self.in_view, *seen, pose.x_m - x_m, pose.y_m - y_m)
+            shape = features_of(self.measures(self.in_view)) if self.evidence.fusion.shape else None
+            self.evidence.add(self.in_view, *seen, pose.x_m - x_m, pose.y_m - y_m, shape)
 
     def probabilities(self, goal: str, least_voxels: int = 1) -> Float32[np.ndarray, " numbers"]:
         """Returns the probability of the goal for each track; 0 for entry 0 and for tracks with fewer voxels."""
@@ -190,6 +192,11 @@ class Tracks:
     def sizes(self, tracks: Int[np.ndarray, " n"]) -> Int[np.ndarray, " n"]:
         """Returns the number of voxels of each track; 0 for a track that was merged into another one."""
         return self._size[tracks]
+
+    def measures(self, tracks: Int[np.ndarray, " n"]) -> Float32[np.ndarray, "n measures"]:
+        """Returns the measures of the shape of each track; see `stubborn.detection.shape`."""
+        box = self._low[tracks], self._high[tracks]
+        return shapes_of(self._owner, tracks.astype(np.int64), *box, self._shape, self._edge_m)
 
     def shown(
         self, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose, columns: int

@@ -263,6 +263,7 @@ def test_a_stop_at_a_part_judges_the_track_that_is_approached_and_not_a_better_o
     tracks._low[elsewhere] = tracks._high[elsewhere] = tracks._low[near] + (60, 0, 0)
     seeker.probability = np.append(seeker.probability, np.float32(0.99))
     seeker.probability[near], seeker.verdicts.bar = 0.75, 0.8
+    seeker.verdicts.rated = seeker.probability
     seeker._accepted, seeker._targets = [near, elsewhere], [near]
     owned = seeker.cells_of(agent.navmap, [near, elsewhere])
     of_part = tuple(int(each[0]) for each in np.nonzero(~owned))
@@ -274,9 +275,9 @@ def test_a_stop_at_a_part_judges_the_track_that_is_approached_and_not_a_better_o
     assert seeker.confidence == pytest.approx(0.85)
 
 
-@pytest.mark.parametrize("wrong", [{"as_good": -0.1}, {"core_share": 1.5}, {"part_share": -1.0}])
+@pytest.mark.parametrize("wrong", [{"as_good": -0.1}, {"core_share": 1.5}, {"part_share": -1.0}, {"heart_m": 0.0}])
 def test_wrong_settings_are_refused(wrong: dict):
-    with pytest.raises(ConfigError, match="TrackSeekerConfig needs"):
+    with pytest.raises(ConfigError, match="TrackSeekerConfig"):
         TrackSeekerConfig(**wrong)
 
 
@@ -293,6 +294,25 @@ def test_the_robot_drives_to_the_core_of_a_track_that_holds_a_part_of_another_ob
     agent.navmap.score_sum[other] = 2.0
     assert not seeker.cells_of(agent.navmap, [track])[other]
     assert seeker.cells_of(agent.navmap, [track]).sum() == mask.sum() - 1
+
+
+def test_the_robot_drives_to_the_cells_around_the_best_one_where_there_is_a_path(monkeypatch: pytest.MonkeyPatch):
+    agent, seeker, _, track = tracked()
+    seeker._targets = [track]
+    window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
+    given: list[np.ndarray] = []
+    monkeypatch.setattr(seeker, "_approach", lambda navmap, window, pose, cells, resort: given.append(cells))
+    rows, cols = np.nonzero(seeker.cells_of(agent.navmap, [track]))
+    agent.navmap.score_sum[rows[-1], cols[-1]] = agent.navmap.score_sum.max() + 0.5  # the best cell is at a corner
+    seeker._drive_to(agent.navmap, window, Pose(0.0, 0.0, 0.0), [track], LastResort.NONE)
+    hearts, whole = given[0], given[1]
+    assert hearts.any()
+    assert (hearts <= whole).all()
+    best = seeker._best_cell(agent.navmap, track)
+    rows, cols = np.nonzero(hearts)
+    assert 0.05 * np.hypot(rows - best[0], cols - best[1]).max() <= seeker.config.heart_m + 1e-6
+    assert hearts.sum() < whole.sum()
+    assert not seeker._to_hearts
 
 
 GLASS_M = 0.96
