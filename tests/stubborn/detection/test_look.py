@@ -103,7 +103,8 @@ def test_a_goal_exists_so_a_candidate_is_more_probable_the_more_was_seen_without
 def test_only_a_track_that_was_looked_at_is_judged_by_what_else_there_is():
     assert Judged().at(0.65, 150, (0.0,)) == "doubtful"
     assert Judged(looks=1).at(0.65, 150, (0.0,)) == "accepted"
-    assert Judged(looks=2).at(0.65, 150) == "accepted"
+    track = Judged(looks=2)
+    assert [track.at(0.65, 150) for _ in range(2)] == ["rejected", "accepted"]
     assert Judged(looks=1).at(0.65, 150) == "doubtful"  # the look did not show it
 
 

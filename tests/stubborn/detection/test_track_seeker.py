@@ -107,7 +107,7 @@ def test_a_last_resort_is_taken_so_many_steps_before_the_end_of_the_episode(
     seeker._accepted = [1]
     monkeypatch.setattr(seeker, "_best_accepted", lambda pose: [1])
     monkeypatch.setattr(seeker, "_with_parts", lambda tracks: tracks)
-    monkeypatch.setattr(seeker, "_drive_in", lambda *given: resorts.append(given[-1]) or Approach(None, 0.0, (0, 0)))
+    monkeypatch.setattr(seeker, "_drive_to", lambda *given: resorts.append(given[-1]) or Approach(None, 0.0, (0, 0)))
     window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
     for step in (max_steps - 81, max_steps - 80):
         seeker.approach(agent.navmap, window, Pose(0.0, 0.0, 0.0), step)
@@ -297,13 +297,15 @@ def test_the_robot_drives_to_the_core_of_a_track_that_holds_a_part_of_another_ob
 
 
 def test_the_robot_drives_to_the_cells_around_the_best_one_where_there_is_a_path(monkeypatch: pytest.MonkeyPatch):
-    agent, seeker, _, track = tracked()
+    agent, seeker, tracks, track = tracked()
     seeker._targets = [track]
     window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
     given: list[np.ndarray] = []
     monkeypatch.setattr(seeker, "_approach", lambda navmap, window, pose, cells, resort: given.append(cells))
-    rows, cols = np.nonzero(seeker.cells_of(agent.navmap, [track]))
-    agent.navmap.score_sum[rows[-1], cols[-1]] = agent.navmap.score_sum.max() + 0.5  # the best cell is at a corner
+    index, mask = tracks.footprint(track)
+    agent.navmap.score_sum[index], agent.navmap.frames_in_view[index] = 9.0, 10
+    rows, cols = np.nonzero(mask)
+    agent.navmap.score_sum[index[0].start + rows[-1], index[1].start + cols[-1]] = 9.5  # the best cell is at an end
     seeker._drive_to(agent.navmap, window, Pose(0.0, 0.0, 0.0), [track], LastResort.NONE)
     hearts, whole = given[0], given[1]
     assert hearts.any()
