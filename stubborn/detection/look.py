@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Float32
+from jaxtyping import Bool, Float, Float32, Int
 
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError
@@ -25,8 +25,8 @@ class LookConfig:
     """Pairs of steps left and probability, interpolated linearly: a track is accepted from this probability on. A wrong
     STOP costs the chance to succeed later, which falls as the steps run out."""
     slack: float = 0.12
-    """The robot keeps approaching an accepted track until its probability is below the bar by this share of the bar. It
-    stops only at a track above the bar."""
+    """The robot keeps approaching an accepted track, and stops at it, until its probability is below the bar by this
+    share of the bar: views of one object differ, and to leave an object that was reached costs the whole path."""
     visit: float = 0.3
     """A track below the bar is looked at if it has at least this probability."""
     keep: float = 0.6
@@ -81,16 +81,29 @@ class LookConfig:
 
 
 def believed(
-    probability: Float32[np.ndarray, " numbers"], step: int, config: LookConfig
+    probability: Float32[np.ndarray, " numbers"],
+    step: int,
+    config: LookConfig,
+    objects: Int[np.ndarray, " numbers"] | None = None,
 ) -> Float32[np.ndarray, " numbers"]:
     """Returns the probability of the goal for each track, given that the house has a goal.
 
-    The tracks are taken as independent, and so is a goal that is none of them: it was not in view so far, or it was
+    The objects are taken as independent, and so is a goal that is none of them: it was not in view so far, or it was
     missed. The more was seen without another candidate, the more probable is the one that was seen.
+
+    Args:
+        probability: probability of the goal for each track, without this knowledge.
+        step: step of the episode.
+        config: how soon most of a house was in view.
+        objects: a number of the object of each track: an object can be several tracks; None: each is its own.
     """
     unseen = math.exp(-step / config.unseen_steps)
     elsewhere = unseen + config.missed * (1.0 - unseen)
-    nothing = (1.0 - elsewhere) * np.prod(1.0 - probability.astype(np.float64))
+    best = probability.astype(np.float64)
+    if objects is not None:
+        best = np.zeros(len(probability))
+        np.maximum.at(best, objects, probability)
+    nothing = (1.0 - elsewhere) * np.prod(1.0 - best)
     return (probability / max(1.0 - nothing, 1e-6)).clip(max=1.0).astype(np.float32)
 
 
@@ -126,6 +139,7 @@ class Verdicts:
         evidence: Evidence,
         step: int,
         pursued: int | None = None,
+        objects: Int[np.ndarray, " numbers"] | None = None,
     ) -> None:
         """Accepts and rejects tracks, and finds those that are worth a look.
 
@@ -135,14 +149,15 @@ class Verdicts:
             evidence: the views of the tracks.
             step: step of the episode.
             pursued: the track of the present look.
+            objects: see `believed`.
         """
         c = self.config
         steps_left = self.max_steps - step
         self.bar = 0.5 if self.exact else c.bar_with(steps_left)
-        self.rated = probability if self.exact else self._rated(probability, evidence, step)
+        self.rated = probability if self.exact else self._rated(probability, evidence, step, objects)
         in_time = c.steps_per_metre * distance_m <= steps_left
         passes = (self.rated >= self.bar) & (in_time | self.exact)
-        remains = self.rated >= (1.0 - c.slack) * self.bar
+        remains = self.rated >= self.least
         for track in np.flatnonzero(passes & (distance_m <= evidence.config.rings_m[0])).tolist():
             passes[track] = not self._needs_a_step_back(track, evidence, steps_left)
         self.accepted = {t for t in self.accepted if remains[t]} | set(np.flatnonzero(passes).tolist())
@@ -159,11 +174,20 @@ class Verdicts:
             else:
                 self.doubtful.append(track)
 
+    @property
+    def least(self) -> float:
+        """The probability from which an accepted track stays accepted."""
+        return (1.0 - self.config.slack) * self.bar
+
     def _rated(
-        self, probability: Float32[np.ndarray, " numbers"], evidence: Evidence, step: int
+        self,
+        probability: Float32[np.ndarray, " numbers"],
+        evidence: Evidence,
+        step: int,
+        objects: Int[np.ndarray, " numbers"] | None,
     ) -> Float32[np.ndarray, " numbers"]:
         """Returns the probabilities, in place of those of `believed` for tracks that were seen well in a look."""
-        result, believed_in = probability.copy(), believed(probability, step, self.config)
+        result, believed_in = probability.copy(), believed(probability, step, self.config, objects)
         for track in {*self.looks, *self.rejected, *self.accepted}:
             if track in self.rejected or evidence.near_sectors(track).any():
                 result[track] = believed_in[track]

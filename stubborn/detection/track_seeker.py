@@ -192,7 +192,8 @@ class TrackSeeker:
             # The cell may belong to a part that is not accepted itself: then the decision is on the approached tracks.
             near = at_cell or [t for t in self._targets if t in self._accepted] or self._accepted
             track = max(near, key=lambda t: self.probability[t])
-            if self.verdicts.rated[track] < self.verdicts.bar:  # it seemed more probable from afar
+            least = self.verdicts.bar if self.verdicts.exact else self.verdicts.least
+            if self.verdicts.rated[track] < least:  # it seemed more probable from afar
                 self.verdicts.give_up(track)
                 self._accepted.remove(track)
                 return False
@@ -254,7 +255,8 @@ class TrackSeeker:
         tracks = self._of_episode()
         x_m, y_m = tracks.middles(np.arange(len(self.probability)))
         distance_m = np.hypot(x_m - pose.x_m, y_m - pose.y_m)
-        self.verdicts.update(self.probability, distance_m, tracks.evidence, self.step, self.pursued)
+        objects = None if self.verdicts.exact else tracks.objects(self.probability, self.config.part_gap_voxels)
+        self.verdicts.update(self.probability, distance_m, tracks.evidence, self.step, self.pursued, objects)
         self._accepted = [t for t in sorted(self.verdicts.accepted) if self._is_due(t)]
         drawn, self._drawn_rejected = self._drawn_rejected, set(self.verdicts.rejected)
         return drawn != self._drawn_rejected

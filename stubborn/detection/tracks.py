@@ -58,6 +58,8 @@ class TrackConfig:
     part_share: float = 0.4
     """A region of the goal with less than this share of a track's pixels in the frame is an object on it, not the track
     itself; likewise a region of another class on a track of the goal."""
+    part_of: float = 0.1
+    """Tracks next to each other that have at least this probability of the goal count as one object, see `objects`."""
     least_voxels: int = 6
     """With an imperfect detector, a track with fewer voxels is not a candidate: 6 voxels are 0.06 m2 of visible
     surface."""
@@ -180,6 +182,19 @@ class Tracks:
         """Returns those of `others` whose box is at most `gap_voxels` voxels from the box of track `number`."""
         apart = np.maximum(self._low[others] - self._high[number] - 1, self._low[number] - self._high[others] - 1)
         return others[apart.max(axis=1, initial=0) <= gap_voxels]
+
+    def objects(self, probability: Float32[np.ndarray, " numbers"], gap_voxels: int) -> Int[np.ndarray, " numbers"]:
+        """Returns the number of the object of each track: candidates next to each other may be parts of one object.
+
+        `probability` is that of the goal; only tracks with at least `part_of` of it are put together.
+        """
+        result = np.arange(len(probability))
+        likely = np.flatnonzero(probability >= self.config.part_of)
+        for track in likely[np.argsort(-probability[likely], kind="stable")].tolist():
+            if result[track] == track:
+                parts = self.near(track, likely, gap_voxels)
+                result[parts[result[parts] == parts]] = track
+        return result
 
     def footprint(self, number: int) -> tuple[tuple[slice, slice], Bool[np.ndarray, "rows cols"]]:
         """Returns the map cells of a track's voxels: rows and columns of a rectangle, and a mask over it."""

@@ -97,6 +97,8 @@ def test_a_goal_exists_so_a_candidate_is_more_probable_the_more_was_seen_without
     assert over_time == sorted(over_time)
     assert over_time[2] == pytest.approx(0.5 / (1.0 - 0.5 * 0.85), abs=0.05)
     assert believed(two, 300, config)[TRACK] < over_time[2]
+    one_object = np.array([0, 1, 1])
+    assert believed(two, 300, config, one_object)[TRACK] == pytest.approx(over_time[2])
     assert believed(np.array([0.0, 1.0], np.float32), 300, config).max() == 1.0
 
 
