@@ -33,6 +33,8 @@ class LookConfig:
     """A look continues until the probability falls below this share of `visit`."""
     most_looks: int = 2
     """A track is looked at no more than this many times."""
+    look_steps: int = 30
+    """A track is looked at for no more than this many steps, including those on the path."""
     unseen_steps: float = 120.0
     """The probability that no goal was in view falls with this number of steps, exponentially; see `believed`."""
     missed: float = 0.15
@@ -70,7 +72,15 @@ class LookConfig:
             )
         if not 0.0 < self.look_m[0] < self.look_m[1]:
             raise ConfigError(f"LookConfig.look_m must be two growing distances > 0 m, got {self.look_m}.")
-        for name in ("most_looks", "per_metre", "step_back_steps", "steps_per_metre", "patience_steps", "patience_m"):
+        for name in (
+            "most_looks",
+            "per_metre",
+            "step_back_steps",
+            "steps_per_metre",
+            "patience_steps",
+            "patience_m",
+            "look_steps",
+        ):
             if not getattr(self, name) >= 0:
                 raise ConfigError(f"LookConfig.{name} must be >= 0, got {getattr(self, name)}.")
 

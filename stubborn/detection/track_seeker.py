@@ -112,6 +112,7 @@ class TrackSeeker:
         self._targets: list[int] = []  # those that are approached
         self._retry_step: dict[int, int] = {}
         self._wait_steps: dict[int, int] = {}
+        self._look_steps: dict[int, int] = {}
         # Places (x and y in metres) without progress, and the step until which doubtful tracks there wait.
         self._left_spots: list[tuple[float, float, int]] = []
         self._went_nearer = False
@@ -159,8 +160,23 @@ class TrackSeeker:
             self.postpone(navmap, step)
             self.pursued = None
             found = self._pursue(navmap, window, pose, step)
+        if self._looks_too_long():
+            found = self._pursue(navmap, window, pose, step)
         self._drove = found is not None and found.route is not None
         return found
+
+    def _looks_too_long(self) -> bool:
+        """Counts the steps of looks at the pursued track, and rejects it if there are too many."""
+        track = self.pursued
+        if track is None or self.verdicts.exact:
+            return False
+        self._look_steps[track] = self._look_steps.get(track, 0) + 1
+        if self._look_steps[track] <= self.config.look.look_steps:
+            return False
+        self.verdicts.give_up(track)
+        self.verdicts.doubtful.remove(track)
+        self.pursued = None
+        return True
 
     def _pursue(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         resort = LastResort.STOP if step >= self._last_resort_step else LastResort.NONE
