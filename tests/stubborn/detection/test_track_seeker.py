@@ -179,6 +179,7 @@ def test_around_a_place_where_pursuit_got_nowhere_doubtful_tracks_wait(monkeypat
     agent, seeker, _, track = tracked()
     window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
     seeker._accepted, seeker.verdicts.doubtful, seeker._pursuit = [], [track], None
+    seeker.config = replace(seeker.config, look=replace(seeker.config.look, look_steps=200))
     monkeypatch.setattr(seeker, "_look", lambda *_: Approach(None, 0.0, (0, 0)))
     monkeypatch.setattr(seeker, "_set_aside", lambda tracks: None)  # it comes back as another track
     found = []
@@ -188,6 +189,16 @@ def test_around_a_place_where_pursuit_got_nowhere_doubtful_tracks_wait(monkeypat
         found.append(seeker.approach(agent.navmap, window, Pose(0.0, 0.0, 0.0), step) is not None)
     patience, wait = seeker.config.look.patience_steps, seeker.target.retry_after_steps
     assert found == [True] * patience + [False] * wait + [True] * (80 - patience - wait)
+
+
+def test_looks_at_a_track_end_after_a_number_of_steps(monkeypatch: pytest.MonkeyPatch):
+    agent, seeker, _, track = tracked()
+    window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
+    seeker._accepted, seeker.verdicts.doubtful, seeker._pursuit = [], [track], None
+    monkeypatch.setattr(seeker, "_look", lambda *_: Approach(None, 0.0, (0, 0)))
+    found = [seeker.approach(agent.navmap, window, Pose(2.0 * step, 0.0, 0.0), step) is not None for step in range(40)]
+    assert found == [True] * seeker.config.look.look_steps + [False] * (40 - seeker.config.look.look_steps)
+    assert track in seeker.verdicts.rejected
 
 
 def tracked() -> tuple[StubbornAgent, TrackSeeker, Tracks, int]:
