@@ -55,8 +55,8 @@ from stubborn.segmentation.dataset import (
     views_with,
 )
 from stubborn.segmentation.evaluation import Iou, evaluate
-from stubborn.segmentation.network import computes_bf16
 from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet, with_geometry
+from stubborn.segmentation.processor import computes_bf16
 from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.samples import Augmentation, Sampler, Samples
 from stubborn.segmentation.training import (
