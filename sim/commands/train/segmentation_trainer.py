@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import math
 import time
 from collections.abc import Iterator, Sequence
@@ -17,6 +16,7 @@ from torch import Tensor
 from torch.optim.swa_utils import AveragedModel
 from torch.utils.data import DataLoader, Subset
 
+from sim.commands.train.averaged_checkpoints import AveragedCheckpoints
 from sim.commands.train.segmentation_network import device_of, parameter_groups, precision_of, start_network
 from sim.commands.train.segmentation_options import MAY_CHANGE, Args, check
 from sim.commands.train.training_files import (
@@ -30,14 +30,8 @@ from sim.commands.train.training_files import (
 from sim.interface import CameraModel, ConfigError
 from sim.reading import Count, Number
 from stubborn.segmentation.balanced import Batches, ViewIndex
-from stubborn.segmentation.checkpoints import load_network, mean_of, save_network
-from stubborn.segmentation.dataset import (
-    list_shards,
-    pixel_counts,
-    spread_views,
-    stored_block_px,
-    stored_views,
-)
+from stubborn.segmentation.checkpoints import save_network
+from stubborn.segmentation.dataset import list_shards, pixel_counts, spread_views, stored_block_px, stored_views
 from stubborn.segmentation.evaluation import Iou, evaluate
 from stubborn.segmentation.networks import Network
 from stubborn.segmentation.recipe import PROGRESSIVE
@@ -111,6 +105,7 @@ class Trainer:
         self.first_step = 0
         self._printed_s = 0.0
         self.total = args.steps
+        self.checkpoints = AveragedCheckpoints(args.out, RECIPE.checkpoints)
         args.out.mkdir(parents=True, exist_ok=True)
         self._resume()
 
@@ -248,19 +243,11 @@ class Trainer:
 
     def _usable(self) -> Network:
         """Returns the mean of the averaged weights at this and the last evaluations, normalised for whole views."""
-        now: Network = copy.deepcopy(self.average.module)  # pyright: ignore[reportAssignmentType] - the same class
-        save_network(self.args.out / f"step-{self.step:07d}.safetensors", now)
-        files = self._checkpoints()
-        for file in files[: -RECIPE.checkpoints]:
-            file.unlink()
-        network = mean_of([load_network(file)[0] for file in files[-RECIPE.checkpoints :]]).to(self.device)
+        now: Network = self.average.module  # pyright: ignore[reportAssignmentType] - the same class
+        network = self.checkpoints.add(now, self.step).to(self.device)
         loader = DataLoader(self.whole, batch_size=16)
         set_normalisation(network, ((rgb.to(self.device), second.to(self.device)) for rgb, second, _ in loader))
         return network
-
-    def _checkpoints(self) -> list[Path]:
-        """Returns the files of the averaged weights at the last evaluations, the oldest first."""
-        return sorted(self.args.out.glob("step-*.safetensors"))
 
     def _card(self, iou: Iou, calibrated: Iou) -> dict[str, Any]:
         """Returns the metadata of the file of weights."""
@@ -323,9 +310,7 @@ class Trainer:
             print(f"continues from step {self.step}, {self.spent_s / 3600:.2f} h", flush=True)
         for name in ("train.csv", "val.csv"):  # also of a run that was killed before it wrote a state
             cut_rows(self.args.out / name, "step", self.step)
-        for file in self._checkpoints():
-            if int(file.stem.removeprefix("step-")) > self.step:
-                file.unlink()
+        self.checkpoints.cut(self.step)
 
     def _require_same(self, done: _Progress) -> None:
         if done.size != self.size:
