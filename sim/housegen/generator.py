@@ -28,6 +28,7 @@ from sim.housegen.furnishing.placement.surfaces import supports_items
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Catalogue
 from sim.housegen.furniture.item import Item
+from sim.housegen.ground import lay_ground
 from sim.housegen.hazards import PlacedHazard, draw_hazards
 from sim.housegen.mjcf.builder import HouseBuilder
 from sim.housegen.mjcf.merging import Assembler
@@ -40,7 +41,7 @@ from sim.housegen.upper_storey import Stairs, UpperStorey, draw_stairs, draw_upp
 from sim.houses.writing import house_text
 from sim.world.check import check_house
 
-GENERATOR_VERSION = 4
+GENERATOR_VERSION = 5
 """Increased whenever the same seed gives another house; the effect of `HouseConfig.exact` is recorded separately."""
 MAX_TRIES = 12
 MAX_REASONS = 3
@@ -132,6 +133,8 @@ def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Cata
             continue
         built = _build_within_limit(draft, config)
         spec = built.spec if built is not None else None
+        if spec is not None:
+            lay_ground(spec, house_text(spec), seed, POOL_STREAM[config.pool])
         faults = (
             check_house(spec, furnished=True)
             if spec is not None

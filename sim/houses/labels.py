@@ -21,6 +21,8 @@ from sim.errors import HouseError
 from sim.gl import mujoco
 from sim.interface import MPCAT40, MPCAT40_ID
 
+COVER_MASK = (8, 0)
+"""Contype and conaffinity of floors that only wheels and casters touch: furniture stands on the floor below."""
 RENDERED_GROUPS = 3
 """Geoms of groups 0, 1 and 2 are rendered; those of group 3 and above are collision geoms only."""
 VOID = "void"
@@ -123,6 +125,11 @@ def rendered_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
 def collidable_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
     """Returns (ngeom,) True for collision geoms."""
     return (model.geom_contype != 0) | (model.geom_conaffinity != 0)
+
+
+def cover_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
+    """Returns (ngeom,) True for floor coverings, for example rugs: geoms with the masks `COVER_MASK`."""
+    return (model.geom_contype == COVER_MASK[0]) & (model.geom_conaffinity == COVER_MASK[1])
 
 
 def geoms_of(model: mujoco.MjModel, prefix: str) -> NDArray[np.bool_]:

@@ -9,9 +9,10 @@ the other):
 geoms               masks        collide with
 =================== ============ =========================================================
 floor               1 / 0        wheels, casters, hull, movable
+covering            8 / 0        wheels, casters
 static              2 / 0        wheels, casters, hull, movable
 movable             2 / 7        floor, static, movable, wheels, casters, hull
-wheels, casters     0 / 3        floor, static, movable
+wheels, casters     0 / 11       floor, covering, static, movable
 hull                4 / 3        floor, static, movable
 =================== ============ =========================================================
 """
@@ -26,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.gl import mujoco
-from sim.houses.labels import ROBOT_PREFIX, geoms_of
+from sim.houses.labels import COVER_MASK, ROBOT_PREFIX, geoms_of
 from sim.interface import wrap_angle
 from sim.robot.config import RobotConfig
 
@@ -38,7 +39,7 @@ ROBOT_GROUP = 5
 FLOOR_MASK = (1, 0)
 STATIC_MASK = (2, 0)
 MOVABLE_MASK = (2, 7)
-WHEEL_MASK = (0, 3)
+WHEEL_MASK = (0, 3 | COVER_MASK[0])
 HULL_MASK = (4, 3)
 
 _CASTER_PRIORITY = 1000

@@ -11,6 +11,7 @@ from sim.errors import EpisodeError, PhysicsError
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.house import House
+from sim.houses.labels import cover_geoms
 from sim.interface import Action, SuccessRule, wrap_angle
 from sim.robot.body import Body
 from sim.robot.conditions import NOMINAL, Conditions
@@ -57,7 +58,8 @@ class World:
         self._levels_m = floor_levels(self.model, self.labels)
         self._floors = floor_geoms(self.model, self.labels)
         self._support = FloorSupport(self.model, self.data, self._floors, self.config)
-        self._floor_friction = self.model.geom_friction[self._floors, 0].copy()
+        self._ground = np.concatenate([self._floors, np.flatnonzero(cover_geoms(self.model))])
+        self._ground_friction = self.model.geom_friction[self._ground, 0].copy()
 
     @property
     def pose(self) -> Pose:
@@ -87,7 +89,7 @@ class World:
             EpisodeError: the hull would overlap an object there, or there is no floor.
         """
         mujoco.mj_resetData(self.model, self.data)
-        self.model.geom_friction[self._floors, 0] = self._floor_friction * conditions.floor_friction_scale
+        self.model.geom_friction[self._ground, 0] = self._ground_friction * conditions.floor_friction_scale
         self._place_on_floor(start)
         self._require_no_overlap(start)
         physics = self.config.physics
