@@ -12,8 +12,9 @@ import pytest
 
 from sim.commands import episodes as make_episodes
 from sim.commands.views import generate as generate_views
-from sim.commands.views.generate import FRESH_SEEDS_FROM, Args, main, plan
+from sim.commands.views.generate import FRESH_SEEDS_FROM, Args, ShardTask, main, make_shard, plan
 from sim.episodes.splits import load_split
+from sim.errors import HouseError
 from sim.housegen.furniture import CATALOGUE
 from sim.interface import ConfigError
 from stubborn.segmentation.dataset import list_shards, read_shard
@@ -133,6 +134,25 @@ def test_the_wide_pool_has_new_houses_only(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr(generate_views, "CATALOGUE", CATALOGUE.with_styles(throne))
     with pytest.raises(ConfigError, match="holds shards with styles_sha256 = "):
         main(Args(pool="wide", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
+
+
+def test_a_new_house_without_views_is_replaced_by_that_of_another_fixed_seed(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[int | None] = []
+
+    def shard_of(args: Args, config: object, task: ShardTask, seed: int | None) -> int:
+        tried.append(seed)
+        if len(tried) == 1:
+            raise HouseError("it shows too little")
+        return task.number
+
+    monkeypatch.setattr(generate_views, "_shard_of", shard_of)
+    args = Args(pool="wide", out=Path("x"))
+    assert make_shard(args, {}, ShardTask(3, 40, "wide", FRESH_SEEDS_FROM)) == 3
+    assert tried == [FRESH_SEEDS_FROM, FRESH_SEEDS_FROM + FRESH_SEEDS_FROM // 2]
+    tried.clear()
+    with pytest.raises(HouseError, match="shows too little"):
+        make_shard(args, {}, ShardTask(0, 40, "val_00", None))
+    assert tried == [None]
 
 
 @pytest.mark.parametrize(("pool", "free"), [("free", True), ("drawn", False)])

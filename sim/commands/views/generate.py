@@ -190,12 +190,24 @@ def views_per_shard(args: Args) -> int:
 def make_shard(args: Args, config: dict[str, Any], task: ShardTask) -> ShardNote:
     """Generates one shard, in any process.
 
+    A new house that cannot be generated, or shows too little, is replaced by that of another fixed seed.
+
     Raises:
         ConfigError: the shard cannot be written.
         HouseError: the house gives no views.
     """
+    if task.fresh_seed is None:
+        return _shard_of(args, config, task, None)
+    try:
+        return _shard_of(args, config, task, task.fresh_seed)
+    except HouseError:
+        return _shard_of(args, config, task, task.fresh_seed + FRESH_SEEDS_FROM // 2)
+
+
+def _shard_of(args: Args, config: dict[str, Any], task: ShardTask, fresh_seed: int | None) -> ShardNote:
+    """Generates the shard of the house of a seed; None: of a house of the split."""
     began = time.perf_counter()
-    house, styles = _house(args, task)
+    house, styles = _house(args, task, fresh_seed)
     scene = Scene(house, robot=RobotConfig(), camera=CameraModel(), profile=args.profile)
     house_s = time.perf_counter() - began
     try:
@@ -218,14 +230,11 @@ def _split(args: Args) -> Split:
     return load_split(args.split)
 
 
-def _house(args: Args, task: ShardTask) -> tuple[House, Mapping[str, str]]:
+def _house(args: Args, task: ShardTask, fresh_seed: int | None) -> tuple[House, Mapping[str, str]]:
     """Returns the house of a shard, and the styles of its instances by their names where it is a new one."""
-    if task.fresh_seed is None:
+    if fresh_seed is None:
         return _split(args).load_house(task.house), {}
-    try:
-        made = _made(args, task.fresh_seed)
-    except HouseError:  # this seed gives no house: another fixed one replaces it
-        made = _made(args, task.fresh_seed + FRESH_SEEDS_FROM // 2)
+    made = _made(args, fresh_seed)
     return House(task.house, made.spec), made.styles
 
 
