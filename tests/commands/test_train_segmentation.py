@@ -79,6 +79,7 @@ def test_training_writes_curves_and_weights_prints_its_loss_and_continues_a_run(
     assert load_network(tmp_path / "out/last.safetensors")[1]["step"] == 6
 
 
+@pytest.mark.costly
 def test_a_killed_run_continues_to_the_same_weights_and_has_no_row_twice(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
