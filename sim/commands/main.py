@@ -52,6 +52,7 @@ COMMANDS: Mapping[str, Command] = {
     "import mesh": Command("sim.commands.importing.mesh", "Import a home that is one GLB, OBJ or PLY file"),
     "import habitat": Command("sim.commands.importing.habitat", "Import houses of Habitat's data sets"),
     "views": Command("sim.commands.views.generate", "Generate labelled views for training segmentation"),
+    "views mix": Command("sim.commands.views.mix", "Generate the views that the segmentation is trained on"),
     "views show": Command("sim.commands.views.show", "Draw a sheet of views"),
     "views unpack": Command("sim.commands.views.unpack", "Unpack views into PNG files"),
     "train segmentation": Command("sim.commands.train.segmentation", "Train a segmentation network on views"),

@@ -367,8 +367,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn views --split train --views 100000 --out views --workers 2": (
         "stubborn views --split train --views 1 --out {tmp}/views --workers 1",
     ),
-    "stubborn views --split train --views 20000 --shrink 2 --profile fast --out views_small": (
-        "stubborn views --split train --views 1 --shrink 2 --profile fast --out {tmp}/views",
+    "stubborn train segmentation --furniture runs/models --out runs/rednet": Only(
+        "renders 800 views at least; tests/commands/test_views_mix.py and test_train_segmentation.py try its parts"
     ),
     "stubborn views --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
     "stubborn views show --views views_objects --out views.png": (
@@ -378,11 +378,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn views unpack --views views_objects --out views_png": (
         _VIEWS,
         "stubborn views unpack --views {tmp}/views --out {tmp}/views_png",
-    ),
-    "stubborn train segmentation --views views_small --val-views views_val --out runs/rednet --hours 3": (
-        _VIEWS,
-        "stubborn train segmentation --views {tmp}/views --val-views {tmp}/views --out {tmp}/rednet"
-        " --hours 0.01 --steps 2 --batch 2 --val-count 2",
     ),
     f"{_RUN} --semantics examples.my_segmentation:SEGMENTATION --config detector.weights=my_network.pt": (
         f"{PYTHON} -c 'import torch; from examples.my_segmentation import MyNetwork; "

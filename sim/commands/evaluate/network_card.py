@@ -16,6 +16,7 @@ from sim.interface import GOAL_CATEGORIES
 from stubborn.segmentation.breakdown import Breakdown
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.evaluation import Iou, Reliability
+from stubborn.segmentation.fused import VOXEL_M
 from stubborn.segmentation.networks import Network
 from stubborn.segmentation.unet import UNet
 
@@ -49,6 +50,8 @@ class Measured:
     breakdown: Breakdown
     by_folder: dict[str, float]
     """Calibrated mIoU over the goal categories of each folder of views."""
+    fused: tuple[Iou, Iou] | None
+    """Results of single views and of views fused in voxels, on the same pixels (`stubborn.segmentation.fused`)."""
     views: int
     before: Reliability
     """Reliability without a calibration, on the houses to which the calibration was not fitted."""
@@ -112,6 +115,10 @@ def _summary(network: Evaluated, measured: Measured, stages: Sequence[dict[str, 
     yield f"| mIoU, goal categories present, calibrated as agents use it | {iou.goals:.3f} |"
     yield f"| mIoU, goal categories present, without calibration | {own.goals:.3f} |"
     yield from (f"| mIoU, views `{name}` | {value:.3f} |" for name, value in measured.by_folder.items())
+    if measured.fused is not None:
+        single, fused = measured.fused
+        yield f"| mIoU, goal categories, pixels with depth: single views | {single.goals:.3f} |"
+        yield f"| the same, all views of a house fused in voxels of {100 * VOXEL_M:.0f} cm | {fused.goals:.3f} |"
     yield f"| mIoU, all categories present | {iou.everything:.3f} |"
     yield f"| pixel accuracy | {iou.accuracy:.3f} |"
     yield f"| pixel accuracy without calibration | {own.accuracy:.3f} |"
