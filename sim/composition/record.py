@@ -11,7 +11,7 @@ from typing import Any
 from sim.bridges.process_command import files_of, is_process
 from sim.composition.isolation import own_modules
 from sim.composition.options import RunOptions
-from sim.composition.segmenters import NetworkConfig, file_sha256
+from sim.composition.segmenters import NetworkConfig, file_sha256, precision_of
 from sim.composition.setup import Setup
 from sim.configuration import as_json
 from sim.episodes.splits import Episode
@@ -78,7 +78,9 @@ def _segmentation_of(setup: Setup) -> dict[str, Any]:
         return {"name": setup.segmentation_name or None}
     spec, verified = setup.segmentation.spec, not setup.borrowed_parameters
     declared = as_json(replace(spec, sensors=tuple(x if isinstance(x, str) else x.name for x in spec.sensors)))
-    return {"name": setup.segmentation_name, **declared, "has_fitted_parameters": verified}
+    found = {"name": setup.segmentation_name, **declared, "has_fitted_parameters": verified}
+    precision = precision_of(setup.config.detector)
+    return found if precision is None else found | {"precision": precision}
 
 
 def _files_in(tree: Any, name: str) -> Iterator[tuple[str, Path]]:
