@@ -115,18 +115,6 @@ def max_of(file: Path, column: str) -> float:
 
 
 @pytest.mark.slow
-def test_the_saved_network_is_the_mean_of_the_last_three_evaluations(tmp_path: Path) -> None:
-    write_views(tmp_path / "train", 3)
-    write_views(tmp_path / "val", 2)
-    assert main(options(tmp_path, evaluate_every=1)) == 0
-    kept = sorted((tmp_path / "out").glob("step-*"))
-    assert [file.stem for file in kept] == ["step-0000002", "step-0000003", "step-0000004"]
-    weights = [load_network(file)[0].state_dict()["encoder.stem.0.weight"] for file in kept]
-    last = load_network(tmp_path / "out/last.safetensors")[0].state_dict()["encoder.stem.0.weight"]
-    assert torch.allclose(torch.stack(weights).mean(dim=0), last, atol=1e-3)
-
-
-@pytest.mark.slow
 def test_views_that_were_added_are_used_by_the_continued_run(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
