@@ -9,8 +9,8 @@ import torch
 
 from sim.interface import ConfigError
 from stubborn.segmentation.checkpoints import load_network
-from stubborn.segmentation.processor import computes_bf16
 from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet, with_geometry
+from stubborn.segmentation.processor import computes_bf16
 from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.unet import MobileEncoder, UNet
 
