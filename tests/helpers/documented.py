@@ -607,10 +607,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn traps --family pane_gap --difficulty hard --seed 10 --out runs/panes": (
         "stubborn traps --family pane_gap --difficulty hard --seed 10 --out {tmp}/panes",
     ),
-    "stubborn traps report --split runs/panes --agents oracle stubborn --out runs/panes_report": (
-        "stubborn traps --family pane_gap --difficulty easy --seed 10 --out {tmp}/panes",
-        "stubborn traps report --split {tmp}/panes --agents oracle --headings 1 --no-pictures --out {tmp}/out",
-    ),
     "stubborn traps report --split contact-val --agents oracle stubborn --out runs/contact": (
         "stubborn traps report --split contact-val --agents oracle --traps jam_easy_00 --no-pictures --out {tmp}/out",
     ),

@@ -95,18 +95,17 @@ stubborn episodes --split assets/mjcf_houses/val --workers 2
 
 ## The ground
 
-The seed of a house also chooses its ground, from random numbers of its own: `val`, `test`, `large` and `hazards` have
-the furniture and episodes of version 2.1.0.
+The seed of a house also chooses its ground: `val`, `test`, `large` and `hazards` keep the furniture and episodes of 2.1.0.
 
 | part | values |
 |---|---|
 | friction | wood 0.55-0.75, tiles 0.5-0.7, stone 0.45-0.65, carpet and rubber 0.8-1, rugs 0.7-1, thresholds 0.5-0.7 |
 | rugs and mats | 3 to 12 mm high, with edges in steps of at most 4 mm |
-| thresholds | 2 to 12 mm, in up to 80 % of the doorways between different floors |
+| thresholds | 2 to 12 mm, in up to 80 % of doorways between different floors |
 | wet spots | friction 0.2-0.4, in front of a third of the sinks, showers and bathtubs |
 | tiles | one of 4 to 14 m2 leans: one of its edges is 0.5 to 3 mm high |
 
-Only wheels and casters touch rugs, thresholds, wet spots and leaning tiles; furniture stands on the floor below.
+Only wheels and casters touch all of these but the floors; furniture stands on the floor below.
 
 ## The table of houses
 
