@@ -95,7 +95,8 @@ stubborn episodes --split assets/mjcf_houses/val --workers 2
 
 ## The ground
 
-The seed of a house also chooses its ground: `val`, `test`, `large` and `hazards` keep the furniture and episodes of 2.1.0.
+The seed of a house also chooses its ground: `val`, `test`, `large` and `hazards` keep the furniture and
+episodes of 2.1.0.
 
 | part | values |
 |---|---|
