@@ -62,13 +62,14 @@ class PageTable:
             yield from (row for row, _ in cells)
 
 
-VERSION = "2.1.0"
-"""Version of the splits of the headline table."""
 EARLIER = "2.0.0"
-"""That of the other tables, which were measured with the physics of version 0.2.0."""
-HEADLINE_EPISODES = {"val": 60, "contact-val": 150, "contact-heldout": 60}
+"""Version of the splits of all tables but the headline; they were measured with the physics of version 0.2.0."""
+HEADLINE_VERSIONS = {"val": "3.0.0", "hazards": "3.0.0", "contact-val": "2.1.0", "contact-heldout": "2.1.0"}
+"""That of the splits of the headline table. The traps are the same in 2.1.0 and 3.0.0."""
+HEADLINE_EPISODES = {"val": 60, "hazards": 200, "contact-val": 150, "contact-heldout": 60}
 HEADLINE = {
     "val": ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet"),
+    "hazards": ("stubborn-plus gt",),
     "contact-val": ("stubborn-plus gt",),
     "contact-heldout": ("stubborn gt", "stubborn-plus gt"),
 }
@@ -106,6 +107,9 @@ EXPLORERS = {
 EXPLORER_EPISODES = {"val": 200, "large": 300}
 PRIMARY_EXPLORERS = ("stubborn --explorer informed-tour", "poni", "semexp")
 """Explorers whose comparison with corners is primary."""
+DRIFT = ("stubborn --noise realsense", "stubborn --noise realsense --config noise.pose.from_odometry=false")
+"""Runs with gps and compass by odometry, and with the true pose."""
+DRIFT_EPISODES = 30
 CONTROLS = tuple(
     f"semexp --config agent.explorer.{control}" for control in ("goal=wrong", "semantics=shuffled", "semantics=none")
 )
@@ -136,8 +140,8 @@ def _of_agent(split: str, agent: str, version: str) -> RunKey:
 def page_tables() -> tuple[PageTable, ...]:
     """Returns the tables of the page."""
     return (
-        _agents("headline", HEADLINE, HEADLINE_EPISODES, VERSION),
-        _agents("further", FURTHER, FURTHER_EPISODES, EARLIER),
+        _agents("headline", HEADLINE, HEADLINE_EPISODES, HEADLINE_VERSIONS),
+        _agents("further", FURTHER, FURTHER_EPISODES, dict.fromkeys(FURTHER, EARLIER)),
         _ablation(),
         _explorers(),
         _network(),
@@ -146,8 +150,8 @@ def page_tables() -> tuple[PageTable, ...]:
 
 def comparisons() -> Iterator[Comparison]:
     """Yields the comparisons that the page may quote."""
-    yield from _agents_compared("headline", HEADLINE, HEADLINE_EPISODES, VERSION)
-    yield from _agents_compared("further", FURTHER, FURTHER_EPISODES, EARLIER)
+    yield from _agents_compared("headline", HEADLINE, HEADLINE_EPISODES, HEADLINE_VERSIONS)
+    yield from _agents_compared("further", FURTHER, FURTHER_EPISODES, dict.fromkeys(FURTHER, EARLIER))
     *rows, whole = ABLATION
     for split in ABLATION_SPLITS:
         for name in rows:
@@ -161,14 +165,16 @@ def comparisons() -> Iterator[Comparison]:
             first, second = run_key(split, name, "gt"), run_key(split, "semexp", "gt")
             yield Comparison("explorers", first, second, episodes, name == CONTROLS[0])
     yield from _network_comparisons()
+    first, second = (run_key("val", name, "gt", HEADLINE_VERSIONS["val"]) for name in DRIFT)
+    yield Comparison("drift", first, second, DRIFT_EPISODES)
 
 
 def _agents_compared(
-    table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int], version: str
+    table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int], versions: Mapping[str, str]
 ) -> Iterator[Comparison]:
     """Yields each pair of agents of a split; those of our two agents with the same segmentation are primary."""
     for split, names in agents.items():
-        present = [_of_agent(split, agent, version) for agent in names]
+        present = [_of_agent(split, agent, versions[split]) for agent in names]
         for second, first in itertools.combinations(present, 2):
             primary = second.agent == "stubborn" and first.semantics == second.semantics
             yield Comparison(table, first, second, episodes[split], primary)
@@ -184,11 +190,13 @@ def _network_comparisons() -> Iterator[Comparison]:
         yield from (Comparison("network", first, second, episodes) for first in others)
 
 
-def _agents(table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int], version: str) -> PageTable:
+def _agents(
+    table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int], versions: Mapping[str, str]
+) -> PageTable:
     rows = []
     for split, agent in ((split, agent) for split, names in agents.items() for agent in names):
         name, semantics = agent.split()
-        row = RowKey(_of_agent(split, agent, version), episodes[split])
+        row = RowKey(_of_agent(split, agent, versions[split]), episodes[split])
         shown = "-" if name == "oracle" else "truth" if semantics == "gt" else "network"
         rows.append(((f"{split}, {row.episodes}", f"`{name}`", shown), _cells(row, (SUCCESS, SPL))))
     header = ("split, episodes", "agent", "segmentation", "success %", "SPL")
