@@ -73,42 +73,6 @@ class OdometrySensor:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OdometryGps:
-    """The position by odometry, read in place of the true one where the noise says so (`sim.sensors.pose_noise`)."""
-
-    name: str = "gps"
-    images: tuple[str, ...] = ()
-    reads: tuple[str, ...] = ("odometry",)
-    noise: NoiseSettings | None = None
-
-    def space(self, camera: CameraModel) -> spaces.Box:
-        """Returns the space of float32 positions (2,), unbounded."""
-        return spaces.Box(-_LARGEST, _LARGEST, (2,), np.float32)
-
-    def read(self, context: SensorContext) -> NDArray:
-        """Returns metres forward and left of the start pose."""
-        return np.array([context.odometry.x_m, context.odometry.y_m], np.float32)
-
-
-@dataclass(frozen=True, kw_only=True)
-class OdometryCompass:
-    """The yaw by odometry, read in place of the true one where the noise says so (`sim.sensors.pose_noise`)."""
-
-    name: str = "compass"
-    images: tuple[str, ...] = ()
-    reads: tuple[str, ...] = ("odometry",)
-    noise: NoiseSettings | None = None
-
-    def space(self, camera: CameraModel) -> spaces.Box:
-        """Returns the space of float32 angles (1,)."""
-        return spaces.Box(-np.float32(np.pi), np.float32(np.pi), (1,), np.float32)
-
-    def read(self, context: SensorContext) -> NDArray:
-        """Returns the yaw against the start heading in (-pi, pi], radians."""
-        return np.array([context.odometry.yaw_rad], np.float32)
-
-
-@dataclass(frozen=True, kw_only=True)
 class ImuSensor:
     """Accelerations and turn rates of the base in the robot's frame; at rest (0, 0, 9.81) m/s2 and no rate."""
 

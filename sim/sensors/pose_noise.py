@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interface import CameraModel, ConfigError, wrap_angle
-from sim.sensors.measured import OdometryCompass, OdometryGps
 from sim.sensors.ranges import require_range
-from sim.sensors.sensor import Sensor
+from sim.sensors.sensor import Sensor, SensorContext
+from sim.sensors.standard import CompassSensor, GpsSensor
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +42,28 @@ class PoseNoise:
     def model(self, camera: CameraModel) -> NoisyPose | None:
         """Returns a new model of the white noise; None if it is off."""
         return NoisyPose(self) if self.gps_std_m > 0.0 or self.compass_std_rad > 0.0 else None
+
+
+@dataclass(frozen=True, kw_only=True)
+class OdometryGps(GpsSensor):
+    """`gps` by odometry."""
+
+    reads: tuple[str, ...] = ("odometry",)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns metres forward and left of the start pose."""
+        return np.array([context.odometry.x_m, context.odometry.y_m], np.float32)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OdometryCompass(CompassSensor):
+    """`compass` by odometry."""
+
+    reads: tuple[str, ...] = ("odometry",)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns the yaw against the start heading in (-pi, pi], radians."""
+        return np.array([context.odometry.yaw_rad], np.float32)
 
 
 _BY_ODOMETRY = {"gps": OdometryGps(), "compass": OdometryCompass()}

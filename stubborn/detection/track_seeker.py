@@ -40,7 +40,7 @@ class TrackSeekerConfig:
     look: LookConfig = field(default_factory=LookConfig)
     core_share: float = 0.7
     """The robot does not drive to cells of a track whose mean score is below this share of the track's highest one."""
-    heart_m: float = 0.5
+    near_best_m: float = 0.5
     """With an imperfect detector the robot drives to the cells of a track within this distance of its best cell, where
     there is a path: farther cells may belong to a neighbouring object."""
     as_good: float = 0.15
@@ -59,8 +59,8 @@ class TrackSeekerConfig:
                 "TrackSeekerConfig needs core_share and part_share in [0, 1] and as_good >= 0, got "
                 f"{self.core_share}, {self.part_share} and {self.as_good}."
             )
-        if self.heart_m <= 0.0:
-            raise ConfigError(f"TrackSeekerConfig.heart_m must be > 0 m, got {self.heart_m}.")
+        if self.near_best_m <= 0.0:
+            raise ConfigError(f"TrackSeekerConfig.near_best_m must be > 0 m, got {self.near_best_m}.")
         if self.most_pushes < 1:
             raise ConfigError(f"TrackSeekerConfig.most_pushes must be >= 1, got {self.most_pushes}.")
 
@@ -116,7 +116,7 @@ class TrackSeeker:
         # Places (x and y in metres) without progress, and the step until which doubtful tracks there wait.
         self._left_spots: list[tuple[float, float, int]] = []
         self._went_nearer = False
-        self._to_hearts = True  # whether the last approach led to the cells around the best ones
+        self._to_best = True  # whether the last approach led to the cells around the best ones
         self._pose = Pose(0.0, 0.0, 0.0)
         self._hidden: dict[int, Bool[np.ndarray, " sectors"]] = {}  # directions from which a look did not show a track
         # The pose at which the count of patience began, and the steps of pursuit since then.
@@ -145,8 +145,8 @@ class TrackSeeker:
         if not self._accepted or not sighting.is_within(self.distances.in_view_m):
             return None
         cells = self.cells_of(navmap, self._accepted)
-        if self._to_hearts and not self.verdicts.exact:
-            cells &= self._hearts(navmap, self._accepted)
+        if self._to_best and not self.verdicts.exact:
+            cells &= self._near_best(navmap, self._accepted)
         return sighting.nearest(cells, self.distances.in_view_m)
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
@@ -324,17 +324,17 @@ class TrackSeeker:
         """Returns the approach to the accepted tracks, where possible to the cells around their best ones."""
         cells, found = self.cells_of(navmap, tracks), None
         if not self.verdicts.exact:
-            hearts = cells & self._hearts(navmap, self._targets)
-            found = self._approach(navmap, window, pose, hearts, LastResort.NONE)
-        self._to_hearts = found is not None
+            near_best = cells & self._near_best(navmap, self._targets)
+            found = self._approach(navmap, window, pose, near_best, LastResort.NONE)
+        self._to_best = found is not None
         return found or self._approach(navmap, window, pose, cells, resort)
 
-    def _hearts(self, navmap: NavMap, tracks: Iterable[int]) -> Bool[np.ndarray, "rows cols"]:
+    def _near_best(self, navmap: NavMap, tracks: Iterable[int]) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map around the best cell of each track."""
         result = np.zeros(navmap.frame.shape, np.bool_)
         for track in tracks:
             x_m, y_m = (float(v) for v in navmap.frame.centres(*self._best_cell(navmap, track)))
-            index, near = cells_near_segment(navmap.frame, (x_m, y_m), (x_m, y_m), self.config.heart_m)
+            index, near = cells_near_segment(navmap.frame, (x_m, y_m), (x_m, y_m), self.config.near_best_m)
             result[index] |= near
         return result
 

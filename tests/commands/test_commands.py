@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import importlib
-import os
 import shlex
 import subprocess
 import sys
@@ -166,8 +165,7 @@ def _try(command: str, scratch: Path) -> None:
         words = [sys.executable if word == PYTHON else word for word in shlex.split(step)]
         if words[0] == "stubborn":
             words[:1] = [sys.executable, "-m", "sim.commands.main"]
-        env = os.environ | {"PYTHONPATH": str(ROOT)}  # as `python -m examples.NAME` of the pages has it
-        ended = subprocess.run(words, cwd=ROOT, env=env, capture_output=True, text=True, check=False, timeout=300)
+        ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False, timeout=300)
         assert ended.returncode == 0, f"{step}\n{ended.stdout[-2000:]}\n{ended.stderr[-2000:]}"
 
 

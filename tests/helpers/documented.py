@@ -111,8 +111,6 @@ def canonical(words: Sequence[str]) -> str:
         return shlex.join(words)
     if rest[0] == "-m" and rest[1] in ("sim.run", "sim.report", "sim.web", "sim.teleop"):
         return shlex.join(["stubborn", rest[1].removeprefix("sim."), *rest[2:]])
-    if rest[0] == "-m" and rest[1].startswith("examples."):
-        return shlex.join([PYTHON, f"{rest[1].replace('.', '/')}.py", *rest[2:]])
     old = re.fullmatch(r"tools/(\w+)\.py", rest[0])
     if old and old[1] in MOVED:
         return shlex.join(["stubborn", *MOVED[old[1]].split(), *rest[1:]])
@@ -180,7 +178,8 @@ def program_of(command: str) -> tuple[str, list[str]]:
     if words[0] == "stubborn":
         return split(words[1:])
     if words[:2] == [PYTHON, "-m"]:
-        return words[2], words[3:]
+        module = words[2]
+        return f"{module.replace('.', '/')}.py" if module.startswith("examples.") else module, words[3:]
     return words[1] if len(words) > 1 else "", words[2:]
 
 
@@ -275,12 +274,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "stubborn compare {tmp}/before {tmp}/after",
     ),
     # docs/gymnasium.md
-    f"{PYTHON} examples/gym_agents.py": (f"{PYTHON} examples/gym_agents.py",),
-    f"{PYTHON} examples/train_ppo.py --minutes 30 --envs 2 --out runs/ppo": (
-        f"{PYTHON} examples/train_ppo.py --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
+    f"{PYTHON} -m examples.gym_agents": (f"{PYTHON} -m examples.gym_agents",),
+    f"{PYTHON} -m examples.train_ppo --minutes 30 --envs 2 --out runs/ppo": (
+        f"{PYTHON} -m examples.train_ppo --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
     ),
     f"{_RUN} --agent examples.ppo_agent:AGENT --config-file runs/ppo/run.toml {_SMALL} --video": (
-        f"{PYTHON} examples/train_ppo.py --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
+        f"{PYTHON} -m examples.train_ppo --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
         f"{_RUN} --agent examples.ppo_agent:AGENT --config-file {{tmp}}/ppo/run.toml {_SMALL} --episodes 1 --video"
         " --out {tmp}/filmed",
     ),

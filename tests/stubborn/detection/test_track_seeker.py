@@ -286,7 +286,7 @@ def test_a_stop_at_a_part_judges_the_track_that_is_approached_and_not_a_better_o
     assert seeker.confidence == pytest.approx(0.75)
 
 
-@pytest.mark.parametrize("wrong", [{"as_good": -0.1}, {"core_share": 1.5}, {"part_share": -1.0}, {"heart_m": 0.0}])
+@pytest.mark.parametrize("wrong", [{"as_good": -0.1}, {"core_share": 1.5}, {"part_share": -1.0}, {"near_best_m": 0.0}])
 def test_wrong_settings_are_refused(wrong: dict):
     with pytest.raises(ConfigError, match="TrackSeekerConfig"):
         TrackSeekerConfig(**wrong)
@@ -318,14 +318,14 @@ def test_the_robot_drives_to_the_cells_around_the_best_one_where_there_is_a_path
     rows, cols = np.nonzero(mask)
     agent.navmap.score_sum[index[0].start + rows[-1], index[1].start + cols[-1]] = 9.5  # the best cell is at an end
     seeker._drive_to(agent.navmap, window, Pose(0.0, 0.0, 0.0), [track], LastResort.NONE)
-    hearts, whole = given[0], given[1]
-    assert hearts.any()
-    assert (hearts <= whole).all()
+    near_best, whole = given[0], given[1]
+    assert near_best.any()
+    assert (near_best <= whole).all()
     best = seeker._best_cell(agent.navmap, track)
-    rows, cols = np.nonzero(hearts)
-    assert 0.05 * np.hypot(rows - best[0], cols - best[1]).max() <= seeker.config.heart_m + 1e-6
-    assert hearts.sum() < whole.sum()
-    assert not seeker._to_hearts
+    rows, cols = np.nonzero(near_best)
+    assert 0.05 * np.hypot(rows - best[0], cols - best[1]).max() <= seeker.config.near_best_m + 1e-6
+    assert near_best.sum() < whole.sum()
+    assert not seeker._to_best
 
 
 GLASS_M = 0.96
