@@ -170,6 +170,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
     "sim.commands.train.cloned": [("--demonstrations nowhere --out OUT", "No demonstration in 'nowhere'")],
     "sim.commands.train.segmentation": [
         ("--views nowhere --val-views nowhere --out OUT --size vast", "--size must be one of"),
+        ("--views nowhere --val-views nowhere --out OUT --batch 1", "--batch must be at least 2"),
         ("--views nowhere --val-views nowhere --out OUT", "No shards"),
         ("--views nowhere --out OUT", "--views and --val-views are given together"),
         ("--furniture nowhere --out OUT", "is not a folder"),

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import torch
 
-from sim.commands.evaluate.network_card import training_stages
+from sim.commands.evaluate.network_card import training_commands, training_stages
 from sim.commands.train import segmentation_trainer
 from sim.commands.train.segmentation import Args, Trainer, main
 from sim.datasets.coco import annotate
@@ -226,3 +226,12 @@ def test_too_few_views_are_refused_before_anything_is_written(tmp_path: Path) ->
     with pytest.raises(ConfigError, match="fewer views than one batch of 4"):
         main(options(tmp_path, batch=4))
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "told"), [({"rate": "0.001"}, False), ({"rate": "0.001", "window_px": "160"}, True)]
+)
+def test_a_card_says_which_options_of_a_training_are_of_earlier_versions(options: dict[str, str], told: bool) -> None:
+    text = "\n".join(training_commands([{"options": {"seed": "1"}}, {"options": options}]))
+    assert "--seed 1\nstubborn train segmentation --rate 0.001" in text
+    assert ("earlier versions" in text) == told

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Int64
 
 from sim.commands.evaluate.network_pictures import draw_confusion, draw_curves
+from sim.commands.train.segmentation_options import Args
 from sim.files import write_atomically
 from sim.interface import GOAL_CATEGORIES
 from stubborn.segmentation.breakdown import Breakdown
@@ -84,10 +85,7 @@ def card_text(network: Evaluated, measured: Measured) -> str:
         [
             *_about(network),
             *_summary(network, measured, stages),
-            "```sh",
-            *(_command(stage) for stage in stages),
-            "```",
-            "",
+            *training_commands(stages),
             *_categories(measured),
             *([f"Not in these views: {', '.join(absent)}.", ""] if absent else []),
             *distances_and_sizes(measured.breakdown),
@@ -167,6 +165,15 @@ def training_stages(metadata: dict[str, Any]) -> Iterator[dict[str, Any]]:
     if "started_from" in metadata:
         yield from training_stages(metadata["started_from"])
     yield metadata
+
+
+def training_commands(stages: Sequence[dict[str, Any]]) -> Iterator[str]:
+    """Yields the block with the command of each training, and a sentence if the command has options no more."""
+    yield "```sh"
+    yield from map(_command, stages)
+    yield "```\n"
+    if {key for stage in stages for key in stage.get("options", {})} - {each.name for each in fields(Args)}:
+        yield "Options that `stubborn train segmentation --help` does not list are those of earlier versions.\n"
 
 
 def _command(stage: dict[str, Any]) -> str:

@@ -18,6 +18,7 @@ from sim.housegen.ground.survey import Survey, survey
 from sim.houses.house import House
 from sim.houses.labels import cover_geoms, read_labels
 from sim.interface import CLIMB_M, Action
+from sim.robot.conditions import Conditions
 from sim.world.freespace import FreeSpace
 from sim.world.world import World
 
@@ -84,6 +85,31 @@ def test_grounds_differ_by_seed_within_their_limits():
     with_tiles = [any(piece.quat[0] < 1.0 and not piece.material for piece in ground.pieces) for ground in grounds]
     for kind in (with_sill, with_water, with_tiles):
         assert 0.1 * len(grounds) < sum(kind) < len(grounds)
+
+
+def test_thresholds_are_rarer_between_floors_of_the_same_material():
+    other = survey(house())
+    same = survey(mujoco.MjSpec.from_string(HOUSE.replace('material="tiles" contype', 'material="boards" contype')))
+    assert {material_of(room) for room in same.rooms} == {"wood"}
+    counts = []
+    for found in (other, same):
+        grounds = [draw_ground(np.random.default_rng(seed), found) for seed in range(200)]
+        counts.append(sum(any(piece.material == "white" for piece in ground.pieces) for ground in grounds))
+    assert 0 < counts[1] < 0.7 * counts[0]
+
+
+def test_the_friction_of_an_episode_is_the_drawn_one_times_its_scale_on_floors_and_on_what_covers_them():
+    rng = np.random.default_rng([3, 0, 3])
+    ground = draw_ground(rng, survey(house()))
+    world = World(House("house", house(3)))
+    model = world.model
+    first = {model.geom(geom).name.partition(":")[0]: geom for geom in reversed(range(model.ngeom))}
+    for scale in (0.5, 1.0):
+        world.reset(Pose(-1.0, 1.0, 0.0), Conditions(floor_friction_scale=scale))
+        for name, friction in ground.friction.items():
+            assert model.geom_friction[first[name], 0] == pytest.approx(scale * friction)
+        covers = sorted(model.geom_friction[cover_geoms(model), 0])
+        assert covers == pytest.approx(sorted(scale * piece.friction for piece in ground.pieces))
 
 
 @pytest.mark.parametrize("seed", range(8))

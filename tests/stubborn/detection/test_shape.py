@@ -44,6 +44,11 @@ def test_the_top_of_a_table_is_flat_and_its_extents_do_not_depend_on_its_heading
     assert turned[2:4].tolist() == pytest.approx([1.2, 0.6], abs=0.08)
 
 
+@pytest.mark.parametrize(("layers", "share"), [(2, 1.0), (3, 0.0)])
+def test_a_surface_is_flat_if_it_is_at_most_two_voxels_thick(layers: int, share: float):
+    assert measures((slice(2, 8), slice(3, 15), slice(7, 7 + layers)))["flat_share"] == share
+
+
 def test_few_stray_voxels_do_not_change_the_heights():
     seat = (slice(2, 8), slice(3, 9), slice(4, 5))
     assert measures(seat, (slice(2, 3), slice(3, 4), slice(20, 21)))["top_m"] == measures(seat)["top_m"]
