@@ -164,7 +164,7 @@ class _Draft:
 
     @property
     def max_bytes(self) -> int:
-        """Largest size of its file."""
+        """Largest size of its file without the ground; see `max_bytes`."""
         if self.upper is None:
             return max_bytes(self.plan.area_m2)
         return min(round(STOREYS_BYTES * max_bytes(self.plan.area_m2 + self.upper.plan.area_m2)), MAX_STOREYS_BYTES)
@@ -258,7 +258,7 @@ def _require_as_asked(plan: FloorPlan, area_m2: float | None, rooms: tuple[str, 
 
 
 def max_bytes(area_m2: float) -> int:
-    """Returns the largest size of the file of a house of this floor area."""
+    """Returns the largest size of the file of a house of this floor area, without the ground, which adds up to 2 %."""
     return round(MAX_BYTES + BYTES_PER_M2 * max(0.0, area_m2 - USUAL_M2))
 
 
