@@ -10,6 +10,7 @@ setup(
         "sim.analysis.report": ["page/*"],
         "sim.web": ["page/*"],
         "sim.houses": ["*.csv"],
+        "sim.robot": ["sidecars/*.json"],
         "stubborn": ["**/*.json", "**/*.npz", "**/*.safetensors"],
     },
 )

@@ -1,6 +1,6 @@
 """Trains an agent with PPO to drive to the sofa of a room and to call STOP there (needs `pip install '.[train]'`).
 
-python examples/train_ppo.py --minutes 30 --envs 2 --out runs/ppo
+python -m examples.train_ppo --minutes 30 --envs 2 --out runs/ppo
 
 The agent sees the direction of the goal, the depth in sixteen directions and whether it bumped into something; its
 reward is `sim.gym.ProgressReward`. Every 1,024 steps a row of `progress.csv` is written and printed: success and return

@@ -26,8 +26,8 @@ from sim.geometry.numbers import require_numbers
 from sim.geometry.pose import wrap_angle
 
 __all__ = [
-    "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS", "SENSORS",
-    "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation",
+    "CLIMB_M", "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS",
+    "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation",
     "Perceived", "RobotModel", "Scores", "SegmentationSpec", "Segmenter", "SegmenterFactory", "SegmenterSpec",
     "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule", "wrap_angle",
 ]  # fmt: skip
@@ -46,6 +46,8 @@ FORWARD_M = 0.25
 """Commanded displacement of MOVE_FORWARD."""
 TURN_RAD = math.radians(30.0)
 """Commanded rotation of TURN_LEFT (positive) and TURN_RIGHT (negative)."""
+CLIMB_M = 0.012
+"""Height of an edge that the default robot climbs, as a Kobuki does."""
 MAX_SIDE_PX = 4096
 """Largest width and height of an image."""
 MAX_STEPS = 500
@@ -121,13 +123,17 @@ class RobotModel:
     height_m: float = 0.88
     camera_forward_m: float = 0.0
     """Camera mount ahead of the wheel axis; 0 for the default robot, whose camera turns on the spot."""
-    clearance_m: float = 0.03
-    """Height of the body's lower side above the floor: lower objects pass under it."""
+    clearance_m: float = 0.0128
+    """Height of the body's lower side above the floor."""
+    climb_m: float = CLIMB_M
+    """Height of the highest edge that the wheels climb, of whatever object; anything higher is an obstacle."""
 
     def __post_init__(self) -> None:
         require_numbers(self)
         if self.radius_m <= 0 or self.height_m <= 0:
             raise ConfigError(f"RobotModel needs positive sizes, got {self.radius_m} m and {self.height_m} m.")
+        if not 0.0 <= self.climb_m < self.height_m:
+            raise ConfigError(f"RobotModel.climb_m must lie in [0, height_m = {self.height_m}), got {self.climb_m} m.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,7 +163,7 @@ class SuccessRule:
 
 
 Observation = Mapping[str, NDArray]
-"""The observation of one step: those of `SENSORS` and `scan` that were requested, plus `POSE_SENSORS`.
+"""The observation of one step: those of `SENSORS` and `ROBOT_SENSORS` that were requested, plus `POSE_SENSORS`.
 
 | key | shape | dtype | meaning |
 |---|---|---|---|
@@ -168,15 +174,20 @@ Observation = Mapping[str, NDArray]
 | compass | (1,) | float32 | yaw against the start heading, in (-pi, pi] |
 | objectgoal | (1,) | int64 | index into `GOAL_CATEGORIES` |
 | scan | (rays,) | float32 | lidar, metres; 0: nearer than its range, the maximum range: no return in it |
+| bumper | (6,) | int8 | 1: contact in the last action; sector 0 is ahead, the others follow counter-clockwise |
+| odometry | (3,) | float32 | pose by wheels and gyro: metres forward and left of the start, yaw in (-pi, pi] |
+| imu | (6,) | float32 | accelerations, m/s2, and turn rates, rad/s, in the robot's frame |
 """
 
 SENSORS: tuple[str, ...] = ("rgb", "depth", "semantic")
 """Image sensors, which are rendered only when requested."""
 SCAN = "scan"
-"""The lidar (`sim.sensors.scan`), which is in the observation only when requested."""
+"""The lidar (`sim.sensors.scan`)."""
+ROBOT_SENSORS: tuple[str, ...] = (SCAN, "bumper", "odometry", "imu")
+"""The lidar and what a robot measures of itself (`sim.sensors.measured`), in the observation only when requested."""
 POSE_SENSORS: tuple[str, ...] = ("gps", "compass", "objectgoal")
 """Always present."""
-CONTEXT_FIELDS: tuple[str, ...] = ("goal", "collided", "pose", "start", "motion", "model", "data")
+CONTEXT_FIELDS: tuple[str, ...] = ("goal", "collided", "odometry", "pose", "start", "motion", "model", "data")
 """Fields of `sim.sensors.sensor.SensorContext` that a user's sensor may declare in `reads`."""
 TRUE_FIELDS = frozenset({"pose", "start", "motion", "model", "data"})
 """The fields that hold ground truth, which a robot cannot measure."""
@@ -189,15 +200,20 @@ def reads_truth(sensor: Any) -> bool:
 
     Args:
         sensor: name of a standard sensor, or an object with the interface `sim.sensors.sensor.Sensor`. `gps`, `compass`
-            and `objectgoal` are part of the task, and `scan` is a measurement: they do not count, although they are
-            computed from the true state.
+            and `objectgoal` are part of the task, and those of `ROBOT_SENSORS` are measurements: they do not count,
+            although they are computed from the true state.
     """
     if isinstance(sensor, str):
         return sensor == "semantic"
-    if getattr(sensor, "name", "") in (*POSE_SENSORS, SCAN):
+    if getattr(sensor, "name", "") in (*POSE_SENSORS, *ROBOT_SENSORS) and _is_standard(sensor):
         return False
     declared = {*getattr(sensor, "images", ()), *getattr(sensor, "reads", ())}
     return not declared.isdisjoint(TRUE_IMAGES | TRUE_FIELDS)
+
+
+def _is_standard(sensor: Any) -> bool:
+    """Returns whether a sensor is one of ours; a user's may have the name of one of them."""
+    return type(sensor).__module__.startswith("sim.sensors.")
 
 
 class Scores(NamedTuple):

@@ -245,8 +245,18 @@ def read_lines(file: Path, kind: type, *, what: str, error: type[ObjectNavError]
     return Lines(values, len(whole), torn)
 
 
-def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> Iterator[tuple[int, bytes]]:
-    """Yields the numbers (from 1) and the texts of the lines of a file, which may be gzipped; empty lines are left out.
+class TextLine(NamedTuple):
+    """A line of a file."""
+
+    number: int
+    """From 1."""
+    text: bytes
+    share: float
+    """Share of the file, as it lies on the disk, that has been read up to here, in (0, 1]."""
+
+
+def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> Iterator[TextLine]:
+    """Yields the lines of a file, which may be gzipped; empty lines are left out.
 
     The file is read line by line, so that it may be of any size; a line has at most `MAX_BYTES`.
 
@@ -255,6 +265,7 @@ def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErr
     """
     with open_plain(file, what=what, error=error) as packed:
         zipped = packed.read(2) == b"\x1f\x8b"
+        size = max(1, packed.seek(0, os.SEEK_END))
         packed.seek(0)
         stream = gzip.GzipFile(fileobj=packed) if zipped else packed
         for number in itertools.count(1):
@@ -267,7 +278,7 @@ def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErr
             if not line:
                 return
             if line.strip():
-                yield number, line
+                yield TextLine(number, line, min(1.0, packed.tell() / size))
 
 
 def parse_json(

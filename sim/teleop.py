@@ -51,8 +51,8 @@ class Args:
     """Only this goal category."""
     start_deg: str | None = None
     """With --house: the start pose "X Y YAW" in metres and degrees."""
-    robot: Path | None = None
-    """Replaces the default robot: an MJCF file with its sidecar next to it (docs/worlds.md)."""
+    robot: str | None = None
+    """Replaces the default robot: an MJCF file with its sidecar next to it, or menagerie:NAME (docs/worlds.md)."""
     seed: cli.Seed = 0
     """Seed of noise and, with --house, of start and goal."""
     profile: str = "fast"

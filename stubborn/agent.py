@@ -7,7 +7,7 @@ are in the start frame of the episode: the pose is the observation's `gps` and `
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -34,14 +34,18 @@ from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import ExplorerConfig, Ground, ReadsSemantics, run_explorer
 from stubborn.kernels.grids import MAX_REACH
 from stubborn.mapping.collision_marks import CollisionConfig, GpsNoise, is_collision, mark_collision, mark_visited
+from stubborn.mapping.felt import FeelConfig, FeltSurfaces, contact_direction
 from stubborn.mapping.mapper import Mapper, MappingConfig, Sighting
 from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.object_layers import ObjectLayersConfig
 from stubborn.planning.avoidance import CollisionAvoidance, collision_policies
 from stubborn.planning.planner import Planner, PlanningConfig, Route
+from stubborn.planning.standstill import Standstill, StandstillConfig
 from stubborn.planning.steering import next_action
 from stubborn.planning.untrap import Untrap, UntrapConfig
 
+BUMPER = "bumper"
+"""The sensor that `feel` reads if the observation holds it (`--config 'sensors=["depth", "semantic", "bumper"]'`)."""
 _TREAD_M = 0.10
 """Half the width of the strip ahead that must have floor before the robot moves forward."""
 
@@ -61,6 +65,11 @@ class AgentConfig:
     mapping: MappingConfig = field(default_factory=MappingConfig)
     collisions: CollisionConfig = field(default_factory=CollisionConfig)
     avoidance: CollisionAvoidance = field(default_factory=CollisionAvoidance)
+    feel: FeelConfig | None = None
+    """Conclusions from several collisions about the surfaces that cause them; None: each has its own marks, as in the
+    paper."""
+    standstill: StandstillConfig = field(default_factory=StandstillConfig)
+    """With `feel`, the time after which an agent without progress doubts its conclusions."""
     planning: PlanningConfig = field(default_factory=PlanningConfig)
     untrap: UntrapConfig = field(default_factory=UntrapConfig)
     layers: ObjectLayersConfig = field(default_factory=ObjectLayersConfig)
@@ -117,6 +126,8 @@ class StubbornAgent:
         self.segmenter = segmenter
         self.policies = collision_policies(config.avoidance, config.untrap)
         self.mapper = Mapper(camera, robot, config.mapping, config.layers.make(config.mapping.candidate_score))
+        feel = config.feel if self.policies.marked else None
+        self.felt = None if feel is None else feel.make(robot.radius_m, config.collisions)
         self.planner = Planner(config.planning, self.policies.proven_ground)
         self.explorer = config.explorer.make(camera)
         self.seeker = config.seeker.make(
@@ -134,6 +145,7 @@ class StubbornAgent:
             )
         )
         self.untrap = Untrap(self.policies.untrap_after)
+        self.standstill = Standstill(config.standstill)
         self.reset(GOAL_CATEGORIES[0], 0)
 
     def reset(self, goal: str, seed: int) -> None:
@@ -149,6 +161,10 @@ class StubbornAgent:
         """The route that is followed; None: the agent turns or pushes."""
         self.approach: Approach | None = None
         """The candidate that is approached; None: the agent explores."""
+        if self.felt is not None:
+            self.felt.reset()
+        self.planner.own_ground_m = self.config.planning.own_ground_m
+        self.standstill.reset()
         self.explorer.reset(seed)
         self.seeker.reset(goal)
         self.untrap.reset()
@@ -156,7 +172,7 @@ class StubbornAgent:
     def act(self, observation: Observation) -> Action:
         """Returns the next action."""
         pose = read_pose(observation)
-        self._learn_from_last_action(self.pose or pose, pose)
+        self._learn_from_last_action(self.pose or pose, pose, observation)
         sighting = self._map(observation, pose)
         self.pose = pose
         self.last_action = self._kept_from_drops(self._decide(pose, sighting), pose)
@@ -178,15 +194,32 @@ class StubbornAgent:
         x_m, y_m = self.navmap.frame.centres(*self.seeker.accepted_cell)
         return float(x_m), float(y_m)
 
-    def _learn_from_last_action(self, before: Pose, pose: Pose) -> None:
+    def _learn_from_last_action(self, before: Pose, pose: Pose, observation: Observation) -> None:
         """Marks the ground that was driven over, and a collision where the last forward failed."""
         config, moved_m = self.config.collisions, pose.distance_to(before)
         self.gps_noise.observe(self.last_action, moved_m)
         failed = is_collision(self.last_action, moved_m, self.gps_noise.failed_below_m(config))
         mark_visited(self.navmap, before, pose, self.robot.radius_m, config)
-        if failed:
+        if self.felt is not None:
+            self._feel(self.felt, pose, failed, observation)
+        elif failed:
             mark_collision(self.navmap, pose, self.policies.marked, config)
         self.untrap.observe(self.last_action, failed)
+
+    def _feel(self, felt: FeltSurfaces, pose: Pose, failed: bool, observation: Observation) -> None:
+        """Enters a failed move into the felt surfaces; without progress, what was avoided is tried again."""
+        touched_rad = contact_direction(pose.yaw_rad, observation.get(BUMPER)) if failed else None
+        news = False
+        if touched_rad is not None:  # else the wheels slipped, if there is a bumper
+            stop = replace(pose, yaw_rad=touched_rad)
+            news = felt.add(self.navmap, stop, self.gps_noise.std_m())
+        if self.last_action is Action.MOVE_FORWARD:
+            own_m = 0.0 if failed and felt.pushes else self.config.planning.own_ground_m
+            self.planner.own_ground_m = own_m  # the ground ahead is not free
+        self.navmap.times_felt += news
+        if self.standstill.observe(self.navmap.seen_area_m2(), news):
+            felt.doubt(self.navmap)
+            self.seeker.retry()
 
     def _map(self, observation: Observation, pose: Pose) -> Sighting:
         """Enters the frame into the map, and returns the target points in it."""

@@ -22,9 +22,12 @@ from stubborn.exploration.frontier import FrontierConfig
 from stubborn.exploration.poni import PoniConfig
 from stubborn.exploration.semexp import SemExpConfig
 from stubborn.exploration.tour import INFORMED_TOUR, TourConfig
+from stubborn.mapping.felt import FeelConfig
 from stubborn.mapping.object_layers import ObjectLayersConfig
 
-NO_AVOIDANCE = CollisionAvoidance(untrap=False, collision_layers=False, averse_exploration=False, visited_is_free=False)
+NO_AVOIDANCE = CollisionAvoidance(
+    untrap=False, collision_layers=False, averse_exploration=False, optimistic_fallback=False, visited_is_free=False
+)
 """The configuration without the paper's measures against collisions."""
 
 ABLATION: Mapping[str, CollisionAvoidance] = MappingProxyType(
@@ -32,7 +35,7 @@ ABLATION: Mapping[str, CollisionAvoidance] = MappingProxyType(
         "stubborn-i": NO_AVOIDANCE,
         "stubborn-ii": replace(NO_AVOIDANCE, untrap=True),
         "stubborn-iii": replace(NO_AVOIDANCE, untrap=True, collision_layers=True),
-        "stubborn-iv": CollisionAvoidance(visited_is_free=False),
+        "stubborn-iv": CollisionAvoidance(optimistic_fallback=False, visited_is_free=False),
         "stubborn-v": CollisionAvoidance(),
     }
 )
@@ -60,8 +63,9 @@ EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
 """The explorers by name, for `AgentConfig.explorer`: a configuration, whose `make` returns the explorer."""
 
 
-PLUS = AgentConfig(explorer=INFORMED_TOUR, seeker=TrackSeekerConfig())
-"""`stubborn-plus`: the paper's agent with object tracks, which explores by a tour over the unseen areas."""
+PLUS = AgentConfig(explorer=INFORMED_TOUR, seeker=TrackSeekerConfig(), feel=FeelConfig())
+"""`stubborn-plus`: the paper's agent with object tracks, which explores by a tour over the unseen areas and feels its
+way along surfaces that depth does not show."""
 
 
 PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(
@@ -75,7 +79,7 @@ PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(
             for name, row in ABLATION.items()
         },
         "stubborn-plus": (
-            "ours: tracks objects, verifies doubtful ones first, tours unseen areas (informed-tour)",
+            "ours: tracks objects, verifies doubtful ones, tours unseen areas, feels along panes",
             PLUS,
         ),
         "single-frame": (

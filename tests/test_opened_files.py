@@ -57,6 +57,7 @@ EXCEPTIONS = {
     ("sim/analysis/report/build.py", "(files('sim.analysis.report') / 'page' / name).read_text"): "a file that ships",
     ("sim/commands/bench/growth.py", "Path('/proc/self/status').read_text"): "a fixed file of the system",
     ("sim/web/server.py", "hub.open"): "no file",
+    ("stubborn/segmentation/processor.py", "_PROCESSOR.read_text"): "a fixed file of the system, /proc/cpuinfo",
     ("stubborn/segmentation/lite0.py", "torch.load"): "weights of an installed package",
     ("stubborn/network_files.py", "safe_open"): "takes a name only; open_plain is called just before",
     ("tools/maintenance/site_hooks.py", "file.read_text"): "pages that the maintainer's build has just written",
@@ -65,7 +66,7 @@ EXCEPTIONS = {
     ("sim/bridges/process_guard.py", "open"): "states of processes in /proc, which no user names",
     ("sim/bridges/process_guard.py", "os.open"): "/dev/null",
     ("sim/bridges/stubborn_client.py", "os.open"): "runs in the agent's process; memory that the simulator names",
-    ("sim/commands/agent_client.py", "Path(stubborn_client.__file__).read_text"): "a file of this project",
+    ("sim/bridges/habitat_client.py", "open"): "runs in the agent's process; a file that the agent's code names",
 }
 
 

@@ -54,6 +54,8 @@ def test_the_wheel_holds_the_shipped_houses(tmp_path: Path) -> None:
     assert "stubborn/segmentation/weights/rednet.safetensors" in packed
     for file in (ROOT / "sim/analysis/report/page").iterdir():
         assert f"sim/analysis/report/page/{file.name}" in packed
+    for file in (ROOT / "sim/robot/sidecars").iterdir():
+        assert f"sim/robot/sidecars/{file.name}" in packed
     for file in (ROOT / "sim/web/page").iterdir():
         assert f"sim/web/page/{file.name}" in packed
 

@@ -1,7 +1,7 @@
 """Reads runs, checks that they have the same episodes, and lists the fields in which their configurations differ.
 
 Two agents that ran the same episodes differ less by chance than their separate intervals suggest: houses, goals and
-starts are the same. So differences are taken in each episode (`sim.evaluation.bootstrap.paired_difference`).
+starts are the same. So differences are taken in each episode (`sim.evaluation.intervals.paired_difference`).
 """
 
 from __future__ import annotations

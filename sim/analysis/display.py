@@ -141,14 +141,11 @@ def _episode_table(lines: Sequence[Line]) -> Table:
     return table
 
 
-FEW_HOUSES = 5
-"""With fewer houses, resampling gives intervals that are too narrow, often of width 0."""
-
-
 def _summary_table(summary: Mapping[str, Any]) -> Table:
-    caption = f"Intervals resample {summary['ci95_resamples']}."
-    if summary["houses"] < FEW_HOUSES:
-        caption += " Of so few houses they are too narrow."
+    caption = f"Intervals are over {summary['ci95_over']}."
+    if spread := summary.get("replicates"):
+        success, spl = (spread[metric]["std"] or 0.0 for metric in ("success", "spl"))
+        caption += f" Standard deviation over replicates: success {success:.3f}, SPL {spl:.3f}."
     title = f"{counted(summary['episodes'], 'episode')} in {counted(summary['houses'], 'house')}"
     table = Table(title=title, caption=caption)
     table.add_column("metric")
@@ -156,7 +153,8 @@ def _summary_table(summary: Mapping[str, Any]) -> Table:
     table.add_column("95 % interval", justify="right")
     for metric in SUMMARY_METRICS:
         low, high = summary[metric]["ci95"]
-        table.add_row(metric, _number(summary[metric]["mean"], 3), f"[{_number(low, 3)}, {_number(high, 3)}]")
+        interval = "-" if low is None else f"[{_number(low, 3)}, {_number(high, 3)}]"
+        table.add_row(metric, _number(summary[metric]["mean"], 3), interval)
     return table
 
 

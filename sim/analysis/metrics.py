@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sim.analysis.comparison import Line
 from sim.analysis.tables import Cell
-from sim.evaluation.bootstrap import estimate, paired_difference, ratio_of_medians
-from sim.evaluation.results import metric_value
+from sim.episodes.replicates import episode_of
+from sim.evaluation.intervals import estimate, paired_difference, ratio_of_medians
+from sim.evaluation.results import AT_MOST_ONE, metric_value
 
 
 @dataclass(frozen=True)
@@ -21,20 +23,22 @@ class Metric:
     percent: bool = False
     digits: int = 1
 
+    @property
+    def most(self) -> float:
+        """The largest possible value: 1, or infinite."""
+        return 1.0 if self.key in AT_MOST_ONE else math.inf
+
     def cell(self, lines: Sequence[Line]) -> Cell:
-        """Returns the mean over lines."""
+        """Returns the mean over episodes; one with replicates counts once, with the mean of its lines."""
         values = [metric_value(line, self.key) for line in lines]
-        return Cell(estimate(values, houses_of(lines)), self.percent, self.digits)
+        found = estimate(values, houses_of(lines), episodes=episodes_of(lines), most=self.most)
+        return Cell(found, self.percent, self.digits)
 
     def difference(self, first: Sequence[Line], second: Sequence[Line]) -> Cell:
         """Returns the mean of second minus first; both hold the same episodes in the same order."""
         a, b = ([metric_value(line, self.key) for line in lines] for lines in (first, second))
-        return Cell(paired_difference(a, b, houses_of(first)), self.percent, self.digits, difference=True)
-
-    def pairs(self, first: Sequence[Line], second: Sequence[Line]) -> int:
-        """Returns the number of episodes that have the number in both; they are in the same order."""
-        both = zip(first, second, strict=True)
-        return sum(all(metric_value(line, self.key) is not None for line in pair) for pair in both)
+        found = paired_difference(a, b, houses_of(first), episodes=episodes_of(first), most=self.most)
+        return Cell(found, self.percent, self.digits, difference=True)
 
     def median(self, lines: Sequence[Line]) -> str:
         """Returns the median over lines as text; `-` where no line has the number."""
@@ -44,12 +48,18 @@ class Metric:
     def ratio_of_medians(self, first: Sequence[Line], second: Sequence[Line]) -> Cell:
         """Returns the median of second over that of first; both hold the same episodes in the same order."""
         a, b = ([metric_value(line, self.key) for line in lines] for lines in (first, second))
-        return Cell(ratio_of_medians(a, b, houses_of(first)), digits=2, difference=True)
+        found = ratio_of_medians(a, b, houses_of(first), episodes=episodes_of(first))
+        return Cell(found, digits=2, difference=True)
 
 
 def houses_of(lines: Sequence[Line]) -> list[str]:
     """Returns the house of each line."""
     return [str(line["house"]) for line in lines]
+
+
+def episodes_of(lines: Sequence[Line]) -> list[str]:
+    """Returns the id of each line's episode, which its replicates share."""
+    return [episode_of(str(line["episode_id"])) for line in lines]
 
 
 SUCCESS = Metric("success %", "success", percent=True)

@@ -9,12 +9,10 @@ from dataclasses import dataclass, field
 
 from rich.table import Table
 
-from sim.evaluation.bootstrap import Estimate
+from sim.evaluation.intervals import Estimate
 
 SIGNIFICANT, NOT_SIGNIFICANT = "significant", "not significant"
 CSV_COLUMNS = ("table", "row", "column", "value", "low95", "high95", "episodes", "houses", "verdict")
-LEAST_PAIRS = 2
-"""A single pair is only a difference: its bootstrap interval has no width."""
 ONE_HOUSE = "*"
 """Marks an interval over the episodes of one house."""
 ONE_HOUSE_NOTE = f"{ONE_HOUSE} One house: the interval is over its episodes and says nothing about other houses."
@@ -49,9 +47,9 @@ class Cell:
 
     @property
     def interval_text(self) -> str:
-        """`[8.0, 16.0]`, with an asterisk if it is over one house; "" without a value and for a single pair."""
+        """`[8.0, 16.0]`, with an asterisk if it is over one house; "" without an interval."""
         low, high = self.estimate.low, self.estimate.high
-        if low is None or high is None or (self.difference and self.estimate.count < LEAST_PAIRS):
+        if low is None or high is None:
             return ""
         return f"[{self._number(low)}, {self._number(high)}]" + ONE_HOUSE * (self.estimate.houses == 1)
 

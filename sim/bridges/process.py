@@ -19,6 +19,7 @@ import numpy as np
 from msgspec import Meta
 from numpy.typing import NDArray
 
+from sim.bridges.habitat.config import make_config
 from sim.bridges.habitat.conversions import Conversion
 from sim.bridges.process_command import PREFIX, ProcessConfig, command_of
 from sim.bridges.process_pipe import AgentProcess, Answer
@@ -121,7 +122,9 @@ class ProcessAgent:
         }
         self._conversion = _conversion(camera, config)
         if self._conversion is not None:
-            self._setup |= {"interface": config.interface, "goals": list(self._conversion.goals)}
+            of_the_run = make_config(camera=camera, robot=robot, success=success, max_steps=max_steps)
+            goals = list(self._conversion.goals)
+            self._setup |= {"interface": config.interface, "goals": goals, "config": of_the_run}
         self._process: AgentProcess | None = None
         self._chosen = _Chosen(action=0)
         self.draws_map = False

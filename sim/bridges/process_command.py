@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import os
+import re
 import shlex
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +19,12 @@ Interface = Literal["stubborn", "habitat"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class ProcessConfig:
+class BridgeConfig:
+    """Base class of the options of agents whose code cannot declare sensors: `--config sensors=[...]` declares them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProcessConfig(BridgeConfig):
     """The options of an agent in a process of its own. `--step-timeout` limits each of its calls."""
 
     start_timeout_s: float = 120.0
@@ -65,12 +72,17 @@ def is_process(name: str) -> bool:
 
 
 def files_of(name: str) -> list[Path]:
-    """Returns the plain files that the command of an agent names, and the file of the module after `-m`."""
+    """Returns the plain files that the command of an agent names, and those of modules: `-m MODULE`, `MODULE:CLASS`.
+
+    Modules are looked up in the current folder and in the folders of `PYTHONPATH`.
+    """
     words = command_of(name)
-    modules = [word.replace(".", "/") for before, word in itertools.pairwise(words) if before == "-m"]
-    paths = [Path(word) for word in words]
-    paths += [Path(f"{module}{end}") for module in modules for end in (".py", "/__main__.py")]
-    return [path for path in paths if _is_file(path)]
+    modules = [word for before, word in itertools.pairwise(words) if before == "-m"]
+    modules += [word.partition(":")[0] for word in words if re.fullmatch(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*", word)]
+    folders = [Path(each) for each in ("", *os.environ.get("PYTHONPATH", "").split(os.pathsep))]
+    files = [f"{module.replace('.', '/')}{end}" for module in modules for end in (".py", "/__main__.py")]
+    paths = [Path(word) for word in words] + [folder / file for file in files for folder in folders]
+    return list(dict.fromkeys(path for path in paths if _is_file(path)))
 
 
 def _is_file(path: Path) -> bool:

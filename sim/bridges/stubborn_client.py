@@ -6,14 +6,20 @@ Copy this file next to your agent; it needs Python 3.6 or newer, and NumPy. The 
 
     serve(MyAgent())
 
+Code that is written for Habitat runs unchanged, with `--config agent.interface=habitat`; COMMAND is one of
+
+    python stubborn_client.py evaluate.py ARGUMENTS             # the agent that it gives to Benchmark or Challenge
+    python stubborn_client.py package.module:CLASS NAME=VALUE   # arguments of its constructor
+
+If Habitat is not installed, this file provides the names of Habitat that agents import.
+
 An agent has two methods. `reset(goal, seed)` starts an episode; `goal` is a category such as "chair".
 `act(observation)` returns the next action: 0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT or 3 TURN_RIGHT. The observation is a
 dict of arrays: `rgb` uint8 (h, w, 3), `depth` float32 (h, w) in metres, `gps` float32 (2,), `compass` float32 (1,) and
 `objectgoal` int64 (1,).
 
-An agent with Habitat's interface is served in the same way: `reset()` and `act(observations)`, whose observations and
-actions are Habitat's. The option `--config agent.interface=habitat` of `stubborn run` announces it. The generators of
-`random`, NumPy and PyTorch are seeded before each episode.
+An agent with Habitat's interface may also be served: `reset()` and `act(observations)`, whose observations and actions
+are Habitat's. The generators of `random`, NumPy and PyTorch are seeded before each episode.
 
 Further methods are optional. `stop_confidence()` and `stop_target_xy_m()` are called after STOP. `map_image()` returns
 the agent's map for videos, uint8 RGB (h, w, 3), and `state()` returns a few words on what the agent is doing.
@@ -137,15 +143,9 @@ def serve(agent):
     Args:
         agent: an object with `reset` and `act`, or a class or function that gets the setup and returns one.
     """
-    if os.isatty(0):
-        sys.exit("This agent is started by a simulator: stubborn run --agent 'process:COMMAND'.")
-    source, sink = _take_pipes()
-    threading.Thread(target=_end_with_simulator, args=(source,), daemon=True, name="simulator").start()
-    client = _Client(agent)
-    while True:
-        request, content = _receive(source)
-        if request is None or request["type"] == "end":
-            return
+    link, client = Link.of_this_process(), _Client(agent)
+    request, content = link.first
+    while request is not None and request["type"] != "end":
         try:
             answer, arrays = client.answer(request, content)
             buffers = pack(dict(answer, id=request["id"]), arrays)
@@ -153,7 +153,27 @@ def serve(agent):
             traceback.print_exc()
             buffers = pack({"type": "error", "error": _text_of(error), "id": request["id"]}, {})
         for buffer in buffers:
-            _write(sink, buffer)
+            _write(link.sink, buffer)
+        request, content = _receive(link.source)
+
+
+class Link:
+    """The connection to the simulator: its pipes, and its first request, which describes the task."""
+
+    _made = None
+
+    def __init__(self):
+        if os.isatty(0):
+            sys.exit("This agent is started by a simulator: stubborn run --agent 'process:COMMAND'.")
+        self.source, self.sink = _take_pipes()
+        threading.Thread(target=_end_with_simulator, args=(self.source,), daemon=True, name="simulator").start()
+        self.first = _receive(self.source)
+
+    @classmethod
+    def of_this_process(cls):
+        """Returns the connection, which a process has once."""
+        cls._made = cls._made or cls()
+        return cls._made
 
 
 class _Client:

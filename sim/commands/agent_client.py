@@ -6,13 +6,16 @@ stubborn agent-client > stubborn_client.py          # does the same
 
 from __future__ import annotations
 
+import inspect
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 from sim import cli
-from sim.bridges import stubborn_client
+from sim.bridges import habitat_client, stubborn_client
 from sim.files import write_atomically
+
+IMPORT = "from sim.bridges.stubborn_client import HABITAT_ACTIONS, Link, serve\n"
+"""The line of `habitat_client` that one file does not need."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,9 +28,15 @@ class Args:
 
 def main(args: Args) -> int:
     """Writes the file."""
-    content = Path(stubborn_client.__file__).read_text(encoding="utf-8")
+    content = client_file()
     if args.out is None:
         sys.stdout.write(content)
     else:
         write_atomically(args.out, content)
     return 0
+
+
+def client_file() -> str:
+    """Returns the content of the file: the module `stubborn_client`, and `habitat_client` without its import of it."""
+    protocol, habitat = inspect.getsource(stubborn_client), inspect.getsource(habitat_client)
+    return f"{protocol}\n\n{habitat.replace(IMPORT, '')}"

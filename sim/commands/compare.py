@@ -2,8 +2,9 @@
 
 stubborn compare runs/before runs/after
 
-Differences are the second run minus the first, paired by episode, over the episodes of both runs. Their 95 % bootstrap
-intervals resample houses, then the episodes of each house. A difference is not significant if its interval holds 0.
+Differences are the second run minus the first, paired by episode, over the episodes of both runs, with 95 % intervals
+over houses (`sim.evaluation.intervals`). A difference is not significant if its interval holds 0. An episode with
+replicates counts once, with their mean.
 """
 
 from __future__ import annotations
@@ -17,10 +18,11 @@ import tyro
 from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import Run, differences_table, read_run, require_same_episodes
-from sim.analysis.metrics import SPL, SUCCESS
+from sim.analysis.metrics import SPL, SUCCESS, episodes_of
+from sim.analysis.replicates import difference_note
 from sim.analysis.report.figures import METRICS
 from sim.analysis.tables import NOT_SIGNIFICANT, ResultTable, to_csv, to_markdown, to_rich
-from sim.evaluation.bootstrap import MIN_PAIRS
+from sim.evaluation.intervals import MIN_PAIRS
 from sim.files import write_together
 
 
@@ -59,17 +61,23 @@ def compare(first: Run, second: Run) -> ResultTable:
     """
     common = require_same_episodes(first, second)
     a, b = ([of.lines[i] for i in common] for of in (first, second))
-    rows = [(metric.title, [metric.cell(a), metric.cell(b), metric.difference(a, b)]) for metric in METRICS]
+    episodes = len(set(episodes_of(a)))
+    against = {metric: metric.difference(a, b) for metric in METRICS}
+    rows = [(metric.title, [metric.cell(a), metric.cell(b), against[metric]]) for metric in METRICS]
     changed = [i for i in common if bool(first.lines[i]["success"]) != bool(second.lines[i]["success"])]
     notes = [
-        f"A: {first.path}, B: {second.path}; {len(common)} episodes of both runs.",
+        f"A: {first.path}, B: {second.path}; {episodes} episodes of both runs.",
         f"not significant: the interval holds 0, or there are fewer than {MIN_PAIRS} pairs.",
     ]
     errors = [sum(line["end_reason"] == "error" for line in lines) for lines in (a, b)]
     if any(errors):
         notes.append(f"Ended with an error: {errors[0]} of A, {errors[1]} of B; failures, in no other metric's means.")
-    whole = sum("error" not in (x["end_reason"], y["end_reason"]) for x, y in zip(a, b, strict=True))
-    fewer = [f"{metric.title} {metric.pairs(a, b)}" for metric in METRICS if metric.pairs(a, b) < whole]
+    if note := difference_note(a, b):
+        notes.append(note)
+    ends = [(x["end_reason"], y["end_reason"]) for x, y in zip(a, b, strict=True)]
+    whole = {episode for episode, both in zip(episodes_of(a), ends, strict=True) if "error" not in both}
+    pairs = {metric.title: cell.estimate.count for metric, cell in against.items()}
+    fewer = [f"{title} {count}" for title, count in pairs.items() if count < len(whole)]
     if fewer:
         notes.append(f"Differences of fewer episodes, because the others have no value: {', '.join(fewer)}.")
     if changed:
@@ -77,7 +85,7 @@ def compare(first: Run, second: Run) -> ResultTable:
         gained = [i for i in changed if not first.lines[i]["success"]]
         notes.append(f"Only A succeeds in {len(lost)}: {' '.join(lost) or '-'}.")
         notes.append(f"Only B succeeds in {len(gained)}: {' '.join(gained) or '-'}.")
-    title = f"B - A, paired over {len(common)} episodes"
+    title = f"B - A, paired over {episodes} episodes"
     return ResultTable("comparison", title, ("metric", "A", "B", "B - A"), rows, notes)
 
 
@@ -106,4 +114,4 @@ def verdict(first: Run, second: Run) -> str:
             sentences[-1] += (
                 f" (to be significant, this difference needs about {needed} pairs in {more:.1f} times the houses)"
             )
-    return f"Verdict over {len(common)} episodes. {'. '.join(sentences)}."
+    return f"Verdict over {len(set(episodes_of(a)))} episodes. {'. '.join(sentences)}."

@@ -11,6 +11,7 @@ import numpy as np
 from sim.composition.options import RunOptions
 from sim.composition.setup import Setup
 from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.replicates import with_replicates
 from sim.episodes.splits import Episode, Split
 from sim.errors import ConfigError
 from sim.geometry.pose import Pose
@@ -64,6 +65,7 @@ def episodes_of(setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
             episodes = drawn_episodes(env, setup)
     finally:
         env.close()
+    episodes = with_replicates(episodes, options.replicates)
     return episodes, {"name": split.name, "version": split.version, "sha256": split.sha256}
 
 

@@ -37,14 +37,16 @@ class RunOptions:
     """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
     root: Path | None = None
     """With --house: another folder whose files the house may use, in addition to its own folder."""
-    robot: Path | None = None
-    """Replaces the default robot: an MJCF file with its sidecar next to it (docs/worlds.md)."""
+    robot: str | None = None
+    """Replaces the default robot: an MJCF file with its sidecar next to it, or menagerie:NAME (docs/worlds.md)."""
     goal: str | None = None
     """Only this goal category."""
     start_deg: str | None = None
     """With --house: the start pose "X Y YAW" in metres and degrees."""
     episodes: cli.Count = 5
     """The first N episodes of the split; with --house, N episodes are sampled."""
+    replicates: cli.Count = 1
+    """Runs of each episode: the first from its start, the others from starts 1 cm away, to see what chance does."""
     only: tuple[str, ...] = ()
     """IDs of the episodes of the split to run, in place of the first N: for example a failure that you want to film."""
     seed: cli.Seed = 0

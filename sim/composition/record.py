@@ -11,7 +11,7 @@ from typing import Any
 from sim.bridges.process_command import files_of, is_process
 from sim.composition.isolation import own_modules
 from sim.composition.options import RunOptions
-from sim.composition.segmenters import NetworkConfig, file_sha256
+from sim.composition.segmenters import NetworkConfig, file_sha256, precision_of
 from sim.composition.setup import Setup
 from sim.configuration import as_json
 from sim.episodes.splits import Episode
@@ -78,7 +78,9 @@ def _segmentation_of(setup: Setup) -> dict[str, Any]:
         return {"name": setup.segmentation_name or None}
     spec, verified = setup.segmentation.spec, not setup.borrowed_parameters
     declared = as_json(replace(spec, sensors=tuple(x if isinstance(x, str) else x.name for x in spec.sensors)))
-    return {"name": setup.segmentation_name, **declared, "has_fitted_parameters": verified}
+    found = {"name": setup.segmentation_name, **declared, "has_fitted_parameters": verified}
+    precision = precision_of(setup.config.detector)
+    return found if precision is None else found | {"precision": precision}
 
 
 def _files_in(tree: Any, name: str) -> Iterator[tuple[str, Path]]:
@@ -93,7 +95,7 @@ def _files_in(tree: Any, name: str) -> Iterator[tuple[str, Path]]:
 def error_line(setup: Setup, episode: Episode, error: str) -> dict[str, Any]:
     """Returns the result line of an episode that could not be run to its end."""
     nothing = {"distance_to_goal": None, "shortest_path": episode.shortest_path_m, "trapped": None, "failure": None}
-    counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "wall_time_s": 0.0}
+    counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "simulated_s": 0.0, "wall_time_s": 0.0}
     nothing |= dict.fromkeys(
         ("gt_explored", "first_seen_step", "steps_to_first_sight", "area_seen_m2", "area_per_metre")
     )

@@ -17,6 +17,7 @@ from sim.composition.options import RunOptions
 from sim.composition.record import error_line, record_of
 from sim.composition.seed_key import seed_key_of
 from sim.composition.setup import Setup
+from sim.episodes.replicates import with_replicates
 from sim.episodes.splits import Episode, load_split
 from sim.evaluation.executors import make_executor
 from sim.evaluation.results import RunDirectory
@@ -100,10 +101,11 @@ def _require_own_lines(options: RunOptions, run: RunDirectory, episodes: Sequenc
     known = {episode.episode_id: (episode.house, episode.goal) for episode in episodes}
     others = [line for line in run.lines if line["episode_id"] not in known]
     if others and options.house is None:  # of the same split, but not asked for now
-        known |= {each.episode_id: (each.house, each.goal) for each in load_split(options.split).episodes}
+        every = with_replicates(load_split(options.split).episodes, options.replicates)
+        known |= {each.episode_id: (each.house, each.goal) for each in every}
     elif options.house is not None:
         stem = re.escape(options.house.stem)
-        drawn = (line for line in others if re.fullmatch(rf"{stem}_\d{{4,}}", line["episode_id"]))
+        drawn = (line for line in others if re.fullmatch(rf"{stem}_\d{{4,}}(~\d+)?", line["episode_id"]))
         known |= {line["episode_id"]: (options.house.stem, options.goal or line["goal"]) for line in drawn}
     run.require_of(known)
 

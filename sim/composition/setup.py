@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-from sim.bridges.process_command import ProcessConfig
+from sim.bridges.process_command import BridgeConfig
 from sim.composition.agents import find_agent, find_explorer, takes_explorer
 from sim.composition.checks import check_options
 from sim.composition.options import RunOptions, start_pose
@@ -174,7 +174,7 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
     settings = {} if options.config_file is None else read_settings(options.config_file)
     settings |= parse_assignments(options.config)
     config = with_fields(_presets(options, spec, segmentation), settings)
-    if isinstance(spec.config, ProcessConfig):  # its program cannot declare sensors: --config sensors=... does
+    if isinstance(spec.config, BridgeConfig):  # its code cannot declare sensors: --config sensors=... does
         spec = replace(spec, sensors=config.sensors, uses_ground_truth="semantic" in config.sensors)
     verifier = _verifier(options, segmentation, config.verification)
     config = replace(config, verification=_with_least_probability(config.verification, verifier))

@@ -293,19 +293,20 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     def _observe(self) -> tuple[dict[str, NDArray], NDArray[np.uint8]]:
         """Returns the observation, and the true segmentation, which the metrics need even if no agent gets it."""
         world = self.scene.world
-        needed = {name for sensor in self.sensors for name in sensor.images}
+        needed = {name for sensor in self._noise.sensors for name in sensor.images}
         wanted = sorted({"semantic", *needed, *self._truth, *self._noise.images})
         images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, wanted)
         fields = {
             "goal": self.episode.goal,
             "collided": self._motion is not None and self._motion.collided,
+            "odometry": world.odometry,
             "pose": world.pose,
             "start": self.episode.start,
             "motion": self._motion,
             "model": world.model,
             "data": world.data,
         }
-        readings = {each.name: each.read(SensorContext(each, images, **fields)) for each in self.sensors}
+        readings = {each.name: each.read(SensorContext(each, images, **fields)) for each in self._noise.sensors}
         return self._noise.apply(readings, images), images["semantic"]
 
     def _info(self, collided: bool) -> dict[str, Any]:

@@ -2,7 +2,8 @@
 
 The oracle is an upper bound: if it fails, the task, the free space or the robot is wrong. It finds its route by
 weighted A* over steps of "turn, then drive 0.25 m" on the 12 headings, with the geodesic distance as heuristic. It
-searches again if the robot is not where the route expects it; a step that was blocked is not tried again.
+searches again if the robot is not where the route expects it; a step that was blocked is not tried again. Where whole
+steps do not lead to the goal, as in a narrow gap between furniture, the route also has steps that an obstacle ends.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import Protocol
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.interface import FORWARD_M, TURN_RAD, Action, Observation
 from sim.task.objectnav import Task
@@ -30,6 +32,8 @@ MARGIN_M = 0.05
 """A step that passes an obstacle with less clearance than this around the disc costs more."""
 TIGHT_COST_M = 0.25
 """Additional cost of such a step, in metres of path."""
+BLOCKED_COST_M = 0.5
+"""Additional cost of a step that an obstacle ends."""
 NODE_M = 0.05
 """Nodes with the same heading and the same multiples of this length in x and y are one node of a route."""
 DRIFT_M = 0.03
@@ -75,9 +79,7 @@ class Oracle:
         self._clearance_m = cv2.distanceTransform(space.free.astype(np.uint8), cv2.DIST_L2, 5) * CELL_M  # 0: not free
         inner = cv2.erode(target.reached.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(np.bool_)
         self._goal_cells = inner if inner.any() else target.reached
-        yaws = task.start.yaw_rad + np.arange(HEADINGS) * TURN_RAD
-        along = np.linspace(CELL_M, FORWARD_M, round(FORWARD_M / CELL_M))
-        self._swept_m = along[None, :, None] * np.stack([np.cos(yaws), np.sin(yaws)], axis=1)[:, None, :]
+        self._swept_m = np.zeros((HEADINGS, 0, 2))
         self._route: deque[tuple[Action, Node]] = deque()
         self._expected: Node | None = None
         self._blocked: set[Key] = set()
@@ -92,7 +94,8 @@ class Oracle:
             self._blocked.add(_key(here))
             self._route.clear()
         if not self._route:
-            self._route.extend(self._search(here))
+            actions, reached = self._search(here, whole=True)
+            self._route.extend(actions if reached else self._search(here, whole=False)[0])
         if not self._route:
             return Action.TURN_LEFT
         action, self._expected = self._route.popleft()
@@ -103,23 +106,37 @@ class Oracle:
         turned = (pose.yaw_rad - self._env.scene.task.start.yaw_rad) / TURN_RAD
         return pose.x_m, pose.y_m, round(turned) % HEADINGS
 
-    def _search(self, begin: Node) -> list[tuple[Action, Node]]:
-        """Returns the actions to a goal cell, or to the reachable node nearest to one; each with its end node."""
+    def _swept(self, heading: int) -> NDArray[np.float64]:
+        """Returns the positions (headings, samples, 2) of a MOVE_FORWARD on each heading, relative to its start.
+
+        The headings are turns away from the present one, since a gyro with an error makes turns of another angle.
+        """
+        yaw_rad = self._env.scene.task.world.pose.yaw_rad
+        yaws = yaw_rad + (np.arange(HEADINGS) - heading) * TURN_RAD
+        along = np.linspace(CELL_M, FORWARD_M, round(FORWARD_M / CELL_M))
+        return along[None, :, None] * np.stack([np.cos(yaws), np.sin(yaws)], axis=1)[:, None, :]
+
+    def _search(self, begin: Node, *, whole: bool) -> tuple[list[tuple[Action, Node]], bool]:
+        """Returns the actions to a goal cell, or to the reachable node nearest to one, and whether it is a goal cell.
+
+        Each action has its end node. With `whole`, obstacles end no step.
+        """
+        self._swept_m = self._swept(begin[2])
         came: dict[Key, Node] = {}
         cost = {_key(begin): 0.0}
         tie = itertools.count()
         queue: list[tuple[float, int, Node]] = [(0.0, next(tie), begin)]
         done: set[Key] = set()
-        end, nearest_m = begin, math.inf
+        end, nearest_m, reached = begin, math.inf, False
         while queue and len(done) < MAX_EXPANSIONS:
             node = heapq.heappop(queue)[2]
             if _key(node) in done:
                 continue
             done.add(_key(node))
             if self._goal_cells[tuple(self._frame.to_cells(node[:2]))]:
-                end = node
+                end, reached = node, True
                 break
-            for step_m, after, left_m in self._steps(node):
+            for step_m, after, left_m in self._steps(node, whole=whole):
                 total_m = cost[_key(node)] + step_m
                 if _key(after) in done or total_m >= cost.get(_key(after), math.inf):
                     continue
@@ -130,22 +147,27 @@ class Oracle:
         nodes = [end]
         while nodes[-1] != begin:
             nodes.append(came[_key(nodes[-1])])
-        return [action for node, after in itertools.pairwise(nodes[::-1]) for action in _actions(node, after)]
+        steps = itertools.pairwise(nodes[::-1])
+        return [action for node, after in steps for action in _actions(node, after)], reached
 
-    def _steps(self, node: Node) -> Iterator[tuple[float, Node, float]]:
+    def _steps(self, node: Node, *, whole: bool) -> Iterator[tuple[float, Node, float]]:
         """Yields cost, end and remaining distance of each step from a node: a turn, then MOVE_FORWARD."""
         x, y, heading = node
         cells = self._frame.to_cells(self._swept_m + np.array([x, y]))  # (headings, samples, 2)
-        inside = self._frame.inside(cells).all(axis=1)
         row, col = np.clip(cells, 0, np.array(self._frame.shape) - 1).transpose(2, 0, 1)
-        clearance_m = self._clearance_m[row, col].min(axis=1)
-        left_m = self._distance_m[row[:, -1], col[:, -1]]
-        for k in np.flatnonzero(inside & (clearance_m > 0.0) & np.isfinite(left_m)).tolist():
-            if _key((x, y, k)) in self._blocked:
+        clearance_m = np.where(self._frame.inside(cells), self._clearance_m[row, col], 0.0)
+        free = np.cumprod(clearance_m > 0.0, axis=1).sum(axis=1)  # samples before an obstacle
+        samples = clearance_m.shape[1]
+        for k in np.flatnonzero(free >= (samples if whole else 1)).tolist():
+            last = free[k] - 1
+            left_m = float(self._distance_m[row[k, last], col[k, last]])
+            if not math.isfinite(left_m) or _key((x, y, k)) in self._blocked:
                 continue
-            step_m = FORWARD_M + TURN_COST_M * abs(_turns(heading, k)) + TIGHT_COST_M * (clearance_m[k] < MARGIN_M)
-            dx, dy = self._swept_m[k, -1]
-            yield step_m, (x + dx, y + dy, k), float(left_m[k])
+            step_m = FORWARD_M + TURN_COST_M * abs(_turns(heading, k))
+            step_m += TIGHT_COST_M * (clearance_m[k, : last + 1].min() < MARGIN_M)
+            step_m += BLOCKED_COST_M * (free[k] < samples)
+            dx, dy = self._swept_m[k, last]
+            yield step_m, (x + dx, y + dy, k), left_m
 
 
 def _key(node: Node) -> Key:

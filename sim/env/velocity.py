@@ -87,4 +87,4 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
     def _info(self, collided: bool) -> dict[str, Any]:
         info, motion = super()._info(collided), self.motion
         blocked = motion is not None and motion.ended == "blocked"
-        return info | {"simulated_s": info["num_steps"] * self.period_s, "blocked": blocked}
+        return info | {"blocked": blocked}

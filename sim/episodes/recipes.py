@@ -3,8 +3,8 @@
 | split | episodes of a house | rule | distance, m |
 |---|--:|---|---|
 | val, test | 34 | `any` | 2 to 30 |
-| large | 30 | `hidden` | 12 to 60, 6 to 60 for the only reachable instance of its category |
-| hazards | 30 | `hazard` | 2 to 30 |
+| large, large-test | 30 | `hidden` | 12 to 60, 6 to 60 for the only reachable instance of its category |
+| hazards, hazards-test | 30 | `hazard` | 2 to 30 |
 | train | 10 | `any` | 2 to 30 |
 | traps | 3 | `any` | the start of the sidecar with three headings |
 | contact-val, contact-test, contact-heldout | 1 | `any` | the start of the sidecar |
@@ -55,14 +55,18 @@ class EpisodeRecipe:
 
 DEFAULT_RECIPE = EpisodeRecipe()
 """For splits that are not shipped."""
+_LARGE = EpisodeRecipe(
+    per_house=30, rule="hidden", min_distance_m=12.0, only_instance_min_distance_m=6.0, max_distance_m=60.0
+)
+_HAZARDS = EpisodeRecipe(per_house=30, rule="hazard")
 EPISODE_RECIPES: Mapping[str, EpisodeRecipe] = MappingProxyType(
     {
         "val": EpisodeRecipe(per_house=34),
         "test": EpisodeRecipe(per_house=34),
-        "large": EpisodeRecipe(
-            per_house=30, rule="hidden", min_distance_m=12.0, only_instance_min_distance_m=6.0, max_distance_m=60.0
-        ),
-        "hazards": EpisodeRecipe(per_house=30, rule="hazard"),
+        "large": _LARGE,
+        "hazards": _HAZARDS,
+        "large-test": _LARGE,
+        "hazards-test": _HAZARDS,
         "train": EpisodeRecipe(per_house=10, view_points=2),
         "traps": EpisodeRecipe(per_house=3, turns_rad=START_TURNS_RAD),
         **dict.fromkeys(("contact-val", "contact-test", "contact-heldout"), EpisodeRecipe(per_house=1, view_points=2)),

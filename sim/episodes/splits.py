@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from sim.episodes import habitat
+from sim.episodes.replicates import find_episode
 from sim.errors import EpisodeError, HouseError
 from sim.files import inside, write_together
 from sim.geometry.pose import Pose
@@ -127,14 +128,14 @@ class Split:
         return house_sidecar(self.house_paths[house], self.labels_path)
 
     def episode(self, episode_id: str) -> Episode:
-        """Returns the episode with an id.
+        """Returns the episode with an id, or one of its replicates (`sim.episodes.replicates`).
 
         Raises:
             EpisodeError: there is no such episode.
         """
-        for episode in self.episodes:
-            if episode.episode_id == episode_id:
-                return episode
+        found = find_episode({episode.episode_id: episode for episode in self.episodes}, str(episode_id))
+        if found is not None:
+            return found
         near = difflib.get_close_matches(str(episode_id), [episode.episode_id for episode in self.episodes], n=1)
         hint = f" Did you mean '{near[0]}'?" if near else ""
         raise EpisodeError(f"Split '{self.name}' has no episode '{episode_id}'.{hint}")

@@ -10,18 +10,20 @@ import contextlib
 import fcntl
 import hashlib
 import json
+import math
 import os
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Annotated, Any, Literal
 
 import msgspec
 
+from sim.episodes.replicates import episode_of, replicate_number
 from sim.errors import ConfigError
-from sim.evaluation.bootstrap import estimate
 from sim.evaluation.config_fields import ABSENT, differing_fields, field_text, is_same_file
+from sim.evaluation.intervals import estimate, replicate_spread
 from sim.files import open_to_grow, write_atomically
 from sim.reading import (
     MAX_LINES_BYTES,
@@ -45,8 +47,10 @@ SUMMARY_METRICS = (
 """Metrics (`metric_value`) that the summary averages."""
 OF_ERRORS = ("success", "spl", "soft_spl")
 """Metrics in which an episode that ended with an error counts."""
-RESAMPLED, RESAMPLED_IN_ONE_HOUSE = "houses, then the episodes of each", "the episodes of the one house"
-"""The units that the intervals of a summary resample."""
+AT_MOST_ONE = frozenset({"success", "spl", "soft_spl", "gt_explored", "never_seen", "trapped"})
+"""Metrics between 0 and 1."""
+OVER_HOUSES, OVER_ONE_HOUSE = "houses", "the episodes of the one house"
+"""The units over which the intervals of a summary are taken."""
 PLACEMENT_OPTIONS = ("executor", "address", "shard")
 """Options that say where episodes are run; they change no result."""
 VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save", "mcap")
@@ -92,6 +96,7 @@ class ResultLine(msgspec.Struct):
     area_seen_m2: Measured = None
     area_per_metre: float | None = None  # not bounded: older runs divided by path lengths near 0
     trapped: Measured = None
+    simulated_s: Measured = None
     stop_confidence: Measured = None
     stop_target_xy_m: tuple[Number, Number] | None = None
     stop_target_to_goal_m: Measured = None
@@ -346,6 +351,15 @@ class RunDirectory:
         self._results.close()
         self._lock.close()
 
+    def _require_same_physics(self, existing: Mapping[str, Any], config: Mapping[str, Any]) -> None:
+        """Raises ConfigError where the run was made with another version of the physics; the first wrote none."""
+        before, now = existing.get("physics") or 1, config.get("physics")
+        if now is not None and before != now:
+            raise ConfigError(
+                f"--out '{self.path}' holds a run of physics version {before}, this program has version {now}: the "
+                "robot moves differently, so that the run cannot be resumed; choose another folder."
+            )
+
     def _write_or_compare_config(self) -> None:
         file = self.path / "config.json"
         config = json.loads(json.dumps(dict(self.config)))
@@ -356,8 +370,7 @@ class RunDirectory:
             _write_json(file, config)  # it is on the disk before the first line
             return
         existing = read_record(file)
-        if "physics" in config:
-            existing.setdefault("physics", 1)  # runs of the first version do not have it
+        self._require_same_physics(existing, config)
         for path, before, now in differing_fields(existing, config):
             unset = all(value is None or value is ABSENT for value in (before, now))
             if path.partition(".")[0] not in NOT_COMPARED and not unset and not is_same_file(path, existing, config):
@@ -399,27 +412,45 @@ def metric_value(line: Mapping[str, Any], metric: str) -> float | None:
 
 
 def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """Returns the number of episodes and, for each of `SUMMARY_METRICS`, the mean and its 95 % bootstrap interval.
+    """Returns the number of episodes and, for each of `SUMMARY_METRICS`, the mean and its 95 % interval.
 
-    Intervals resample houses, then the episodes of each (`sim.evaluation.bootstrap`); `ci95_resamples` says so, and
-    says when one house leaves only its episodes to resample. `failures` counts the failed episodes by cause
-    (`sim.task.failures`), the most frequent first. Episodes whose value is null do not count for that metric.
+    Intervals are over houses (`sim.evaluation.intervals`); `ci95_over` says so, and says when one house leaves only its
+    episodes. `failures` counts the failed lines by cause (`sim.task.failures`), the most frequent first. Episodes whose
+    value is null do not count for that metric. An episode with replicates (`--replicates`) counts once, with their
+    mean; `replicates` then has the means of each replicate and their standard deviation (`replicate_spread`).
     """
     lines = list(lines)
     houses = [str(line["house"]) for line in lines]
+    episodes = [episode_of(line["episode_id"]) for line in lines]
     summary: dict[str, Any] = {
-        "episodes": len(lines),
+        "episodes": len(set(episodes)),
         "errors": sum(line["end_reason"] == "error" for line in lines),
         "falls": sum(line["end_reason"] == "fallen" for line in lines),
         "houses": len(set(houses)),
-        "ci95_resamples": RESAMPLED_IN_ONE_HOUSE if len(set(houses)) == 1 else RESAMPLED,
+        "ci95_over": OVER_ONE_HOUSE if len(set(houses)) == 1 else OVER_HOUSES,
     }
     for metric in SUMMARY_METRICS:
-        value = estimate([metric_value(line, metric) for line in lines], houses)
+        values = [metric_value(line, metric) for line in lines]
+        value = estimate(values, houses, episodes=episodes, most=1.0 if metric in AT_MOST_ONE else math.inf)
         summary[metric] = {"mean": value.mean, "ci95": [value.low, value.high]}
+    summary |= _replicates(lines, episodes)
     causes = Counter(line["failure"] for line in lines if line.get("failure") is not None)
     summary["failures"] = dict(causes.most_common())
     return summary
+
+
+def _replicates(lines: Sequence[Mapping[str, Any]], episodes: Sequence[str]) -> dict[str, Any]:
+    """Returns, under `replicates`, the mean of each replicate of all episodes and their spread; {} without any."""
+    numbers = [replicate_number(line["episode_id"]) for line in lines]
+    if len(set(numbers)) < 2:
+        return {}
+    found = {}
+    for metric in ("success", "spl"):
+        values = [float(line[metric]) for line in lines]
+        each = [[v for v, of in zip(values, numbers, strict=True) if of == number] for number in sorted(set(numbers))]
+        means = [sum(of_number) / len(of_number) for of_number in each]
+        found[metric] = {"means": means, "std": replicate_spread(values, episodes)}
+    return {"replicates": found}
 
 
 def _as_bytes(line: Mapping[str, Any]) -> bytes:

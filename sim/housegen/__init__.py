@@ -2,9 +2,9 @@
 
 `generator` draws and checks a house. The folders are its steps: `floor_plan` (rooms), `structure` (openings, walls,
 doors, windows, stairs), `furnishing` (chooses `furniture` and places it in rooms), `surfaces` (materials, textures,
-light), `hazards`, and `mjcf` (writes the specification). `upper_storey` repeats some steps for a second storey.
-`imported` adds models that the user has installed, `traps` builds trap scenes, and `splits` lists how each shipped
-house is generated.
+light), `hazards`, `mjcf` (writes the specification), and `ground` (friction, rugs, thresholds). `upper_storey` repeats
+some steps for a second storey. `imported` adds models that the user has installed, `traps` builds trap scenes, and
+`splits` lists how each shipped house is generated.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from __future__ import annotations
 import difflib
 import re
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +21,8 @@ from sim.errors import HouseError
 from sim.gl import mujoco
 from sim.interface import MPCAT40, MPCAT40_ID
 
+COVER_MASK = (8, 0)
+"""Contype and conaffinity of floors that only wheels and casters touch: furniture stands on the floor below."""
 RENDERED_GROUPS = 3
 """Geoms of groups 0, 1 and 2 are rendered; those of group 3 and above are collision geoms only."""
 VOID = "void"
@@ -100,6 +102,21 @@ def read_labels(
     return Labels(instances, category_of_geom, instance_of_geom, void_geoms)
 
 
+def categories_by_rules(names: Sequence[str], rules: Mapping[str, str]) -> dict[str, str]:
+    """Returns the category of each name that matches a rule, by the first one; "void" is one of them.
+
+    Raises:
+        HouseError: a rule is not valid or takes too long.
+    """
+    compiled, until_s = _compile_rules(rules), time.monotonic() + RULES_S
+    found = {}
+    for name in names:
+        rule = _matching(name, compiled, until_s)
+        if rule is not None:
+            found[name] = rule
+    return found
+
+
 def rendered_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
     """Returns (ngeom,) True for visual geoms: group below 3 and not fully transparent."""
     return (model.geom_group < RENDERED_GROUPS) & (opacity(model) > 0.0)
@@ -108,6 +125,11 @@ def rendered_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
 def collidable_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
     """Returns (ngeom,) True for collision geoms."""
     return (model.geom_contype != 0) | (model.geom_conaffinity != 0)
+
+
+def cover_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
+    """Returns (ngeom,) True for floor coverings, for example rugs: geoms with the masks `COVER_MASK`."""
+    return (model.geom_contype == COVER_MASK[0]) & (model.geom_conaffinity == COVER_MASK[1])
 
 
 def geoms_of(model: mujoco.MjModel, prefix: str) -> NDArray[np.bool_]:
@@ -172,20 +194,25 @@ def _first_label(
     for name in names:
         if not name:
             continue
-        for pattern, category in rules:
-            try:
-                found = pattern.search(name, timeout=max(1e-3, until_s - time.monotonic()))
-            except TimeoutError:
-                raise HouseError(
-                    f"label rule '{pattern.pattern}' takes too long on '{name}': all rules of a house have {RULES_S:g} "
-                    "s; write it without a repetition inside a repetition."
-                ) from None
-            if found:
-                return name, category
-        category = parse_label(name)
+        category = _matching(name, rules, until_s) or parse_label(name)
         if category is not None:
             return name, category
     return "", VOID
+
+
+def _matching(name: str, rules: list[tuple[regex.Pattern[str], str]], until_s: float) -> str | None:
+    """Returns the category of the first rule that a name matches, or None."""
+    for pattern, category in rules:
+        try:
+            found = pattern.search(name, timeout=max(1e-3, until_s - time.monotonic()))
+        except TimeoutError:
+            raise HouseError(
+                f"label rule '{pattern.pattern}' takes too long on '{name}': all rules of a house have {RULES_S:g} "
+                "s; write it without a repetition inside a repetition."
+            ) from None
+        if found:
+            return category
+    return None
 
 
 def _compile_rules(rules: Mapping[str, str] | None) -> list[tuple[regex.Pattern[str], str]]:

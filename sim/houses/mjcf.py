@@ -19,6 +19,7 @@ import numpy as np
 
 from sim.errors import HouseError, ObjectNavError
 from sim.gl import mujoco
+from sim.houses.attachments import Attachment, attach, attachment_of, use_absolute_paths
 from sim.houses.mjcf_text import Composition, as_utf8
 from sim.houses.references import Allowed, Reference, asset_path, asset_references, path_as_read
 from sim.reading import MAX_BYTES, image_size_px, open_plain, printable, read_bytes, reason_of
@@ -27,6 +28,8 @@ MAX_ELEMENTS = 100_000
 """Largest number of elements of a file, with all copies by `replicate`; the largest shipped house has 6,000."""
 MAX_FILES = 100
 """Largest number of files that are read for one house: the file itself and the files that it includes."""
+MAX_ATTACHED = 10
+"""Largest depth of models that are attached in each other."""
 MAX_DEPTH = 200
 """Largest depth of nested elements; MuJoCo itself reads 500."""
 MAX_TEXTURE_BYTES = 512 << 20
@@ -80,13 +83,20 @@ _FILE_NAME = re.compile(rb"""\bfile\s*=\s*(?:"[^"]*"|'[^']*')""")
 _CONTROL = re.compile(rb"[\x00-\x1f\x7f]")
 
 
-def read_spec(path: Path, *, root: Path | None = None, error: type[ObjectNavError] = HouseError) -> mujoco.MjSpec:
+def read_spec(
+    path: Path,
+    *,
+    root: Path | None = None,
+    error: type[ObjectNavError] = HouseError,
+    texture_px: int | None = None,
+) -> mujoco.MjSpec:
     """Returns the specification of an MJCF file.
 
     Args:
         path: the file.
         root: another folder whose files it may use, in addition to its own folder.
-        error: class of the error.
+        error: class of the error; only in a house may other models be attached.
+        texture_px: the caller reduces textures with a longer side to this length, so that they count as so large.
 
     Raises:
         ObjectNavError: of class `error`; the file cannot be read, is not MJCF, requires too much memory, uses a file of
@@ -94,8 +104,17 @@ def read_spec(path: Path, *, root: Path | None = None, error: type[ObjectNavErro
             file.
     """
     path = path.resolve()
-    allowed = Allowed(path, root, error)
-    text = _Scan(allowed).text_of(path)
+    spec = _read_spec(path, _Scan(Allowed(path, root, error)))
+    _require_small_assets(spec, path.parent, error, texture_px)
+    return spec
+
+
+def _read_spec(path: Path, scan: _Scan, depth: int = 0) -> mujoco.MjSpec:
+    """Returns the specification of a file, with the models that it attaches."""
+    error, allowed = scan.allowed.error, scan.allowed
+    if depth > MAX_ATTACHED:
+        raise error(f"its models are attached in each other more than {MAX_ATTACHED} deep.")
+    text, models, attachments = scan.read(path)
     try:
         spec = mujoco.MjSpec.from_string(text.decode("utf-8"))
     except (ValueError, OSError, RecursionError) as fault:
@@ -105,7 +124,21 @@ def read_spec(path: Path, *, root: Path | None = None, error: type[ObjectNavErro
     orient_by_quaternions(spec)
     for reference in asset_references(spec, path.parent):
         allowed.require(reference)
-    _require_small_assets(spec, path.parent, error)
+    if attachments:
+        use_absolute_paths(spec, path.parent)
+    read: dict[Path, tuple[mujoco.MjSpec, float]] = {}
+    for each in attachments:
+        file = models.get(each.model)
+        if file is None:
+            raise error(f"attach: there is no model '{printable(each.model)}' with a file.")
+        if file in read:
+            scan.count(read[file][1], f"attach of model '{each.model}'")
+        else:
+            before = scan.elements
+            model = _read_spec(file, scan, depth + 1)
+            use_absolute_paths(model, file.parent)
+            read[file] = model, scan.elements - before
+        attach(spec, read[file][0], each)
     return spec
 
 
@@ -172,14 +205,30 @@ class _Scan:
     """Counts the elements of a file and of the files that it includes, and joins the files to one text."""
 
     def __init__(self, allowed: Allowed) -> None:
-        self._allowed = allowed
+        self.allowed = allowed
         self._error = allowed.error
         self._files = dict[Path, None]()
         self._bytes = 0
-        self._elements = 0.0
+        self.elements = 0.0
         self._factors = [1.0]
         self._tags: list[str] = []
         self._copies = self._loose_sensors = 0.0
+        self._models = dict[str, Path]()
+        self._attachments: list[Attachment] = []
+        self._attached = 0
+
+    def read(self, path: Path) -> tuple[bytes, dict[str, Path], list[Attachment]]:
+        """Returns the text of a file, UTF-8, the files of the models in it, and what it attaches."""
+        self._models, self._attachments = {}, []
+        text = self.text_of(path)
+        return text, self._models, self._attachments
+
+    def count(self, elements: float, where: str) -> None:
+        """Counts further elements; raises an error if there are too many."""
+        self.elements += elements
+        # For each copy that `replicate` makes, MuJoCo doubles the number of sensors that belong to no element.
+        if self.elements + self._loose_sensors * 2.0 ** min(self._copies, 60.0) > MAX_ELEMENTS:
+            self._refuse(f"{printable(where)}: the file has more than {MAX_ELEMENTS} elements with all copies.")
 
     def text_of(self, path: Path, *, inner: bool = False) -> bytes:
         """Returns a file with the files that it includes as one text, UTF-8; raises an error if it is too large.
@@ -234,19 +283,19 @@ class _Scan:
                 self._require_finite(f"{printable(where)}: {key}", value)
         self._require_small_arrays(where, tag, values)
         factor = self._factors[-1]
-        self._elements += factor
+        self.elements += factor
         if tag in ("replicate", "composite", "flexcomp"):
             factor *= math.prod(max(1.0, number) for number in _numbers(values.get("count", "1")))
         if tag == "mesh" and "builtin" in values:
             factor *= max(1.0, math.prod(max(1.0, number) for number in _numbers(values.get("params", ""))) / 1000.0)
-        self._elements += factor - self._factors[-1]
+        self.elements += factor - self._factors[-1]
         self._copies += factor if tag == "replicate" else 0.0
         self._loose_sensors += self._tags[-1:] == ["sensor"] and _SENSOR_TARGETS.isdisjoint(values)
         self._factors.append(factor)
         self._tags.append(tag)
-        # For each copy that `replicate` makes, MuJoCo doubles the number of sensors that belong to no element.
-        if self._elements + self._loose_sensors * 2.0 ** min(self._copies, 60.0) > MAX_ELEMENTS:
-            self._refuse(f"{printable(where)}: the file has more than {MAX_ELEMENTS} elements with all copies.")
+        self.count(0.0, where)
+        if self._attaches(path, tag, values, text, parser.CurrentByteIndex):
+            return
         if tag in _READ_AT_ONCE and values.get("file"):
             self._require_name(values["file"], text.content, parser.CurrentByteIndex)
             file = self._found(path, values["file"])
@@ -258,8 +307,27 @@ class _Scan:
             text.replace(parser.CurrentByteIndex, end, self.text_of(file, inner=True))
         elif tag == "include":
             self._refuse("an include names no file.")
+
+    def _attaches(self, path: Path, tag: str, values: Mapping[str, str], text: Composition, start: int) -> bool:
+        """Records a model or an attachment, in place of which MuJoCo reads nothing or a frame; returns if it is one."""
         if tag == "attach":
-            self._refuse("attach: a house is one file; other files are put into it by include.")
+            if not issubclass(self._error, HouseError) or "replicate" in self._tags:
+                self._refuse("attach is allowed in a house only, outside of `replicate`.")
+            new = attachment_of(self._attached, values)
+            self._attachments.append(new)
+            replacement = f'<frame name="{new.frame}"/>'.encode()
+        elif tag == "model" and values.get("file") and "asset" in self._tags and issubclass(self._error, HouseError):
+            self._require_name(values["file"], text.content, start)
+            self._models[values.get("name", "")] = self._found(path, values["file"])
+            replacement = b""
+        else:
+            return False
+        self._attached += tag == "attach"
+        end, is_whole = text.end_of_tag(start)
+        if not is_whole:
+            self._refuse(f"{tag} has content; it must end with '/>'.")
+        text.replace(start, end, replacement)
+        return True
 
     def _require_tag(self, tag: str, *, is_root: bool, included: bool) -> None:
         """Refuses a wrong root element, and capital letters in a tag that MuJoCo reads in any case."""
@@ -287,10 +355,10 @@ class _Scan:
 
         Raises an error if it does not exist or must not be read.
         """
-        for folder in dict.fromkeys((self._allowed.file.parent, path.parent)):
+        for folder in dict.fromkeys((self.allowed.file.parent, path.parent)):
             file = path_as_read(folder, name)
             if os.path.lexists(file) or folder == path.parent:
-                self._allowed.require(Reference(name, file))
+                self.allowed.require(Reference(name, file))
                 if file.is_file():
                     return file.resolve()
         return self._refuse(f"it includes '{printable(name)}': there is no such file.")
@@ -315,9 +383,11 @@ class _Scan:
         raise self._error(message)
 
 
-def _require_small_assets(spec: mujoco.MjSpec, folder: Path, error: type[ObjectNavError]) -> None:
+def _require_small_assets(
+    spec: mujoco.MjSpec, folder: Path, error: type[ObjectNavError], texture_px: int | None
+) -> None:
     """Raises an error if the textures or the files of meshes of a specification are too large."""
-    size = sum(_texture_bytes(spec, texture, folder) for texture in spec.textures)
+    size = sum(_texture_bytes(spec, texture, folder, texture_px) for texture in spec.textures)
     most = _most_texture_bytes(error)
     if size > most:
         raise error(
@@ -330,12 +400,13 @@ def _require_small_assets(spec: mujoco.MjSpec, folder: Path, error: type[ObjectN
         raise error(f"its meshes have {size >> 20} MB; at most {MAX_ASSET_BYTES >> 20} MB are allowed.")
 
 
-def _texture_bytes(spec: mujoco.MjSpec, texture: mujoco.MjsTexture, folder: Path) -> int:
-    """Returns the bytes of a texture in memory."""
+def _texture_bytes(spec: mujoco.MjSpec, texture: mujoco.MjsTexture, folder: Path, most_px: int | None) -> int:
+    """Returns the bytes of a texture in memory, whose images are reduced to `most_px`."""
     channels = max(1, int(texture.nchannel))
     size = max(0, texture.width) * max(0, texture.height) * channels * (6 if texture.type else 1)
     for name in filter(None, (texture.file, *texture.cubefiles)):
-        size += _bytes_of_asset(asset_path(spec, folder, name, texture=True), channels if texture.nchannel > 0 else 4)
+        file = asset_path(spec, folder, name, texture=True)
+        size += _bytes_of_asset(file, channels if texture.nchannel > 0 else 4, most_px)
     return size
 
 
@@ -346,12 +417,14 @@ def _most_texture_bytes(error: type[ObjectNavError]) -> int:
     return int(given) << 20 if given else MAX_TEXTURE_BYTES
 
 
-def _bytes_of_asset(file: Path, bytes_per_pixel: int) -> int:
+def _bytes_of_asset(file: Path, bytes_per_pixel: int, most_px: int | None = None) -> int:
     """Returns the bytes of an image in memory, or the size of another file; 0 if there is none (MuJoCo reports it)."""
     if not file.is_file():
         return 0
     with open_plain(file, what="Asset") as stream:
         width, height = image_size_px(stream.read(1 << 16)) or (0, 0)
+    if most_px is not None and max(width, height) > most_px:
+        return most_px * most_px * bytes_per_pixel
     return max(width * height * bytes_per_pixel, file.stat().st_size)
 
 

@@ -1,22 +1,46 @@
 """Packs a scene from elsewhere into one folder: one MJCF file without includes, its meshes and its textures.
 
-The result needs no `--root` and can be moved, as a split can (`stubborn episodes` `--house`).
+The result needs no `--root` and can be moved, as a split can (`stubborn episodes` `--house`, `stubborn import`). Files
+are named by their content, so that the houses of a folder share them. Large textures can be reduced in size.
 """
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
+import math
+import os
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
+import cv2
+import numpy as np
+
 from sim.errors import HouseError
+from sim.gl import mujoco
 from sim.houses.house import House
 from sim.houses.references import asset_path
-from sim.reading import read_bytes, reason_of
+from sim.reading import MAX_PIXELS, image_size_px, read_bytes, reason_of
 
 MAX_FILE_BYTES = 512 << 20
+FOLDER = "files"
+"""Folder of meshes and textures next to the houses."""
+_SUM_LETTERS, _NAME_LETTERS = 12, 60
+
+
+@dataclass(frozen=True)
+class PackedFile:
+    """A mesh or a texture of a packed house."""
+
+    content: bytes
+    source: Path | None = None
+    """The file with just this content; None if the content was changed."""
 
 
 def packed(house: House, path: Path) -> dict[str, bytes | str]:
-    """Returns the files of a house by their names in a folder: `<name>.xml`, and `<name>_files/<number>_<file>`.
+    """Returns the files of a house by their names in a folder: `<name>.xml`, and `files/<checksum>_<file>`.
 
     Args:
         house: a house that `load_house` returned; it is not changed.
@@ -25,28 +49,133 @@ def packed(house: House, path: Path) -> dict[str, bytes | str]:
     Raises:
         HouseError: a file cannot be read, or MuJoCo cannot write the house.
     """
-    spec, folder = house.spec.copy(), path.resolve().parent
-    files: dict[str, bytes | str] = {}
+    spec = house.spec.copy()
+    files = gather_files(spec, path.resolve().parent)
+    try:
+        text = text_of(spec)
+    except HouseError as error:
+        raise HouseError(f"House '{path}': {error}") from None
+    return {f"{house.name}.xml": text} | {name: file.content for name, file in files.items()}
 
-    def put(name: str, *, texture: bool = False) -> str:
+
+def gather_files(spec: mujoco.MjSpec, folder: Path, *, texture_px: int | None = None) -> dict[str, PackedFile]:
+    """Returns the meshes and the textures of a specification by their new names, which it then uses.
+
+    Args:
+        spec: it is changed: it names the files by their new names and holds their content.
+        folder: that of its file, to which the paths are relative.
+        texture_px: PNG textures with a longer side are reduced to this length; None: none are.
+
+    Raises:
+        HouseError: a file cannot be read, or is no image that can be reduced.
+    """
+    files: dict[str, PackedFile] = {}
+    names: dict[tuple[Path, bool], str] = {}
+
+    def put(name: str, *, texture: bool = False, square: bool = False) -> str:
         file = asset_path(spec, folder, name, texture=texture)
-        there = f"{house.name}_files/{len(files):03d}_{file.name}"
-        files[there] = read_bytes(file, what="Asset", error=HouseError, most=MAX_FILE_BYTES)
-        return there
+        if (file, square) not in names:
+            content = read_bytes(file, what="Asset", error=HouseError, most=MAX_FILE_BYTES)
+            reduced = content
+            if texture and texture_px is not None:
+                reduced = reduced_image(content, texture_px, cells=square, where=f"Texture '{file}'")
+            there = f"{FOLDER}/{hashlib.sha256(reduced).hexdigest()[:_SUM_LETTERS]}_{file.name[-_NAME_LETTERS:]}"
+            files[there] = PackedFile(reduced, file if reduced is content else None)
+            names[file, square] = there
+        return names[file, square]
 
     for asset in (*spec.meshes, *spec.hfields, *spec.skins):
         asset.file = put(asset.file) if asset.file else ""
     for texture in spec.textures:
-        texture.file = put(texture.file, texture=True) if texture.file else ""
-        sides = [put(side, texture=True) if side else "" for side in texture.cubefiles]
-        for number, side in enumerate(sides):
-            texture.cubefiles[number] = side
+        square = texture.type != mujoco.mjtTexture.mjTEXTURE_2D
+        texture.file = put(texture.file, texture=True, square=square) if texture.file else ""
+        for number, side in enumerate(list(texture.cubefiles)):
+            texture.cubefiles[number] = put(side, texture=True, square=square) if side else ""
     spec.meshdir = spec.texturedir = ""
     spec.strippath = False
-    spec.assets = {name: content for name, content in files.items() if isinstance(content, bytes)}
+    spec.assets = {name: file.content for name, file in files.items()}
+    return files
+
+
+def text_of(spec: mujoco.MjSpec) -> str:
+    """Returns the text of a specification whose files `gather_files` has gathered.
+
+    Raises:
+        HouseError: MuJoCo cannot write it.
+    """
     try:
         spec.compile()
-        text = spec.to_xml()
+        return spec.to_xml()
     except ValueError as error:
-        raise HouseError(f"House '{path}': MuJoCo cannot write it as one file: {reason_of(error)}.") from None
-    return {f"{house.name}.xml": text} | files
+        raise HouseError(f"MuJoCo cannot write it as one file: {reason_of(error)}.") from None
+
+
+def reduced_image(content: bytes, most_px: int, *, cells: bool, where: str) -> bytes:
+    """Returns a PNG image whose longer side has at most `most_px` pixels; other files are returned unchanged.
+
+    Args:
+        content: of the file.
+        most_px: the limit.
+        cells: whether the sides keep their exact ratio, as a texture of several square cells needs.
+        where: name of the file, for messages.
+
+    Raises:
+        HouseError: the image is broken, or larger than `MAX_PIXELS`.
+    """
+    width, height = image_size_px(content) or (0, 0)
+    if max(width, height) <= most_px or not content.startswith(b"\x89PNG"):
+        return content
+    if width * height > MAX_PIXELS:
+        raise HouseError(f"{where} has {width} x {height} pixels; at most {MAX_PIXELS} pixels are read.")
+    image = cv2.imdecode(np.frombuffer(content, dtype=np.uint8), cv2.IMREAD_UNCHANGED)
+    if image is None:
+        raise HouseError(f"{where} is not an image that can be read.")
+    if image.dtype == np.uint16:
+        image = np.right_shift(np.asarray(image, np.uint16), 8).astype(np.uint8)
+    factor = most_px / max(width, height)
+    size = max(1, round(width * factor)), max(1, round(height * factor))
+    if cells:
+        unit = math.gcd(width, height)
+        small = max(1, int(unit * factor))
+        size = width // unit * small, height // unit * small
+    done, written = cv2.imencode(".png", cv2.resize(image, size, interpolation=cv2.INTER_AREA))
+    return written.tobytes() if done else content
+
+
+def write_files(folder: Path, files: Mapping[str, PackedFile], *, pack: bool) -> None:
+    """Writes the files of packed houses into a folder; a file that is there already is the same and stays.
+
+    Args:
+        folder: the folder of the houses.
+        files: by their names in it.
+        pack: whether to copy all files. Otherwise a file whose content was not changed becomes a hard link to its
+            source, which needs no space on the disk; it is copied where the file system cannot link it.
+
+    Raises:
+        OSError: a file cannot be written.
+    """
+    for name, file in files.items():
+        path = folder / name
+        if path.is_file() and path.stat().st_size == len(file.content):
+            continue
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, part = tempfile.mkstemp(dir=path.parent, suffix=".part")
+        os.close(handle)
+        try:
+            if pack or file.source is None or not _linked(file.source, Path(part)):
+                Path(part).write_bytes(file.content)
+                os.chmod(part, 0o644)
+            os.replace(part, path)
+        finally:
+            with contextlib.suppress(OSError):
+                os.unlink(part)
+
+
+def _linked(source: Path, part: Path) -> bool:
+    """Replaces a file by a hard link to another one; returns False where that is not possible."""
+    part.unlink()
+    try:
+        os.link(source.resolve(), part)
+    except OSError:
+        return False
+    return True

@@ -17,8 +17,9 @@ from typing import Literal
 
 from sim.reading import read_csv
 
-Taxonomy = Literal["ai2thor", "robocasa"]
-"""AI2-THOR's object types, also those of ProcTHOR and MolmoSpaces; the beginnings of RoboCasa's fixture names."""
+Taxonomy = Literal["ai2thor", "habitat", "robocasa"]
+"""AI2-THOR's object types, also those of ProcTHOR and MolmoSpaces; names in Habitat's data sets (HM3D, MP3D, HSSD) of
+which `sim.houses.proposals` knows another category, or none; the beginnings of RoboCasa's fixture names."""
 FILE = Path(__file__).with_name("taxonomies.csv")
 
 

@@ -11,9 +11,8 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from msgspec import Meta, Struct
@@ -21,16 +20,15 @@ from numpy.typing import NDArray
 
 from sim.errors import ConfigError, HouseError
 from sim.gl import mujoco
-from sim.housegen.floor_plan.rectangles import Rect
 from sim.houses.foreign import remove_unsupported
-from sim.houses.house import House
 from sim.houses.labels import read_labels
 from sim.houses.mjcf import read_spec
-from sim.houses.packing import packed
+from sim.houses.packing import gather_files, text_of
 from sim.houses.proposals import category_of_name, geom_box, void_objects
 from sim.houses.taxonomies import entries
 from sim.importers.rectilinear import rectangles_of_triangles
-from sim.reading import Name, read_json, reason_of
+from sim.importers.scenes import Scene, add_room, compiled, floor_height, lower, posed
+from sim.reading import Name, read_json
 
 METADATA = "_metadata.json"
 CEILING = "_ceiling"
@@ -53,16 +51,6 @@ class _Object(Struct):
 
 class _Metadata(Struct):
     objects: Annotated[dict[str, _Object], Meta(max_length=100_000)]
-
-
-@dataclass(frozen=True)
-class Scene:
-    """A house of MolmoSpaces, ready to be written."""
-
-    files: Mapping[str, bytes | str]
-    """Content by name in the folder of the split."""
-    rules: Mapping[str, str]
-    report: Mapping[str, Any]
 
 
 def find_houses(path: Path) -> list[Path]:
@@ -92,13 +80,14 @@ def metadata_file(file: Path) -> Path:
     return file.with_name(f"{name_of(file)}{METADATA}")
 
 
-def import_scene(file: Path, *, doors: str, root: Path | None = None) -> Scene:
+def import_scene(file: Path, *, doors: str, root: Path | None = None, texture_px: int | None = None) -> Scene:
     """Returns the files of a house for a split, its label rules and its report.
 
     Args:
         file: the house file.
         doors: "open": hinged doors are turned to the end of their range, at most to a right angle; "as-is".
         root: another folder whose files the house may use.
+        texture_px: longest side of the textures; larger ones are reduced.
 
     Raises:
         HouseError: the house or its metadata are missing or broken; the message names the file.
@@ -106,22 +95,22 @@ def import_scene(file: Path, *, doors: str, root: Path | None = None) -> Scene:
     objects = read_json(metadata_file(file), _Metadata, what="Metadata", error=HouseError).objects
     name, changes = name_of(file), Counter[str]()
     try:
-        spec = read_spec(file, root=root)
+        spec = read_spec(file, root=root, texture_px=texture_px)
+        files = gather_files(spec, file.resolve().parent, texture_px=texture_px)
         categories = _categories(objects, changes)
         if doors == "open":
             _open_doors(spec, {name for name, category in categories.items() if category == "door"}, changes)
         changes.update(remove_unsupported(spec))
         rules = {**rules_of(categories), **STRUCTURE}
-        model = _compiled(spec)
-        raised_m = _floor_height(model)
+        model = compiled(spec)
+        raised_m = floor_height(model)
         if raised_m:
-            _lower(spec, raised_m)
+            lower(spec, raised_m)
             changes[f"The floor was at z = {raised_m:.3f} m; the house was moved to z = 0."] += 1
-            model = _compiled(spec)
+            model = compiled(spec)
         rooms = _add_rooms(spec, model)
         rules |= _rules_of_others(model, rules, changes)
-        house = House(name, spec, rules, file)
-        files = packed(house, file)
+        text = text_of(spec)
     except HouseError as error:
         raise HouseError(f"House '{file}': {error}") from None
     found = Counter(each.category for each in objects.values())
@@ -129,7 +118,7 @@ def import_scene(file: Path, *, doors: str, root: Path | None = None) -> Scene:
         "house": name, "source": str(file), "rooms": len(rooms), "area_m2": round(sum(rooms), 2),
         "furniture": dict(found.most_common()), "boxes": {}, "left_out": {}, "changes": dict(changes), "moved_m": 0.0,
     }  # fmt: skip
-    return Scene(files, rules, report)
+    return Scene(name, text, files, rules, report)
 
 
 def rules_of(categories: Mapping[str, str]) -> dict[str, str]:
@@ -197,30 +186,9 @@ def _turn(body: mujoco.MjsBody, pivot: NDArray[np.float64], axis: NDArray[np.flo
     body.pos, body.quat = (np.asarray(body.pos) + moved).tolist(), total.tolist()
 
 
-def _floor_height(model: mujoco.MjModel) -> float:
-    """Returns the height of the floor that collides, a plane or a box named `floor`; 0 without one, or within 1 mm."""
-    geom = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, "floor")
-    if geom < 0:
-        return 0.0
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    plane = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE
-    top = float(data.geom_xpos[geom, 2]) if plane else float(geom_box(model, data, geom)[1][2])
-    return top if abs(top) > 1e-3 else 0.0
-
-
-def _lower(spec: mujoco.MjSpec, by_m: float) -> None:
-    """Moves everything in the world down."""
-    world = spec.worldbody
-    for element in (*world.bodies, *world.geoms, *world.sites, *world.lights, *world.frames):
-        if getattr(element, "frame", None) is None:
-            element.pos = [element.pos[0], element.pos[1], element.pos[2] - by_m]
-
-
 def _add_rooms(spec: mujoco.MjSpec, model: mujoco.MjModel) -> list[float]:
     """Adds the sites of the rooms, from the meshes of their floors; returns the area of each in m2."""
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = posed(model)
     walls = [geom for geom in range(model.ngeom) if _WALL_BODY.fullmatch(model.body(model.geom_bodyid[geom]).name)]
     top_m = max((float(geom_box(model, data, geom)[1][2]) for geom in walls), default=CEILING_M)
     areas = []
@@ -235,18 +203,10 @@ def _add_rooms(spec: mujoco.MjSpec, model: mujoco.MjModel) -> list[float]:
         )
         for part, rect in enumerate(rects):
             name = f"room_room_{len(areas):02d}" + (f"_{part}" if part else "")
-            _add_site(spec, name, rect, top_m)
+            add_room(spec, name, rect, top_m)
         if rects:
             areas.append(sum(rect.area_m2 for rect in rects))
     return areas
-
-
-def _add_site(spec: mujoco.MjSpec, name: str, rect: Rect, top_m: float) -> None:
-    x, y = rect.centre
-    spec.worldbody.add_site(
-        name=name, type=mujoco.mjtGeom.mjGEOM_BOX, group=4, pos=[x, y, top_m / 2],
-        size=[rect.width_m / 2, rect.depth_m / 2, top_m / 2],
-    )  # fmt: skip
 
 
 def _triangles(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> NDArray[np.float64]:
@@ -267,13 +227,6 @@ def _rules_of_others(model: mujoco.MjModel, rules: Mapping[str, str], changes: C
             found[f"^{re.escape(name)}$"] = category
         changes[f"An object is not in the metadata; its name says {category or 'nothing'}."] += 1
     return found
-
-
-def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    try:
-        return spec.compile()
-    except (ValueError, OSError, MemoryError) as error:
-        raise HouseError(f"it is not an MJCF file that MuJoCo can read: {reason_of(error)}") from None
 
 
 def _with_ceiling(file: Path) -> Path:

@@ -136,6 +136,8 @@ class Source:
     where: str
     """File and line, for messages."""
     content: bytes
+    share: float = 1.0
+    """Share of the file that has been read up to this house."""
 
 
 def read_houses(path: Path) -> Iterator[Source]:
@@ -147,8 +149,8 @@ def read_houses(path: Path) -> Iterator[Source]:
     name = path.name.removesuffix(".gz")
     stem, what = name.rpartition(".")[0], "House file"
     if name.endswith(".jsonl"):
-        for number, line in json_lines(path, what=what):
-            yield Source(f"{stem}_{number:04d}", f"{what} '{path}', line {number}", line)
+        for number, line, share in json_lines(path, what=what):
+            yield Source(f"{stem}_{number:04d}", f"{what} '{path}', line {number}", line, share)
     elif name.endswith(".json"):
         yield Source(stem, f"{what} '{path}'", _content(path, what))
     else:
@@ -207,8 +209,8 @@ def _content(path: Path, what: str) -> bytes:
     if not path.name.endswith(".gz"):
         return read_bytes(path, what=what)
     content = bytearray()
-    for _, line in json_lines(path, what=what):
-        content += line
+    for each in json_lines(path, what=what):
+        content += each.text
         if len(content) > MAX_BYTES:
             raise ConfigError(f"{what} '{path}' expands to more than {MAX_BYTES >> 20} MB.")
     return bytes(content)

@@ -1,4 +1,4 @@
-"""The robot's body as MJCF: two driven wheels, two casters, a hull of two cylinders.
+"""The robot's body as MJCF: two driven wheels on springs, two casters, a hull of two cylinders.
 
 Robot frame: origin on the floor below the middle of the wheel axis, +x ahead, +y left, +z up.
 
@@ -9,9 +9,10 @@ the other):
 geoms               masks        collide with
 =================== ============ =========================================================
 floor               1 / 0        wheels, casters, hull, movable
-static              2 / 0        hull, movable
-movable             2 / 7        floor, static, movable, hull
-wheels, casters     0 / 1        floor
+covering            8 / 0        wheels, casters
+static              2 / 0        wheels, casters, hull, movable
+movable             2 / 7        floor, static, movable, wheels, casters, hull
+wheels, casters     0 / 11       floor, covering, static, movable
 hull                4 / 3        floor, static, movable
 =================== ============ =========================================================
 """
@@ -26,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.gl import mujoco
-from sim.houses.labels import ROBOT_PREFIX, geoms_of
+from sim.houses.labels import COVER_MASK, ROBOT_PREFIX, geoms_of
 from sim.interface import wrap_angle
 from sim.robot.config import RobotConfig
 
@@ -38,13 +39,14 @@ ROBOT_GROUP = 5
 FLOOR_MASK = (1, 0)
 STATIC_MASK = (2, 0)
 MOVABLE_MASK = (2, 7)
-WHEEL_MASK = (0, 1)
+WHEEL_MASK = (0, 3 | COVER_MASK[0])
 HULL_MASK = (4, 3)
 
 _CASTER_PRIORITY = 1000
 """The friction of the casters (none) overrides that of every floor."""
 HULL_PRIORITY = 1000
 """The friction and stiffness of the hull override those of the geoms it touches."""
+GRAVITY_M_S2 = 9.81
 _NET_FORCE = 3
 """The `reduce` option of a contact sensor that gives one net wrench of all contacts in the world frame."""
 
@@ -92,6 +94,8 @@ def _add_wheel(base: mujoco.MjsBody, name: str, side: float, config: RobotConfig
     wheels = config.wheels
     radius = wheels.radius_m
     wheel = base.add_body(name=f"{name}_wheel", pos=(0.0, side * wheels.half_track_m, radius))
+    if config.base == "free":
+        _add_spring(wheel, name, config)
     wheel.add_joint(
         name=f"{name}_wheel", type=mujoco.mjtJoint.mjJNT_HINGE, axis=(0, 1, 0), armature=wheels.armature_kg_m2
     )
@@ -101,9 +105,30 @@ def _add_wheel(base: mujoco.MjsBody, name: str, side: float, config: RobotConfig
     add_tyre(wheel, name, radius)
 
 
-def add_tyre(wheel: mujoco.MjsBody, name: str, radius_m: float, centre_m: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
-    """Adds the collision geom of a wheel. Its friction is 0, so the larger friction of the floor counts."""
-    wheel.add_geom(
+def _add_spring(wheel: mujoco.MjsBody, name: str, config: RobotConfig) -> None:
+    """Adds the vertical spring of a wheel, which presses it to the ground with its share of the robot's weight."""
+    wheels = config.wheels
+    load_n = (0.5 * wheels.load_share * config.body.mass_kg - wheels.mass_kg) * GRAVITY_M_S2
+    wheel.add_joint(
+        name=f"{name}_spring",
+        type=mujoco.mjtJoint.mjJNT_SLIDE,
+        axis=(0, 0, 1),
+        stiffness=wheels.spring_n_m,
+        damping=wheels.spring_damping_n_s_m,
+        springref=-load_n / wheels.spring_n_m,
+        range=(-wheels.spring_travel_m, wheels.spring_travel_m),
+        limited=mujoco.mjtLimited.mjLIMITED_TRUE,
+    )
+
+
+def add_tyre(
+    wheel: mujoco.MjsBody,
+    name: str,
+    radius_m: float,
+    centre_m: Sequence[float] | NDArray[np.float64] = (0.0, 0.0, 0.0),
+) -> mujoco.MjsGeom:
+    """Adds the collision geom of a wheel and returns it. Its friction is 0: the larger one of the floor counts."""
+    return wheel.add_geom(
         name=f"{name}_tyre",
         type=mujoco.mjtGeom.mjGEOM_SPHERE,
         size=(radius_m, 0, 0),
@@ -111,6 +136,8 @@ def add_tyre(wheel: mujoco.MjsBody, name: str, radius_m: float, centre_m: Sequen
         mass=0.0,
         friction=(0.0, 0.0, 0.0),
         condim=3,
+        solref=(0.005, 1.0),
+        solmix=1e6,
         contype=WHEEL_MASK[0],
         conaffinity=WHEEL_MASK[1],
         group=ROBOT_GROUP,
@@ -189,6 +216,11 @@ class Body:
     ctrl: NDArray[np.float64]  # (2,) left and right wheel, commanded rad/s
     touches: NDArray[np.float64]  # (parts, 4) for each touch sensor, as `touch` has it for the sum
     hull_geoms: tuple[int, ...]
+    wheel_qpos: tuple[NDArray[np.float64], NDArray[np.float64]]  # (1,) angle of the left and the right wheel, rad
+    wheel_qvel: tuple[NDArray[np.float64], NDArray[np.float64]]  # (1,) the same, rad/s
+    wheel_signs: tuple[float, float]
+    """1 for a wheel whose joint turns forward when it drives ahead, else -1."""
+    tyre_geoms: tuple[int, ...]
     wheel_geoms: tuple[int, ...]
     """Tyres and casters; for a third-party body also its visual geoms."""
 
@@ -200,6 +232,8 @@ class Body:
         planar = model.body_jntnum[base] == 4
         q, v = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
         motors = [model.actuator(f"{PREFIX}{name}_motor").id for name in ("left", "right")]
+        wheels = [int(model.actuator_trnid[motor, 0]) for motor in motors]
+        places = [(int(model.jnt_qposadr[wheel]), int(model.jnt_dofadr[wheel])) for wheel in wheels]
         sensors = [i for i in range(model.nsensor) if model.sensor(i).name.startswith(PREFIX + "touch")]
         touch = int(model.sensor_adr[sensors[0]])  # the sensors are consecutive
         geoms = np.flatnonzero(geoms_of(model, PREFIX)).tolist()
@@ -211,6 +245,10 @@ class Body:
             ctrl=data.ctrl[motors[0] : motors[0] + 2],
             touches=data.sensordata[touch : touch + 4 * len(sensors)].reshape(-1, 4),
             hull_geoms=hull,
+            tyre_geoms=tuple(geom for geom in geoms if model.geom(geom).name.endswith("_tyre")),
+            wheel_qpos=(data.qpos[places[0][0] :][:1], data.qpos[places[1][0] :][:1]),
+            wheel_qvel=(data.qvel[places[0][1] :][:1], data.qvel[places[1][1] :][:1]),
+            wheel_signs=(float(model.actuator_gear[motors[0], 0]), float(model.actuator_gear[motors[1], 0])),
             wheel_geoms=tuple(geom for geom in geoms if geom not in hull),
         )
 
@@ -236,6 +274,26 @@ class Body:
             vx, vy, _, _, _, rate = self.qvel.tolist()
             yaw = _yaw_of(quat)
         return x, y, yaw, math.cos(yaw) * vx + math.sin(yaw) * vy, rate
+
+    @property
+    def yaw_rad(self) -> float:
+        """Heading; not wrapped for a planar base."""
+        return float(self.qpos[3]) if self.planar else _yaw_of(self.qpos[3:7].tolist())
+
+    @property
+    def turn_rate_rad_s(self) -> float:
+        """Turn rate about the robot's axis, counter-clockwise."""
+        return float(self.qvel[-1])
+
+    def wheel_angles(self) -> tuple[float, float]:
+        """Returns the angles of the left and the right wheel, rad; they grow when the robot drives ahead."""
+        (left, right), (a, b) = self.wheel_qpos, self.wheel_signs
+        return a * left.item(), b * right.item()
+
+    def wheel_speeds(self) -> tuple[float, float]:
+        """Returns the turn rates of the left and the right wheel, rad/s."""
+        (left, right), (a, b) = self.wheel_qvel, self.wheel_signs
+        return a * left.item(), b * right.item()
 
     @property
     def z_m(self) -> float:

@@ -10,12 +10,11 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Literal, get_args
 
-from sim.interface import FORWARD_M, TURN_RAD, ConfigError, RobotModel
+from sim.interface import CLIMB_M, FORWARD_M, TURN_RAD, ConfigError, RobotModel
 
-PHYSICS_VERSION = 1
-"""Results of different versions of the physics are not comparable, and recorded actions are replayed by the same
-version only. It is increased when the same actions in the same house lead to other motions, collisions or scores."""
-
+PHYSICS_VERSION = 2
+"""Results of different versions of the physics are not comparable, and runs are not resumed across them. 1: feedback of
+the true pose, wheels that collide with floors only."""
 Base = Literal["planar", "free"]
 """`planar`: three slides and a vertical hinge keep the body upright; `free`: only its wheels and casters carry it."""
 
@@ -35,11 +34,12 @@ class BodyConfig:
     radius_m: float = 0.18
     height_m: float = 0.88
     """Top of the hull above the floor."""
-    clearance_m: float = 0.03
-    """Bottom of the hull above the floor: lower obstacles pass below."""
+    clearance_m: float = 0.0128
+    """Bottom of the hull above the floor. It is little above `RobotConfig.climb_m`: an edge that the wheels climb only
+    with luck meets the hull first, so that heights and not friction decide what blocks the robot."""
     waist_m: float = 0.20
     """Height where the upper cylinder begins: contacts with low obstacles are better conditioned on a low cylinder."""
-    skin_m: float = 0.005
+    skin_m: float = 0.003
     """Contact margin: the collision geoms are smaller by this much and push when another geom is this near.
 
     Geoms that stay apart have exact distances and normals. For cylinders that overlap by micrometres MuJoCo 4.0 gives,
@@ -71,27 +71,41 @@ class BodyConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class WheelConfig:
-    """Two driven wheels on the axis through the centre, and frictionless casters in front and behind."""
+    """Two driven wheels on springs on the axis through the centre, and frictionless casters in front and behind.
 
-    radius_m: float = 0.04
-    half_track_m: float = 0.14
+    A wheel of radius r that stands against an edge of height h climbs it from rest if the friction is at least
+    tan(arccos(1 - h / r)): 0.67 for 12 mm.
+    """
+
+    radius_m: float = 0.07
+    half_track_m: float = 0.104
     """Distance of each wheel from the centre."""
-    mass_kg: float = 0.2
+    mass_kg: float = 0.3
     """Mass of one wheel."""
-    armature_kg_m2: float = 0.003
+    armature_kg_m2: float = 0.009
     """Inertia of the motor at the wheel."""
-    motor_gain_nm_s: float = 0.6
+    motor_gain_nm_s: float = 2.2
     """Torque per rad/s of difference between commanded and actual wheel speed."""
-    max_torque_nm: float = 0.7
+    max_torque_nm: float = 1.4
     """Largest torque of one motor."""
-    caster_radius_m: float = 0.028
-    caster_offset_m: float = 0.15
+    spring_n_m: float = 2500.0
+    """Stiffness of the spring of each wheel of a free base. The wheels of a planar base have none."""
+    spring_damping_n_s_m: float = 220.0
+    """About critical for the mass that a spring carries: the body does not rock over an edge after an impact."""
+    spring_travel_m: float = 0.010
+    """Largest displacement of a sprung wheel up and down from its position on a level floor."""
+    load_share: float = 0.85
+    """Share of the weight that sprung wheels carry on a level floor; the casters carry the rest."""
+    caster_radius_m: float = 0.045
+    caster_offset_m: float = 0.13
     """Distance of each caster from the centre, along the heading."""
     caster_gap_m: float = 0.0005
-    """Gap between casters and floor, so that the wheels carry the weight and have traction."""
+    """Gap between casters and floor before the springs give way."""
 
     def __post_init__(self) -> None:
         _require_positive(self, *(f.name for f in fields(self) if f.name != "caster_gap_m"))
+        if self.load_share > 1.0:
+            raise ConfigError(f"WheelConfig.load_share must be at most 1, got {self.load_share}.")
         if not 0.0 <= self.caster_gap_m < self.caster_radius_m:
             raise ConfigError(
                 f"WheelConfig.caster_gap_m must lie in [0, caster_radius_m = {self.caster_radius_m}), "
@@ -116,22 +130,30 @@ class DriveConfig:
     acceleration_m_s2: float = 1.0
     turn_speed_rad_s: float = 1.8
     turn_acceleration_rad_s2: float = 6.0
-    lookahead_s: float = 0.017
+    lookahead_s: float = 0.024
     """The planned speed is taken this far ahead of the current time: half a tick and the lag of the motors."""
-    position_gain_1_s: float = 9.0
+    position_gain_1_s: float = 6.0
     """Speed per metre behind the profile."""
-    heading_gain_1_s: float = 9.0
+    heading_gain_1_s: float = 6.0
     """Turn rate per radian of heading error."""
-    blocking_force_n: float = 25.0
-    """A contact force of more than this against the motion, for `blocking_ticks`, ends it; less is pushed along."""
-    blocking_ticks: int = 2
-    stall_lag_m: float = 0.03
-    """A motion is also blocked when it is this far behind and slower than `stall_speed_m_s` for `stall_s`."""
-    stall_speed_m_s: float = 0.05
-    stall_lag_rad: float = 0.20
-    """The same limit for turns."""
-    stall_speed_rad_s: float = 0.15
-    stall_s: float = 0.1
+    blocked_s: float = 0.2
+    """A motion is blocked when the motors have pushed for this long ..."""
+    blocked_m: float = 0.005
+    """... and the body has moved by less than this ..."""
+    blocked_rad: float = math.radians(0.7)
+    """... or has turned by less than this."""
+    blocked_tilt_rad: float = math.radians(2.3)
+    """A motion is also blocked when the body leans this much (a turn: this much more than at its start) ..."""
+    tipping_force_n: float = 5.0
+    """... and its hull pushes sideways more than this: it is about to tip over at a table top."""
+    pushing_m_s: float = 0.05
+    """Motors push while their commanded speed is at least this ..."""
+    pushing_rad_s: float = 0.15
+    """... or their commanded turn rate is."""
+    push_share: float = 0.75
+    """Largest share of the force of the motors that pushes an object; the rest keeps the heading."""
+    gyro: bool = True
+    """The base has a gyro, which measures its heading; False: the wheel encoders measure it."""
     touch_memory_s: float = 0.1
     """The hull counts as touching an object for this long after the last contact, since it may bounce."""
     back_off_m: float = 0.004
@@ -154,13 +176,17 @@ class DriveConfig:
     """... and it moves more slowly than this ..."""
     rest_speed_rad_s: float = 0.01
     """... and turns more slowly than this."""
+    coarse_after_s: float = 0.2
+    """So much time after the end of its profile a motion that stands still has reached its end also when it is this
+    near to it: `touching_tolerance_m` and `coarse_heading_rad`. Motors with an error do not get nearer."""
+    coarse_heading_rad: float = math.radians(1.0)
     timeout_s: float = 1.0
     """Time limit of a motion in addition to the duration of its profile."""
 
     def __post_init__(self) -> None:
-        _require_positive(self, *(f.name for f in fields(self)))
-        if self.blocking_ticks != int(self.blocking_ticks):
-            raise ConfigError(f"DriveConfig.blocking_ticks must be a whole number, got {self.blocking_ticks}.")
+        _require_positive(self, *(f.name for f in fields(self) if f.name != "gyro"))
+        if self.push_share > 1.0:
+            raise ConfigError(f"DriveConfig.push_share must be at most 1, got {self.push_share}.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,7 +194,8 @@ class PhysicsConfig:
     """The time step, and the limits beyond which a state is not physical."""
 
     timestep_s: float = 0.004
-    """2 ms costs twice as much; the hull then overlaps obstacles by 1.1 instead of 1.7 mm."""
+    """Chosen by convergence: at 4, 2.5, 2 and 1 ms the robot climbs and is stopped by the same edges
+    (`tools.research.physics_tables --tables steps`); the hull overlaps obstacles by less than 3 mm."""
     settle_s: float = 0.2
     """Simulated time for the robot to come to rest after it was placed on the floor."""
     max_overlap_m: float = 0.001
@@ -197,13 +224,19 @@ class RobotFile:
     """Names of geoms or bodies that slide on the floor."""
     heading_rad: float = 0.0
     """Direction that is ahead in the file, counter-clockwise from +x."""
+    track_m: float | None = None
+    """Distance between the middles of the tyres; None: that of the wheels' joints."""
+    pose: tuple[tuple[str, float], ...] = ()
+    """Names of other joints and their positions, rad or m, in which they are fixed; those not named stay at zero."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RobotConfig:
     """The complete configuration of the robot."""
 
-    base: Base = "planar"
+    base: Base = "free"
+    climb_m: float = CLIMB_M
+    """Height of the highest edge that the robot climbs; whatever is higher is an obstacle (`sim.world.obstacles`)."""
     body: BodyConfig = field(default_factory=BodyConfig)
     wheels: WheelConfig = field(default_factory=WheelConfig)
     drive: DriveConfig = field(default_factory=DriveConfig)
@@ -236,10 +269,9 @@ class RobotConfig:
                 "motor_gain_nm_s * timestep_s / armature_kg_m2 must be below 1, or the wheels oscillate; it is "
                 f"{wheels.motor_gain_nm_s} * {self.physics.timestep_s} / {wheels.armature_kg_m2} = {stiffness:.2f}."
             )
-        if self.drive.blocking_force_n >= wheels.max_push_n:
+        if not 0.0 <= self.climb_m < self.body.waist_m:
             raise ConfigError(
-                "DriveConfig.blocking_force_n must be below the largest force of the motors, "
-                f"{wheels.max_push_n:.1f} N; got {self.drive.blocking_force_n} N."
+                f"RobotConfig.climb_m must lie in [0, waist_m = {self.body.waist_m}), got {self.climb_m} m."
             )
         if not abs(self.camera_forward_m) < self.body.radius_m:
             raise ConfigError(
@@ -265,4 +297,5 @@ class RobotConfig:
             height_m=self.body.height_m,
             camera_forward_m=self.camera_forward_m,
             clearance_m=self.body.clearance_m,
+            climb_m=self.climb_m,
         )

@@ -1,18 +1,23 @@
-"""Records the contacts of the hull during one action: object, position, direction of the force, duration."""
+"""Records the contacts of the robot during one action: object, position, direction of the force, duration."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from sim.gl import mujoco
 from sim.houses.labels import Labels
+from sim.robot.body import Body
+
+SIDEWAYS = 0.3
+"""Horizontal part of a unit normal: a wheel that stands on an edge lower than 5 % of its radius pushes less."""
 
 
 @dataclass(frozen=True)
 class Contact:
-    """One geom that the hull touched during an action."""
+    """One geom that the robot touched during an action."""
 
     instance: str
     """Name of the instance, for example `chair_03`; "" for a geom without a label."""
@@ -40,11 +45,13 @@ class _Touch:
 
 
 class ContactLog:
-    """Collects the contacts of the hull during one action, one sample per tick."""
+    """Collects the contacts of the robot during one action, one sample per tick."""
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, hull_geoms: tuple[int, ...]) -> None:
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, body: Body) -> None:
         self._model, self._data, self._labels = model, data, labels
-        self._hull = frozenset(hull_geoms)
+        self._hull = frozenset(body.hull_geoms)
+        self._tyres = np.array(body.tyre_geoms)
+        self._all_parts = self._hull | frozenset(body.wheel_geoms)
         self._wrench = np.zeros(6)
         self._touches: dict[int, _Touch] = {}
 
@@ -52,15 +59,30 @@ class ContactLog:
         """Removes all samples; called at the start of an action."""
         self._touches = {}
 
-    def sample(self, tick: int) -> None:
-        """Adds the current contacts at the end of one tick of the action."""
+    def compression_m(self) -> float:
+        """Returns the depth to which the tyres are pressed into the ground now, the mean of their contacts."""
         contacts = self._data.contact
+        depths = -contacts.dist[np.isin(contacts.geom, self._tyres).any(axis=1)]
+        return float(depths.mean()) if len(depths) else 0.0
+
+    def sample(self, tick: int, *, all_parts: bool = False) -> None:
+        """Adds the current contacts of the hull at the end of one tick of the action.
+
+        Args:
+            tick: number of the tick.
+            all_parts: True: also those of wheels and casters that push sideways more than `SIDEWAYS`, since they are
+                not those with the ground below.
+        """
+        contacts = self._data.contact
+        parts = self._all_parts if all_parts else self._hull
         for index, (first, second) in enumerate(contacts.geom.tolist()):
-            if first in self._hull:
-                other, sign = second, -1.0
-            elif second in self._hull:
-                other, sign = first, 1.0
+            if first in parts:
+                part, other, sign = first, second, -1.0
+            elif second in parts:
+                part, other, sign = second, first, 1.0
             else:
+                continue
+            if part not in self._hull and math.hypot(*contacts.frame[index, :2].tolist()) < SIDEWAYS:
                 continue
             mujoco.mj_contactForce(self._model, self._data, index, self._wrench)
             # The rows of `frame` are the axes of the contact; the force acts on the second geom.

@@ -1,21 +1,27 @@
 """The controller of the robot: performs an action as a closed-loop motion along a trapezoid profile.
 
-A motion starts and ends at rest, and ends early when it is blocked. The heading reference is absolute: the start
-heading plus a whole number of turns. It is never read from the pose, so that errors do not accumulate. Feedback is the
-true pose. Motor commands are constant during a tick of `tick_s`.
+A motion starts and ends at rest, and ends early when it is blocked (`sim.robot.blocking`). Feedback is odometry
+(`sim.robot.odometry`), never the true pose: a forward is 0.25 m by the wheel encoders. The heading reference is
+absolute: the start heading plus a whole number of turns by odometry, so that errors of single motions do not
+accumulate. Motor commands are constant during a tick of `tick_s`.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
 from sim.gl import mujoco
 from sim.interface import Action, wrap_angle
+from sim.robot.blocking import Blocking
 from sim.robot.body import Body
+from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import RobotConfig
 from sim.robot.contacts import Contact, ContactLog
+from sim.robot.motors import Motors
+from sim.robot.odometry import Odometry
 from sim.robot.profile import Trapezoid
 
 Ended = Literal["reached", "blocked", "timeout"]
@@ -35,23 +41,25 @@ class Motion:
     ended: Ended
     """The reason why it ended: it reached its end, it was blocked, or it did not come to rest in time."""
     contacts: tuple[Contact, ...]
-    """All contacts of the hull, also those that did not stop the motion."""
+    """All contacts of the hull, also those that did not stop the motion; of wheels and casters those that did."""
     fell: bool = False
     """The robot has driven over an edge (`sim.world.world`)."""
 
     @property
     def collided(self) -> bool:
-        """True: a contact of the hull ended the motion early."""
+        """True: a contact ended the motion early, of whatever part of the robot."""
         return any(contact.stopped for contact in self.contacts)
 
 
 class Driver:
-    """Drives one robot in one world; its only memory between actions is the heading reference."""
+    """Drives one robot in one world; its memory between actions is odometry and the heading reference."""
 
     def __init__(
-        self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, log: ContactLog
-    ) -> None:
+        self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, odometry: Odometry,
+        log: ContactLog,
+    ) -> None:  # fmt: skip
         self._model, self._data, self._body, self._log = model, data, body, log
+        self._motors, self._odometry = Motors(config, model, body), odometry
         self._drive = config.drive
         self._steps = config.steps_per_tick
         self._tick_s = config.drive.tick_s
@@ -59,17 +67,19 @@ class Driver:
         self._radius, self._half_track = wheels.radius_m, wheels.half_track_m
         # A wheel with this difference between commanded and actual speed (m/s) uses its largest torque ...
         self._full_slip = wheels.max_torque_nm / wheels.motor_gain_nm_s * wheels.radius_m
-        # ... and with this one the robot pushes half-way between the blocking force and the largest force.
-        push_n = 0.5 * (self._drive.blocking_force_n + wheels.max_push_n)
-        self._push_slip = self._full_slip * push_n / wheels.max_push_n
+        self._push_slip = self._full_slip * self._drive.push_share
         self._touch_ticks = math.ceil(self._drive.touch_memory_s / self._tick_s)
+        self._blocked_ticks = math.ceil(self._drive.blocked_s / self._tick_s)
         self._start_yaw = 0.0
         self._turns = 0
         self._ticks = 0
         self._touched_until = 0
+        self._tipping_rad = self._drive.blocked_tilt_rad
 
-    def reset(self, yaw_rad: float) -> None:
+    def reset(self, yaw_rad: float, conditions: Conditions = NOMINAL) -> None:
         """Starts a new episode: the headings are `yaw_rad` plus multiples of a turn."""
+        self._motors.reset(conditions)
+        self._odometry.reset(yaw_rad, conditions, self._log.compression_m())
         self._start_yaw, self._turns = yaw_rad, 0
 
     def run(self, action: Action) -> Motion:
@@ -78,17 +88,21 @@ class Driver:
             return Motion(action, 0.0, 0.0, 0.0, "reached", ())
         self._log.clear()
         self._ticks = self._touched_until = 0
+        self._tipping_rad = self._tipping_limit(turning=action != Action.MOVE_FORWARD)
         x0, y0, yaw0, _, _ = self._body.state()
         if action == Action.MOVE_FORWARD:
-            ended, aborted = self._forward()
+            ended = self._forward()
+            direction = math.cos(yaw0), math.sin(yaw0)
         else:
-            ended, aborted = self._turn(1 if action == Action.TURN_LEFT else -1)
-        if aborted is None:
+            ended = self._turn(1 if action == Action.TURN_LEFT else -1)
+            direction = 0.0, 0.0
+        if ended == "reached":
             contacts = self._log.contacts(self._tick_s)
             if self._touching:
                 self._realign()
         else:
-            contacts = self._log.contacts_of_aborted(self._tick_s, self._ticks - self._touch_ticks, aborted)
+            self._log.sample(self._ticks, all_parts=True)
+            contacts = self._log.contacts_of_aborted(self._tick_s, self._ticks - self._blocked_ticks, direction)
             if action == Action.MOVE_FORWARD:
                 self._back_off()
             self._realign()
@@ -107,142 +121,148 @@ class Driver:
     def _reference(self) -> float:
         return self._start_yaw + self._turns * self._drive.turn_rad
 
-    def _forward(self) -> tuple[Ended, tuple[float, float] | None]:
-        """Drives ahead along the heading reference.
-
-        Returns:
-            How the motion ended, and its direction in plan when it was aborted.
-        """
-        drive, body = self._drive, self._body
-        reference = self._reference
-        cos, sin = math.cos(reference), math.sin(reference)
-        profile = Trapezoid(drive.forward_m, drive.speed_m_s, drive.acceleration_m_s2)
-        last_tick = math.ceil((profile.duration_s + drive.timeout_s) / self._tick_s)
-        pushed_ticks = 0
-        stalled_s = 0.0
-        x0, y0, _, _, _ = body.state()
-        for tick in range(last_tick):
-            x, y, yaw, speed, rate = body.state()
+    def _forward(self) -> Ended:
+        """Drives ahead along the heading reference."""
+        drive, odometry = self._drive, self._odometry
+        # A motion ends when it comes within its tolerance from below.
+        aim_m = drive.forward_m + 0.5 * drive.position_tolerance_m
+        profile = Trapezoid(aim_m, drive.speed_m_s, drive.acceleration_m_s2)
+        blocking, moved_m = Blocking(drive, turning=False), self._true_progress()
+        remaining_m = self._remaining(aim_m)
+        for tick in range(math.ceil((profile.duration_s + drive.timeout_s) / self._tick_s)):
             time_s = tick * self._tick_s
-            lag = profile.distance(time_s) - ((x - x0) * cos + (y - y0) * sin)
-            heading_error = wrap_angle(reference - yaw)
-            if time_s >= profile.duration_s and self._at_rest(lag, heading_error, speed, rate):
-                return "reached", None
-            resistance_n = cos * body.touch[1] + sin * body.touch[2]
-            pushed_ticks = pushed_ticks + 1 if resistance_n > drive.blocking_force_n else 0
-            stalled_s = stalled_s + self._tick_s if lag > drive.stall_lag_m and speed < drive.stall_speed_m_s else 0.0
-            if pushed_ticks >= drive.blocking_ticks or stalled_s >= drive.stall_s:
-                return "blocked", (cos, sin)
-            planned = profile.speed(time_s + drive.lookahead_s)
-            self._command(
-                planned + drive.position_gain_1_s * lag,
-                drive.heading_gain_1_s * heading_error,
-                speed,
-                rate,
-            )
-        x, y, _, _, _ = body.state()
-        lag = drive.forward_m - ((x - x0) * cos + (y - y0) * sin)
-        return ("reached", None) if abs(lag) <= drive.touching_tolerance_m else ("timeout", (cos, sin))
+            lag = remaining_m() - (aim_m - profile.distance(time_s))
+            heading_error = wrap_angle(self._reference - odometry.yaw_rad)
+            if time_s >= profile.duration_s and self._at_rest(lag, heading_error, time_s - profile.duration_s):
+                return "reached"
+            speed = profile.speed(time_s + drive.lookahead_s) + drive.position_gain_1_s * lag
+            self._command(speed, drive.heading_gain_1_s * heading_error)
+            if blocking.add(speed, moved_m()) or self._is_tipping():
+                return "blocked"
+        return "reached" if abs(remaining_m()) <= drive.touching_tolerance_m else "timeout"
 
-    def _turn(self, side: int) -> tuple[Ended, tuple[float, float] | None]:
-        """Turns on the spot to the next heading reference, left for +1; a blocked turn keeps the last reference.
-
-        Returns:
-            How the motion ended, and (0, 0) when it was aborted.
-        """
-        drive, body = self._drive, self._body
-        x0, y0, yaw0, _, _ = body.state()
+    def _turn(self, side: int) -> Ended:
+        """Turns on the spot to the next heading reference, left for +1; a blocked turn keeps the last reference."""
+        drive, odometry = self._drive, self._odometry
         self._turns += side
+        yaw0 = odometry.yaw_rad
         angle = wrap_angle(self._reference - yaw0)
         sign = math.copysign(1.0, angle)
         profile = Trapezoid(abs(angle), drive.turn_speed_rad_s, drive.turn_acceleration_rad_s2)
-        last_tick = math.ceil((profile.duration_s + drive.timeout_s) / self._tick_s)
-        stalled_s = 0.0
-        for tick in range(last_tick):
-            x, y, yaw, speed, rate = body.state()
+        blocking, behind_m = Blocking(drive, turning=True), self._remaining(0.0)
+        true_yaw, turned = self._body.yaw_rad, 0.0
+        ended: Ended = "timeout"
+        for tick in range(math.ceil((profile.duration_s + drive.timeout_s) / self._tick_s)):
             time_s = tick * self._tick_s
-            lag = sign * profile.distance(time_s) - wrap_angle(yaw - yaw0)
-            behind = -((x - x0) * math.cos(yaw) + (y - y0) * math.sin(yaw))
-            if time_s >= profile.duration_s and self._at_rest(behind, lag, speed, rate):
-                return "reached", None
-            stalled = sign * lag > drive.stall_lag_rad and sign * rate < drive.stall_speed_rad_s
-            stalled_s = stalled_s + self._tick_s if stalled else 0.0
-            if stalled_s >= drive.stall_s:
+            lag = sign * profile.distance(time_s) - (odometry.yaw_rad - yaw0)
+            if time_s >= profile.duration_s and self._at_rest(behind_m(), lag, time_s - profile.duration_s):
+                return "reached"
+            rate = sign * profile.speed(time_s + drive.lookahead_s) + drive.heading_gain_1_s * lag
+            self._command(drive.position_gain_1_s * behind_m(), rate)
+            turned += wrap_angle(self._body.yaw_rad - true_yaw)
+            true_yaw = self._body.yaw_rad
+            if blocking.add(sign * rate, sign * turned) or self._is_tipping():
+                ended = "blocked"
                 break
-            planned = profile.speed(time_s + drive.lookahead_s)
-            self._command(
-                drive.position_gain_1_s * behind,
-                sign * planned + drive.heading_gain_1_s * lag,
-                speed,
-                rate,
-            )
-        blocked = stalled_s >= drive.stall_s
-        if abs(wrap_angle(self._reference - body.state()[2])) > 0.5 * drive.turn_rad:
+        if abs(wrap_angle(self._reference - odometry.yaw_rad)) > 0.5 * drive.turn_rad:
             self._turns -= side
-        return "blocked" if blocked else "timeout", (0.0, 0.0)
+        return ended
+
+    def _tipping_limit(self, *, turning: bool) -> float:
+        """Returns the lean from which a motion that starts now is about to tip the body over.
+
+        A body that came to rest against the edge of a table leans already. It must be able to leave: a turn pushes no
+        further, and a forward may lead along the edge, but must not add to the lean again and again.
+        """
+        leans, limit = self._body.tilt_rad, self._drive.blocked_tilt_rad
+        return leans + limit if turning else min(max(limit, 1.2 * leans), 2.0 * limit)
+
+    def _is_tipping(self) -> bool:
+        """Returns whether the body leans because of an object against which the hull pushes."""
+        if not self._touching or self._body.tilt_rad <= self._tipping_rad:
+            return False
+        _, x_n, y_n, _ = self._body.touch.tolist()
+        return math.hypot(x_n, y_n) > self._drive.tipping_force_n
 
     def _back_off(self) -> None:
         """Moves back by a few millimetres from the obstacle that blocked the motion."""
-        body, drive = self._body, self._drive
-        reference = self._reference
-        x0, y0, _, _, _ = body.state()
-        cos, sin = math.cos(reference), math.sin(reference)
+        drive, remaining_m = self._drive, self._remaining(0.0)
         for _ in range(round(drive.back_off_max_s / self._tick_s)):
-            x, y, yaw, speed, rate = body.state()
-            if (x - x0) * cos + (y - y0) * sin <= -drive.back_off_m:
+            if remaining_m() >= drive.back_off_m:
                 break
-            turn_rate = drive.heading_gain_1_s * wrap_angle(reference - yaw)
-            self._command(-drive.back_off_speed_m_s, turn_rate, speed, rate)
+            turn_rate = drive.heading_gain_1_s * wrap_angle(self._reference - self._odometry.yaw_rad)
+            self._command(-drive.back_off_speed_m_s, turn_rate)
 
     def _realign(self) -> None:
         """Turns back to the heading reference."""
-        drive = self._drive
-        reference = self._reference
+        drive, odometry = self._drive, self._odometry
         for _ in range(round(drive.realign_max_s / self._tick_s)):
-            _, _, yaw, speed, rate = self._body.state()
-            error = wrap_angle(reference - yaw)
-            if abs(error) <= drive.heading_tolerance_rad and abs(rate) <= drive.rest_speed_rad_s:
+            error = wrap_angle(self._reference - odometry.yaw_rad)
+            if abs(error) <= drive.heading_tolerance_rad and abs(odometry.rate_rad_s) <= drive.rest_speed_rad_s:
                 break
-            self._command(0.0, drive.heading_gain_1_s * error, speed, rate)
+            self._command(0.0, drive.heading_gain_1_s * error)
 
     def _come_to_rest(self) -> None:
         """Brakes until the robot is at rest."""
-        drive = self._drive
-        for _ in range(round(drive.rest_max_s / self._tick_s)):
-            _, _, _, speed, rate = self._body.state()
-            if abs(speed) <= drive.rest_speed_m_s and abs(rate) <= drive.rest_speed_rad_s:
+        for _ in range(round(self._drive.rest_max_s / self._tick_s)):
+            if self._is_still():
                 break
-            self._command(0.0, 0.0, speed, rate)
-        self._body.ctrl[:] = 0.0
+            self._command(0.0, 0.0)
+        self._motors.stop()
 
-    def _at_rest(self, lag_m: float, heading_error: float, speed: float, rate: float) -> bool:
+    def _remaining(self, distance_m: float) -> Callable[[], float]:
+        """Returns a function of the distance that is left, by odometry, along the heading reference of its call."""
+        odometry, x0, y0 = self._odometry, self._odometry.x_m, self._odometry.y_m
+
+        def remaining_m() -> float:
+            cos, sin = math.cos(self._reference), math.sin(self._reference)
+            return distance_m - ((odometry.x_m - x0) * cos + (odometry.y_m - y0) * sin)
+
+        return remaining_m
+
+    def _true_progress(self) -> Callable[[], float]:
+        """Returns a function of the distance that the body has truly moved along its present heading."""
+        x0, y0, yaw, _, _ = self._body.state()
+        cos, sin = math.cos(yaw), math.sin(yaw)
+
+        def moved_m() -> float:
+            x, y = self._body.qpos[:2].tolist()
+            return (x - x0) * cos + (y - y0) * sin
+
+        return moved_m
+
+    def _at_rest(self, lag_m: float, heading_error: float, late_s: float) -> bool:
+        """Returns whether a motion has reached its end, `late_s` after the end of its profile."""
         drive = self._drive
-        tolerance_m = drive.touching_tolerance_m if self._touching else drive.position_tolerance_m
-        return (
-            abs(lag_m) <= tolerance_m
-            and abs(heading_error) <= drive.heading_tolerance_rad
-            and abs(speed) <= drive.rest_speed_m_s
-            and abs(rate) <= drive.rest_speed_rad_s
-        )
+        coarse = late_s >= drive.coarse_after_s
+        tolerance_m = drive.touching_tolerance_m if coarse or self._touching else drive.position_tolerance_m
+        tolerance_rad = drive.coarse_heading_rad if coarse else drive.heading_tolerance_rad
+        return abs(lag_m) <= tolerance_m and abs(heading_error) <= tolerance_rad and self._is_still()
+
+    def _is_still(self) -> bool:
+        drive, odometry = self._drive, self._odometry
+        return abs(odometry.speed_m_s) <= drive.rest_speed_m_s and abs(odometry.rate_rad_s) <= drive.rest_speed_rad_s
 
     @property
     def _touching(self) -> bool:
         return self._ticks < self._touched_until
 
-    def _command(self, speed_m_s: float, rate_rad_s: float, actual_speed: float, actual_rate: float) -> None:
+    def _command(self, speed_m_s: float, rate_rad_s: float) -> None:
         """Applies one command of speed and turn rate for a tick.
 
         While the hull touches an object, or did so shortly before, the command is limited to values near the actual
         motion that saturate no motor, since two saturated motors cannot keep the heading. The turn rate has priority.
         """
+        odometry = self._odometry
         if self._touching:
-            rate_rad_s = _clamp(rate_rad_s, actual_rate, self._full_slip / self._half_track)
-            spare = self._full_slip - abs(rate_rad_s - actual_rate) * self._half_track
-            speed_m_s = _clamp(speed_m_s, actual_speed, min(self._push_slip, spare))
+            rate_rad_s = _clamp(rate_rad_s, odometry.rate_rad_s, self._full_slip / self._half_track)
+            spare = self._full_slip - abs(rate_rad_s - odometry.rate_rad_s) * self._half_track
+            speed_m_s = max(speed_m_s, odometry.speed_m_s - spare)
+            speed_m_s = min(speed_m_s, odometry.speed_m_s + min(self._push_slip, spare))
         across = rate_rad_s * self._half_track
-        self._body.ctrl[0] = (speed_m_s - across) / self._radius
-        self._body.ctrl[1] = (speed_m_s + across) / self._radius
+        self._motors.command((speed_m_s - across) / self._radius, (speed_m_s + across) / self._radius)
         mujoco.mj_step(self._model, self._data, self._steps)
+        odometry.update()
         self._ticks += 1
         if self._body.touch[0] > 0.0:
             self._touched_until = self._ticks + self._touch_ticks

@@ -1,16 +1,21 @@
 """Loads a third-party differential-drive robot from an MJCF file and its sidecar (`--robot`).
 
-Next to `carrier.xml` there is a sidecar `carrier.json`:
+Next to `carrier.xml` there is a sidecar `carrier.json`; those of Menagerie's robots ship (`sim.robot.menagerie`):
 
 | key | meaning |
 |---|---|
 | `wheel_joints` | names of the hinges of the left and the right wheel |
 | `wheel_radius_m` | metres |
+| `track_m` | distance between the middles of the tyres; default: that of the wheels' joints |
 | `casters` | names of geoms or bodies that only slide on the floor; default: none |
+| `joints` | names of other joints and their positions, rad or m, in which they are fixed; default: 0 |
 | `heading_deg` | direction that is ahead in the file, counter-clockwise from +x; default: 0 |
 | `radius_m`, `height_m` | size of the upright cylinder around the body; default: measured |
 | `camera_height_m`, `camera_forward_m` | position of the level camera above the floor and ahead of the axle (0.88, 0) |
 | `camera_hfov_deg` | horizontal field of view of the camera (79) |
+| `speed_m_s`, `acceleration_m_s2` | largest speed and acceleration of a forward (0.5, 1) |
+
+A geom without a name is called `<body>.<number>`, with its number in the body, from 0.
 
 The file shows the robot at rest: +x ahead (or `heading_deg`), wheels on the ground. Masses, inertias and collision
 shapes are those of the file. The rest is replaced: the base is held upright, each wheel collides as a sphere of its
@@ -23,34 +28,43 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from sim.interface import CameraModel, ConfigError
+from sim.interface import CLIMB_M, CameraModel, ConfigError
 from sim.reading import read_bytes, read_json
-from sim.robot.config import BodyConfig, RobotConfig, RobotFile, WheelConfig
+from sim.robot.config import BodyConfig, DriveConfig, RobotConfig, RobotFile, WheelConfig
 from sim.robot.measurement import RobotMeasurements, measure
+from sim.robot.menagerie import is_menagerie, menagerie_files
 
-KEYS = ("wheel_joints", "wheel_radius_m", "casters", "heading_deg", "radius_m", "height_m")
+KEYS = (
+    "wheel_joints", "wheel_radius_m", "track_m", "casters", "joints", "heading_deg", "radius_m", "height_m",
+    "speed_m_s", "acceleration_m_s2",
+)  # fmt: skip
 CAMERA_KEYS = ("camera_height_m", "camera_forward_m", "camera_hfov_deg")
 LARGEST_M = 1000.0
 """Largest number of a sidecar, also of degrees."""
+SKIN_M = 0.005
+"""`BodyConfig.skin_m` of third-party bodies, whose shapes may be of any kind."""
 MIN_CLEARANCE_M = 0.005
 """Least distance between the body's skin and the floor, so that the body does not rub on the floor."""
 WHEEL_MASS_SHARE = 0.01
 """Share of the robot's mass that is declared for each wheel; the simulated masses are those of the file."""
+CLIMBED_SHARE = 0.18
+"""Height that a wheel climbs from rest with friction 0.7, relative to its radius."""
 CASTER_OFFSET_SHARE = 0.8
 """Declared distance of the casters from the centre, relative to the body's radius."""
 
 
-def load_robot(path: Path) -> tuple[RobotConfig, CameraModel]:
-    """Returns the robot of an MJCF file with its sidecar, and its camera.
+def load_robot(robot: Path | str) -> tuple[RobotConfig, CameraModel]:
+    """Returns the robot of an MJCF file with its sidecar, or of `menagerie:NAME`, and its camera.
 
     Raises:
-        ConfigError: a file is missing or breaks a rule of this module; the message names the file and the rule.
+        ConfigError: a file is missing or breaks a rule of this module, or Menagerie has no such robot; the message
+            names the file and the rule.
     """
-    path = Path(path).resolve()
-    sidecar_file = path.with_suffix(".json")
+    path, sidecar_file = _files_of(robot)
     for file, what in ((path, "robot"), (sidecar_file, "sidecar of the robot")):
         if not file.is_file():
             raise ConfigError(f"--robot: the {what} '{file}' does not exist.")
@@ -61,22 +75,47 @@ def load_robot(path: Path) -> tuple[RobotConfig, CameraModel]:
         raise ConfigError(f"Robot '{path}': {error}") from None
 
 
-def robot_sha256(path: Path) -> str:
+def robot_sha256(robot: Path | str) -> str:
     """Returns the checksum of the robot's file and its sidecar, which identifies the robot in results."""
-    files = (path, "robot"), (path.with_suffix(".json"), "sidecar of the robot")
+    files = zip(_files_of(robot), ("robot", "sidecar of the robot"), strict=True)
     return hashlib.sha256(b"".join(read_bytes(file, what=f"--robot: the {what}") for file, what in files)).hexdigest()
+
+
+def absolute_robot(robot: Path | str) -> str:
+    """Returns the name or path of a robot that stays valid if the current folder changes."""
+    return str(robot if is_menagerie(robot) else Path(robot).absolute())
+
+
+def _files_of(robot: Path | str) -> tuple[Path, Path]:
+    """Returns the MJCF file of a robot and its sidecar."""
+    if is_menagerie(robot):
+        return menagerie_files(robot)
+    path = Path(robot).resolve()
+    return path, path.with_suffix(".json")
 
 
 def _robot_config(path: Path, sidecar: dict[str, Any]) -> RobotConfig:
     joints, casters = sidecar["wheel_joints"], sidecar.get("casters", [])
     wheel_radius_m = _positive(sidecar, "wheel_radius_m")
-    heading_rad = math.radians(_number(sidecar, "heading_deg", "degrees"))
-    file = RobotFile(path, (joints[0], joints[1]), tuple(casters), heading_rad)
+    file = RobotFile(
+        path,
+        (joints[0], joints[1]),
+        tuple(casters),
+        heading_rad=math.radians(_number(sidecar, "heading_deg", "degrees")),
+        track_m=_positive(sidecar, "track_m") if "track_m" in sidecar else None,
+        pose=tuple(sorted((name, float(position)) for name, position in sidecar.get("joints", {}).items())),
+    )
     measured = measure(file, wheel_radius_m)
     body = _body(sidecar, measured)
     wheels = _wheels(measured, wheel_radius_m, body)
     return RobotConfig(
-        body=body, wheels=wheels, file=file, camera_forward_m=_number(sidecar, "camera_forward_m", "metres")
+        base="planar",
+        climb_m=_climb_m(body, wheels),
+        body=body,
+        wheels=wheels,
+        drive=_drive(sidecar),
+        file=file,
+        camera_forward_m=_number(sidecar, "camera_forward_m", "metres"),
     )
 
 
@@ -98,29 +137,44 @@ def _wheels(measured: RobotMeasurements, radius_m: float, body: BodyConfig) -> W
 
 def _body(sidecar: dict[str, Any], measured: RobotMeasurements) -> BodyConfig:
     """Returns the upright cylinder around the body and its skin."""
-    skin_m = BodyConfig().skin_m
-    if measured.bottom_m - skin_m < MIN_CLEARANCE_M - 1e-6:
+    if measured.bottom_m - SKIN_M < MIN_CLEARANCE_M - 1e-6:
         raise ConfigError(
-            f"its body reaches down to {measured.bottom_m:.3f} m above the floor, but must stay at least "
-            f"{MIN_CLEARANCE_M + skin_m:.3f} m above it; name sliding parts in casters."
+            f"its body reaches down to {measured.bottom_m:.3f} m above the floor with '{measured.lowest}', but must "
+            f"stay at least {MIN_CLEARANCE_M + SKIN_M:.3f} m above it; name sliding parts in casters."
         )
-    radius_m = _positive(sidecar, "radius_m", measured.reach_m + skin_m)
-    height_m = _positive(sidecar, "height_m", measured.top_m + skin_m)
+    radius_m = _positive(sidecar, "radius_m", measured.reach_m + SKIN_M)
+    height_m = _positive(sidecar, "height_m", measured.top_m + SKIN_M)
     for name, given, needed in (("radius_m", radius_m, measured.reach_m), ("height_m", height_m, measured.top_m)):
-        if given < needed + skin_m - 1e-6:
+        if given < needed + SKIN_M - 1e-6:
             raise ConfigError(
                 f"{name} in the sidecar is {given:.3f} m, but the collision geoms reach {needed:.3f} m and have a skin "
-                f"of {skin_m:.3f} m: give at least {needed + skin_m:.3f}."
+                f"of {SKIN_M:.3f} m: give at least {needed + SKIN_M:.3f}."
             )
-    clearance_m = min(measured.bottom_m - skin_m, 0.4 * height_m)
+    clearance_m = min(measured.bottom_m - SKIN_M, 0.4 * height_m)
     return BodyConfig(
         radius_m=radius_m,
         height_m=height_m,
         clearance_m=clearance_m,
         waist_m=0.5 * (clearance_m + height_m),
+        skin_m=SKIN_M,
         mass_kg=measured.mass_kg,
         com_height_m=measured.com_height_m,
     )
+
+
+def _drive(sidecar: dict[str, Any]) -> DriveConfig:
+    """Returns the controller, with the limits of the robot's base."""
+    default = DriveConfig()
+    return replace(
+        default,
+        speed_m_s=_positive(sidecar, "speed_m_s", default.speed_m_s),
+        acceleration_m_s2=_positive(sidecar, "acceleration_m_s2", default.acceleration_m_s2),
+    )
+
+
+def _climb_m(body: BodyConfig, wheels: WheelConfig) -> float:
+    """Returns the height of the highest edge that the robot climbs, at most that of the default robot."""
+    return min(CLIMB_M, CLIMBED_SHARE * wheels.radius_m, body.clearance_m)
 
 
 def _camera(sidecar: dict[str, Any]) -> CameraModel:
@@ -133,7 +187,7 @@ def _camera(sidecar: dict[str, Any]) -> CameraModel:
 def _number(sidecar: dict[str, Any], key: str, unit: str) -> float:
     """Returns a number that may be negative; 0 when it is not given."""
     value = sidecar.get(key, 0.0)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST_M:
+    if not _is_number(value):
         raise ConfigError(f'"{key}" in its sidecar must be a number of {unit}; it is {json.dumps(value)}.')
     return float(value)
 
@@ -152,7 +206,16 @@ def _read_sidecar(file: Path) -> dict[str, Any]:
         raise ConfigError('its sidecar needs "wheel_joints": ["<left>", "<right>"], the names of two joints.')
     if not (isinstance(casters, list) and _are_names(casters)):
         raise ConfigError('"casters" in its sidecar must be a list of names.')
+    pose = content.get("joints", {})
+    if not (isinstance(pose, dict) and all(_is_number(position) for position in pose.values())):
+        raise ConfigError('"joints" in its sidecar must be an object with a position, rad or m, for each joint.')
+    if moved := [name for name in joints if name in pose]:
+        raise ConfigError(f"\"joints\" in its sidecar must not name the wheel joint '{moved[0]}'.")
     return content
+
+
+def _is_number(value: Any) -> bool:
+    return not isinstance(value, bool) and isinstance(value, int | float) and abs(value) <= LARGEST_M
 
 
 def _are_names(values: list[Any]) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from sim.houses.geoms import geom_polytope
 from sim.houses.mjcf import read_spec, require_sizes
 from sim.interface import ConfigError
 from sim.robot.config import RobotFile
+from sim.robot.posing import pose_joints
 
 MIN_AXLE_COSINE = 0.999
 """Smallest cosine of the angle between a wheel's axle and the robot's y axis."""
@@ -26,9 +27,11 @@ class Wheel:
     """One wheel in the pose of the file."""
 
     joint: str
-    centre_m: NDArray[np.float64]  # (3,) in the world of the file, turned so that the robot faces +x
+    centre_m: NDArray[np.float64]  # (3,) of its tyre, in the world of the file, turned so that the robot faces +x
     sign: float
     """1 when a positive joint velocity drives ahead, else -1."""
+    offset_m: float = 0.0
+    """Distance of the tyre's middle from the joint's anchor along the joint's axis."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,8 @@ class RobotMeasurements:
     """Largest distance in plan of the hull from the middle of the axle."""
     bottom_m: float
     """Lowest point of the hull."""
+    lowest: str
+    """Name of the geom with this point."""
     top_m: float
     """Highest point of the hull."""
 
@@ -65,19 +70,27 @@ class CollisionGeoms:
 def read_body(file: RobotFile) -> tuple[mujoco.MjSpec, mujoco.MjsBody]:
     """Returns the file's specification without joints other than the wheels', and the top body of the robot.
 
+    Bodies without a name are named `body_<number>` and geoms without one `<body>.<number>`, with their number in the
+    body.
+
     Raises:
-        ConfigError: MuJoCo cannot read the file, or it does not have the wheel joints.
+        ConfigError: MuJoCo cannot read the file, it does not have the wheel joints, or a joint cannot be posed.
     """
     spec = read_spec(file.path, error=ConfigError)
     for number, body in enumerate(spec.bodies):
         body.name = body.name or f"body_{number}"  # the code below identifies bodies by name
+        for index, geom in enumerate(body.geoms):
+            geom.name = geom.name or f"{body.name}.{index}"
     _make_paths_absolute(spec, file)
     _delete_unused_elements(spec)
+    _require_wheel_joints(spec, file)
+    pose_joints(spec, file.pose)
     _delete_other_joints(spec, file)
     roots = {_root_of(spec, spec.joint(name).parent).name for name in file.wheel_joints}
     if len(roots) != 1:
         raise ConfigError(f"its wheels belong to different bodies of the world: {', '.join(sorted(roots))}.")
     spec.option = mujoco.MjSpec().option  # those of the world are used
+    spec.compiler.fusestatic = False  # its top body has no joint now and would be fused with the world
     root = _root_of(spec, spec.joint(file.wheel_joints[0]).parent)
     _resolve_orientation(spec, root)
     return spec, root
@@ -117,8 +130,6 @@ def measure(file: RobotFile, wheel_radius_m: float) -> RobotMeasurements:
     """
     spec, root = read_body(file)
     hull = collision_geoms(root, file).hull
-    for number, geom in enumerate(hull):
-        geom.name = geom.name or f"hull_{number}"
     try:
         model = spec.compile()
     except ValueError as error:
@@ -130,8 +141,8 @@ def measure(file: RobotFile, wheel_radius_m: float) -> RobotMeasurements:
     left, right = _wheels(model, data, file, turn)
     middle = 0.5 * (left.centre_m + right.centre_m)
     ground_m = float(middle[2]) - wheel_radius_m
-    vertices = np.concatenate([geom_polytope(model, data, model.geom(geom.name).id).vertices_m for geom in hull])
-    vertices = vertices @ turn.T
+    parts = [geom_polytope(model, data, model.geom(geom.name).id).vertices_m @ turn.T for geom in hull]
+    vertices = np.concatenate(parts)
     body = model.body(root.name).id
     return RobotMeasurements(
         wheels=(left, right),
@@ -139,6 +150,7 @@ def measure(file: RobotFile, wheel_radius_m: float) -> RobotMeasurements:
         com_height_m=float(data.subtree_com[body][2]) - ground_m,
         reach_m=float(np.hypot(*(vertices[:, :2] - middle[:2]).T).max()),
         bottom_m=float(vertices[:, 2].min()) - ground_m,
+        lowest=hull[int(np.argmin([part[:, 2].min() for part in parts]))].name,
         top_m=float(vertices[:, 2].max()) - ground_m,
     )
 
@@ -179,12 +191,8 @@ def _delete_unused_elements(spec: mujoco.MjSpec) -> None:
             spec.delete(element)
 
 
-def _delete_other_joints(spec: mujoco.MjSpec, file: RobotFile) -> None:
-    """Deletes all joints other than those of the wheels.
-
-    Raises:
-        ConfigError: a wheel's joint does not exist.
-    """
+def _require_wheel_joints(spec: mujoco.MjSpec, file: RobotFile) -> None:
+    """Raises ConfigError if a wheel's joint does not exist."""
     types = {joint.name: joint.type for joint in spec.joints}
     for name in file.wheel_joints:
         if name not in types:
@@ -193,6 +201,10 @@ def _delete_other_joints(spec: mujoco.MjSpec, file: RobotFile) -> None:
                 f"it has no joint '{name}', which the sidecar names in wheel_joints. The hinges are: "
                 f"{', '.join(hinges) or 'none that has a name'}."
             )
+
+
+def _delete_other_joints(spec: mujoco.MjSpec, file: RobotFile) -> None:
+    """Deletes all joints other than those of the wheels."""
     for joint in list(spec.joints):
         if joint.name not in file.wheel_joints:
             spec.delete(joint)
@@ -208,7 +220,15 @@ def _wheels(
             "its wheels must be next to each other with the first of wheel_joints on the left (+y), but they are at "
             f"{_format(left.centre_m)} and {_format(right.centre_m)} m{_turned(file)}."
         )
-    return left, right
+    if file.track_m is None:
+        return left, right
+    out_m = 0.5 * (file.track_m - float(across[1]))
+    return _shifted(left, out_m), _shifted(right, -out_m)
+
+
+def _shifted(wheel: Wheel, left_m: float) -> Wheel:
+    """Returns a wheel whose tyre is farther to the left."""
+    return replace(wheel, centre_m=wheel.centre_m + np.array([0.0, left_m, 0.0]), offset_m=wheel.sign * left_m)
 
 
 def _wheel(model: mujoco.MjModel, data: mujoco.MjData, name: str, turn: NDArray[np.float64]) -> Wheel:

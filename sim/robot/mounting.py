@@ -8,6 +8,7 @@ import numpy as np
 
 from sim.errors import ConfigError, HouseError
 from sim.gl import mujoco
+from sim.houses.labels import RENDERED_GROUPS
 from sim.robot.body import (
     HULL_MASK,
     HULL_PRIORITY,
@@ -65,12 +66,12 @@ def _prepare_body(
 ) -> list[str]:
     """Sets collision masks, adds tyres to the wheels and returns the names of the hull's geoms."""
     geoms = collision_geoms(root, file)
+    _hide_doubles(root)
     for geom in (geom for body in (root, *root.find_all("body")) for geom in body.geoms):
         geom.group = ROBOT_GROUP
     for geom in (*geoms.wheels, *geoms.casters):  # the base is held upright; sphere contacts are exact, cylinders' not
         geom.contype = geom.conaffinity = 0
-    for number, geom in enumerate(geoms.hull):
-        geom.name = geom.name or f"hull_{number}"
+    for geom in geoms.hull:
         _set_hull_contact(geom, config.body)
     for side, wheel in zip(("left", "right"), measured.wheels, strict=True):
         joint = spec.joint(wheel.joint)
@@ -78,8 +79,22 @@ def _prepare_body(
         joint.armature = config.wheels.armature_kg_m2
         joint.damping[:] = joint.stiffness[:] = 0.0  # the motor controls the speed
         joint.frictionloss = 0.0
-        add_tyre(joint.parent, side, config.wheels.radius_m, joint.pos)
+        axis = np.array(joint.axis) / np.linalg.norm(joint.axis)
+        tyre = add_tyre(joint.parent, side, config.wheels.radius_m, joint.pos + wheel.offset_m * axis)
+        tyre.rgba[3] = 0.0  # viewers show the wheel of the file
     return [geom.name for geom in geoms.hull]
+
+
+def _hide_doubles(root: mujoco.MjsBody) -> None:
+    """Makes the geoms transparent that MuJoCo does not show, unless nothing else of the robot is visible.
+
+    They are collision shapes next to the visual ones. `_prepare_body` gives all geoms one group.
+    """
+    geoms = [geom for body in (root, *root.find_all("body")) for geom in body.geoms]
+    hidden = [geom for geom in geoms if geom.group >= RENDERED_GROUPS]
+    for geom in hidden if len(hidden) < len(geoms) else ():
+        geom.rgba[3] = 0.0
+        geom.material = ""
 
 
 def _set_hull_contact(geom: Any, body: BodyConfig) -> None:

@@ -4,8 +4,8 @@ The limits of speed and acceleration are those of `DriveConfig`. The wheels' mot
 position or heading, which is the caller's task. The commanded speed of a wheel stays as near to the measured one as
 the torque of the motor can act on, so that a robot that was held up does not first have to slow down to turn back.
 
-A contact blocks the robot if the command pushes for `BLOCKED_S` and the body hardly moves. It is a collision once, in
-the period in which it begins to block.
+A contact blocks the robot if the command pushes for `DriveConfig.blocked_s` and the body hardly moves. It is a
+collision once, in the period in which it begins to block.
 """
 
 from __future__ import annotations
@@ -16,17 +16,16 @@ from dataclasses import dataclass
 
 from sim.gl import mujoco
 from sim.interface import Action, wrap_angle
-from sim.robot.body import PREFIX, Body
+from sim.robot.body import Body
+from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import RobotConfig
 from sim.robot.contacts import ContactLog
 from sim.robot.drive import Motion
+from sim.robot.motors import Motors
+from sim.robot.odometry import Odometry
 
-BLOCKED_S = 0.2
-"""The robot is blocked if the command has pushed for this long ..."""
 BLOCKED_M = 0.0025
-"""... and the body has moved by less than this ..."""
-BLOCKED_RAD = math.radians(0.7)
-"""... or, turning on the spot, has turned by less than this."""
+"""The robot is blocked if it has moved by less than this, or if a turn on the spot is blocked as `DriveConfig` says."""
 PUSHING_M_S = 0.05
 """A command of at least this speed pushes ..."""
 PUSHING_RAD_S = 0.15
@@ -64,20 +63,22 @@ class VelocityDrive:
     """Drives one robot in one world; it remembers the command and what blocks the robot."""
 
     def __init__(
-        self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, log: ContactLog
-    ) -> None:
+        self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, odometry: Odometry,
+        log: ContactLog,
+    ) -> None:  # fmt: skip
         self._model, self._data, self._body, self._log = model, data, body, log
         self._drive, self._steps, self._tick_s = config.drive, config.steps_per_tick, config.drive.tick_s
         self._radius_m, self._half_track_m = config.wheels.radius_m, config.wheels.half_track_m
         self._reach_rad_s = config.wheels.max_torque_nm / config.wheels.motor_gain_nm_s
         self._touch_ticks = math.ceil(self._drive.touch_memory_s / self._tick_s)
-        self._motors = tuple(model.actuator(f"{PREFIX}{side}_motor").id for side in ("left", "right"))
-        self._moves: deque[tuple[float, float]] = deque(maxlen=round(BLOCKED_S / self._tick_s))
+        self._motors, self._odometry = Motors(config, model, body), odometry
+        self._moves: deque[tuple[float, float]] = deque(maxlen=round(self._drive.blocked_s / self._tick_s))
         """Distance (m) and angle (rad) of each of the last ticks in which the command pushed, without sign."""
-        self.reset()
+        self.reset(NOMINAL)
 
-    def reset(self) -> None:
+    def reset(self, conditions: Conditions) -> None:
         """Starts a new episode, at rest."""
+        self._motors.reset(conditions)
         self._speed_m_s = self._rate_rad_s = 0.0
         self._blocked, self._last = False, Velocity(0.0, 0.0)
         self._moves.clear()
@@ -101,6 +102,7 @@ class VelocityDrive:
         x, y, yaw, _, _ = self._body.state()
         contacts = self._log.contacts(self._tick_s)
         if begins:
+            self._log.sample(ticks, all_parts=True)
             side = math.copysign(1.0, command.speed_m_s) if command.pushes_forward else 0.0
             direction = side * math.cos(yaw), side * math.sin(yaw)
             contacts = self._log.contacts_of_aborted(self._tick_s, ticks - self._touch_ticks, direction)
@@ -120,16 +122,16 @@ class VelocityDrive:
         speed = _towards(self._speed_m_s, command.speed_m_s, drive.acceleration_m_s2 * self._tick_s)
         rate = _towards(self._rate_rad_s, command.rate_rad_s, drive.turn_acceleration_rad_s2 * self._tick_s)
         wheels = []
-        for motor, side in zip(self._motors, (-1.0, 1.0), strict=True):
-            measured = float(self._data.actuator_velocity[motor])
+        for measured, side in zip(self._body.wheel_speeds(), (-1.0, 1.0), strict=True):
             wanted = (speed + side * rate * self._half_track_m) / self._radius_m
             wheels.append(_towards(measured, wanted, self._reach_rad_s))
-            self._data.ctrl[motor] = wheels[-1]
         left, right = wheels
+        self._motors.command(left, right)
         self._speed_m_s = 0.5 * (left + right) * self._radius_m
         self._rate_rad_s = 0.5 * (right - left) * self._radius_m / self._half_track_m
         x0, y0, yaw0, _, _ = self._body.state()
         mujoco.mj_step(self._model, self._data, self._steps)
+        self._odometry.update()
         x, y, yaw, _, _ = self._body.state()
         self._moves.append((math.hypot(x - x0, y - y0), abs(wrap_angle(yaw - yaw0))))
 
@@ -140,7 +142,7 @@ class VelocityDrive:
         if len(self._moves) < (self._moves.maxlen or 0):
             return False
         moved_m, turned_rad = (sum(each) for each in zip(*self._moves, strict=True))
-        return moved_m < BLOCKED_M if command.pushes_forward else turned_rad < BLOCKED_RAD
+        return moved_m < BLOCKED_M if command.pushes_forward else turned_rad < self._drive.blocked_rad
 
 
 def _towards(value: float, goal: float, step: float) -> float:

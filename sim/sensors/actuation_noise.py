@@ -1,4 +1,8 @@
-"""Noise of the drive: floors and motors that differ from episode to episode; the motions follow from physics."""
+"""Noise of the drive: floors, motors, encoders and gyros that differ from episode to episode.
+
+The motions follow from physics: errors of motors show where the controller cannot correct them in time, errors of
+encoders and gyro in every motion, since the controller knows nothing else.
+"""
 
 from __future__ import annotations
 
@@ -15,27 +19,45 @@ _BOUNDS = (0.01, 10.0)
 
 @dataclass(frozen=True, kw_only=True)
 class ActuationNoise:
-    """Ranges of an episode's conditions; every default is off.
-
-    The driver controls the true pose, so moderate values cost time and a centimetre sideways; on floors with little
-    friction the robot slides beyond its target or its wheels spin.
-    """
+    """Ranges of an episode's conditions (`sim.robot.conditions`); every default is off."""
 
     floor_friction_scale: tuple[float, float] = (1.0, 1.0)
     """Lowest and highest factor on the friction of the floors, sampled uniformly in its logarithm."""
     motor_gain_scale: tuple[float, float] = (1.0, 1.0)
     """Lowest and highest factor on the speed of a motor, sampled uniformly for each wheel."""
+    motor_bias_rad_s: float = 0.0
+    """Largest speed that is added to a wheel's command, sampled uniformly for each wheel with either sign."""
+    motor_latency_s: float = 0.0
+    """Largest delay of the commands, sampled uniformly."""
+    encoder_scale: tuple[float, float] = (1.0, 1.0)
+    """Lowest and highest factor on the measured distance of both wheels, sampled uniformly."""
+    encoder_mismatch: float = 0.0
+    """Largest relative difference of the two wheels; without a gyro it bends the path."""
+    gyro_scale: tuple[float, float] = (1.0, 1.0)
+    """Lowest and highest factor on the measured angle, sampled uniformly."""
+    gyro_bias_rad_s: float = 0.0
+    """Largest turn rate that the gyro measures at rest, sampled uniformly with either sign."""
 
     def __post_init__(self) -> None:
         for name, value in (
             ("floor_friction_scale", self.floor_friction_scale),
             ("motor_gain_scale", self.motor_gain_scale),
+            ("encoder_scale", self.encoder_scale),
+            ("gyro_scale", self.gyro_scale),
         ):
             if not _is_range(value):
                 raise ConfigError(
                     f"ActuationNoise.{name} must be (lowest, highest) with {_BOUNDS[0]} <= lowest <= highest "
                     f"<= {_BOUNDS[1]:g}, got {value!r}."
                 )
+        for name, value, most in (
+            ("motor_bias_rad_s", self.motor_bias_rad_s, 10.0),
+            ("motor_latency_s", self.motor_latency_s, 0.2),
+            ("encoder_mismatch", self.encoder_mismatch, 0.5),
+            ("gyro_bias_rad_s", self.gyro_bias_rad_s, 1.0),
+        ):
+            if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 <= value <= most:
+                raise ConfigError(f"ActuationNoise.{name} must be a number in [0, {most:g}], got {value!r}.")
 
     def draw(self, rng: np.random.Generator) -> Conditions:
         """Returns the conditions of an episode."""
@@ -44,7 +66,18 @@ class ActuationNoise:
         low, high = self.floor_friction_scale
         left, right = rng.uniform(*self.motor_gain_scale, 2).tolist()
         friction = math.exp(rng.uniform(math.log(low), math.log(high)))
-        return Conditions(floor_friction_scale=friction, motor_gain_scale=(left, right))
+        bias = self.motor_bias_rad_s * rng.uniform(-1.0, 1.0, 2)
+        latency_s = rng.uniform(0.0, self.motor_latency_s)
+        encoder, mismatch = rng.uniform(*self.encoder_scale), 0.5 * self.encoder_mismatch * rng.uniform(-1.0, 1.0)
+        return Conditions(
+            floor_friction_scale=friction,
+            motor_gain_scale=(left, right),
+            motor_bias_rad_s=(float(bias[0]), float(bias[1])),
+            motor_latency_s=latency_s,
+            encoder_scale=(encoder * (1.0 - mismatch), encoder * (1.0 + mismatch)),
+            gyro_scale=rng.uniform(*self.gyro_scale),
+            gyro_bias_rad_s=self.gyro_bias_rad_s * rng.uniform(-1.0, 1.0),
+        )
 
 
 def _is_range(value: object) -> bool:

@@ -22,6 +22,7 @@ from sim.interface import CameraModel, ConfigError
 from sim.robot.conditions import Conditions
 from sim.sensors.actuation_noise import ActuationNoise
 from sim.sensors.depth_noise import DepthNoise
+from sim.sensors.measured import ImuNoise
 from sim.sensors.pose_noise import PoseNoise
 from sim.sensors.rgb_noise import RgbNoise
 from sim.sensors.scan import ScanSensor
@@ -41,6 +42,7 @@ class NoiseConfig:
     pose: PoseNoise = field(default_factory=PoseNoise)
     actuation: ActuationNoise = field(default_factory=ActuationNoise)
     scan: ScanNoise = field(default_factory=ScanNoise)
+    imu: ImuNoise = field(default_factory=ImuNoise)
 
 
 _D435_FOCAL_BASELINE = 388.0 * 0.05
@@ -49,37 +51,55 @@ _D435_FOCAL_BASELINE = 388.0 * 0.05
 NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
     {
         "none": NoiseConfig(),
-        # Depth error 0.08 px and steps of 1/32 px (Intel); jitter 0.5 px (Handa). The shares at edges, the holes and
-        # the numbers of the other sensors are assumptions for a good wheeled robot indoors.
+        # Depth error 0.08 px over windows of 7 px and steps of 1/32 px (Intel); jitter 0.5 px (Handa). The data sheet's
+        # 2 % at 2 m are two standard deviations of the systematic error. The share at edges, the holes and the
+        # numbers of the other sensors are assumptions for a good wheeled robot indoors.
         "realsense": NoiseConfig(
             depth=DepthNoise(
                 axial_m=0.001,
                 axial_1_m=round(0.08 / _D435_FOCAL_BASELINE, 5),
+                window_px=7,
+                bias_1_m=0.005,
                 step_1_m=round(1.0 / 32.0 / _D435_FOCAL_BASELINE, 5),
                 lateral_px=0.5,
-                edge_dropout=0.3,
+                baseline_m=0.05,
                 edge_flying=0.05,
                 hole_share=0.8,
             ),
             rgb=RgbNoise(gain_std=0.02, shot_electrons_1=1 / 5000, read_std=1.0),
-            pose=PoseNoise(
-                gps_std_m=0.01,
-                gps_walk_m=0.002,
-                compass_std_rad=math.radians(0.3),
-                compass_walk_rad=math.radians(0.03),
+            pose=PoseNoise(from_odometry=True),
+            # About half of the errors of a LoCoBot with the ILQR controller (PyRobot): 14 mm a forward, 1.3 deg a turn.
+            actuation=ActuationNoise(
+                floor_friction_scale=(0.3, 1.1),
+                motor_gain_scale=(0.9, 1.1),
+                motor_bias_rad_s=0.05,
+                motor_latency_s=0.04,
+                encoder_scale=(0.95, 1.05),
+                encoder_mismatch=0.01,
+                gyro_scale=(0.97, 1.03),
+                gyro_bias_rad_s=math.radians(0.01),
             ),
-            actuation=ActuationNoise(floor_friction_scale=(0.3, 1.1), motor_gain_scale=(0.9, 1.1)),
             scan=ScanNoise(std_share=0.01),
+            # Noise densities of a Bosch BMI055, the IMU of a RealSense D435i, at 100 Hz: 0.014 deg/s and 150 ug per
+            # root of 1 Hz; offsets are assumed to be calibrated to a tenth of its data sheet's 1 deg/s and 70 mg.
+            imu=ImuNoise(
+                acceleration_std_m_s2=0.0147,
+                rate_std_rad_s=math.radians(0.14),
+                acceleration_bias_m_s2=0.069,
+                rate_bias_rad_s=math.radians(0.1),
+            ),
         ),
-        # An old camera in poor light on a robot with slippery wheels: 2.5 times the depth error, and a compass drift
-        # of 4.5 deg after 500 actions.
+        # An old camera in poor light on a robot with slippery wheels: 2.5 times the random and twice the systematic
+        # depth error, window and baseline of a Kinect.
         "harsh": NoiseConfig(
             depth=DepthNoise(
                 axial_m=0.003,
                 axial_1_m=0.01,
+                window_px=9,
+                bias_1_m=0.01,
                 step_1_m=0.005,
                 lateral_px=1.0,
-                edge_dropout=0.5,
+                baseline_m=0.075,
                 edge_flying=0.3,
                 edge_radius_px=2,
                 hole_share=1.0,
@@ -87,14 +107,25 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 hole_patch_px=12.0,
             ),
             rgb=RgbNoise(gain_std=0.08, shot_electrons_1=1 / 500, read_std=5.0),
-            pose=PoseNoise(
-                gps_std_m=0.03,
-                gps_walk_m=0.006,
-                compass_std_rad=math.radians(1.0),
-                compass_walk_rad=math.radians(0.2),
+            pose=PoseNoise(from_odometry=True),
+            # The errors of that LoCoBot, on floors that may be wet.
+            actuation=ActuationNoise(
+                floor_friction_scale=(0.2, 1.0),
+                motor_gain_scale=(0.6, 1.1),
+                motor_bias_rad_s=0.15,
+                motor_latency_s=0.06,
+                encoder_scale=(0.9, 1.1),
+                encoder_mismatch=0.03,
+                gyro_scale=(0.92, 1.08),
+                gyro_bias_rad_s=math.radians(0.03),
             ),
-            actuation=ActuationNoise(floor_friction_scale=(0.06, 1.0), motor_gain_scale=(0.6, 1.1)),
             scan=ScanNoise(std_m=0.015, std_share=0.025, dropout=0.02),
+            imu=ImuNoise(
+                acceleration_std_m_s2=0.05,
+                rate_std_rad_s=math.radians(0.5),
+                acceleration_bias_m_s2=0.69,
+                rate_bias_rad_s=math.radians(1.0),
+            ),
         ),
     }
 )
@@ -161,6 +192,8 @@ class SensorNoise:
             camera: camera of the images.
             sensors: all sensors of the observation; their own noise is applied after that of `config`.
         """
+        self.sensors = config.pose.sensors(sensors)
+        """The sensors that are read for an observation: those given, or others of the same names and spaces."""
         self._actuation = config.actuation
         names = [each.name for each in fields(config)]
         self._actuation_part = names.index("actuation")
@@ -194,7 +227,7 @@ class SensorNoise:
         """Returns an observation with noise; the true readings are not changed.
 
         Args:
-            readings: true reading of each sensor by name.
+            readings: reading of each of `sensors` by name, without noise.
             images: rendered images, among them those of `images`.
         """
         noisy = dict(readings)

@@ -20,13 +20,13 @@ _SCATTER = 40503
 
 def fill_normal(rng: np.random.Generator, out: NDArray[np.float32]) -> None:
     """Fills an array with independent standard normal numbers."""
-    np.take(_normal_quantiles(), _levels(rng, out.shape), out=out, mode="clip")
+    np.take(_normal_quantiles(), levels(rng, out.shape), out=out, mode="clip")
 
 
-def fill_shifts(rng: np.random.Generator, sigma_px: float, out: NDArray[np.int16]) -> None:
-    """Fills (h, w, 2) with independent pixel shifts, right and down: rounded normal numbers of this deviation."""
-    pairs = out.view(np.int32)[..., 0]
-    np.take(_shift_pairs(sigma_px), _levels(rng, pairs.shape), out=pairs, mode="clip")
+def uniform_bytes(rng: np.random.Generator, shape: tuple[int, int]) -> NDArray[np.uint8]:
+    """Returns independent uniform numbers of 8 bits; sums of many of them are nearly normal."""
+    words = rng.bit_generator.random_raw(-(-math.prod(shape) // 8))
+    return words.view(np.uint8)[: math.prod(shape)].reshape(shape)
 
 
 def smooth_normal(rng: np.random.Generator, shape: tuple[int, int], scale_px: float) -> NDArray[np.float32]:
@@ -52,7 +52,7 @@ def smooth_normal(rng: np.random.Generator, shape: tuple[int, int], scale_px: fl
     return enlarged[: shape[0], : shape[1]]
 
 
-def _levels(rng: np.random.Generator, shape: tuple[int, ...]) -> NDArray[np.uint16]:
+def levels(rng: np.random.Generator, shape: tuple[int, ...]) -> NDArray[np.uint16]:
     """Returns uniform random 16-bit numbers."""
     count = math.prod(shape)
     words = rng.bit_generator.random_raw(-(-count // 4))  # 64 bits each; twice as fast as `rng.integers`
@@ -67,9 +67,11 @@ def _normal_quantiles() -> NDArray[np.float32]:
 
 
 @cache
-def _shift_pairs(sigma_px: float) -> NDArray[np.int32]:
-    """Returns (65536,) pairs of int16 as int32: each of the two takes every quantile once, in unrelated orders."""
+def shift_pairs(sigma_px: float) -> NDArray[np.int16]:
+    """Returns (65536, 2) equally likely pixel shifts, right and down: rounded normal numbers of this deviation.
+
+    Each of the two takes every quantile once, in unrelated orders.
+    """
     order = np.arange(_LEVELS)
     one = np.rint(sigma_px * _normal_quantiles()).astype(np.int16)
-    pairs = np.stack([one[order], one[order * _SCATTER % _LEVELS]], axis=1)
-    return np.ascontiguousarray(pairs).view(np.int32)[:, 0]
+    return np.stack([one[order], one[order * _SCATTER % _LEVELS]], axis=1)

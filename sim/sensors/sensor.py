@@ -30,6 +30,7 @@ class SensorContext:
     | images | `images` | rendered images by name, without noise |
     | goal | `reads` | category that the episode asks for |
     | collided | `reads` | whether a contact stopped the last action |
+    | odometry | `reads` | pose by the robot's own odometry, relative to the start |
     | pose | `reads`, truth | pose of the robot in the world |
     | start | `reads`, truth | pose of the robot in the world when the episode started |
     | motion | `reads`, truth | the last action as it was carried out, with its contacts; None before the first one |
@@ -40,6 +41,7 @@ class SensorContext:
     images: Mapping[str, NDArray]
     goal: str
     collided: bool
+    odometry: Pose
     pose: Pose
     start: Pose
     motion: Motion | None

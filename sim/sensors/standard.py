@@ -1,4 +1,4 @@
-"""The standard sensors, named as in Habitat, and the lidar; shapes and units are in `sim.interface.Observation`."""
+"""The sensors, named as in Habitat where it has them; shapes and units are in `sim.interface.Observation`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from sim.errors import ConfigError
-from sim.interface import CONTEXT_FIELDS, GOAL_CATEGORIES, MPCAT40, POSE_SENSORS, CameraModel
+from sim.interface import CONTEXT_FIELDS, GOAL_CATEGORIES, MPCAT40, POSE_SENSORS, SCAN, SENSORS, CameraModel
+from sim.sensors.measured import BumperSensor, ImuSensor, OdometrySensor
 from sim.sensors.scan import ScanSensor
 from sim.sensors.sensor import NoiseSettings, Sensor, SensorContext, declared_fields
 
@@ -128,7 +129,7 @@ STANDARD_SENSORS: Mapping[str, Sensor] = MappingProxyType(
         sensor.name: sensor
         for sensor in (
             RgbSensor(), DepthSensor(), SemanticSensor(), GpsSensor(), CompassSensor(), ObjectGoalSensor(),
-            ScanSensor(),
+            ScanSensor(), BumperSensor(), OdometrySensor(), ImuSensor(),
         )
     }
 )  # fmt: skip
@@ -176,7 +177,8 @@ def _checked(sensor: Sensor) -> Sensor:
             f"Sensor '{sensor.name}': reads names '{unknown[0]}'. Available: {', '.join(CONTEXT_FIELDS)}; images are "
             "declared in `images`."
         )
-    if sensor.name in STANDARD_SENSORS and type(sensor) is not type(STANDARD_SENSORS[sensor.name]):
+    taken = sensor.name in (*SENSORS, *POSE_SENSORS, SCAN)
+    if taken and type(sensor) is not type(STANDARD_SENSORS[sensor.name]):
         raise ConfigError(f"Sensor {type(sensor).__name__} has the name of the standard sensor '{sensor.name}'.")
     return sensor
 

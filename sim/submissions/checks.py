@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Literal
 
+from sim.episodes.replicates import find_episode, replicate_number, with_replicates
 from sim.episodes.splits import Episode, Split
 from sim.errors import ConfigError
 from sim.interface import TRUE_IMAGES, Action
@@ -38,9 +39,10 @@ def require_consistent(
     known = {episode.episode_id: episode for episode in split.episodes}
     for entry in submission.episodes:
         episode_id = entry.result.episode_id
-        if episode_id not in known:
+        episode = find_episode(known, episode_id)
+        if episode is None:
             raise ConfigError(f"{where}, episode '{episode_id}': the split '{split.name}' has no such episode.")
-        _require_entry(entry, known[episode_id], submission, setting, f"{where}, episode '{episode_id}'")
+        _require_entry(entry, episode, submission, setting, f"{where}, episode '{episode_id}'")
 
 
 def truth_of(inputs: Inputs) -> Truth:
@@ -54,14 +56,15 @@ def coverage(submission: Submission, split: Split) -> tuple[bool, str]:
     """Returns whether the episodes are the first ones of the split, and which they are as text.
 
     The order of a split is balanced over houses and goals, so that its first N episodes are no choice of the authors.
+    Of each episode there must be as many replicates, numbered from 0.
     """
     there = {entry.result.episode_id for entry in submission.episodes}
-    count, total = len(there), len(split.episodes)
-    if count == total:
-        return True, f"all {total} episodes"
-    if there == {episode.episode_id for episode in split.episodes[:count]}:
-        return True, f"the first {count} of {total} episodes"
-    return False, f"{count} of {total} episodes, chosen by the authors"
+    replicates, total = 1 + max(map(replicate_number, there)), len(split.episodes)
+    count = len(there) // replicates
+    each = f", {replicates} replicates of each" if replicates > 1 else ""
+    if there != {episode.episode_id for episode in with_replicates(split.episodes[:count], replicates)}:
+        return False, f"{len(there)} of {total} episodes, chosen by the authors"
+    return True, f"all {total} episodes{each}" if count == total else f"the first {count} of {total} episodes{each}"
 
 
 def _require_same_physics(submission: Submission, where: str) -> None:

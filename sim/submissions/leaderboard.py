@@ -16,7 +16,7 @@ from typing import Any
 
 import msgspec
 
-from sim.analysis.metrics import COLLISIONS, SPL, SUCCESS
+from sim.analysis.metrics import COLLISIONS, SPL, SUCCESS, episodes_of
 from sim.analysis.tables import ResultTable
 from sim.errors import ConfigError
 from sim.robot.config import PHYSICS_VERSION
@@ -108,7 +108,7 @@ def _cells(row: Row) -> list[Any]:
         truth_of(manifest.inputs),
         plain(manifest.inputs.noise),
         "yes" if manifest.inputs.isolated else "no",
-        str(len(lines)),
+        str(len(set(episodes_of(lines)))),
         *(metric.cell(lines) for metric in (SUCCESS, SPL, COLLISIONS)),
         exact,
     ]

@@ -98,7 +98,7 @@ def check(file: Path, choices: Choices, truth_of_agents: Mapping[str, bool]) -> 
         covers=covers,
         changes=changes,
         job=Job(split=chosen, setting=setting, seed=submission.manifest.seed),
-        house_of={episode.episode_id: episode.house for episode in split.episodes},
+        house_of={entry.result.episode_id: entry.result.house for entry in submission.episodes},
     )
 
 

@@ -41,6 +41,7 @@ class _Record:
     distance_m: float | None
     """Geodesic distance from the robot to the nearest place where a STOP succeeds; None: no path."""
     path_length_m: float = 0.0
+    simulated_s: float = 0.0
     collisions: int = 0
     touches: int = 0
     first_seen_step: int | None = None
@@ -127,6 +128,7 @@ class Task:
         record, pose = self._running, self.world.pose
         record.positions_m.append((pose.x_m, pose.y_m))
         record.path_length_m += motion.displacement_m
+        record.simulated_s += motion.duration_s
         record.collisions += motion.collided
         record.touches += bool(motion.contacts) and not motion.collided
         record.trapped = record.trapped or metrics.stayed_near(record.positions_m, self._steps_per_action)
@@ -235,6 +237,7 @@ class Task:
             "area_seen_m2": record.floor.area_m2,
             "area_per_metre": metrics.per_metre(record.floor.area_m2, record.path_length_m),
             "trapped": record.trapped,
+            "simulated_s": record.simulated_s,
             "failure": record.failure,
             "end_reason": record.end_reason,
         }

@@ -66,6 +66,8 @@ class Trajectory:
     """Metres in plan from that place to the nearest instance, walls ignored; None: no place, or storey has none."""
     stop_target_category: str | None = None
     """Category of the object at that place; None if there is no place or object, or in a file of an older version."""
+    duration_s: NDArray[np.float32] | None = None  # (n,)
+    """Simulated time of each action; None in a file of an older version."""
     about: Mapping[str, Any] = field(default_factory=dict)
     """Identity of the episode, and its scores; JSON types."""
 
@@ -151,6 +153,7 @@ class Recorder:
             ended=np.array([ENDED.index(motion.ended) for motion in self._motions], np.uint8),
             collided=np.array([motion.collided for motion in self._motions], np.bool_),
             touched=np.array([bool(motion.contacts) for motion in self._motions], np.bool_),
+            duration_s=np.array([motion.duration_s for motion in self._motions], np.float32),
             goal_share=np.array(self._shares, np.float32),
             distance_m=np.array(self._distances_m, np.float32),
             contacts=np.array(stops, np.float32).reshape(-1, 3),
@@ -183,6 +186,7 @@ def by_action(trajectory: Trajectory, steps: int) -> Trajectory:
         ended=trajectory.ended[moments[1:] - 1],
         collided=np.logical_or.reduceat(trajectory.collided, begins),
         touched=np.logical_or.reduceat(trajectory.touched, begins),
+        duration_s=None if trajectory.duration_s is None else np.add.reduceat(trajectory.duration_s, begins),
     )
 
 
@@ -205,6 +209,8 @@ def write_trajectory(file: Path, trajectory: Trajectory, about: Mapping[str, Any
     scalars = {name: getattr(trajectory, name) for name in _SCALARS}
     text = json.dumps({"format": FORMAT, "scalars": scalars, "about": dict(about)}, allow_nan=False)
     arrays = {name: getattr(trajectory, name) for name in (*_ARRAYS, "contacts")}
+    if trajectory.duration_s is not None:
+        arrays["duration_s"] = trajectory.duration_s
     part = file.with_name(f"{file.name}.part-{os.getpid()}")
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -226,7 +232,12 @@ def read_trajectory(file: Path) -> Trajectory:
     """
     if not file.is_file():
         raise ConfigError(f"There is no trajectory '{file}': it is written with --record.")
-    arrays = read_npz(file, (*_ARRAYS, "contacts", "about"), what="trajectory", most_bytes=MAX_BYTES)
+    arrays = read_npz(file, what="trajectory", most_bytes=MAX_BYTES)
+    names = (*_ARRAYS, "contacts", "about")
+    missing = next((name for name in names if name not in arrays), None)
+    if missing is not None:
+        raise ConfigError(f"'{file}' is not a trajectory: it has no '{missing}'.")
+    arrays = {name: arrays[name] for name in (*names, "duration_s") if name in arrays}
     try:
         header = parse_json(arrays.pop("about").tobytes(), _Header, where="its header 'about'")
         if header.format != FORMAT:
@@ -264,6 +275,9 @@ def _check(trajectory: Trajectory) -> None:
         array = getattr(trajectory, name)
         if array.dtype != kind or array.ndim != axes or len(array) != count + more:
             raise ValueError(f"{name} is {array.dtype} {array.shape} for {count} actions")
+    times = trajectory.duration_s
+    if times is not None and (times.dtype.kind != "f" or times.shape != (count,) or not np.isfinite(times).all()):
+        raise ValueError(f"duration_s is {times.dtype} {times.shape} for {count} actions")
     if trajectory.contacts.dtype.kind != "f":
         raise ValueError(f"contacts is {trajectory.contacts.dtype}")
     if trajectory.poses.shape[1:] != (4,) or trajectory.contacts.shape[1:] != (3,):

@@ -36,7 +36,7 @@ BEHIND_M, ABOVE_M = 1.9, 1.95
 AIM_M = (0.45, 0.45)
 """The optical axis goes through the point this far ahead of the robot, at this height."""
 CUT_M = 0.45
-"""The near plane is this much nearer to the eye than the robot's axis."""
+"""The near plane is at least this much nearer to the eye than the robot's axis."""
 FAR_M = 9.0
 """Geoms farther from the eye than this are left out."""
 HFOV_RAD = math.radians(70.0)
@@ -86,7 +86,7 @@ class ChaseView:
             self._context = make_frame_buffer(model, self._size, profile)
         self._finalizer = weakref.finalize(self, free_contexts, self._gl, {self._context})
         self._finalizer.atexit = False  # OpenGL may be unloaded before the process ends
-        robot = np.flatnonzero(geoms_of(model, PREFIX))
+        robot = np.flatnonzero(geoms_of(model, PREFIX) & (opacity(model) > 0.0))
         visual = rendered_geoms(model)
         self._geoms = np.union1d(np.flatnonzero(visual), robot)
         self._hidden = np.flatnonzero(hidden_obstacles(scene.world))
@@ -106,7 +106,7 @@ class ChaseView:
         data, pose = self._world.data, self._world.pose
         eye_m, axes = eye_and_axes(pose)
         robot_m = np.array([pose.x_m, pose.y_m, pose.floor_z_m + 0.5 * self._world.robot.height_m])
-        near_m = max(Z_NEAR_M, float((robot_m - eye_m) @ axes[0]) - CUT_M)
+        near_m = max(Z_NEAR_M, float((robot_m - eye_m) @ axes[0]) - max(CUT_M, self._reach_m(axes[0])))
         shown, hidden = (self._in_range(geoms, eye_m, axes, near_m) for geoms in (self._geoms, self._hidden))
         lamps = self._lamps.choose(data, robot_m, axes[0] * np.array([1.0, 1.0, 0.0]))
         self._lamps.switch_on(lamps)
@@ -121,6 +121,11 @@ class ChaseView:
     def close(self) -> None:
         """Frees the renderer."""
         self._finalizer()
+
+    def _reach_m(self, direction: NDArray) -> float:
+        """Returns how far the cylinder around the robot reaches from its middle along a direction, (3,)."""
+        robot = self._world.robot
+        return robot.radius_m * math.hypot(direction[0], direction[1]) + 0.5 * robot.height_m * abs(float(direction[2]))
 
     def _in_range(self, geoms: NDArray[np.intp], eye_m: NDArray, axes: NDArray, near_m: float) -> NDArray[np.intp]:
         """Returns those of the given geoms that are near enough to be drawn and in front of the near plane."""
@@ -178,14 +183,15 @@ class ChaseView:
         return picture, self._depth[::-1] * np.float32(_depth_slope(near_m)) + np.float32(1.0 / Z_FAR_M)
 
     def _mark_front(self, pose: Pose) -> None:
-        """Adds a band with a lens and an arrow to the robot, which show where its front is."""
+        """Adds an arrow, and a band with a lens to the default robot, which show where the robot's front is."""
         robot = self._world.robot
         forward = np.array([math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), 0.0])
         top_m = np.array([pose.x_m, pose.y_m, pose.floor_z_m + robot.height_m])
         band_m = top_m - np.array([0.0, 0.0, 2.2 * _BAND_M])
         lens_m, reach = band_m + robot.radius_m * forward, 0.8 * robot.radius_m * forward
-        self._add(mujoco.mjtGeom.mjGEOM_CYLINDER, (robot.radius_m + 0.003, _BAND_M, 0.0), band_m, _DARK)
-        self._add(mujoco.mjtGeom.mjGEOM_SPHERE, (_LENS_M, 0.0, 0.0), lens_m, _LENS)
+        if self._world.config.file is None:
+            self._add(mujoco.mjtGeom.mjGEOM_CYLINDER, (robot.radius_m + 0.003, _BAND_M, 0.0), band_m, _DARK)
+            self._add(mujoco.mjtGeom.mjGEOM_SPHERE, (_LENS_M, 0.0, 0.0), lens_m, _LENS)
         lid_m = top_m + np.array([0.0, 0.0, 0.03])
         arrow = self._add(mujoco.mjtGeom.mjGEOM_ARROW, (0.01, 0.01, 0.01), lid_m, _ARROW)
         mujoco.mjv_connector(arrow, mujoco.mjtGeom.mjGEOM_ARROW, 0.022, lid_m - reach, lid_m + reach)

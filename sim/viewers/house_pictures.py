@@ -193,10 +193,15 @@ def storeys(house: House) -> list[House]:
     return cut
 
 
-def draw_views(house: House, columns: int = 3) -> Picture | None:
+def draw_views(house: House, columns: int = 3, *, least: int = 0) -> Picture | None:
     """Renders what the robot sees, tiled, (h, w, 3) RGB; None if there is nothing to see.
 
     In each room it is where the view is longest. In a house without rooms it looks at an object of each category.
+
+    Args:
+        house: a house.
+        columns: views in a row.
+        least: in a house with fewer rooms, it also looks at objects of different categories until there are so many.
     """
     seen = house.spec.copy()
     add_backdrop(seen)
@@ -206,6 +211,8 @@ def draw_views(house: House, columns: int = 3) -> Picture | None:
     rooms = read_rooms(model)
     labels = read_labels(model, rules=house.rules, ignore_prefix="")
     poses = list(_room_poses(model, data, labels, rooms) if rooms else _object_poses(model, data, labels))
+    if rooms and len(poses) < least:
+        poses += itertools.islice(_object_poses(model, data, labels), least - len(poses))
     eye_m, fovy = CameraModel().height_m, math.degrees(CameraModel().vfov_rad)
     cameras = [
         camera_at(np.array([x, y, floor_z_m + eye_m]), azimuth_deg=yaw_deg, elevation_deg=0.0)

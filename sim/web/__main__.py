@@ -56,8 +56,8 @@ class Args:
     """With --house: another folder whose files the houses may use, in addition to their own folder."""
     weights: Path | None = None
     """Your network in place of the shipped one, for segmentation by rednet."""
-    robot: Path | None = None
-    """Replaces the default robot: an MJCF file with its sidecar next to it (docs/worlds.md)."""
+    robot: str | None = None
+    """Replaces the default robot: an MJCF file with its sidecar next to it, or menagerie:NAME (docs/worlds.md)."""
     seed: cli.Seed = 0
     """Seed of agents, noise and, with --house, starts and goals."""
     profile: str = "fast"
@@ -124,6 +124,7 @@ def offer(args: Args) -> Offer:
     """
     from sim.composition.options import RunOptions
     from sim.composition.setup import resolve
+    from sim.robot.foreign import absolute_robot
     from sim.web.choices import Offer
 
     if len({file.stem for file in args.house}) < len(args.house):
@@ -131,8 +132,9 @@ def offer(args: Args) -> Offer:
     for_houses = args.labels, args.root
     if not args.house and for_houses != (None, None):
         raise ConfigError("--labels and --root need --house.")
-    same = ("weights", "robot", "seed", "profile", "noise", "config", "config_file")
-    options = RunOptions(**{name: _absolute(getattr(args, name)) for name in same})
+    same = ("weights", "seed", "profile", "noise", "config", "config_file")
+    values = {name: _absolute(getattr(args, name)) for name in same}
+    options = RunOptions(robot=None if args.robot is None else absolute_robot(args.robot), **values)
     resolve(replace(options, config=(), config_file=None))  # fields of agents depend on the agent
     return Offer(
         agents=args.agent,

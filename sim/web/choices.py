@@ -23,7 +23,7 @@ from sim.interface import GOAL_CATEGORIES
 from sim.reading import convert
 from sim.web.controls import Driver, EpisodeRequest
 
-NOT_OFFERED = ("test", "contact-test", "contact-heldout")
+NOT_OFFERED = ("test", "large-test", "hazards-test", "contact-test", "contact-heldout")
 """Splits that are kept for a last measurement; the page offers them only if `--split` names them."""
 FIRST = ("val", "large", "hazards", "traps", "contact-val")
 """The splits that the page lists first."""

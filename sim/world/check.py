@@ -19,7 +19,7 @@ from sim.errors import HouseError
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.houses.house import House, Room, read_rooms
-from sim.houses.labels import Instance, Labels, collidable_geoms, describe_geom, read_labels
+from sim.houses.labels import Instance, Labels, collidable_geoms, cover_geoms, describe_geom, read_labels
 from sim.interface import GOAL_CATEGORIES, RobotModel, SuccessRule
 from sim.world.freespace import FreeSpace, connected_to
 from sim.world.room_requirements import unmet_requirements
@@ -133,7 +133,7 @@ def _overlaps(house: _CompiledHouse) -> list[str]:
     Parts of the building may overlap each other, and so may an object and objects in bodies nested in it.
     """
     model, labels = house.model, house.labels
-    solid = np.flatnonzero(collidable_geoms(model))
+    solid = np.flatnonzero(collidable_geoms(model) & ~cover_geoms(model))
     low, high = house.boxes(solid)
     structure = np.array([house.category(geom) in STRUCTURE for geom in solid.tolist()])
     root = model.body_rootid[model.geom_bodyid[solid]]

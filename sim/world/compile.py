@@ -14,7 +14,7 @@ import numpy as np
 from sim.errors import HouseError
 from sim.gl import mujoco
 from sim.houses.house import House, Room, read_rooms
-from sim.houses.labels import Instance, Labels, read_labels
+from sim.houses.labels import COVER_MASK, Instance, Labels, read_labels
 from sim.interface import MPCAT40_ID
 from sim.robot.body import FLOOR_MASK, MOVABLE_MASK, PREFIX, STATIC_MASK
 from sim.robot.config import RobotConfig
@@ -79,7 +79,7 @@ def _set_collision_masks(spec: mujoco.MjSpec, alone: mujoco.MjModel, labels: Lab
         if movable[geom.id]:
             mask = MOVABLE_MASK
         elif labels.geom_category[geom.id] == _FLOOR:
-            mask = FLOOR_MASK
+            mask = COVER_MASK if (geom.contype, geom.conaffinity) == COVER_MASK else FLOOR_MASK
         else:
             mask = STATIC_MASK
         geom.contype, geom.conaffinity = mask

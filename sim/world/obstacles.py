@@ -1,4 +1,4 @@
-"""Finds what the robot cannot drive over, in plan: objects between clearance and height, and edges between floors."""
+"""Finds what the robot cannot drive over, in plan: objects higher than it climbs, and edges between floors."""
 
 from __future__ import annotations
 
@@ -15,11 +15,10 @@ from sim.houses.labels import ROBOT_PREFIX, Labels, collidable_geoms, geoms_of
 from sim.interface import MPCAT40_ID, RobotModel
 from sim.world.plan import polygons_between
 
-STEP_HEIGHT_M = 0.03
-"""Lower geoms are not obstacles for a robot with at least this clearance: they pass under its body."""
-CLIMB_M = 0.013
-"""An edge between floors of which one is higher than this above the other is an obstacle: up to 14 mm the wheels climb
-it wherever they meet it in the course of an action, from 15 mm on only at some places."""
+LEVEL_FLOOR_M = 0.03
+"""Floors at most this far above or below the storey's are part of it, but for edges that are too high to be climbed."""
+TOLERANCE_M = 0.0005
+"""Geoms that are higher than `RobotModel.climb_m` by less than this are no obstacles."""
 EDGE_CELL_M = 0.025
 """Edges between floors are found on cells of this size."""
 
@@ -39,37 +38,38 @@ def obstacle_polygons(
         model: a compiled house or world.
         data: its state; kinematics must be computed.
         labels: of `model`.
-        robot: its height and clearance count.
+        robot: its height and the height that it climbs count.
         floor_z_m: height of the storey's floor.
         robot_prefix: geoms with this prefix are not obstacles.
     """
     candidates = collidable_geoms(model) & ~geoms_of(model, robot_prefix)
     is_floor = labels.geom_category == MPCAT40_ID["floor"]
     objects, floors = (np.flatnonzero(candidates & kind) for kind in (~is_floor, is_floor))
-    low_m, top_m = floor_z_m + min(STEP_HEIGHT_M, robot.clearance_m), floor_z_m + robot.height_m
+    climb_m = robot.climb_m + TOLERANCE_M
+    low_m, top_m = floor_z_m + climb_m, floor_z_m + robot.height_m
     return [
         *polygons_between(model, data, objects, (low_m, top_m)),
-        *polygons_between(model, data, floors, (floor_z_m + STEP_HEIGHT_M, top_m)),
-        *_edges(_low_floors(model, data, floors, floor_z_m)),
+        *polygons_between(model, data, floors, (floor_z_m + LEVEL_FLOOR_M, top_m)),
+        *_edges(_low_floors(model, data, floors, floor_z_m, climb_m), climb_m),
     ]
 
 
 def _low_floors(
-    model: mujoco.MjModel, data: mujoco.MjData, floors: NDArray[np.intp], floor_z_m: float
+    model: mujoco.MjModel, data: mujoco.MjData, floors: NDArray[np.intp], floor_z_m: float, climb_m: float
 ) -> list[tuple[float, ConvexPolygon]]:
     """Returns top and plan of the floors that are not obstacles as a whole, the lowest first."""
     bodies = [geom_polytope(model, data, int(geom)) for geom in floors]
     near = [(float(body.vertices_m[:, 2].max()), body) for body in bodies]
-    near = sorted((floor for floor in near if abs(floor[0] - floor_z_m) <= STEP_HEIGHT_M), key=lambda floor: floor[0])
-    if not near or near[-1][0] - near[0][0] <= CLIMB_M:  # no edge between them is too high
+    near = sorted((floor for floor in near if abs(floor[0] - floor_z_m) <= LEVEL_FLOOR_M), key=lambda floor: floor[0])
+    if not near or near[-1][0] - near[0][0] <= climb_m:  # no edge between them is too high
         return []
     plans = [(top_m, polygon_from_above(body)) for top_m, body in near]
     return [(top_m, plan) for top_m, plan in plans if plan is not None]
 
 
-def _edges(floors: list[tuple[float, ConvexPolygon]]) -> list[ConvexPolygon]:
+def _edges(floors: list[tuple[float, ConvexPolygon]], climb_m: float) -> list[ConvexPolygon]:
     """Returns rectangles along the upper side of edges that are too high, a cell wide; floors as of `_low_floors`."""
-    raised = np.array([plan.bounds_m for top_m, plan in floors if top_m - floors[0][0] > CLIMB_M]).reshape(-1, 4)
+    raised = np.array([plan.bounds_m for top_m, plan in floors if top_m - floors[0][0] > climb_m]).reshape(-1, 4)
     raised = raised[(raised[:, 2:] - raised[:, :2]).max(axis=1, initial=0.0) < UNBOUNDED_M]
     if len(raised) == 0:
         return []
@@ -78,7 +78,7 @@ def _edges(floors: list[tuple[float, ConvexPolygon]]) -> list[ConvexPolygon]:
     frame = GridFrame(origin_xy_m=(corner_m[0], corner_m[1]), shape=(int(rows), int(cols)), cell_m=EDGE_CELL_M)
     height_m = _heights(frame, floors)
     beside_m = cv2.erode(height_m, np.ones((3, 3), np.uint8))
-    upper = np.isfinite(height_m) & (height_m - beside_m > CLIMB_M)
+    upper = np.isfinite(height_m) & (height_m - beside_m > climb_m)
     rows_of_edges = np.flatnonzero(upper.any(axis=1)).tolist()
     return [_rectangle(frame, row, *ends) for row in rows_of_edges for ends in _runs(upper[row])]
 

@@ -12,7 +12,7 @@ from sim.geometry.convex import ConvexPolygon, polygon_from_above
 from sim.gl import mujoco
 from sim.houses.geoms import UNBOUNDED_M, geom_polytope, geoms_between
 from sim.houses.house import Room
-from sim.houses.labels import Labels, collidable_geoms
+from sim.houses.labels import Labels, collidable_geoms, cover_geoms
 from sim.interface import MPCAT40_ID
 
 FLOOR_STEP_M = 0.05
@@ -46,7 +46,9 @@ def floor_polygons(
     A plane with a size carries the robot where it is rendered (`sim.world.support`).
     """
     polygons: list[ConvexPolygon] = []
-    for geom in np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & collidable_geoms(model)):
+    for geom in np.flatnonzero(
+        (labels.geom_category == MPCAT40_ID["floor"]) & collidable_geoms(model) & ~cover_geoms(model)
+    ):
         body = geom_polytope(model, data, int(geom))
         if abs(float(body.vertices_m[:, 2].max()) - floor_z_m) > FLOOR_STEP_M:
             continue

@@ -15,7 +15,7 @@ LEVEL_M = 0.15
 
 
 def floor_geoms(model: mujoco.MjModel, labels: Labels) -> NDArray[np.intp]:
-    """Returns the ids of the geoms that carry wheels."""
+    """Returns the ids of the geoms that carry wheels, without coverings."""
     return np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & (model.geom_contype == FLOOR_MASK[0]))
 
 

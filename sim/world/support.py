@@ -36,13 +36,23 @@ class FloorSupport:
         The centre of mass is above the middle of the axle, so that it is inside the hull of the supported points just
         in these two cases. A floor counts when it is at most `PhysicsConfig.max_step_m` above or below the robot.
         """
+        wheels, casters = self._supported(x_m, y_m, z_m, yaw_rad)
+        return all(wheels) or all(casters)
+
+    def is_beyond_an_edge(self, x_m: float, y_m: float, z_m: float, yaw_rad: float) -> bool:
+        """Returns whether some wheel or caster has no floor below it."""
+        wheels, casters = self._supported(x_m, y_m, z_m, yaw_rad)
+        return not all((*wheels, *casters))
+
+    def _supported(self, x_m: float, y_m: float, z_m: float, yaw_rad: float) -> tuple[list[bool], list[bool]]:
+        """Returns for both wheels and for both casters whether there is a floor below."""
         cos, sin = math.cos(yaw_rad), math.sin(yaw_rad)
 
         def supported(point: tuple[float, float]) -> bool:
             ahead, left = point
             return self._has_floor(x_m + cos * ahead - sin * left, y_m + sin * ahead + cos * left, z_m)
 
-        return all(map(supported, self._wheels)) or all(map(supported, self._casters))
+        return list(map(supported, self._wheels)), list(map(supported, self._casters))
 
     def _has_floor(self, x_m: float, y_m: float, z_m: float) -> bool:
         start = np.array([x_m, y_m, z_m + self._reach_m])

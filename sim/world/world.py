@@ -11,12 +11,14 @@ from sim.errors import EpisodeError, PhysicsError
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.house import House
+from sim.houses.labels import cover_geoms
 from sim.interface import Action, SuccessRule, wrap_angle
-from sim.robot.body import PREFIX, Body
+from sim.robot.body import Body
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import RobotConfig
 from sim.robot.contacts import ContactLog
 from sim.robot.drive import Driver, Motion
+from sim.robot.odometry import Odometry
 from sim.robot.velocity import Velocity, VelocityDrive
 from sim.world.compile import compile_world
 from sim.world.storeys import floor_geoms, floor_levels
@@ -49,15 +51,16 @@ class World:
         self.model, self.labels, self.rooms = compile_world(house, self.config)
         self.data = mujoco.MjData(self.model)
         self._body = Body.find(self.model, self.data)
-        log = ContactLog(self.model, self.data, self.labels, self._body.hull_geoms)
-        self._driver = Driver(self.config, self.model, self.data, self._body, log)
-        self._velocity_drive = VelocityDrive(self.config, self.model, self.data, self._body, log)
+        log = ContactLog(self.model, self.data, self.labels, self._body)
+        self._odometry = Odometry(self.config, self._body)
+        self._driver = Driver(self.config, self.model, self.data, self._body, self._odometry, log)
+        self._velocity_drive = VelocityDrive(self.config, self.model, self.data, self._body, self._odometry, log)
         self._levels_m = floor_levels(self.model, self.labels)
         self._floors = floor_geoms(self.model, self.labels)
         self._support = FloorSupport(self.model, self.data, self._floors, self.config)
-        self._motors = [self.model.actuator(f"{PREFIX}{side}_motor").id for side in ("left", "right")]
-        self._floor_friction = self.model.geom_friction[self._floors, 0].copy()
-        self._motor_gain = self.model.actuator_gainprm[self._motors, 0].copy()
+        self._ground = np.concatenate([self._floors, np.flatnonzero(cover_geoms(self.model))])
+        self._ground_friction = self.model.geom_friction[self._ground, 0].copy()
+        self._stood_at_m = 0.0
 
     @property
     def pose(self) -> Pose:
@@ -65,6 +68,11 @@ class World:
         x, y, yaw, _, _ = self._body.state()
         z = self._body.z_m
         return Pose(x, y, wrap_angle(yaw), min(self._levels_m, key=lambda floor: abs(floor - z)))
+
+    @property
+    def odometry(self) -> Pose:
+        """The robot's pose by its own odometry, relative to the start of the episode."""
+        return self._odometry.since_start
 
     @property
     def camera_pose(self) -> Pose:
@@ -82,15 +90,16 @@ class World:
             EpisodeError: the hull would overlap an object there, or there is no floor.
         """
         mujoco.mj_resetData(self.model, self.data)
-        self._set_conditions(conditions)
+        self.model.geom_friction[self._ground, 0] = self._ground_friction * conditions.floor_friction_scale
         self._place_on_floor(start)
         self._require_no_overlap(start)
         physics = self.config.physics
         mujoco.mj_step(self.model, self.data, nstep=round(physics.settle_s / physics.timestep_s))
         if not any(not geoms.isdisjoint(self._wheels) for geoms, _ in self._contacts()):
             raise EpisodeError(f"{self._describe(start)}: there is no floor at z = {start.floor_z_m:.2f} m.")
-        self._driver.reset(start.yaw_rad)
-        self._velocity_drive.reset()
+        self._note_floor()
+        self._driver.reset(start.yaw_rad, conditions)
+        self._velocity_drive.reset(conditions)
 
     def move(self, action: Action) -> Motion:
         """Performs one action in physics, from rest to rest. STOP is a motion of zero.
@@ -102,7 +111,7 @@ class World:
         Raises:
             PhysicsError: NaN, an unstable state, or a robot that tipped over without an edge.
         """
-        z_before = self._body.z_m
+        z_before = self._note_floor()
         return self._checked(self._driver.run(Action(action)), z_before)
 
     def hold(self, command: Velocity, period_s: float) -> Motion:
@@ -110,8 +119,14 @@ class World:
 
         `fell` and errors are those of `move`. An episode is driven either by `move` or by `hold`.
         """
-        z_before = self._body.z_m
+        z_before = self._note_floor()
         return self._checked(self._velocity_drive.run(command, period_s), z_before)
+
+    def _note_floor(self) -> float:
+        """Returns the height of the body, and notes it as that of the floor that carries it while it is upright."""
+        if self._body.tilt_rad <= self.config.drive.blocked_tilt_rad:
+            self._stood_at_m = self._body.z_m
+        return self._body.z_m
 
     def _checked(self, motion: Motion, z_before: float) -> Motion:
         """Returns the motion, with `fell` set; see `move`."""
@@ -120,11 +135,6 @@ class World:
             return replace(motion, fell=True)
         self._require_upright()
         return motion
-
-    def _set_conditions(self, conditions: Conditions) -> None:
-        """Scales floor friction and motor gains, relative to their values in the compiled world."""
-        self.model.geom_friction[self._floors, 0] = self._floor_friction * conditions.floor_friction_scale
-        self.model.actuator_gainprm[self._motors, 0] = self._motor_gain * conditions.motor_gain_scale
 
     def _place_on_floor(self, start: Pose) -> None:
         """Puts the wheels on the highest floor (for example a rug) at the start."""
@@ -179,7 +189,7 @@ class World:
         if z_before - z > physics.max_drop_m:
             return True
         if self._body.tilt_rad > physics.max_tilt_rad:  # the origin of a body that lies on its side is not at the floor
-            z = self.pose.floor_z_m
+            return self._support.is_beyond_an_edge(x, y, self._stood_at_m, yaw)
         return not self._support.carries(x, y, z, yaw)
 
     def _require_finite(self) -> None:

@@ -2,8 +2,8 @@
 
 The parameters are those of highest likelihood of the true categories, with a normal prior on the offsets: a network
 makes different errors on different furniture, and an offset that helps only in the houses of the fit does harm in
-others. Each track enters with all of its views and with random parts of them, because an agent has to decide after few
-views.
+others; the same holds for the log-odds of the shape. Each track enters several times during its episode, with the
+views and the shape that were known then, because an agent has to decide after few views.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from torch import Tensor
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, ConfigError
 from stubborn.detection.evidence import EvidenceConfig
-from stubborn.detection.fusion import IS_SURFACE, SURFACES, Fusion
+from stubborn.detection.fusion import IS_SURFACE, NOTHING, SURFACES, Fusion
+from stubborn.detection.shape import FEATURES, features_of
 
 FOLDS = 5
 LEAST_PIXELS = 40
@@ -30,8 +31,8 @@ TRUE_SHARE = 0.25
 background."""
 OFFSET_PRIOR = 30.0
 """Weight of the prior of the offsets, as a number of tracks."""
-PARTS = 2
-"""Number of random parts of the views of each track."""
+SHAPE_PRIOR = 3.0
+"""Weight of the prior of the log-odds of each feature of the shape, as a number of tracks."""
 PLAUSIBLE = 0.1
 """Goals below this probability, before and after the fit, are left out: nearly all are true negatives."""
 _BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.85, 0.95, 1.0)
@@ -39,7 +40,7 @@ _BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.85, 0.95, 1.0)
 
 @dataclass(frozen=True)
 class Sample:
-    """Some views of one track."""
+    """What was known of one track at one step."""
 
     house: str
     category: int
@@ -48,6 +49,8 @@ class Sample:
     """Numbers of the views, see `Evidence.views`."""
     mean: Float32[np.ndarray, "views classes"]
     weight: Float32[np.ndarray, " views"]
+    shape: Float32[np.ndarray, " features"]
+    """Features of its shape."""
 
 
 def true_category(counts: Int[np.ndarray, " ids"]) -> int:
@@ -59,42 +62,42 @@ def true_category(counts: Int[np.ndarray, " ids"]) -> int:
     return best - 1 if best and objects[best] >= TRUE_SHARE * counts.sum() else -1
 
 
-def samples_of(log: Sequence[Mapping[str, Any]], *, seed: int = 0) -> list[Sample]:
-    """Returns the samples of a log: for each track one with all of its views, then some with random parts of them.
+def samples_of(log: Sequence[Mapping[str, Any]]) -> list[Sample]:
+    """Returns the samples of a log.
 
     Args:
         log: one entry for each episode. It holds `house`; `counts` (n, 41), the number of pixels of each true id for
-            each track; and for all views of the tracks `track` (m,), `view` (m,), `mean` (m, 40) and `weight` (m,).
-        seed: seeds the choice of the random parts.
+            each track; `track` (s,) and `measures` (s, 6), the track and the shape of each sample; and for all views of
+            the samples `sample` (m,), `view` (m,), `mean` (m, 40) and `weight` (m,).
     """
-    rng = np.random.default_rng(seed)
     result = []
     for episode in log:
-        for number, counts in enumerate(episode["counts"]):
-            mine = np.flatnonzero(episode["track"] == number)
-            if counts.sum() < LEAST_PIXELS or mine.size == 0:
+        shape = features_of(episode["measures"].astype(np.float32))
+        for number, track in enumerate(episode["track"].tolist()):
+            mine, counts = episode["sample"] == number, episode["counts"][track]
+            if counts.sum() < LEAST_PIXELS or not mine.any():
                 continue
-            parts = [mine]
-            if mine.size > 1:
-                parts += [rng.choice(mine, rng.integers(1, mine.size + 1), replace=False) for _ in range(PARTS)]
-            for part in parts:
-                result.append(
-                    Sample(
-                        str(episode["house"]),
-                        true_category(counts),
-                        episode["view"][part],
-                        episode["mean"][part].astype(np.float32),
-                        episode["weight"][part].astype(np.float32),
-                    )
+            result.append(
+                Sample(
+                    str(episode["house"]),
+                    true_category(counts),
+                    episode["view"][mine],
+                    episode["mean"][mine].astype(np.float32),
+                    episode["weight"][mine].astype(np.float32),
+                    shape[number],
                 )
+            )
     return result
 
 
-def fit(samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors, steps: int = 300) -> Fusion:
+def fit(
+    samples: Sequence[Sample], *, shape: bool = True, sectors: int = EvidenceConfig.sectors, steps: int = 300
+) -> Fusion:
     """Returns the parameters of highest posterior probability.
 
     Args:
         samples: see `samples_of`.
+        shape: False fits no log-odds of the shape.
         sectors: directions of `EvidenceConfig`; a view's number divided by it is its range of distance.
         steps: number of steps of Adam.
 
@@ -112,17 +115,21 @@ def fit(samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors, ste
         "floor": torch.tensor(-5.0),
         "surface": torch.tensor([-3.0, 1.0, 0.0]),
         "offsets": torch.zeros(len(names)),
+        "shape": torch.zeros(FEATURES, len(names) + 1),
     }
     for each in free.values():
         each.requires_grad_(True)
-    optimizer = torch.optim.Adam(list(free.values()), lr=0.05)
+    free["shape"].requires_grad_(shape)
+    optimizer = torch.optim.Adam([each for each in free.values() if each.requires_grad], lr=0.05)
     for _ in range(steps):
         optimizer.zero_grad()
         loss = torch.nn.functional.cross_entropy(data.log_odds(free), data.category)
-        (loss + OFFSET_PRIOR * (free["offsets"] ** 2).sum() / len(samples)).backward()
+        prior = OFFSET_PRIOR * (free["offsets"] ** 2).sum() + SHAPE_PRIOR * (free["shape"] ** 2).sum()
+        (loss + prior / len(samples)).backward()
         optimizer.step()
     value = {name: each.detach().numpy().astype(np.float64) for name, each in free.items()}
     rings = np.exp(value["rings"] - value["rings"][EvidenceConfig.near_ring])
+    of_shape = zip((*names, NOTHING), value["shape"].T.round(3).tolist(), strict=True)
     return Fusion(
         ring_weights=tuple(rings.round(4).tolist()),
         sharpness=round(float(np.exp(value["sharpness"])), 4),
@@ -130,6 +137,7 @@ def fit(samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors, ste
         floor=float(f"{np.exp(value['floor']):.4g}"),
         surface=tuple(value["surface"].round(4).tolist()),
         offsets={name: round(float(each), 3) for name, each in zip(names, value["offsets"], strict=True)},
+        shape={name: tuple(weights) for name, weights in of_shape} if shape else {},
     )
 
 
@@ -143,6 +151,8 @@ class _Data:
     """(n, rings) weighted sum of the share of the surfaces."""
     weight: Tensor
     """(n, rings) sum of the weights."""
+    shape: Tensor
+    """(n, features) features of the shape."""
     category: Tensor
     """(n,) number of the true object; the last number means no object."""
 
@@ -162,7 +172,8 @@ class _Data:
             np.add.at(weight[i], ring, each.weight)
             if each.category >= 0:
                 category[i] = number[each.category]
-        return cls(*(torch.from_numpy(each) for each in (objects, behind, weight, category)))
+        shape = np.stack([each.shape for each in samples])
+        return cls(*(torch.from_numpy(each) for each in (objects, behind, weight, shape, category)))
 
     def log_odds(self, free: Mapping[str, Tensor]) -> Tensor:
         """Returns the values of `Fusion.probabilities` before the softmax, (n, objects + 1); the last is no object."""
@@ -175,7 +186,7 @@ class _Data:
         z = torch.log_softmax(sharpness * torch.log(averaged + free["floor"].exp()), dim=1) + free["offsets"]
         constant, slope, growth = free["surface"]
         none = constant + slope * torch.logit(behind) + growth * torch.log(total)
-        return torch.cat([z, none], dim=1)
+        return torch.cat([z, none], dim=1) + self.shape @ free["shape"]
 
 
 def probabilities(
@@ -184,12 +195,15 @@ def probabilities(
     """Returns the probability of each category of `MPCAT40[1:]`, for each sample."""
     rings = np.array(fusion.ring_weights, np.float32)
     return np.concatenate(
-        [fusion.probabilities(each.mean[None], (each.weight * rings[each.view // sectors])[None]) for each in samples]
+        [
+            fusion.probabilities(each.mean[None], (each.weight * rings[each.view // sectors])[None], each.shape[None])
+            for each in samples
+        ]
     )
 
 
-def left_out(samples: Sequence[Sample]) -> Float32[np.ndarray, "n classes"]:
-    """Returns the probabilities of each sample with parameters that were fitted to other houses."""
+def left_out(samples: Sequence[Sample], *, shape: bool = True) -> Float32[np.ndarray, "n classes"]:
+    """Returns the probabilities of each sample with parameters that were fitted to other houses; see `fit`."""
     houses = sorted({each.house for each in samples})
     if len(houses) < 2:
         raise ConfigError("Tracks of at least two houses are needed, got those of one: run more episodes.")
@@ -198,7 +212,7 @@ def left_out(samples: Sequence[Sample]) -> Float32[np.ndarray, "n classes"]:
     for number in sorted(set(fold.values())):
         test = [i for i, each in enumerate(samples) if fold[each.house] == number]
         others = [each for each in samples if fold[each.house] != number]
-        result[test] = probabilities(fit(others), [samples[i] for i in test])
+        result[test] = probabilities(fit(others, shape=shape), [samples[i] for i in test])
     return result
 
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Float32
+from jaxtyping import Bool, Float, Float32, Int
 
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError
@@ -25,14 +25,20 @@ class LookConfig:
     """Pairs of steps left and probability, interpolated linearly: a track is accepted from this probability on. A wrong
     STOP costs the chance to succeed later, which falls as the steps run out."""
     slack: float = 0.12
-    """The robot keeps approaching an accepted track until its probability is below the bar by this share of the bar. It
-    stops only at a track above the bar."""
+    """The robot keeps approaching an accepted track, and stops at it, until its probability is below the bar by this
+    share of the bar: views of one object differ, and to leave an object that was reached costs the whole path."""
     visit: float = 0.3
     """A track below the bar is looked at if it has at least this probability."""
     keep: float = 0.6
     """A look continues until the probability falls below this share of `visit`."""
     most_looks: int = 2
     """A track is looked at no more than this many times."""
+    look_steps: int = 30
+    """A track is looked at for no more than this many steps, including those on the path."""
+    unseen_steps: float = 120.0
+    """The probability that no goal was in view falls with this number of steps, exponentially; see `believed`."""
+    missed: float = 0.15
+    """Probability that a goal that was in view is none of the tracks."""
     look_m: tuple[float, float] = (1.3, 2.2)
     """Distances to look from: the camera sees the floor, and so a whole low object, from 1.43 m on."""
     apart_rad: float = math.radians(45.0)
@@ -60,9 +66,21 @@ class LookConfig:
                 "LookConfig needs slack and keep in [0, 1] and visit in (0, 1], "
                 f"got {self.slack}, {self.keep} and {self.visit}."
             )
+        if not (self.unseen_steps > 0.0 and 0.0 <= self.missed <= 1.0):
+            raise ConfigError(
+                f"LookConfig needs unseen_steps > 0 and missed in [0, 1], got {self.unseen_steps} and {self.missed}."
+            )
         if not 0.0 < self.look_m[0] < self.look_m[1]:
             raise ConfigError(f"LookConfig.look_m must be two growing distances > 0 m, got {self.look_m}.")
-        for name in ("most_looks", "per_metre", "step_back_steps", "steps_per_metre", "patience_steps", "patience_m"):
+        for name in (
+            "most_looks",
+            "per_metre",
+            "step_back_steps",
+            "steps_per_metre",
+            "patience_steps",
+            "patience_m",
+            "look_steps",
+        ):
             if not getattr(self, name) >= 0:
                 raise ConfigError(f"LookConfig.{name} must be >= 0, got {getattr(self, name)}.")
 
@@ -70,6 +88,33 @@ class LookConfig:
         """Returns the probability from which a track is accepted when this many steps are left."""
         left, bar = zip(*self.bar, strict=True)
         return float(np.interp(steps_left, left, bar))
+
+
+def believed(
+    probability: Float32[np.ndarray, " numbers"],
+    step: int,
+    config: LookConfig,
+    objects: Int[np.ndarray, " numbers"] | None = None,
+) -> Float32[np.ndarray, " numbers"]:
+    """Returns the probability of the goal for each track, given that the house has a goal.
+
+    The objects are taken as independent, and so is a goal that is none of them: it was not in view so far, or it was
+    missed. The more was seen without another candidate, the more probable is the one that was seen.
+
+    Args:
+        probability: probability of the goal for each track, without this knowledge.
+        step: step of the episode.
+        config: how soon most of a house was in view.
+        objects: a number of the object of each track: an object can be several tracks; None: each is its own.
+    """
+    unseen = math.exp(-step / config.unseen_steps)
+    elsewhere = unseen + config.missed * (1.0 - unseen)
+    best = probability.astype(np.float64)
+    if objects is not None:
+        best = np.zeros(len(probability))
+        np.maximum.at(best, objects, probability)
+    nothing = (1.0 - elsewhere) * np.prod(1.0 - best)
+    return (probability / max(1.0 - nothing, 1e-6)).clip(max=1.0).astype(np.float32)
 
 
 class Verdicts:
@@ -94,6 +139,8 @@ class Verdicts:
         self.looks: dict[int, int] = {}
         self.bar = 1.0
         """The probability from which a track is accepted now."""
+        self.rated: Float32[np.ndarray, " numbers"] = np.zeros(1, np.float32)
+        """The probability by which each track is decided on: that of `believed` for tracks that had a look."""
 
     def update(
         self,
@@ -102,6 +149,7 @@ class Verdicts:
         evidence: Evidence,
         step: int,
         pursued: int | None = None,
+        objects: Int[np.ndarray, " numbers"] | None = None,
     ) -> None:
         """Accepts and rejects tracks, and finds those that are worth a look.
 
@@ -111,13 +159,15 @@ class Verdicts:
             evidence: the views of the tracks.
             step: step of the episode.
             pursued: the track of the present look.
+            objects: see `believed`.
         """
         c = self.config
         steps_left = self.max_steps - step
         self.bar = 0.5 if self.exact else c.bar_with(steps_left)
+        self.rated = probability if self.exact else self._rated(probability, evidence, step, objects)
         in_time = c.steps_per_metre * distance_m <= steps_left
-        passes = (probability >= self.bar) & (in_time | self.exact)
-        remains = probability >= (1.0 - c.slack) * self.bar
+        passes = (self.rated >= self.bar) & (in_time | self.exact)
+        remains = self.rated >= self.least
         for track in np.flatnonzero(passes & (distance_m <= evidence.config.rings_m[0])).tolist():
             passes[track] = not self._needs_a_step_back(track, evidence, steps_left)
         self.accepted = {t for t in self.accepted if remains[t]} | set(np.flatnonzero(passes).tolist())
@@ -133,6 +183,25 @@ class Verdicts:
                 self.rejected.add(track)
             else:
                 self.doubtful.append(track)
+
+    @property
+    def least(self) -> float:
+        """The probability from which an accepted track stays accepted."""
+        return (1.0 - self.config.slack) * self.bar
+
+    def _rated(
+        self,
+        probability: Float32[np.ndarray, " numbers"],
+        evidence: Evidence,
+        step: int,
+        objects: Int[np.ndarray, " numbers"] | None,
+    ) -> Float32[np.ndarray, " numbers"]:
+        """Returns the probabilities, in place of those of `believed` for tracks that were seen well in a look."""
+        result, believed_in = probability.copy(), believed(probability, step, self.config, objects)
+        for track in {*self.looks, *self.rejected, *self.accepted}:
+            if track in self.rejected or evidence.near_sectors(track).any():
+                result[track] = believed_in[track]
+        return result
 
     def _needs_a_step_back(self, track: int, evidence: Evidence, steps_left: int) -> bool:
         """Returns True for a near track that was never seen whole, if it has had no look yet and there is time."""

@@ -60,6 +60,10 @@ class Seeker(Protocol):
         """Sets aside the approached candidates: they cannot be reached on the current map."""
         ...
 
+    def retry(self) -> None:
+        """Ends the waiting times of candidates that were set aside: collision marks have been removed."""
+        ...
+
 
 @dataclass(frozen=True, kw_only=True)
 class SeekerParts:
@@ -238,6 +242,10 @@ class TargetSeeker:
         self._far, self._pursued = False, None
         self._retry_step = step + self._wait_steps
         self._wait_steps *= 2
+
+    def retry(self) -> None:
+        """See `Seeker`."""
+        self._retry_step, self._wait_steps = 0, self.config.retry_after_steps
 
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
         """Verifies the candidate at a map cell; a rejected one never counts again in this episode.

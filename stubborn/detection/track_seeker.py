@@ -40,6 +40,9 @@ class TrackSeekerConfig:
     look: LookConfig = field(default_factory=LookConfig)
     core_share: float = 0.7
     """The robot does not drive to cells of a track whose mean score is below this share of the track's highest one."""
+    near_best_m: float = 0.5
+    """With an imperfect detector the robot drives to the cells of a track within this distance of its best cell, where
+    there is a path: farther cells may belong to a neighbouring object."""
     as_good: float = 0.15
     """Accepted tracks whose probability is at most this much below the best one's are equally good: the nearest of
     them is approached."""
@@ -56,6 +59,8 @@ class TrackSeekerConfig:
                 "TrackSeekerConfig needs core_share and part_share in [0, 1] and as_good >= 0, got "
                 f"{self.core_share}, {self.part_share} and {self.as_good}."
             )
+        if self.near_best_m <= 0.0:
+            raise ConfigError(f"TrackSeekerConfig.near_best_m must be > 0 m, got {self.near_best_m}.")
         if self.most_pushes < 1:
             raise ConfigError(f"TrackSeekerConfig.most_pushes must be >= 1, got {self.most_pushes}.")
 
@@ -107,13 +112,16 @@ class TrackSeeker:
         self._targets: list[int] = []  # those that are approached
         self._retry_step: dict[int, int] = {}
         self._wait_steps: dict[int, int] = {}
+        self._look_steps: dict[int, int] = {}
         # Places (x and y in metres) without progress, and the step until which doubtful tracks there wait.
         self._left_spots: list[tuple[float, float, int]] = []
         self._went_nearer = False
+        self._to_best = True  # whether the last approach led to the cells around the best ones
         self._pose = Pose(0.0, 0.0, 0.0)
         self._hidden: dict[int, Bool[np.ndarray, " sectors"]] = {}  # directions from which a look did not show a track
         # The pose at which the count of patience began, and the steps of pursuit since then.
         self._pursuit: tuple[Pose, int] | None = None
+        self._times_felt = 0  # collisions that had changed the map when the count of patience began
         # The pose at the last approach, whether it led along a route, and the steps in which the robot did not move.
         self._approached_from: Pose | None = None
         self._drove = False
@@ -136,19 +144,39 @@ class TrackSeeker:
         """See `Seeker`."""
         if not self._accepted or not sighting.is_within(self.distances.in_view_m):
             return None
-        return sighting.nearest(self.cells_of(navmap, self._accepted), self.distances.in_view_m)
+        cells = self.cells_of(navmap, self._accepted)
+        if self._to_best and not self.verdicts.exact:
+            cells &= self._near_best(navmap, self._accepted)
+        return sighting.nearest(cells, self.distances.in_view_m)
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         """See `Seeker`: accepted tracks come first, then doubtful ones; without progress another track is chosen."""
         self._count_pushes(pose)
         found = self._pursue(navmap, window, pose, step)
+        if navmap.times_felt != self._times_felt:  # a surface that is followed to its end takes its time
+            self._times_felt, self._pursuit = navmap.times_felt, None
         if self._is_stuck(pose, pursuing=found is not None):
             self._leave_spot()
             self.postpone(navmap, step)
             self.pursued = None
             found = self._pursue(navmap, window, pose, step)
+        if self._looks_too_long():
+            found = self._pursue(navmap, window, pose, step)
         self._drove = found is not None and found.route is not None
         return found
+
+    def _looks_too_long(self) -> bool:
+        """Counts the steps of looks at the pursued track, and rejects it if there are too many."""
+        track = self.pursued
+        if track is None or self.verdicts.exact:
+            return False
+        self._look_steps[track] = self._look_steps.get(track, 0) + 1
+        if self._look_steps[track] <= self.config.look.look_steps:
+            return False
+        self.verdicts.give_up(track)
+        self.verdicts.doubtful.remove(track)
+        self.pursued = None
+        return True
 
     def _pursue(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         resort = LastResort.STOP if step >= self._last_resort_step else LastResort.NONE
@@ -156,7 +184,7 @@ class TrackSeeker:
             self._targets = self._best_accepted(pose)
             tracks = self._with_parts(self._targets)
             found = self._stop_here(navmap, window, pose, tracks)
-            found = found or self._drive_in(navmap, window, pose, tracks, resort)
+            found = found or self._drive_to(navmap, window, pose, tracks, resort)
             if found is not None:
                 self.pursued = None
                 return found
@@ -180,7 +208,8 @@ class TrackSeeker:
             # The cell may belong to a part that is not accepted itself: then the decision is on the approached tracks.
             near = at_cell or [t for t in self._targets if t in self._accepted] or self._accepted
             track = max(near, key=lambda t: self.probability[t])
-            if self.probability[track] < self.verdicts.bar:  # it seemed more probable from afar
+            least = self.verdicts.bar if self.verdicts.exact else self.verdicts.least
+            if self.verdicts.rated[track] < least:  # it seemed more probable from afar
                 self.verdicts.give_up(track)
                 self._accepted.remove(track)
                 return False
@@ -208,6 +237,11 @@ class TrackSeeker:
     def postpone(self, navmap: NavMap, step: int) -> None:
         """See `Seeker`."""
         self._set_aside(self._targets if self.pursued is None else [*self._targets, self.pursued])
+
+    def retry(self) -> None:
+        """See `Seeker`."""
+        self._retry_step.clear()
+        self._wait_steps.clear()
 
     def cells_of(self, navmap: NavMap, tracks: Iterable[int]) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map that some tracks own and that look like the goal."""
@@ -237,7 +271,8 @@ class TrackSeeker:
         tracks = self._of_episode()
         x_m, y_m = tracks.middles(np.arange(len(self.probability)))
         distance_m = np.hypot(x_m - pose.x_m, y_m - pose.y_m)
-        self.verdicts.update(self.probability, distance_m, tracks.evidence, self.step, self.pursued)
+        objects = None if self.verdicts.exact else tracks.objects(self.probability, self.config.part_gap_voxels)
+        self.verdicts.update(self.probability, distance_m, tracks.evidence, self.step, self.pursued, objects)
         self._accepted = [t for t in sorted(self.verdicts.accepted) if self._is_due(t)]
         drawn, self._drawn_rejected = self._drawn_rejected, set(self.verdicts.rejected)
         return drawn != self._drawn_rejected
@@ -283,11 +318,36 @@ class TrackSeeker:
         cost = self.config.look.per_metre * np.hypot(x_m - pose.x_m, y_m - pose.y_m)
         return self.probability[tracks].astype(np.float64) - cost
 
+    def _drive_to(
+        self, navmap: NavMap, window: Window, pose: Pose, tracks: list[int], resort: LastResort
+    ) -> Approach | None:
+        """Returns the approach to the accepted tracks, where possible to the cells around their best ones."""
+        cells, found = self.cells_of(navmap, tracks), None
+        if not self.verdicts.exact:
+            near_best = cells & self._near_best(navmap, self._targets)
+            found = self._approach(navmap, window, pose, near_best, LastResort.NONE)
+        self._to_best = found is not None
+        return found or self._approach(navmap, window, pose, cells, resort)
+
+    def _near_best(self, navmap: NavMap, tracks: Iterable[int]) -> Bool[np.ndarray, "rows cols"]:
+        """Returns the cells of the whole map around the best cell of each track."""
+        result = np.zeros(navmap.frame.shape, np.bool_)
+        for track in tracks:
+            x_m, y_m = (float(v) for v in navmap.frame.centres(*self._best_cell(navmap, track)))
+            index, near = cells_near_segment(navmap.frame, (x_m, y_m), (x_m, y_m), self.config.near_best_m)
+            result[index] |= near
+        return result
+
     def _drive_in(
         self, navmap: NavMap, window: Window, pose: Pose, tracks: list[int], resort: LastResort
     ) -> Approach | None:
-        """Returns the approach to some tracks, on the local window if that is enough, else on the whole map."""
-        cells = self.cells_of(navmap, tracks)
+        """Returns the approach to some tracks; see `_approach`."""
+        return self._approach(navmap, window, pose, self.cells_of(navmap, tracks), resort)
+
+    def _approach(
+        self, navmap: NavMap, window: Window, pose: Pose, cells: Bool[np.ndarray, "rows cols"], resort: LastResort
+    ) -> Approach | None:
+        """Returns the approach to some cells, on the local window if that is enough, else on the whole map."""
         for part in (window, self._known(navmap)):
             last = resort if part is not window else LastResort.NONE
             found = approach_on(navmap.view(part), cells[part.index], pose, self.finder, last)

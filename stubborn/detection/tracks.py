@@ -19,7 +19,8 @@ from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, ConfigError
 from stubborn.detection.evidence import Evidence, EvidenceConfig
 from stubborn.detection.fusion import Fusion
-from stubborn.kernels.tracks import claim, label_pixels, means_by_track, overlaps_of, regions_of, voxels_of
+from stubborn.detection.shape import features_of
+from stubborn.kernels.tracks import claim, label_pixels, means_by_track, overlaps_of, regions_of, shapes_of, voxels_of
 from stubborn.mapping.projection import Rays
 
 STRUCTURE = (
@@ -57,6 +58,8 @@ class TrackConfig:
     part_share: float = 0.4
     """A region of the goal with less than this share of a track's pixels in the frame is an object on it, not the track
     itself; likewise a region of another class on a track of the goal."""
+    part_of: float = 0.1
+    """Tracks next to each other that have at least this probability of the goal count as one object, see `objects`."""
     least_voxels: int = 6
     """With an imperfect detector, a track with fewer voxels is not a candidate: 6 voxels are 0.06 m2 of visible
     surface."""
@@ -151,7 +154,8 @@ class Tracks:
         if self.in_view.size:
             x_m, y_m = self.middles(self.in_view)
             seen = means[self.in_view], pixels[self.in_view]
-            self.evidence.add(self.in_view, *seen, pose.x_m - x_m, pose.y_m - y_m)
+            shape = features_of(self.measures(self.in_view)) if self.evidence.fusion.shape else None
+            self.evidence.add(self.in_view, *seen, pose.x_m - x_m, pose.y_m - y_m, shape)
 
     def probabilities(self, goal: str, least_voxels: int = 1) -> Float32[np.ndarray, " numbers"]:
         """Returns the probability of the goal for each track; 0 for entry 0 and for tracks with fewer voxels."""
@@ -179,6 +183,19 @@ class Tracks:
         apart = np.maximum(self._low[others] - self._high[number] - 1, self._low[number] - self._high[others] - 1)
         return others[apart.max(axis=1, initial=0) <= gap_voxels]
 
+    def objects(self, probability: Float32[np.ndarray, " numbers"], gap_voxels: int) -> Int[np.ndarray, " numbers"]:
+        """Returns the number of the object of each track: candidates next to each other may be parts of one object.
+
+        `probability` is that of the goal; only tracks with at least `part_of` of it are put together.
+        """
+        result = np.arange(len(probability))
+        likely = np.flatnonzero(probability >= self.config.part_of)
+        for track in likely[np.argsort(-probability[likely], kind="stable")].tolist():
+            if result[track] == track:
+                parts = self.near(track, likely, gap_voxels)
+                result[parts[result[parts] == parts]] = track
+        return result
+
     def footprint(self, number: int) -> tuple[tuple[slice, slice], Bool[np.ndarray, "rows cols"]]:
         """Returns the map cells of a track's voxels: rows and columns of a rectangle, and a mask over it."""
         (row, col, _), (last_row, last_col, _) = self._low[number], self._high[number]
@@ -190,6 +207,11 @@ class Tracks:
     def sizes(self, tracks: Int[np.ndarray, " n"]) -> Int[np.ndarray, " n"]:
         """Returns the number of voxels of each track; 0 for a track that was merged into another one."""
         return self._size[tracks]
+
+    def measures(self, tracks: Int[np.ndarray, " n"]) -> Float32[np.ndarray, "n measures"]:
+        """Returns the measures of the shape of each track; see `stubborn.detection.shape`."""
+        box = self._low[tracks], self._high[tracks]
+        return shapes_of(self._owner, tracks.astype(np.int64), *box, self._shape, self._edge_m)
 
     def shown(
         self, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose, columns: int

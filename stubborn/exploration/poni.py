@@ -3,6 +3,11 @@
 Reference: Ramakrishnan et al. (2022), "PONI: Potential Functions for ObjectGoal Navigation with Interaction-free
 Learning", CVPR, arXiv:2201.10029. The robot goes to the frontier with the highest weighted sum of its two potentials
 (`stubborn.exploration.potentials`).
+
+The published evaluation (github.com/srama2512/PONI, the scripts `eval_poni.sh`) has other rules: it predicts at every
+step, and its goal is the cell with the highest mean of both potentials among all unexplored cells of the local map, on
+Gibson without those within 1 m of the robot. Here only frontiers are candidates, on which the network was trained, and
+the robot pursues one for up to `replan_steps`.
 """
 
 from __future__ import annotations

@@ -192,3 +192,54 @@ def means_by_track(posteriors, voxel, owner, tracks):
         for number in range(tracks):
             means[k, number] /= max(used[number], 1)
     return means.T.copy(), pixels
+
+
+@njit(cache=True)
+def shapes_of(owner, tracks, low, high, shape, edge_m):
+    """Returns the measures of the shapes of some tracks, (n, 6); see `stubborn.detection.shape.MEASURES`.
+
+    Args:
+        owner: (voxels,) track of each voxel.
+        tracks: (n,) numbers of the tracks.
+        low: (n, 3) smallest row, column and layer of each track.
+        high: (n, 3) largest ones.
+        shape: rows, columns and layers of the volume.
+        edge_m: edge of a voxel.
+    """
+    result = np.zeros((tracks.size, 6), np.float32)
+    layers = np.empty(shape[2], np.int64)
+    for i in range(tracks.size):
+        layers[:] = 0
+        columns = flat = 0
+        x = y = xx = xy = yy = 0.0
+        for row in range(low[i, 0], high[i, 0] + 1):
+            for col in range(low[i, 1], high[i, 1] + 1):
+                at, count = (row * shape[1] + col) * shape[2], 0
+                for layer in range(low[i, 2], high[i, 2] + 1):
+                    if owner[at + layer] == tracks[i]:
+                        layers[layer] += 1
+                        count += 1
+                if count > 0:
+                    columns += 1
+                    flat += count <= 2
+                    dx, dy = float(col - low[i, 1]), float(row - low[i, 0])
+                    x, y, xx, xy, yy = x + dx, y + dy, xx + dx * dx, xy + dx * dy, yy + dy * dy
+        total = layers.sum()
+        if total == 0:
+            continue
+        below, bottom, top = 0, -1, 0
+        for layer in range(shape[2]):
+            below += layers[layer]
+            if bottom < 0 and below > 0.05 * total:
+                bottom = layer
+            if below - layers[layer] < 0.95 * total:
+                top = layer + 1
+        x, y = x / columns, y / columns
+        xx, xy, yy = xx / columns - x * x, xy / columns - x * y, yy / columns - y * y
+        mean, spread = 0.5 * (xx + yy), math.sqrt(0.25 * (xx - yy) ** 2 + xy * xy)
+        result[i, 0], result[i, 1] = bottom * edge_m, top * edge_m
+        result[i, 2] = math.sqrt(12.0 * (mean + spread) + 1.0) * edge_m  # a cell itself has 1 / 12 of its square
+        result[i, 3] = math.sqrt(12.0 * max(mean - spread, 0.0) + 1.0) * edge_m
+        result[i, 4] = total / columns * edge_m
+        result[i, 5] = flat / columns
+    return result

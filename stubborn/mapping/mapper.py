@@ -107,20 +107,20 @@ class Mapper:
         """Precomputes the rays of the camera. `layers` keeps the scores, by default of all frames as in the paper."""
         self.layers = layers or ObjectLayersConfig().make(config.candidate_score)
         top_m = robot.height_m if config.obstacle_max_height_m is None else config.obstacle_max_height_m
-        if config.obstacle_min_height_m >= top_m:
+        low_m = max(config.obstacle_min_height_m, robot.climb_m)  # what the robot climbs is no obstacle
+        if low_m >= top_m:
             raise ConfigError(
-                "The obstacle layer needs a band of heights: obstacle_min_height_m is "
-                f"{config.obstacle_min_height_m} m, its top {top_m} m."
+                f"The obstacle layer needs a band of heights: obstacle_min_height_m is {low_m} m, its top {top_m} m."
             )
         self.camera = camera
         self.camera_forward_m = robot.camera_forward_m
         self.config = config
-        self._obstacle_top_m = top_m
+        self._band_m = low_m, top_m
         stride_px = config.obstacle_stride_px
         used_top_m = max(top_m, camera.height_m + config.eye_level_halfwidth_m)
         self._obstacle_rays = Rays(camera, stride_px // 2, stride_px, used_top_m)
         self._score_rays: dict[int, Rays] = {}
-        self._occupancy = Occupancy(camera, config.occupancy, config.obstacle_min_height_m)
+        self._occupancy = Occupancy(camera, config.occupancy, low_m)
         self._drops = Drops(camera, self._obstacle_rays, config.drops)
 
     def frame(self, navmap: NavMap, pose: Pose) -> Frame:
@@ -143,12 +143,12 @@ class Mapper:
             surfaces.confirmed(c.occupancy.neighbours),
             camera_pose,
             window,
-            band_m=(c.obstacle_min_height_m, self._obstacle_top_m),
+            band_m=self._band_m,
             eye_level_halfwidth_m=c.eye_level_halfwidth_m,
         )
         view = frame.view
         sight = SightLines.of_frame(
-            surfaces.depth, rays.up, rays.left, camera_pose, rise_m=self._obstacle_top_m - self.camera.height_m
+            surfaces.depth, rays.up, rays.left, camera_pose, rise_m=self._band_m[1] - self.camera.height_m
         )
         part = in_range(self.camera, camera_pose, window.frame)
         self._occupancy.add(view, part, solid, tall, sight, self._occupancy.evidence_of_one(surfaces))
@@ -251,7 +251,7 @@ class Mapper:
         rows, cols = np.divmod(np.flatnonzero(view.score_max > self.config.candidate_score), view.frame.shape[1])
         target_m = np.where(found, d, np.float32(np.inf)).min(axis=0)
         sight = SightLines.of_frame(
-            d, rays.up, rays.left, camera_pose, rise_m=self._obstacle_top_m - self.camera.height_m
+            d, rays.up, rays.left, camera_pose, rise_m=self._band_m[1] - self.camera.height_m
         ).towards(target_m)
         passed = self._occupancy.passes(view.frame, rows, cols, sight, self.config.candidate_gap_m)
         view.score_max[rows[passed], cols[passed]] = 0.0

@@ -83,6 +83,9 @@ class NavMap:
     """True: a candidate here could not be reached; it is tried again later."""
     known: tuple[slice, slice] | None = None
     """Rows and columns of a rectangle that holds all ground seen or driven over; None: no ground yet."""
+    times_felt: int = 0
+    """Number of collisions that changed the marks, where the agent draws conclusions from several
+    (`stubborn.mapping.felt`); else 0."""
 
     @classmethod
     def empty(cls, frame: GridFrame) -> NavMap:

@@ -16,7 +16,10 @@ from stubborn.planning.untrap import UntrapConfig
 
 @dataclass(frozen=True, kw_only=True)
 class CollisionAvoidance:
-    """The four measures of the paper's ablation (Table "stubborn-ablation"); the full agent has all of them."""
+    """The four measures of the paper's ablation (Table "stubborn-ablation"), and a rule that the paper does not have.
+
+    The full agent has all of them.
+    """
 
     untrap: bool = True
     """The brute-force untrap mode."""
@@ -24,6 +27,8 @@ class CollisionAvoidance:
     """Collision marks are kept and planned around."""
     averse_exploration: bool = True
     """Exploration plans on the pessimistic layer; without this measure it plans on the optimistic layer."""
+    optimistic_fallback: bool = True
+    """Collision-averse exploration takes the optimistic layer where the pessimistic one has no path."""
     visited_is_free: bool = True
     """Collision marks do not count where the body has been."""
 
@@ -71,9 +76,10 @@ def collision_policies(avoidance: CollisionAvoidance, untrap: UntrapConfig) -> C
     """Returns the policies of a choice of measures."""
     both = (CollisionLayer.PESSIMISTIC, CollisionLayer.OPTIMISTIC)
     layers = both if avoidance.collision_layers else (CollisionLayer.NONE,)
+    averse = layers if avoidance.optimistic_fallback else layers[:1]
     return CollisionPolicies(
         marked=both if avoidance.collision_layers else (),
-        exploration=layers if avoidance.averse_exploration else layers[-1:],
+        exploration=averse if avoidance.averse_exploration else layers[-1:],
         approach=layers,
         proven_ground=visited_ground if avoidance.visited_is_free else no_ground,
         untrap_after=untrap.failed_forwards if avoidance.untrap else math.inf,

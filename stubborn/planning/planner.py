@@ -120,6 +120,8 @@ class Planner:
         """`proven_ground` returns the ground on which the robot's own motion overrules marks and obstacles."""
         self.config = config
         self.proven_ground = proven_ground
+        self.own_ground_m = config.own_ground_m
+        """As in the configuration, or less while the robot pushes on against the same surface."""
 
     def obstacles(self, view: NavMap, layer: CollisionLayer) -> Bool[np.ndarray, "rows cols"]:
         """Returns a new mask of depth obstacles, drops, and those marks of a layer that the body has not refuted."""
@@ -145,9 +147,7 @@ class Planner:
         Routes avoid `costly` ground where the detour is not too long.
         """
         obstacles = self.obstacles(view, layer)
-        own_index, own = cells_near_segment(
-            view.frame, pose.xy_m, pose.xy_m, max(self.config.own_ground_m, view.frame.cell_m)
-        )
+        own_index, own = cells_near_segment(view.frame, pose.xy_m, pose.xy_m, max(self.own_ground_m, view.frame.cell_m))
         # If an obstacle cell is under the robot, the obstacle covers only the edge of that cell.
         obstacles[own_index][own] = False
         cell_m = view.frame.cell_m

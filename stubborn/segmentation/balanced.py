@@ -7,18 +7,22 @@ files.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import msgspec
 import numpy as np
-from torch.utils.data import IterableDataset, get_worker_info
+import torch
+from torch import Tensor
+from torch.utils.data import Dataset
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, ConfigError
 from sim.reading import Count, open_plain
 from stubborn.segmentation.dataset import LabelledView, decode_view, read_members
+from stubborn.segmentation.recipe import Recipe
+from stubborn.segmentation.samples import Sample, Sampler, WeightedSample
 
 SMALLEST_PX = 40
 """An object with at least this many visible pixels, of 320 x 240, can be sampled."""
@@ -103,37 +107,44 @@ class ViewIndex:
         return _one_of(styles[_one_of(list(styles), rng)], rng)
 
 
-class BalancedViews(IterableDataset):
-    """An endless data set of views: some are sampled by an object that they show, the others at random.
+class Batches(Dataset):
+    """The batches of a training. A batch depends only on seed, step and progress, so that a killed run continues alike.
+
+    Samples are drawn by an object that they show, or are any views, as `Recipe.object_share` says. An item is chosen
+    by a pair: the number of the step, and the share of all steps before it.
 
     Args:
-        index: the views.
-        transform: converts a view to a sample; it gets the object that was chosen, so that a window shows it.
-        object_share: share of the views that are sampled by an object.
-        seed: seeds the order and the transform, together with `epoch`.
+        index: the views; all are of one size.
+        sampler: makes a sample of a view; width and share of whole views are those of the recipe's phase.
+        recipe: phases and sampling.
+        batch: samples of a step, multiplied by those of the phase.
+        seed: seeds all batches.
+
+    Raises:
+        ConfigError: no view shows an object of a goal category.
     """
 
-    def __init__(
-        self, index: ViewIndex, transform: Callable[..., Any] | None = None, *, object_share: float = 0.8, seed: int = 0
-    ) -> None:
-        super().__init__()
-        if not index.views or (object_share > 0.0 and not index.objects):
+    def __init__(self, index: ViewIndex, sampler: Sampler, recipe: Recipe, *, batch: int, seed: int) -> None:
+        if not index.objects:
             raise ConfigError("No view shows an object of a goal category.")
-        self.index, self.transform, self.object_share, self.seed = index, transform, object_share, seed
-        self.epoch = 0
+        self.index, self.sampler, self.recipe, self.batch, self.seed = index, sampler, recipe, batch, seed
+        self._stored_px = index.views[0].read().rgb.shape[1]
 
-    def __iter__(self) -> Iterator[Any]:
-        """Yields the samples of this worker, or views if there is no transform."""
-        info = get_worker_info()
-        rng = np.random.default_rng([self.seed, self.epoch, 0 if info is None else info.id])
-        while True:
-            drawn = self.index.draw(rng) if rng.random() < self.object_share else None
-            number = int(rng.integers(len(self.index.views))) if drawn is None else drawn.view
-            view = self.index.views[number].read()
-            if self.transform is None:
-                yield view
-            else:
-                yield self.transform(view, rng, instance=None if drawn is None else drawn.number)
+    def __getitem__(self, key: tuple[int, float]) -> tuple[Tensor, ...]:
+        """Returns the samples of one step, stacked: see `stubborn.segmentation.samples.WeightedSample`."""
+        step, progress = key
+        rng, phase = np.random.default_rng([self.seed, step]), self.recipe.phase(progress)
+        used_px = self._stored_px // (self.sampler.used_block_px or 1)
+        width_px = self.recipe.width_px(phase, used_px, self._stored_px, rng)
+        sampler = replace(self.sampler, window_px=width_px, whole_share=phase.whole_share)
+        samples = [self._sample(sampler, rng) for _ in range(phase.batches * self.batch)]
+        return tuple(torch.stack(parts) for parts in zip(*samples, strict=True))
+
+    def _sample(self, sampler: Sampler, rng: np.random.Generator) -> Sample | WeightedSample:
+        if rng.random() < self.recipe.object_share:
+            drawn = self.index.draw(rng)
+            return sampler(self.index.views[drawn.view].read(), rng, instance=drawn.number)
+        return sampler(_one_of(self.index.views, rng).read(), rng)
 
 
 def _annotations(

@@ -11,7 +11,7 @@ import re
 import struct
 import tarfile
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Annotated, Any, BinaryIO
@@ -88,6 +88,19 @@ def load_network(file: Path) -> tuple[Network, dict[str, Any]]:
     config = _config(file, metadata)
     tensors = unwrap(tensors, file)
     return with_weights(file, tensors, lambda: build_network(config)), metadata
+
+
+def mean_of(networks: Sequence[Network]) -> Network:
+    """Returns a network whose weights are the mean of those of networks of one configuration.
+
+    Integers, such as the counts of batches, are those of the last network.
+    """
+    *_, mean = networks
+    tensors = [network.state_dict() for network in networks]
+    for name, last in mean.state_dict().items():
+        if torch.is_floating_point(last):
+            last.copy_(torch.stack([each[name].float() for each in tensors]).mean(dim=0))
+    return mean
 
 
 def unwrap(content: Mapping[str, Any], file: Path) -> dict[str, Tensor]:

@@ -18,7 +18,6 @@ from typing import Annotated, Any, BinaryIO
 import cv2
 import msgspec
 import numpy as np
-import torch
 from jaxtyping import Float32, Float64, Shaped, UInt8, UInt16
 from torch.utils.data import IterableDataset, get_worker_info
 
@@ -73,13 +72,6 @@ class _CountNote(msgspec.Struct):
     """The part of a note that says how many views the shard has."""
 
     views: Count | None = None
-
-
-class _ViewNote(msgspec.Struct):
-    """The part of a note that counts views."""
-
-    views: Count
-    views_with: dict[str, Count]
 
 
 @dataclass(frozen=True)
@@ -264,7 +256,6 @@ class ViewDataset(IterableDataset):
         transform: converts a view to a sample; each worker has a random generator of its own. None: the samples are
             the views, `LabelledView`, for which a `DataLoader` needs `collate_fn=list` or `batch_size=None`.
         buffer: number of views from which the next one is sampled.
-        repeats: a function that returns the mean number of uses of a view in an epoch, at least 1; None: once.
         seed: seeds the order and the transform, together with the epoch.
         shuffle: False reads in order, for evaluation.
     """
@@ -275,12 +266,10 @@ class ViewDataset(IterableDataset):
         transform: Callable[[LabelledView, np.random.Generator], Any] | None = None,
         *,
         buffer: int = 1000,
-        repeats: Callable[[LabelledView], float] | None = None,
         seed: int = 0,
         shuffle: bool = True,
     ) -> None:
         super().__init__()
-        self.repeats = repeats
         self.shards = list(shards)
         self.transform = transform
         self.buffer = buffer
@@ -295,19 +284,9 @@ class ViewDataset(IterableDataset):
         order = np.random.default_rng([self.seed, self.epoch])
         shards = [self.shards[i] for i in order.permutation(len(self.shards))] if self.shuffle else self.shards
         rng = np.random.default_rng([self.seed, self.epoch, worker])
-        once = (view for shard in shards[worker::workers] for view in read_shard(shard))
-        views = once if self.repeats is None else _repeated(once, self.repeats, rng)
+        views = (view for shard in shards[worker::workers] for view in read_shard(shard))
         for view in _shuffled(views, rng, self.buffer) if self.shuffle else views:
             yield view if self.transform is None else self.transform(view, rng)
-
-
-def _repeated(
-    views: Iterator[LabelledView], repeats: Callable[[LabelledView], float], rng: np.random.Generator
-) -> Iterator[LabelledView]:
-    """Yields each view as often as `repeats` returns; fractions are rounded at random."""
-    for view in views:
-        for _ in range(int(repeats(view) + rng.random())):
-            yield view
 
 
 def _shuffled(views: Iterator[LabelledView], rng: np.random.Generator, buffer: int) -> Iterator[LabelledView]:
@@ -341,23 +320,6 @@ def pixel_counts(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
     return counts
 
 
-def views_with(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
-    """Returns the share of the views that show each mpcat40 category, from the JSON notes next to the shards.
-
-    Raises:
-        ConfigError: a shard has no note.
-    """
-    counts, total = np.zeros(len(MPCAT40)), 0
-    for shard in shards:
-        note = shard.with_suffix(".json")
-        if not note.is_file():
-            raise ConfigError(f"Shard '{shard}' has no note '{note.name}' next to it; `stubborn views` writes it.")
-        content = read_json(note, _ViewNote, what="Note of a shard")
-        counts += [content.views_with.get(name, 0) for name in MPCAT40]
-        total += content.views
-    return counts / max(total, 1)
-
-
 def stored_views(shards: Sequence[Path]) -> int | None:
     """Returns the number of views of some shards, from the JSON notes next to them; None if one does not say it."""
     notes = [shard.with_suffix(".json") for shard in shards]
@@ -366,33 +328,6 @@ def stored_views(shards: Sequence[Path]) -> int | None:
     counts = [read_json(note, _CountNote, what="Note of a shard").views for note in notes]
     known = [count for count in counts if count is not None]
     return sum(known) if len(known) == len(counts) else None
-
-
-@dataclass(frozen=True)
-class RareObjectRepeats:
-    """A function that returns how often a view is used: views that show rare goal categories are used more often.
-
-    A category that is in a share f of the views has the value max(1, sqrt(wanted / f)), and a view gets the largest
-    value of the goal categories that it shows (repeat factor sampling, Gupta et al. 2019, arXiv:1908.03195). It counts
-    views and not pixels, so that a large object is not preferred to a small one.
-    """
-
-    share: Float64[np.ndarray, " 41"]
-    """Share of the views that show each mpcat40 category."""
-    wanted: float = 0.15
-    """Share of the views below which a category is rare."""
-    most: float = 4.0
-    """Largest number of repetitions."""
-    pixels: int = 30
-    """A view shows a category if it has at least this many pixels of it."""
-
-    def __call__(self, view: LabelledView) -> float:
-        """Returns the mean number of uses of a view in an epoch."""
-        seen = np.bincount(view.semantic.reshape(-1), minlength=len(MPCAT40)) >= self.pixels
-        shares = self.share[GOAL_IDS[seen[GOAL_IDS]]]
-        if shares.size == 0:
-            return 1.0
-        return float(np.clip(np.sqrt(self.wanted / max(float(shares.min()), 1e-6)), 1.0, self.most))
 
 
 def stored_block_px(shards: Sequence[Path]) -> int:
@@ -429,21 +364,6 @@ def spread_views(shards: Sequence[Path], count: int) -> list[LabelledView]:
         wanted = frozenset(np.linspace(0, views - 1, share).round().astype(int).tolist())
         picked += [decode_view(shard, key, parts) for key, parts in _members(shard, wanted) if parts]
     return picked
-
-
-def class_weights(pixels: Float64[np.ndarray, " 41"], *, smallest: float = 1.10) -> Float32[torch.Tensor, " classes"]:
-    """Returns class weights that are larger for rare categories: 1 / ln(smallest + share) (Paszke et al. 2016, ENet).
-
-    Args:
-        pixels: pixels of each mpcat40 category, with void.
-        smallest: limits the largest weight: with ENet's 1.02 the rarest category weighs 30 times as much as walls, with
-            1.10 it weighs five times as much.
-    """
-    counts = np.asarray(pixels, np.float64)[1:]
-    share = counts / max(counts.sum(), 1.0)
-    weights = 1.0 / np.log(smallest + share)
-    weights[counts == 0] = 0.0  # a category without a pixel
-    return torch.tensor(weights / weights[counts > 0].mean() if (counts > 0).any() else weights, dtype=torch.float32)
 
 
 def decode_view(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:

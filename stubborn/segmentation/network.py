@@ -16,6 +16,7 @@ from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.inputs import INPUTS
 from stubborn.segmentation.networks import Network
 from stubborn.segmentation.preprocess import normalise_rgb, padding, shrink
+from stubborn.segmentation.processor import computes_bf16
 from stubborn.segmentation.rednet import RedNet, folded
 
 
@@ -87,6 +88,7 @@ class NetworkSegmenter:
         block_px: int | None = None,
         score_block_px: int | None = None,
         threads: int | None = None,
+        mirrored: bool = False,
     ) -> NetworkSegmenter:
         """Returns a segmenter with the weights of a file, and with the resolution and calibration stored in it.
 
@@ -97,6 +99,7 @@ class NetworkSegmenter:
             block_px: see the class; in place of the stored value.
             score_block_px: see the class.
             threads: see the class.
+            mirrored: see the class.
 
         Raises:
             ConfigError: see `load_network`, `Calibration` and the class.
@@ -114,6 +117,7 @@ class NetworkSegmenter:
             score_block_px=score_block_px,
             calibration=calibration,
             threads=threads,
+            mirrored=mirrored,
         )
 
     def scores(self, observation: Observation, goal: str) -> Scores:
@@ -164,9 +168,3 @@ class NetworkSegmenter:
         pad = padding(*small_depth.shape)
         own = out[:, :, *(pad.inner if self.stride_px == 1 else pad.inner_half)]
         return 0.5 * (own[0] + own[1].flip(-1)) if self.mirrored else own[0]
-
-
-def computes_bf16() -> bool:
-    """Returns whether the processor has instructions for bf16; on other processors it is slower than fp32."""
-    capabilities = torch.cpu.get_capabilities()
-    return bool(capabilities.get("avx512_bf16") or capabilities.get("amx_bf16"))

@@ -13,8 +13,8 @@ from jaxtyping import Bool, Float32, Int64, Shaped, UInt8, UInt16
 from torch import Tensor
 from torch.utils.data import Dataset
 
-from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, ConfigError
-from stubborn.segmentation.dataset import GOAL_IDS, LabelledView
+from sim.interface import MPCAT40_ID, CameraModel, ConfigError
+from stubborn.segmentation.dataset import LabelledView
 from stubborn.segmentation.inputs import INPUTS, InputKind
 from stubborn.segmentation.preprocess import normalise_rgb, pad_edges, padding, shrink
 
@@ -79,8 +79,6 @@ class Sampler:
     """Samples are windows of this width, see `random_window`; None: whole views."""
     whole_share: float = 0.0
     """Share of the windows that show the whole view, shrunk, for a network that works on shrunk images."""
-    focus_share: float = 0.0
-    """Share of the windows that show some pixel of a goal category, each category in the view equally often."""
     second: InputKind = "depth"
     """Kind of the network's second input. It is computed from the whole view, before the window is cut out."""
     used_block_px: int | None = None
@@ -99,10 +97,9 @@ class Sampler:
         channels = second.of(jitter_depth(shrink(view.depth_m, self.block_px), augmentation, rng), self.camera)
         if self.window_px is not None:
             height, width = semantic.shape
+            shown = None
             if instance is not None:
                 shown = random_pixel(shrink(_instances(view), self.block_px) == instance, rng)
-            else:
-                shown = random_goal_pixel(semantic, rng) if rng.random() < self.focus_share else None
             window = random_window(height, width, self.window_px, self.whole_share, rng, shown=shown)
             rgb, semantic = window.colour(rgb), window.labels(semantic)
             cut = channels[window.cut]
@@ -194,18 +191,6 @@ class Window:
         return cv2.resize(semantic[self.cut], (self.width_px, self.height_px), interpolation=cv2.INTER_NEAREST).astype(
             np.uint8, copy=False
         )
-
-
-def random_goal_pixel(semantic: UInt8[np.ndarray, "h w"], rng: np.random.Generator) -> tuple[int, int] | None:
-    """Returns row and column of a random pixel of a goal category; None if there is no such pixel.
-
-    Each category in the view is sampled equally often, so that windows show small objects as often as large ones.
-    """
-    present = np.flatnonzero(np.bincount(semantic.reshape(-1), minlength=len(MPCAT40)))
-    goals = np.intersect1d(present, GOAL_IDS)
-    if goals.size == 0:
-        return None
-    return random_pixel(semantic == rng.choice(goals), rng)
 
 
 def random_pixel(mask: Bool[np.ndarray, "h w"], rng: np.random.Generator) -> tuple[int, int] | None:

@@ -1,8 +1,7 @@
-"""The loss and the learning rate with which `stubborn train segmentation` trains a RedNet."""
+"""The loss with which `stubborn train segmentation` trains a network, and averages of weights."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
@@ -104,11 +103,3 @@ def set_normalisation(model: nn.Module, batches: Iterable[tuple[Tensor, Tensor]]
         layer.momentum = momentum
     if count == 0:
         raise ValueError("set_normalisation needs at least one batch.")
-
-
-def learning_rate(step: int, total: int, *, peak: float, warmup: int, last: float = 0.01) -> float:
-    """Returns the learning rate of a step: a linear warm-up, then half a cosine down to `last` times the peak."""
-    if step < warmup:
-        return peak * (step + 1) / warmup
-    done = min(1.0, (step - warmup) / max(1, total - warmup))
-    return peak * (last + (1.0 - last) * 0.5 * (1.0 + math.cos(math.pi * done)))

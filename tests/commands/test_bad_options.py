@@ -140,7 +140,9 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--out OUT --executor cloud", "cloud"),
         ("--out OUT --aim common", "--aim must be rare"),
         ("--out OUT --withheld only", "--withheld must be without or only, and needs --pool"),
+        ("--out OUT --pool free --furniture nowhere", "--furniture takes --pool train or wide"),
     ],
+    "sim.commands.views.mix": [("--out OUT --furniture nowhere", "is not a folder")],
     "sim.commands.importing.furniture": [("--source nowhere --out OUT", "nowhere")],
     "sim.commands.episodes": [
         ("--split nowhere", "There is no house"),
@@ -168,7 +170,10 @@ BAD: dict[str, list[tuple[str, str]]] = {
     "sim.commands.train.cloned": [("--demonstrations nowhere --out OUT", "No demonstration in 'nowhere'")],
     "sim.commands.train.segmentation": [
         ("--views nowhere --val-views nowhere --out OUT --size vast", "--size must be one of"),
+        ("--views nowhere --val-views nowhere --out OUT --batch 1", "--batch must be at least 2"),
         ("--views nowhere --val-views nowhere --out OUT", "No shards"),
+        ("--views nowhere --out OUT", "--views and --val-views are given together"),
+        ("--furniture nowhere --out OUT", "is not a folder"),
     ],
     "sim.commands.train.fusion": [
         ("--split val", "fitted on 'val'"),

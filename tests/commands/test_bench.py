@@ -155,6 +155,7 @@ def run_quickly(parts: str, tmp_path: Path) -> dict[str, Any]:
     return written
 
 
+@pytest.mark.costly
 def test_a_quick_run_writes_figures_machine_and_calibration(tmp_path: Path) -> None:
     written = run_quickly("c", tmp_path)
     shares = [figure["ratio"] for figure in written["figures"] if figure["what"].startswith("of it")]

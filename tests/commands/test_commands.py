@@ -55,7 +55,7 @@ def test_a_listed_train_house_comes_out_as_listed(number: int) -> None:
     assert hashlib.sha256(house_bytes(houses.recipes[name])).hexdigest() == houses.sha256[name]
 
 
-@pytest.mark.parametrize("split", ["val", "test", "large", "hazards", "train", "traps", *CONTACT_SPLITS])
+@pytest.mark.parametrize("split", [*SPLITS, "train", "traps", *CONTACT_SPLITS])
 def test_a_shipped_split_carries_the_one_version(split: str) -> None:
     assert split in shipped_splits()
     assert load_split(split).version == SPLIT_VERSION

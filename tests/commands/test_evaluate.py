@@ -63,7 +63,7 @@ def test_a_calibration_is_fitted_written_and_improves_calibration(tmp_path: Path
     assert all(torch.equal(before[name], tensor) for name, tensor in model.state_dict().items())
     measured = evaluate_rednet.measure(Args(views=args.views, weights=weights, threads=1), model, metadata)
     assert measured.views == 8
-    assert measured.after.error < 0.5 * measured.before.error
+    assert measured.after.error < 0.6 * measured.before.error
     assert 0.0 <= measured.iou.goals <= 1.0
     some = evaluate_rednet.measure(Args(views=args.views, weights=weights, threads=1, count=3), model, metadata)
     assert some.views == 6

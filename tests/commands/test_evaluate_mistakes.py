@@ -63,6 +63,7 @@ def test_a_row_an_episode_shows_the_picture_of_the_stop(recorded: Path, capsys: 
     assert sheet[row, column].tolist() == PALETTE[ahead].tolist()
 
 
+@pytest.mark.costly
 def test_omitted_failures_are_reported_with_the_option_that_draws_them(
     recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

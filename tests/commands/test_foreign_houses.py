@@ -198,7 +198,7 @@ def test_episodes_of_a_scene_make_a_split_that_needs_nothing_else(scene: tuple[P
     labels = [read_labels(house.spec.copy().compile(), rules=house.rules) for house in (first, second)]
     np.testing.assert_array_equal(labels[0].geom_category, labels[1].geom_category)
     assert [each.name for each in labels[0].instances] == [each.name for each in labels[1].instances]
-    assert {file.name.split("_", 1)[1] for file in (moved / "flat_files").iterdir()} == {
+    assert {file.name.split("_", 1)[1] for file in (moved / "files").iterdir()} == {
         "cube.obj", "arch.obj", "wood.png",
     }  # fmt: skip
     options = ["--split", str(moved), "--agent", "oracle", "--episodes", "1", "--out", str(tmp_path / "run")]

@@ -1,4 +1,4 @@
-"""Tests of the tool that generates houses: no train seed is skipped."""
+"""Tests of the tool that generates houses: no train seed is skipped, and withheld styles are shown."""
 
 from __future__ import annotations
 
@@ -7,7 +7,11 @@ from pathlib import Path
 import pytest
 
 from sim.commands.houses import generate as generate_houses
+from sim.errors import HouseError
+from sim.housegen.furniture.catalogue import Catalogue
+from sim.housegen.generator import HouseConfig
 from sim.housegen.splits.recipes import Recipe
+from sim.housegen.withheld import is_withheld
 
 
 def test_each_train_seed_is_tried_in_order_even_if_some_give_no_house(
@@ -31,3 +35,22 @@ def test_each_train_seed_is_tried_in_order_even_if_some_give_no_house(
     generate_houses.main(generate_houses.Args(out=tmp_path / "out", split="train", houses=6))
     assert tried == list(range(9))
     assert listed == [0, 2, 3, 4, 7, 8]
+
+
+def test_houses_of_withheld_styles_show_what_training_leaves_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown: list[Catalogue] = []
+
+    def make(seed: int, config: HouseConfig, catalogue: Catalogue) -> None:
+        shown.append(catalogue)
+        raise HouseError("no room")
+
+    monkeypatch.setattr(generate_houses, "generate_house", make)
+    monkeypatch.setattr(generate_houses, "copy_textures", lambda folder: None)
+    for withheld in (None, "only"):
+        generate_houses.main(generate_houses.Args(out=tmp_path, pool="wide", withheld=withheld))
+    assert len(shown) == 2
+    chairs = [shown[i].styles("chair", "wide", "dining") for i in range(2)]
+    assert all(is_withheld(style) for style in chairs[1])
+    assert not all(is_withheld(style) for style in chairs[0])

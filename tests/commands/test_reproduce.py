@@ -123,7 +123,7 @@ def test_causes_come_from_the_trajectories_and_not_from_old_lines(args: reproduc
     assert line["failure"] == "false_detection"
     results.write_text(json.dumps(line | {"failure": None}) + "\n")
     reproduce.main(replace(failing, minutes=0.0))
-    assert "| false_detection | 100.0 [100.0, 100.0]* |" in (args.out / "tables" / f"{stem(failing)}.md").read_text()
+    assert "| false_detection | 100.0 |" in (args.out / "tables" / f"{stem(failing)}.md").read_text()
 
 
 def test_another_seed_is_another_run(args: reproduce.Args, capsys: pytest.CaptureFixture[str]) -> None:

@@ -44,12 +44,14 @@ def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(split: Pa
     for line in first:
         content = train_tracks.read_tracks(tmp_path / "tracks" / f"{line['episode_id']}.npz")
         assert len(content["counts"]) == line["tracks"] > 0
-        assert content["mean"].shape == (len(content["track"]), len(MPCAT40) - 1)
-        assert content["track"].max() < line["tracks"]
+        assert content["mean"].shape == (len(content["sample"]), len(MPCAT40) - 1)
+        assert len(content["measures"]) == len(content["track"]) == content["sample"].max() + 1
+        assert set(content["track"].tolist()) == set(range(line["tracks"]))
+        assert len(content["track"]) > line["tracks"]  # most are logged several times
         assert (content["weight"] > 0).all()
         assert content["counts"][:, MPCAT40.index("sofa")].max() > 100
         sofa = int(content["counts"][:, MPCAT40.index("sofa")].argmax())
-        seen_as = content["mean"][content["track"] == sofa].mean(axis=0)
+        seen_as = content["mean"][content["track"][content["sample"]] == sofa].mean(axis=0)
         assert seen_as[MPCAT40.index("sofa") - 1] > 0.2
     more = log_after(split, tmp_path, 3)
     assert more[:2] == first
@@ -64,7 +66,7 @@ def test_a_file_holds_the_tracks_only(split: Path, tmp_path: Path, monkeypatch: 
         np, "savez_compressed", lambda file, **arrays: given.append(set(arrays)) or write(file, **arrays)
     )
     log_after(split, tmp_path, 1)
-    assert given == [{"counts", "track", "view", "mean", "weight"}]
+    assert given == [{"counts", "track", "measures", "sample", "view", "mean", "weight"}]
 
 
 def test_a_log_of_another_seed_and_a_broken_file_are_refused(split: Path, tmp_path: Path):
@@ -93,7 +95,9 @@ def test_it_refuses_val_and_exact_segmentation(options: dict, message: str):
 
 def test_merged_tracks_are_counted_together():
     class Merged:
-        """Track 2 was merged into track 1."""
+        """Track 2 was merged into track 1; track 3 is too small."""
+
+        in_view = np.array([1, 2, 3])
 
         @property
         def evidence(self) -> Merged:
@@ -101,18 +105,28 @@ def test_merged_tracks_are_counted_together():
 
         @staticmethod
         def views(tracks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            return np.ones((len(tracks), 2, 40), np.float32), np.array([[1.0, 0.0]], np.float32)
+            return np.ones((len(tracks), 2, 40), np.float32), np.tile(
+                np.array([1.0, 0.0], np.float32), (len(tracks), 1)
+            )
+
+        @staticmethod
+        def measures(tracks: np.ndarray) -> np.ndarray:
+            return np.tile(tracks[:, None], (1, 6)).astype(np.float32)
 
         @staticmethod
         def now() -> np.ndarray:
-            return np.array([0, 1, 1])
+            return np.array([0, 1, 1, 3])
 
         @staticmethod
         def sizes(tracks: np.ndarray) -> np.ndarray:
-            return np.array([0, 50, 0])[tracks]
+            return np.array([0, 50, 0, 2])[tracks]
 
     counts = np.zeros((5, len(MPCAT40)), np.int64)
-    counts[1, 3], counts[2, 3] = 10, 5
-    content = train_tracks.logged(Merged(), counts)  # type: ignore[arg-type]
+    counts[1, 3], counts[2, 3], counts[3, 3] = 10, 5, 2
+    samples, tracks = train_tracks.TrackSamples(), Merged()
+    samples.take(tracks, np.array([2]))  # type: ignore[arg-type]
+    content = train_tracks.logged(tracks, counts, samples)  # type: ignore[arg-type]
     assert content["counts"][:, 3].tolist() == [15]
-    assert content["track"].tolist() == [0]
+    assert content["track"].tolist() == [0, 0]  # as it was before it was merged, and at the end
+    assert content["measures"][:, 0].tolist() == [2.0, 1.0]
+    assert content["sample"].tolist() == [0, 1]

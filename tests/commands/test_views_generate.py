@@ -12,8 +12,9 @@ import pytest
 
 from sim.commands import episodes as make_episodes
 from sim.commands.views import generate as generate_views
-from sim.commands.views.generate import FRESH_SEEDS_FROM, Args, main, plan
+from sim.commands.views.generate import FRESH_SEEDS_FROM, Args, ShardTask, main, make_shard, plan
 from sim.episodes.splits import load_split
+from sim.errors import HouseError
 from sim.housegen.furniture import CATALOGUE
 from sim.interface import ConfigError
 from stubborn.segmentation.dataset import list_shards, read_shard
@@ -135,6 +136,37 @@ def test_the_wide_pool_has_new_houses_only(tmp_path: Path, monkeypatch: pytest.M
         main(Args(pool="wide", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
 
 
+def test_a_new_house_without_views_is_replaced_by_that_of_another_fixed_seed(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[int | None] = []
+
+    def shard_of(args: Args, config: object, task: ShardTask, seed: int | None) -> int:
+        tried.append(seed)
+        if len(tried) == 1:
+            raise HouseError("it shows too little")
+        return task.number
+
+    monkeypatch.setattr(generate_views, "_shard_of", shard_of)
+    args = Args(pool="wide", out=Path("x"))
+    assert make_shard(args, {}, ShardTask(3, 40, "wide", FRESH_SEEDS_FROM)) == 3
+    assert tried == [FRESH_SEEDS_FROM, FRESH_SEEDS_FROM + FRESH_SEEDS_FROM // 2]
+    tried.clear()
+    with pytest.raises(HouseError, match="shows too little"):
+        make_shard(args, {}, ShardTask(0, 40, "val_00", None))
+    assert tried == [None]
+
+
+@pytest.mark.parametrize(("pool", "free"), [("free", True), ("drawn", False)])
+def test_a_part_of_the_wide_pool_has_the_styles_of_train_and_its_own(pool: str, free: bool) -> None:
+    made = generate_views._catalogue(pool)
+    for category in CATALOGUE.categories:
+        assert made.styles(category, "train") == CATALOGUE.styles(category, "train")
+        more = {style.free for style in made.styles(category, "wide") if style.pool == "wide"}
+        assert more <= {free}
+    both = (generate_views._catalogue(name) for name in ("free", "drawn"))
+    count = sum(style.pool == "wide" for part in both for name in part.categories for style in part.styles(name))
+    assert count == sum(style.pool == "wide" for name in CATALOGUE.categories for style in CATALOGUE.styles(name))
+
+
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
@@ -143,8 +175,9 @@ def test_the_wide_pool_has_new_houses_only(tmp_path: Path, monkeypatch: pytest.M
         ({"sequence": 2}, "--sequence must divide --views and --views-per-shard, got 2"),
         ({"rgb": "bmp"}, "--rgb must be jpg or png, got 'bmp'"),
         ({"shard": "0/2"}, '--shard must be "i/n" with 1 <= i <= n'),
-        ({"pool": "wide"}, "--pool must be wide, and needs --split train, got 'wide' with"),
-        ({"pool": "heldout", "split": "train"}, "--pool must be wide, and needs --split train, got 'heldout' with"),
+        ({"pool": "wide"}, "--pool must be .* or wide, and needs --split train, got 'wide' with"),
+        ({"pool": "heldout", "split": "train"}, "--pool must be .*, and needs --split train, got 'heldout' with"),
+        ({"pool": "free", "split": "train", "furniture": Path("x")}, "--furniture takes --pool train or wide, got"),
         ({"profile": "best"}, "Unknown rendering profile 'best'"),
     ],
 )

@@ -111,8 +111,6 @@ def canonical(words: Sequence[str]) -> str:
         return shlex.join(words)
     if rest[0] == "-m" and rest[1] in ("sim.run", "sim.report", "sim.web", "sim.teleop"):
         return shlex.join(["stubborn", rest[1].removeprefix("sim."), *rest[2:]])
-    if rest[0] == "-m" and rest[1].startswith("examples."):
-        return shlex.join([PYTHON, f"{rest[1].replace('.', '/')}.py", *rest[2:]])
     old = re.fullmatch(r"tools/(\w+)\.py", rest[0])
     if old and old[1] in MOVED:
         return shlex.join(["stubborn", *MOVED[old[1]].split(), *rest[1:]])
@@ -180,7 +178,8 @@ def program_of(command: str) -> tuple[str, list[str]]:
     if words[0] == "stubborn":
         return split(words[1:])
     if words[:2] == [PYTHON, "-m"]:
-        return words[2], words[3:]
+        module = words[2]
+        return f"{module.replace('.', '/')}.py" if module.startswith("examples.") else module, words[3:]
     return words[1] if len(words) > 1 else "", words[2:]
 
 
@@ -275,12 +274,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "stubborn compare {tmp}/before {tmp}/after",
     ),
     # docs/gymnasium.md
-    f"{PYTHON} examples/gym_agents.py": (f"{PYTHON} examples/gym_agents.py",),
-    f"{PYTHON} examples/train_ppo.py --minutes 30 --envs 2 --out runs/ppo": (
-        f"{PYTHON} examples/train_ppo.py --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
+    f"{PYTHON} -m examples.gym_agents": (f"{PYTHON} -m examples.gym_agents",),
+    f"{PYTHON} -m examples.train_ppo --minutes 30 --envs 2 --out runs/ppo": (
+        f"{PYTHON} -m examples.train_ppo --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
     ),
     f"{_RUN} --agent examples.ppo_agent:AGENT --config-file runs/ppo/run.toml {_SMALL} --video": (
-        f"{PYTHON} examples/train_ppo.py --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
+        f"{PYTHON} -m examples.train_ppo --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
         f"{_RUN} --agent examples.ppo_agent:AGENT --config-file {{tmp}}/ppo/run.toml {_SMALL} --episodes 1 --video"
         " --out {tmp}/filmed",
     ),
@@ -367,8 +366,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn views --split train --views 100000 --out views --workers 2": (
         "stubborn views --split train --views 1 --out {tmp}/views --workers 1",
     ),
-    "stubborn views --split train --views 20000 --shrink 2 --profile fast --out views_small": (
-        "stubborn views --split train --views 1 --shrink 2 --profile fast --out {tmp}/views",
+    "stubborn train segmentation --furniture runs/models --out runs/rednet": Only(
+        "renders 800 views at least; tests/commands/test_views_mix.py and test_train_segmentation.py try its parts"
     ),
     "stubborn views --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
     "stubborn views show --views views_objects --out views.png": (
@@ -378,11 +377,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn views unpack --views views_objects --out views_png": (
         _VIEWS,
         "stubborn views unpack --views {tmp}/views --out {tmp}/views_png",
-    ),
-    "stubborn train segmentation --views views_small --val-views views_val --out runs/rednet --hours 3": (
-        _VIEWS,
-        "stubborn train segmentation --views {tmp}/views --val-views {tmp}/views --out {tmp}/rednet"
-        " --hours 0.01 --steps 2 --batch 2 --val-count 2",
     ),
     f"{_RUN} --semantics examples.my_segmentation:SEGMENTATION --config detector.weights=my_network.pt": (
         f"{PYTHON} -c 'import torch; from examples.my_segmentation import MyNetwork; "
@@ -464,21 +458,16 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _SCENE,
         _PACKED,
     ),
-    f"{_RUN} --split runs/flat_split --episodes 20": (
-        _SCENE,
-        _PACKED,
-        f"{_RUN} --split {{tmp}}/split --episodes 1 --agent oracle --out {{tmp}}/run",
-    ),
     f"{_RUN} --root {_KITCHEN} --house {_KITCHEN}/kitchen_assets/kitchen_env_model.xml"
     " --labels examples/worlds/kitchen.json --goal counter --semantics gt --episodes 2": _PACKAGE,
     f"{_RUN} --robot carrier.xml --episodes 20": (
         _ROBOT,
         f"{_RUN} --robot {{tmp}}/r/carrier.xml {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/run",
     ),
-    "stubborn reproduce splits --agents stubborn stubborn-plus oracle": (
+    "stubborn reproduce splits --episodes 60 --agents stubborn stubborn-plus oracle": (
         "stubborn reproduce splits --agents random oracle --episodes 1 --out {tmp}/paper",
     ),
-    "stubborn reproduce splits --agents stubborn stubborn-plus --semantics rednet": (
+    "stubborn reproduce splits --episodes 60 --agents stubborn stubborn-plus --semantics rednet": (
         "stubborn reproduce splits --agents random --semantics rednet --episodes 1 --out {tmp}/paper",
     ),
     f"{_RUN} --agent my_agent:make --semantics gt --episodes 2 --video --out runs/me": (
@@ -579,6 +568,18 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _FOREIGN.replace("foreign", "molmospaces") + 'write_scene(Path("{tmp}/scenes"))\'',
         "stubborn import molmospaces {tmp}/scenes --out {tmp}/houses",
     ),
+    "stubborn import robocasa kitchen.xml --root assets --out runs/kitchen": (
+        _FOREIGN.replace("foreign", "robocasa") + 'write_kitchen(Path("{tmp}/source"))\'',
+        "stubborn import robocasa {tmp}/source/scenes --root {tmp}/source --out {tmp}/houses --pictures 0",
+    ),
+    "stubborn import habitat hm3d/val --out runs/hm3d": (
+        _FOREIGN.replace("foreign", "scanned") + 'write_hm3d(Path("{tmp}/source"), pictures=False)\'',
+        "stubborn import habitat {tmp}/source --out {tmp}/houses --pictures 0",
+    ),
+    "stubborn import mesh flat.glb --out runs/flat": (
+        _FOREIGN.replace("foreign", "scanned") + 'write_glb(Path("{tmp}/source"))\'',
+        "stubborn import mesh {tmp}/source/flat.glb --out {tmp}/houses --pictures 0",
+    ),
     "stubborn houses check --house runs/mine/houses/house_00000.xml": (
         _HOUSES,
         "stubborn houses check --house {tmp}/houses/house_00000.xml --views 2",
@@ -597,15 +598,13 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn habitat examples/benchmark.py --episodes 10": Only(_PUBLISHED),
     "stubborn habitat 'agent.py --evaluation local' --split val --episodes 5": Only(_PUBLISHED),
     f"{_RUN} --agent habitat:agent:RandomAgent": Only(_PUBLISHED),
+    f"{_RUN} --agent 'process:env/bin/python stubborn_client.py Stubborn/eval.py --evaluation local --timestep_limit"
+    " 451' --config agent.interface=habitat": Only(_PUBLISHED),
     "stubborn bench --parts a,b,d --out runs/bench.json": Only(
         "takes minutes; tests/commands/test_bench.py runs its parts"
     ),
     "stubborn traps --family pane_gap --difficulty hard --seed 10 --out runs/panes": (
         "stubborn traps --family pane_gap --difficulty hard --seed 10 --out {tmp}/panes",
-    ),
-    "stubborn traps report --split runs/panes --agents oracle stubborn --out runs/panes_report": (
-        "stubborn traps --family pane_gap --difficulty easy --seed 10 --out {tmp}/panes",
-        "stubborn traps report --split {tmp}/panes --agents oracle --headings 1 --no-pictures --out {tmp}/out",
     ),
     "stubborn traps report --split contact-val --agents oracle stubborn --out runs/contact": (
         "stubborn traps report --split contact-val --agents oracle --traps jam_easy_00 --no-pictures --out {tmp}/out",
@@ -622,6 +621,10 @@ STAND_INS = (
     "my_traps",
     "my_models",
     "train.jsonl.gz",
+    "kitchen.xml",
+    "assets",
+    "hm3d/val",
+    "flat.glb",
     "scenes",
     "/usr/share/sweethome3d/furniture",
     "my_house.xml",

@@ -241,7 +241,7 @@ def test_reset_leaves_nothing_of_the_last_episode():
     run_episode(world(), agent, "cushion", max_steps=30)
     agent.reset("bed", 0)
     layers = {name: value for name, value in vars(agent.navmap).items() if name not in ("frame", "known")}
-    assert not any(layer.any() for layer in layers.values())
+    assert not any(np.any(layer) for layer in layers.values())
     assert agent.navmap.known is None
     assert (agent.step, agent.pose, agent.last_action, agent.route, agent.approach) == (0, None, None, None, None)
     assert isinstance(agent.explorer, CornerExplorer)
@@ -253,7 +253,8 @@ def test_the_ablation_rows_switch_on_one_measure_after_the_other():
     def switches(name: str) -> tuple[bool, ...]:
         agent = build(name)
         assert isinstance(agent, StubbornAgent)
-        return tuple(vars(agent.config.avoidance).values())
+        avoidance = agent.config.avoidance
+        return avoidance.untrap, avoidance.collision_layers, avoidance.averse_exploration, avoidance.visited_is_free
 
     rows = [switches(f"stubborn-{row}") for row in ("i", "ii", "iii", "iv", "v")]
     assert rows == [tuple(i < n for i in range(4)) for n in range(5)]

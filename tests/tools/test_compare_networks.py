@@ -14,14 +14,14 @@ from tools.training.compare_networks import Args, main, trained_hours
 
 def options(tmp_path: Path, **changes: object) -> Args:
     base = {"views": (tmp_path / "train",), "val_views": (tmp_path / "val",), "out": tmp_path / "out", "batch": 2}
-    base |= {"networks": ("compact", "unet"), "seeds": (0,), "rare_share": 0.0, "val_count": 2}
+    base |= {"networks": ("compact", "unet"), "seeds": (0,), "block_px": 1, "val_count": 2}
     return Args(**{**base, "hours": 0.0002, "turn_hours": 0.0001, **changes})  # type: ignore[arg-type]
 
 
 @pytest.mark.slow
 def test_networks_take_turns_until_all_have_trained_for_the_same_time(tmp_path: Path) -> None:
-    write_views(tmp_path / "train", 4, rows_px=48)
-    write_views(tmp_path / "val", 2, rows_px=48)
+    write_views(tmp_path / "train", 4)
+    write_views(tmp_path / "val", 2)
     assert main(options(tmp_path)) == 0
     for name in ("compact_0", "unet_0"):
         hours = [float(row["hours"]) for row in rows(tmp_path / "out" / name / "val.csv")]

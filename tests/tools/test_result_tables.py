@@ -10,31 +10,33 @@ import tarfile
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.special import stdtrit
 
 from sim.errors import ConfigError
-from sim.evaluation import bootstrap
 from tools.research import result_tables
-from tools.research.result_archive import ARCHIVE, ArchivedRun, RunKey, newest, read_archive
-from tools.research.result_definitions import comparisons, page_tables
+from tools.research.resolution import houses_needed, resolution_record, shown_difference, variance_components
+from tools.research.result_archive import ARCHIVES, ArchivedRun, RunKey, newest, read_archive, read_archives
+from tools.research.result_definitions import RESOLVED, comparisons, page_tables
 from tools.research.result_tables import (
     COMPARISONS,
     PAGE,
+    RESOLUTION,
     RESULTS,
     TABLES,
-    Record,
     comparison_record,
     fill_page,
+    holm,
     main,
     read_csv,
     result_record,
     row_keys,
     to_csv,
     unknown_quantities,
+    with_families,
 )
 
-RESAMPLED = ("_low", "_high", "_significant")
-"""Ends of columns that need the bootstrap."""
 CONFIG = {
     "agent": "stubborn",
     "semantics": "gt",
@@ -47,11 +49,7 @@ LINE = {"episode_id": "val_0000", "house": "val_00", "goal": "bed", "end_reason"
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> Mapping[RunKey, ArchivedRun]:
-    return read_archive(ARCHIVE, tmp_path_factory.mktemp("archive"), lambda text: None)
-
-
-def without_intervals(records: list[Record]) -> list[Record]:
-    return [{key: value for key, value in each.items() if not key.endswith(RESAMPLED)} for each in records]
+    return read_archives(ARCHIVES, tmp_path_factory.mktemp("archive"), lambda text: None)
 
 
 def test_the_tables_of_the_page_are_rows_of_the_shipped_csv_file() -> None:
@@ -61,37 +59,44 @@ def test_the_tables_of_the_page_are_rows_of_the_shipped_csv_file() -> None:
     assert unknown_quantities(page, results, compared) == []
 
 
-def test_the_shipped_csv_files_are_those_of_the_archive(
-    runs: Mapping[RunKey, ArchivedRun], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    results, compared = read_csv(TABLES / RESULTS), read_csv(TABLES / COMPARISONS)
-    keys, pairs = row_keys(runs), list(comparisons())
-    columns = [list(result_record(runs[keys[0].run], 20)), list(comparison_record(pairs[0], runs))]
-    assert [list(records[0]) for records in (results, compared)] == columns
-    for number in (0, len(keys) // 2):
-        assert result_record(runs[keys[number].run], keys[number].episodes) == results[number]
-    assert comparison_record(pairs[1], runs) == compared[1]
-    monkeypatch.setattr(bootstrap, "bootstrap_interval", lambda values, houses: (0.0, 0.0))
-    made = [result_record(runs[key.run], key.episodes) for key in keys]
-    assert without_intervals(made) == without_intervals(results)
-    assert without_intervals([comparison_record(each, runs) for each in pairs]) == without_intervals(compared)
+def test_the_shipped_csv_files_are_those_of_the_archive(runs: Mapping[RunKey, ArchivedRun]) -> None:
+    made = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
+    assert read_csv(TABLES / RESULTS) == made
+    pairs = list(comparisons())
+    assert read_csv(TABLES / COMPARISONS) == with_families(pairs, [comparison_record(each, runs) for each in pairs])
+    resolved = [resolution_record(each, runs) for each in pairs if each.table in RESOLVED and each.primary]
+    assert read_csv(TABLES / RESOLUTION) == resolved
+
+
+def test_holm_multiplies_the_smallest_p_value_by_their_number_and_keeps_the_order() -> None:
+    assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert holm([0.9, 0.8]) == [1.0, 1.0]
+
+
+def test_every_table_has_primary_comparisons_and_only_they_are_corrected() -> None:
+    records = read_csv(TABLES / COMPARISONS)
+    primary = [record for record in records if record["family"] == "primary"]
+    assert {record["table"] for record in primary} == {record["table"] for record in records}
+    assert all((record["family"] == "primary") == bool(record["success_p_holm"]) for record in records)
+    for record in records:
+        excluded = not float(record["success_low"]) <= 0.0 <= float(record["success_high"])
+        assert excluded == (float(record["success_p"]) < 0.05)
 
 
 def test_a_sentence_may_quote_only_quantities_of_the_csv_files() -> None:
     results, compared = read_csv(TABLES / RESULTS), read_csv(TABLES / COMPARISONS)
-    for text in ("94.1 [89.1, 98.0]", "by 15.0 points\n[6.5, 23.8]"):
+    for text in ("94.1 [89.5, 96.6]", "by 15.0 points\n[8.1, 21.8]"):
         assert len(unknown_quantities(text, results, compared)) == 1
-    assert unknown_quantities("94.0 [89.1, 98.0], by +15.0 points\n[+6.5, +23.9]", results, compared) == []
+    assert unknown_quantities("94.0 [89.5, 96.6], by +15.0 points\n[+8.1, +21.9]", results, compared) == []
 
 
 def test_check_reports_a_page_and_a_csv_file_that_differ(
     tmp_path: Path, runs: Mapping[RunKey, ArchivedRun], monkeypatch: pytest.MonkeyPatch, capsys
 ) -> None:
     few = sorted({key for table in page_tables() for key in table.needed()}, key=lambda key: (key.run, key.episodes))
-    monkeypatch.setattr(bootstrap, "bootstrap_interval", lambda values, houses: (0.0, 0.0))
-    monkeypatch.setattr(result_tables, "read_archive", lambda *_: runs)
+    monkeypatch.setattr(result_tables, "read_archives", lambda *_: runs)
     monkeypatch.setattr(result_tables, "row_keys", lambda _: few)
-    monkeypatch.setattr(result_tables, "comparisons", lambda: list(comparisons())[:1])
+    monkeypatch.setattr(result_tables, "comparisons", lambda: [each for each in comparisons() if each.primary][:1])
     page = tmp_path / "results.md"
     page.write_text(re.sub(QUOTED, "", PAGE.read_text(encoding="utf-8")), encoding="utf-8")
     args = result_tables.Args(tables=tmp_path, page=page)
@@ -134,6 +139,8 @@ def test_odd_folders_of_an_archive_are_skipped_with_a_message(tmp_path: Path) ->
         "older/good/results.jsonl": line,
         "../outside/config.json": config,
         "half/config.json": config,
+        "begun/config.json": config,
+        "begun/results.jsonl": "",
         "broken/config.json": "[",
         "broken/results.jsonl": line,
         "settings/config.json": json.dumps(CONFIG | {"settings": 3}),
@@ -147,7 +154,7 @@ def test_odd_folders_of_an_archive_are_skipped_with_a_message(tmp_path: Path) ->
     found = read_archive(archive_of(tmp_path, files), folder, said.append)
     assert [run.folder for run in found.values()] == ["good"]
     skipped = ["'../outside/config.json'", "'notes.txt'", "'linked/config.json'", "'half'", "'broken'", "'settings'"]
-    for name in (*skipped, "'unknown'"):
+    for name in (*skipped, "'unknown'", "'begun'"):
         assert sum(text.startswith(f"Skipped {name}") for text in said) == 1, name
     assert not (tmp_path / "in" / "outside").exists()
 
@@ -162,6 +169,23 @@ def test_the_run_with_more_episodes_is_shown_for_a_row(tmp_path: Path) -> None:
     assert any(text.startswith("Skipped 'b'") for text in said)
     with pytest.raises(ConfigError, match="older"):
         newest([run, ArchivedRun(run.key, run.run, "c")], said.append)
+
+
+def test_replicates_are_no_episodes_and_their_spread_is_in_the_table(tmp_path: Path) -> None:
+    lines = [
+        LINE
+        | {"episode_id": f"val_000{i}{mark}", "house": f"val_0{i}", "success": float(success), "spl": 0.5 * success}
+        for i, outcomes in enumerate(((1, 0), (1, 1), (0, 0)))
+        for mark, success in zip(("", "~1"), outcomes, strict=True)
+    ]
+    text = "".join(json.dumps(line) + "\n" for line in lines)
+    files = {"a/config.json": json.dumps(CONFIG | {"replicates": 2}), "a/results.jsonl": text}
+    (run,) = read_archive(archive_of(tmp_path, files), tmp_path / "runs", lambda _: None).values()
+    assert [line["episode_id"] for line in run.first_lines(2)] == ["val_0000", "val_0000~1", "val_0001", "val_0001~1"]
+    record = result_record(run, 3)
+    assert (record["episodes"], record["options"], record["success"]) == ("3", "--replicates 2", "0.500000")
+    assert float(record["success_replicates_sd"]) == pytest.approx((0.5 / 3 / 3) ** 0.5, abs=1e-6)
+    assert "--replicates 2" in record["command"]
 
 
 def test_a_row_has_the_command_that_repeats_it(tmp_path: Path) -> None:
@@ -183,3 +207,17 @@ def test_a_csv_file_read_again_has_the_same_rows(tmp_path: Path) -> None:
     records = [{"a": "x, y", "b": ""}, {"a": '"', "b": "2"}]
     (tmp_path / "some.csv").write_text(to_csv(records), encoding="utf-8")
     assert read_csv(tmp_path / "some.csv") == records
+
+
+def test_variances_between_and_within_houses_are_those_of_simulated_data() -> None:
+    rng, index = np.random.default_rng(0), np.repeat(np.arange(4000), np.resize([4, 6, 8], 4000))
+    values = rng.normal(0.0, 0.3, 4000)[index] + rng.normal(0.0, 0.5, len(index))
+    assert variance_components(values, index) == pytest.approx((0.09, 0.25), rel=0.05)
+
+
+def test_the_needed_houses_show_a_difference_in_four_of_five_samples() -> None:
+    houses = houses_needed(0.04, 0.1)
+    assert shown_difference(0.04, houses) <= 0.1 < shown_difference(0.04, houses - 1)
+    draws = np.random.default_rng(0).normal(0.1, 0.2, (20_000, houses))
+    statistic = draws.mean(axis=1) / draws.std(axis=1, ddof=1) * np.sqrt(houses)
+    assert np.mean(statistic > stdtrit(houses - 1, 0.975)) == pytest.approx(0.8, abs=0.02)

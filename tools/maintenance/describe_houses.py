@@ -32,7 +32,7 @@ from sim.paths import assets_dir
 from sim.reading import read_bytes
 from sim.world.storeys import floor_levels
 
-SPLITS = ("val", "test", "large", "hazards", "train")
+SPLITS = ("val", "test", "large", "large-test", "hazards", "hazards-test", "train")
 TABLE_FILE = "houses.csv"
 """Name of the table; it is written next to the README."""
 COLUMNS = (
@@ -73,6 +73,7 @@ folder.
 | `test` | a final measurement: nothing is chosen by its results | 34 | 2 to 30 |
 | `large` | houses of more than 300 m2, five of them with two storeys | 30 | 12 to 60 |
 | `hazards` | obstacles that depth misses or shows as passable | 30 | 2 to 30 |
+| `large-test`, `hazards-test` | other houses by the same rules, for a final measurement | 30 | as above |
 | `train` | training | 10 | 2 to 30 |
 | `contact-*` | traps, 30 a family: [val, test and heldout](../../docs/traps.md) | 1 | 2 to 11 |
 
@@ -91,6 +92,21 @@ stubborn episodes --split assets/mjcf_houses/val --workers 2
 ```
 
 `python -m tools.maintenance.split_report` reports how difficult the splits are.
+
+## The ground
+
+The seed of a house also chooses its ground: `val`, `test`, `large` and `hazards` keep the furniture and
+episodes of 2.1.0.
+
+| part | values |
+|---|---|
+| friction | wood 0.55-0.75, tiles 0.5-0.7, stone 0.45-0.65, carpet and rubber 0.8-1, rugs 0.7-1, thresholds 0.5-0.7 |
+| rugs and mats | 3 to 12 mm high, with edges in steps of at most 4 mm |
+| thresholds | 2 to 12 mm, in up to 80 % of doorways between different floors |
+| wet spots | friction 0.2-0.4, in front of a third of the sinks, showers and bathtubs |
+| tiles | one of 4 to 14 m2 leans: one of its edges is 0.5 to 3 mm high |
+
+Only wheels and casters touch all of these but the floors; furniture stands on the floor below.
 
 ## The table of houses
 

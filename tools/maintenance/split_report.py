@@ -1,6 +1,6 @@
 """Writes how difficult the episodes of splits are, without an agent: sizes, distances, instances, goals in view.
 
-    python -m tools.maintenance.split_report --splits val test large hazards --workers 2
+    python -m tools.maintenance.split_report --splits val test large large-test --workers 2
     python -m tools.maintenance.split_report --splits large --episodes 60 --out /tmp/large.md
 
 A row of the table has, for each split: medians (smallest to largest) over houses of floor area and rooms; medians over

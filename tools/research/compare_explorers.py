@@ -6,7 +6,7 @@ python -m tools.research.compare_explorers --plans runs/plans/train runs/plans/l
 The whole agent runs, with an exact camera and a map as in the real environment; an episode ends with the first frame
 that shows the target, or after 500 steps. All explorers run the same episodes, in the houses that
 `stubborn train semexp` holds back; `stubborn train poni` holds back others (--houses held-back-poni). Intervals are
-from 2000 bootstrap samples of the houses.
+over houses (`sim.evaluation.intervals`).
 """
 
 from __future__ import annotations
@@ -20,11 +20,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim import cli
+from sim.analysis.tables import Cell
 from sim.commands.train.plan_split import split_plans
 from sim.configuration import parse_assignments, with_fields
+from sim.evaluation.intervals import estimate, paired_difference
 from sim.files import write_atomically
 from sim.interface import MAX_STEPS, CameraModel, ConfigError
 from sim.plans.episode import draw_goal_and_start
@@ -127,26 +128,17 @@ def episode(agent: TwinAgent, plans: Sequence[Path], number: int, seed: int) -> 
 
 
 def row(name: str, results: Sequence[Mapping[str, Any]], first: Sequence[Mapping[str, Any]]) -> str:
-    """Returns the figures of an explorer, and the ratio of its steps to those of the first one, as text."""
-    steps, others = (np.array([line["steps_to_first_sight"] for line in lines], float) for lines in (results, first))
-    seen = np.array([line["gt_explored"] for line in results], float)
+    """Returns the figures of an explorer, and the difference of its steps from those of the first one, as text."""
+    steps, others = ([float(line["steps_to_first_sight"]) for line in lines] for lines in (results, first))
     houses = [str(line["house"]) for line in results]
-    low, high = np.percentile(_resampled(houses, steps), [2.5, 97.5])
-    ratio = np.percentile(_resampled(houses, steps) / _resampled(houses, others), [2.5, 97.5])
-    collisions, metres = (float(np.mean([line[key] for line in results])) for key in ("collisions", "path_length"))
-    return (
-        f"{name:34s} seen {seen.mean():.3f}  steps to first sight {steps.mean():6.1f} [{low:.1f}, {high:.1f}]  median "
-        f"{np.median(steps):5.1f}  ratio {steps.mean() / others.mean():.3f} [{ratio[0]:.3f}, {ratio[1]:.3f}]  "
-        f"collisions {collisions:.1f}  path {metres:.1f} m"
+    mean, against = Cell(estimate(steps, houses)), Cell(paired_difference(others, steps, houses), difference=True)
+    seen, collisions, metres = (
+        float(np.mean([line[key] for line in results])) for key in ("gt_explored", "collisions", "path_length")
     )
-
-
-def _resampled(houses: Sequence[str], values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the mean of values in 2000 bootstrap samples of the houses, the same samples at each call."""
-    names, index = np.unique(houses, return_inverse=True)
-    total, count = np.bincount(index, values), np.bincount(index)
-    drawn = np.random.default_rng(0).integers(len(names), size=(2000, len(names)))
-    return total[drawn].sum(1) / count[drawn].sum(1)
+    return (
+        f"{name:34s} seen {seen:.3f}  steps to first sight {mean.text()}  median {np.median(steps):5.1f}  difference "
+        f"{against.text()}  collisions {collisions:.1f}  path {metres:.1f} m"
+    )
 
 
 def _plans(args: Args) -> list[Path]:

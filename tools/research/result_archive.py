@@ -1,8 +1,8 @@
-"""Reads the archive of result lines, and chooses the runs that the tables of results are made from.
+"""Reads the archives of result lines, and chooses the runs that the tables of results are made from.
 
-The archive, `docs/tables/splits-2.0.0.tar.gz`, holds one folder for each run, with the `config.json` and
-`results.jsonl` that `stubborn run` wrote. Runs that newer ones replace are in its folder `older`; tables do not use
-them.
+An archive, such as `docs/tables/splits-2.0.0.tar.gz` for version 2.0.0 of the splits, holds one folder for each run,
+with the `config.json` and `results.jsonl` that `stubborn run` wrote. Runs that newer ones replace are in its folder
+`older`; tables do not use them.
 """
 
 from __future__ import annotations
@@ -19,11 +19,12 @@ import msgspec
 from sim.analysis.comparison import Line, Run, read_run
 from sim.composition.agents import find_agent
 from sim.composition.options import RunOptions
+from sim.episodes.replicates import episode_of
 from sim.errors import ConfigError
 from sim.reading import PlainMember, convert, open_plain
 
 ROOT = Path(__file__).resolve().parents[2]
-ARCHIVE = ROOT / "docs" / "tables" / "splits-2.0.0.tar.gz"
+ARCHIVES = tuple(sorted((ROOT / "docs" / "tables").glob("splits-*.tar.gz")))
 OLDER = "older"
 """The folder of the archive with the runs that newer ones replace."""
 RUN_FILES = ("config.json", "results.jsonl")
@@ -41,6 +42,7 @@ class _Setup(msgspec.Struct):
     verification: str | None = None
     noise: str | None = None
     seed: int | None = None
+    replicates: int | None = None
     settings: dict[str, Any] = msgspec.field(default_factory=dict)
 
 
@@ -53,6 +55,8 @@ class RunKey:
     options: str
     """Options of `stubborn run` that are not the default, such as "--explorer informed-tour"."""
     semantics: str
+    version: str
+    """Version of the splits: results of different ones are of different houses or physics."""
 
     @property
     def name(self) -> str:
@@ -70,15 +74,22 @@ class ArchivedRun:
     """Its folder in the archive."""
 
     def first_lines(self, count: int | None = None) -> list[Line]:
-        """Returns the lines of the first episodes of the split; their ids are numbered in the order of the split.
+        """Returns the lines of the first episodes of the split, with their replicates.
+
+        The ids of episodes are numbered in the order of the split.
 
         Raises:
             ConfigError: the run has fewer episodes.
         """
-        ids = sorted(self.run.lines)
-        if count is not None and count > len(ids):
-            raise ConfigError(f"'{self.folder}' has {len(ids)} episodes; a table needs {count}.")
-        return [self.run.lines[each] for each in ids[:count]]
+        if count is not None and count > self.episodes:
+            raise ConfigError(f"'{self.folder}' has {self.episodes} episodes; a table needs {count}.")
+        wanted = set(sorted({episode_of(each) for each in self.run.lines})[:count])
+        return [self.run.lines[each] for each in sorted(self.run.lines) if episode_of(each) in wanted]
+
+    @property
+    def episodes(self) -> int:
+        """The number of episodes; replicates are not counted."""
+        return len({episode_of(each) for each in self.run.lines})
 
     @property
     def uses_ground_truth(self) -> bool:
@@ -104,6 +115,14 @@ class ArchivedRun:
         return " ".join(filter(None, [*parts, "--split", shlex.quote(source), f"--episodes {episodes}"]))
 
 
+def read_archives(archives: Iterable[Path], folder: Path, say: Say) -> dict[RunKey, ArchivedRun]:
+    """Returns the runs of several archives, each of another version of the splits; see `read_archive`."""
+    runs: dict[RunKey, ArchivedRun] = {}
+    for archive in archives:
+        runs |= read_archive(archive, folder / archive.name.removesuffix(".tar.gz"), say)
+    return runs
+
+
 def read_archive(archive: Path, folder: Path, say: Say) -> dict[RunKey, ArchivedRun]:
     """Returns the runs of an archive; what is not a run is reported and skipped.
 
@@ -124,6 +143,8 @@ def read_archive(archive: Path, folder: Path, say: Say) -> dict[RunKey, Archived
     for name in names:
         try:
             run = read_run(folder / name)
+            if not run.lines:
+                raise ConfigError("it has no episode.")
             found.append(ArchivedRun(key_of(run), run, name))
         except ConfigError as error:
             say(f"Skipped '{name}': {error}")
@@ -162,14 +183,15 @@ def key_of(run: Run) -> RunKey:
     """
     agent, semantics = str(run.recorded("agent")), str(run.recorded("semantics"))
     find_agent(agent)
-    return RunKey(str(run.recorded("split_identity")["name"]), agent, shlex.join(_options(run)), semantics)
+    split = run.recorded("split_identity")
+    return RunKey(str(split["name"]), agent, shlex.join(_options(run)), semantics, str(split["version"]))
 
 
 def _options(run: Run) -> Iterator[str]:
     """Yields the words of the options of `stubborn run` that are not the default, in a fixed order."""
     setup = convert(dict(run.config), _Setup, where=f"Config '{run.path / 'config.json'}'")
     defaults = RunOptions()
-    for name in ("explorer", "verification", "noise", "seed"):
+    for name in ("explorer", "verification", "noise", "seed", "replicates"):
         value = getattr(setup, name)
         if value is not None and value != getattr(defaults, name):
             yield from (f"--{name}", str(value))

@@ -6,7 +6,7 @@ A table shows only rows of `docs/tables/results.csv`, and all rows of one split 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from sim.analysis.metrics import COLLISIONS, EXPLORED, FIRST_SIGHT, SPL, STEPS, SUCCESS, TRAPPED, Metric
@@ -18,6 +18,8 @@ MEANS = (SUCCESS, SPL, SOFT_SPL, DISTANCE, EXPLORED, COLLISIONS, TRAPPED, STEPS)
 """Metrics whose mean and interval each row of results.csv has."""
 COMPARED = (SUCCESS, SPL, COLLISIONS, TRAPPED, FIRST_SIGHT, STEPS)
 """Metrics whose paired difference each row of comparisons.csv has."""
+PRIMARY_METRICS = (SUCCESS, SPL)
+"""Metrics of the primary comparisons of a table; their p-values are corrected together (Holm 1979)."""
 MEDIAN = "median_first_sight"
 """Column of results.csv: median steps to first sight; an episode that never shows the goal counts with the limit."""
 FAILED = "failed_"
@@ -42,6 +44,8 @@ class Comparison:
     first: RunKey
     second: RunKey
     episodes: int
+    primary: bool = True
+    """It answers the question of its table. All others are exploratory: their intervals are not corrected."""
 
 
 @dataclass(frozen=True)
@@ -58,14 +62,27 @@ class PageTable:
             yield from (row for row, _ in cells)
 
 
-HEADLINE_EPISODES = {"val": 200, "large": 100, "hazards": 100, "test": 500}
+EARLIER = "2.0.0"
+"""Version of the splits of all tables but the headline; they were measured with the physics of version 0.2.0."""
+HEADLINE_VERSIONS = {"val": "3.0.0", "hazards": "3.0.0", "contact-val": "2.1.0", "contact-heldout": "2.1.0"}
+"""That of the splits of the headline table. The traps are the same in 2.1.0 and 3.0.0."""
+HEADLINE_EPISODES = {"val": 60, "hazards": 200, "contact-val": 150, "contact-heldout": 60}
 HEADLINE = {
     "val": ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet"),
+    "hazards": ("stubborn-plus gt",),
+    "contact-val": ("stubborn-plus gt",),
+    "contact-heldout": ("stubborn gt", "stubborn-plus gt"),
+}
+"""Agents and segmentation, by split."""
+FURTHER_EPISODES = {"large": 100, "hazards": 100, "test": 500}
+FURTHER = {
     "large": ("oracle gt", "stubborn gt", "stubborn rednet", "stubborn-plus rednet"),
     "hazards": ("oracle gt", "stubborn gt", "stubborn rednet", "stubborn-plus rednet"),
     "test": ("stubborn rednet", "stubborn-plus rednet"),
 }
-"""Agents and segmentation, by split."""
+"""The same on further splits, of the earlier version."""
+RESOLVED = ("headline", "further")
+"""Tables whose primary comparisons have a row in resolution.csv."""
 ABLATION = {
     "stubborn-i": "I: none",
     "stubborn-ii": "II: untrap moves",
@@ -88,6 +105,11 @@ EXPLORERS = {
     "oracle": "`oracle`",
 }
 EXPLORER_EPISODES = {"val": 200, "large": 300}
+PRIMARY_EXPLORERS = ("stubborn --explorer informed-tour", "poni", "semexp")
+"""Explorers whose comparison with corners is primary."""
+DRIFT = ("stubborn --noise realsense", "stubborn --noise realsense --config noise.pose.from_odometry=false")
+"""Runs with gps and compass by odometry, and with the true pose."""
+DRIFT_EPISODES = 30
 CONTROLS = tuple(
     f"semexp --config agent.explorer.{control}" for control in ("goal=wrong", "semantics=shuffled", "semantics=none")
 )
@@ -103,23 +125,33 @@ NETWORK = (
 )
 
 
-def run_key(split: str, name: str, semantics: str) -> RunKey:
+def run_key(split: str, name: str, semantics: str, version: str = EARLIER) -> RunKey:
     """Returns the key of an agent with options, such as "stubborn --explorer tour"."""
     agent, _, options = name.partition(" ")
-    return RunKey(split, agent, options, semantics)
+    return RunKey(split, agent, options, semantics, version)
+
+
+def _of_agent(split: str, agent: str, version: str) -> RunKey:
+    """Returns the key of an entry of `HEADLINE`, such as "stubborn gt"."""
+    name, semantics = agent.split()
+    return run_key(split, name, semantics, version)
 
 
 def page_tables() -> tuple[PageTable, ...]:
     """Returns the tables of the page."""
-    return _headline(), _ablation(), _explorers(), _network()
+    return (
+        _agents("headline", HEADLINE, HEADLINE_EPISODES, HEADLINE_VERSIONS),
+        _agents("further", FURTHER, FURTHER_EPISODES, dict.fromkeys(FURTHER, EARLIER)),
+        _ablation(),
+        _explorers(),
+        _network(),
+    )
 
 
 def comparisons() -> Iterator[Comparison]:
     """Yields the comparisons that the page may quote."""
-    for split, episodes in HEADLINE_EPISODES.items():
-        present = [run_key(split, *agent.split()) for agent in HEADLINE[split]]
-        for second, first in itertools.combinations(present, 2):
-            yield Comparison("headline", first, second, episodes)
+    yield from _agents_compared("headline", HEADLINE, HEADLINE_EPISODES, HEADLINE_VERSIONS)
+    yield from _agents_compared("further", FURTHER, FURTHER_EPISODES, dict.fromkeys(FURTHER, EARLIER))
     *rows, whole = ABLATION
     for split in ABLATION_SPLITS:
         for name in rows:
@@ -128,11 +160,24 @@ def comparisons() -> Iterator[Comparison]:
     for split, episodes in EXPLORER_EPISODES.items():
         for name in list(EXPLORERS)[1:]:
             first, second = run_key(split, name, "gt"), run_key(split, "stubborn", "gt")
-            yield Comparison("explorers", first, second, episodes)
+            yield Comparison("explorers", first, second, episodes, name in PRIMARY_EXPLORERS)
         for name in CONTROLS:
             first, second = run_key(split, name, "gt"), run_key(split, "semexp", "gt")
-            yield Comparison("explorers", first, second, episodes)
+            yield Comparison("explorers", first, second, episodes, name == CONTROLS[0])
     yield from _network_comparisons()
+    first, second = (run_key("val", name, "gt", HEADLINE_VERSIONS["val"]) for name in DRIFT)
+    yield Comparison("drift", first, second, DRIFT_EPISODES)
+
+
+def _agents_compared(
+    table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int], versions: Mapping[str, str]
+) -> Iterator[Comparison]:
+    """Yields each pair of agents of a split; those of our two agents with the same segmentation are primary."""
+    for split, names in agents.items():
+        present = [_of_agent(split, agent, versions[split]) for agent in names]
+        for second, first in itertools.combinations(present, 2):
+            primary = second.agent == "stubborn" and first.semantics == second.semantics
+            yield Comparison(table, first, second, episodes[split], primary)
 
 
 def _network_comparisons() -> Iterator[Comparison]:
@@ -145,15 +190,17 @@ def _network_comparisons() -> Iterator[Comparison]:
         yield from (Comparison("network", first, second, episodes) for first in others)
 
 
-def _headline() -> PageTable:
+def _agents(
+    table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int], versions: Mapping[str, str]
+) -> PageTable:
     rows = []
-    for split, agent in ((split, agent) for split, agents in HEADLINE.items() for agent in agents):
+    for split, agent in ((split, agent) for split, names in agents.items() for agent in names):
         name, semantics = agent.split()
-        row, count = RowKey(run_key(split, name, semantics), HEADLINE_EPISODES[split]), HEADLINE_EPISODES[split]
+        row = RowKey(_of_agent(split, agent, versions[split]), episodes[split])
         shown = "-" if name == "oracle" else "truth" if semantics == "gt" else "network"
-        rows.append(((f"{split}, {count}", f"`{name}`", shown), _cells(row, (SUCCESS, SPL))))
+        rows.append(((f"{split}, {row.episodes}", f"`{name}`", shown), _cells(row, (SUCCESS, SPL))))
     header = ("split, episodes", "agent", "segmentation", "success %", "SPL")
-    return PageTable("headline", header, tuple(rows))
+    return PageTable(table, header, tuple(rows))
 
 
 def _ablation() -> PageTable:

@@ -1,11 +1,15 @@
-"""Makes the tables of results: `docs/tables/*.csv` and the tables of docs/results.md, from the archive of result lines.
+"""Makes the tables of results: `docs/tables/*.csv` and the tables of docs/results.md, from archives of result lines.
 
     python -m tools.research.result_tables            # writes them
     python -m tools.research.result_tables --check    # exit status 1 where a file differs from what it would write
 
-`results.csv` has one row for each agent with its options, split and segmentation, and `comparisons.csv` the paired
-differences. Shares are between 0 and 1; `_low` and `_high` are the 95 % bootstrap interval
-(`sim.evaluation.bootstrap`). No episode is run. The page's tables stand between `<!-- table: NAME -->` and
+`results.csv` has one row for each agent with its options, split and segmentation, `comparisons.csv` the paired
+differences, and `resolution.csv` the episodes that show a difference (`tools.research.resolution`). Shares are between
+0 and 1; `_low` and `_high` are the 95 % interval (`sim.evaluation.intervals`). In `comparisons.csv` the column `family`
+names the primary comparisons of a table: `success_p_holm` and `spl_p_holm` are their p-values, corrected by Holm's
+method for all primary comparisons of the table in both metrics. All others are exploratory, and nothing is corrected
+for their number. `_replicates_sd` is the standard deviation that chance alone gives the mean over one replicate of each
+episode (`stubborn run --replicates`). No episode is run. The page's tables stand between `<!-- table: NAME -->` and
 `<!-- end -->`; its sentences may quote only quantities with an interval, such as `94.0 [89.1, 98.0]`, that are in the
 two files.
 """
@@ -24,20 +28,24 @@ from pathlib import Path
 
 from sim import cli
 from sim.analysis import display
-from sim.analysis.comparison import Line, require_same_episodes
-from sim.analysis.metrics import FIRST_SIGHT, Metric, houses_of
+from sim.analysis.comparison import Line
+from sim.analysis.metrics import FIRST_SIGHT, Metric, episodes_of, houses_of
 from sim.errors import ConfigError
-from sim.evaluation.bootstrap import Estimate
+from sim.evaluation.intervals import Estimate, replicate_spread
+from sim.evaluation.results import metric_value
 from sim.files import write_together
 from sim.reading import read_bytes, read_text
 from sim.reading import read_csv as read_table
 from sim.task.failures import CAUSES
-from tools.research.result_archive import ARCHIVE, ROOT, ArchivedRun, RunKey, read_archive
+from tools.research.resolution import paired_lines, resolution_record
+from tools.research.result_archive import ARCHIVES, ROOT, ArchivedRun, RunKey, read_archives
 from tools.research.result_definitions import (
     COMPARED,
     FAILED,
     MEANS,
     MEDIAN,
+    PRIMARY_METRICS,
+    RESOLVED,
     Comparison,
     PageTable,
     RowKey,
@@ -49,19 +57,19 @@ Record = dict[str, str]
 """One row of a CSV file, by column."""
 TABLES = ROOT / "docs" / "tables"
 PAGE = ROOT / "docs" / "results.md"
-RESULTS, COMPARISONS = "results.csv", "comparisons.csv"
+RESULTS, COMPARISONS, RESOLUTION = "results.csv", "comparisons.csv", "resolution.csv"
 QUANTITY = re.compile(r"([-+]?\d[\d.]*)(?: (?:points|steps|%|of SPL))? (\[[-+]?\d[\d.]*, [-+]?\d[\d.]*\])")
 """A number with an interval in a sentence of the page."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Write the tables of results from the archive of result lines, or check them."""
+    """Write the tables of results from the archives of result lines, or check them."""
 
     check: bool = False
     """Write nothing; the exit status is 1 where a file differs."""
-    archive: Path = ARCHIVE
-    """The archive of result lines."""
+    archives: tuple[Path, ...] = ARCHIVES
+    """Archives of result lines, each of one version of the splits."""
     tables: Path = TABLES
     """Folder of the CSV files."""
     page: Path = PAGE
@@ -76,13 +84,16 @@ def main(args: Args) -> int:
         console.print(text, markup=False, highlight=False, soft_wrap=True)
 
     with tempfile.TemporaryDirectory() as folder:
-        runs = read_archive(args.archive, Path(folder), say)
+        runs = read_archives(args.archives, Path(folder), say)
         results = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
-        compared = [comparison_record(each, runs) for each in comparisons()]
+        pairs = list(comparisons())
+        compared = with_families(pairs, [comparison_record(each, runs) for each in pairs])
+        resolved = [resolution_record(each, runs) for each in pairs if each.table in RESOLVED and each.primary]
     page = fill_page(read_text(args.page, what="--page"), results)
     wanted = {
         args.tables / RESULTS: to_csv(results),
         args.tables / COMPARISONS: to_csv(compared),
+        args.tables / RESOLUTION: to_csv(resolved),
         args.page: page,
     }
     unknown = unknown_quantities(page, results, compared)
@@ -104,13 +115,13 @@ def row_keys(runs: Mapping[RunKey, ArchivedRun]) -> list[RowKey]:
     Raises:
         ConfigError: a table needs a run that the archive does not have.
     """
-    keys = {RowKey(key, len(run.run.lines)) for key, run in runs.items()}
+    keys = {RowKey(key, run.episodes) for key, run in runs.items()}
     for table in page_tables():
         for key in table.needed():
             if key.run not in runs:
                 raise ConfigError(
                     f"Table '{table.name}' needs a run of '{key.run.name}' with {key.run.semantics} segmentation on "
-                    f"{key.run.split}; the archive has none."
+                    f"{key.run.split} {key.run.version}; the archives have none."
                 )
             keys.add(key)
     return sorted(keys, key=lambda key: (key.run, key.episodes))
@@ -122,6 +133,9 @@ def result_record(run: ArchivedRun, episodes: int) -> Record:
     record = {**_identity(run.key), "ground_truth": _yes(run.uses_ground_truth), **_counts(lines)}
     for metric in MEANS:
         record |= _estimate_columns(metric, metric.cell(lines).estimate)
+    for metric in PRIMARY_METRICS:
+        spread = replicate_spread([metric_value(line, metric.key) for line in lines], episodes_of(lines))
+        record[f"{metric.key}_replicates_sd"] = "" if spread is None else f"{spread:.6f}"
     record[MEDIAN] = FIRST_SIGHT.median(lines)
     failed = Counter(line["failure"] for line in lines if not line["success"])
     record |= {f"{FAILED}{cause}": str(failed[cause]) for cause in CAUSES}
@@ -130,7 +144,7 @@ def result_record(run: ArchivedRun, episodes: int) -> Record:
     return record | {
         "package": versions.get("stubborn-objectnav", ""),
         "mujoco": versions.get("mujoco", ""),
-        "split_version": f"{split['version']} {split['sha256'][:8]}",
+        "split_sha256": split["sha256"][:8],
         "code": run.codes,
         "network": run.network,
         "command": run.command(episodes),
@@ -138,31 +152,50 @@ def result_record(run: ArchivedRun, episodes: int) -> Record:
 
 
 def comparison_record(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> Record:
-    """Returns a row of comparisons.csv.
+    """Returns a row of comparisons.csv without its family.
 
     Raises:
         ConfigError: a run is not in the archive, or the runs are of different episodes.
     """
-    for key in (pair.first, pair.second):
-        if key not in runs:
-            raise ConfigError(
-                f"A comparison of table '{pair.table}' needs a run that the archive does not have: {key}."
-            )
-    one, other = runs[pair.first], runs[pair.second]
-    shared = set(require_same_episodes(one.run, other.run))
-    first, second = (
-        [line for line in run.first_lines(pair.episodes) if line["episode_id"] in shared] for run in (one, other)
-    )
-    minus = {f"minus_{name}": value for name, value in _identity(pair.second).items() if name != "split"}
+    first, second = paired_lines(pair, runs)
+    minus = {
+        f"minus_{name}": value for name, value in _identity(pair.second).items() if name not in ("split", "version")
+    }
     record = {"table": pair.table, **_identity(pair.first), **minus, **_counts(first)}
     for metric in COMPARED:
         found = metric.difference(second, first).estimate
         record |= _estimate_columns(metric, found) | {f"{metric.key}_significant": _yes(found.significant)}
+        if metric in PRIMARY_METRICS:
+            record |= {f"{metric.key}_p": f"{1.0 if found.p is None else found.p:.6f}", f"{metric.key}_p_holm": ""}
     outcomes = [(bool(a["success"]), bool(b["success"])) for a, b in zip(first, second, strict=True)]
     return record | {
         "only_first_succeeds": str(outcomes.count((True, False))),
         "only_second_succeeds": str(outcomes.count((False, True))),
     }
+
+
+def with_families(pairs: Sequence[Comparison], records: Sequence[Record]) -> list[Record]:
+    """Returns rows of comparisons.csv with their family, and the corrected p-values of primary ones."""
+    found = [
+        {"table": record["table"], "family": "primary" if pair.primary else "exploratory", **record}
+        for pair, record in zip(pairs, records, strict=True)
+    ]
+    columns = [f"{metric.key}_p" for metric in PRIMARY_METRICS]
+    for table in {pair.table for pair in pairs}:
+        family = [record for record in found if record["table"] == table and record["family"] == "primary"]
+        corrected = iter(holm([float(record[column]) for record in family for column in columns]))
+        for record in family:
+            record |= {f"{column}_holm": f"{next(corrected):.6f}" for column in columns}
+    return found
+
+
+def holm(p_values: Sequence[float]) -> list[float]:
+    """Returns the p-values corrected for their number by Holm's method (1979)."""
+    corrected, least = [1.0] * len(p_values), 0.0
+    for rank, number in enumerate(sorted(range(len(p_values)), key=p_values.__getitem__)):
+        least = max(least, min(1.0, (len(p_values) - rank) * p_values[number]))
+        corrected[number] = least
+    return corrected
 
 
 def fill_page(text: str, results: Sequence[Record]) -> str:
@@ -231,15 +264,21 @@ def read_csv(file: Path) -> list[Record]:
 
 
 def _identity(key: RunKey) -> Record:
-    return {"split": key.split, "agent": key.agent, "options": key.options, "semantics": key.semantics}
+    return {
+        "split": key.split,
+        "version": key.version,
+        "agent": key.agent,
+        "options": key.options,
+        "semantics": key.semantics,
+    }
 
 
 def _identity_names() -> Iterator[str]:
-    yield from _identity(RunKey("", "", "", ""))
+    yield from _identity(RunKey("", "", "", "", ""))
 
 
 def _counts(lines: Sequence[Line]) -> Record:
-    return {"episodes": str(len(lines)), "houses": str(len(set(houses_of(lines))))}
+    return {"episodes": str(len(set(episodes_of(lines)))), "houses": str(len(set(houses_of(lines))))}
 
 
 def _estimate_columns(metric: Metric, found: Estimate) -> Record:

@@ -13,7 +13,7 @@ from __future__ import annotations
 import csv
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
@@ -25,7 +25,7 @@ from sim.files import write_atomically
 from sim.interface import ConfigError
 from sim.reading import Count as ReadCount
 from sim.reading import Number, convert, read_bytes
-from stubborn.segmentation.networks import NETWORKS
+from stubborn.segmentation.networks import NETWORKS, build_network
 
 PRETRAINED = "lite0-imagenet"
 CHOICES = ("compact", "compact-geometry", "unet", "lite0", PRETRAINED)
@@ -51,16 +51,14 @@ class Args:
     """Time of a turn."""
     batch: cli.Count = 16
     """Views per step."""
-    block_px: cli.Count = 1
-    """Factor by which the views are shrunk for the networks."""
+    block_px: cli.Count = 4
+    """See `stubborn train segmentation`."""
     val_count: cli.Amount = 600
     """Number of views of an evaluation."""
     evaluate_every: cli.Count = 500
     """Steps between evaluations, whose time counts; the one at the end does not."""
     threads: cli.Count | None = None
     """Number of threads of PyTorch; None does not change it."""
-    rare_share: cli.Share = 0.15
-    """See `stubborn train segmentation`."""
 
 
 def main(args: Args) -> int:
@@ -81,7 +79,7 @@ def main(args: Args) -> int:
 
 def training(args: Args, name: str, seed: int, limit_hours: float) -> segmentation.Args:
     """Returns the options of one run up to a time; the learning rate follows the whole time."""
-    made = segmentation.Args(
+    return segmentation.Args(
         views=args.views,
         val_views=args.val_views,
         out=_folder(args, name, seed),
@@ -94,9 +92,8 @@ def training(args: Args, name: str, seed: int, limit_hours: float) -> segmentati
         val_count=args.val_count,
         evaluate_every=args.evaluate_every,
         threads=args.threads,
-        rare_share=args.rare_share,
+        imagenet=name == PRETRAINED,
     )
-    return replace(made, imagenet=True, encoder_rate=0.1) if name == PRETRAINED else made
 
 
 def table(args: Args) -> str:
@@ -136,7 +133,7 @@ def trained_hours(folder: Path) -> float:
 
 def _line(name: str, rows: Sequence[Evaluation]) -> str:
     config = NETWORKS["lite0" if name == PRETRAINED else name]
-    parameters = sum(p.numel() for p in segmentation.build_network(config).parameters()) / 1e6
+    parameters = sum(p.numel() for p in build_network(config).parameters()) / 1e6
     mious = [row.miou_goals for row in rows]
     miou = f"{np.mean(mious):.3f} ({', '.join(f'{value:.3f}' for value in mious)})"
     steps, hours, accuracy = (np.mean([getattr(row, key) for row in rows]) for key in ("step", "hours", "accuracy"))

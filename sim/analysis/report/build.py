@@ -12,15 +12,16 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from sim.analysis.comparison import LETTERS, Line, Run, differences_table, require_same_episodes
+from sim.analysis.replicates import replicate_note
 from sim.analysis.report import distributions
 from sim.analysis.report.drawings import Drawings, Trajectories, draw_episodes, read_trajectories
 from sim.analysis.report.episodes import Row, by_number, columns_of, facts_of_line, outcome_choices, row_of
 from sim.analysis.report.facts import facts_of
-from sim.analysis.report.figures import Group, Runs, causes, few_note, grouped, groups, interval_note, means, verdict
+from sim.analysis.report.figures import Group, Runs, causes, grouped, groups, interval_note, means, verdict
 from sim.analysis.report.media import link_to, picture_of, thumbnail, video_of
 from sim.analysis.report.trend import trend
 from sim.errors import ConfigError
-from sim.evaluation.bootstrap import MIN_PAIRS
+from sim.evaluation.intervals import MIN_PAIRS
 from sim.task.explanations import explain
 
 MOST_RUNS = len(LETTERS)
@@ -53,7 +54,7 @@ def build_page(runs: Sequence[Run], *, out_folder: Path, command: str) -> str:
         title=_title(runs),
         several=len(runs) > 1,
         runs=[facts_of(run, label, trajectories, i) for i, (run, label) in enumerate(zip(runs, labels, strict=True))],
-        notes=[*filter(None, [few_note(len(episode_ids))]), *unreadable, *undrawn, *broken],
+        notes=[*_replicate_notes(lines, labels), *unreadable, *undrawn, *broken],
         count=len(episode_ids),
         interval_note=interval_note(lines),
         fields=differences_table(*runs) if len(runs) > 1 else None,
@@ -118,6 +119,11 @@ def _title(runs: Sequence[Run]) -> str:
     if len(runs) == 2:
         return f"{' against '.join(str(run.config.get('agent', 'an agent')) for run in runs)} on {split}"
     return f"{', '.join(names)} on {split}" + (f", {len(runs)} runs" if len(runs) > 1 else "")
+
+
+def _replicate_notes(lines: Runs, labels: Sequence[str]) -> list[str]:
+    found = [(label, replicate_note(of_run)) for label, of_run in zip(labels, lines, strict=True)]
+    return [f"{label}: {note}".removeprefix(": ") for label, note in found if note]
 
 
 def _errors(lines: Sequence[Sequence[Line]], labels: Sequence[str]) -> Iterable[tuple[str, str, str]]:

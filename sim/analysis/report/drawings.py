@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -165,7 +164,7 @@ def ground_truth_of(run: Run, house: House, robot: RobotConfig | None = None) ->
 
 def robot_of(run: Run) -> RobotConfig:
     """Returns the robot of a run: the default robot or that of `--robot`, with the fields that `--config` changed."""
-    robot = load_robot(Path(run.config["robot"]))[0] if run.config.get("robot") else RobotConfig()
+    robot = load_robot(run.config["robot"])[0] if run.config.get("robot") else RobotConfig()
     recorded = run.config.get("config", {}).get("robot", {})
     return with_fields(robot, {name: value for name, value in recorded.items() if name != "file"})
 

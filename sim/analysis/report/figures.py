@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from sim.analysis.comparison import Line
 from sim.analysis.metrics import (
@@ -19,10 +19,11 @@ from sim.analysis.metrics import (
     SUCCESS,
     TRAPPED,
     Metric,
+    episodes_of,
     houses_of,
 )
 from sim.analysis.tables import Cell
-from sim.evaluation.bootstrap import MIN_PAIRS, Estimate, estimate, paired_difference
+from sim.evaluation.intervals import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.interface import GOAL_CATEGORIES
 from sim.task.explanations import MEANING, outcome
 from sim.task.failures import CAUSES
@@ -44,8 +45,6 @@ METRICS = (
 )
 """Metrics by which runs are judged and compared."""
 Z95 = 1.959964
-FEW = 30
-"""Number of episodes below which a bootstrap interval is too narrow; it has no width if all episodes end alike."""
 
 
 @dataclass(frozen=True)
@@ -63,10 +62,7 @@ class Proportion:
 
 
 def wilson(count: int, of: int) -> Proportion:
-    """Returns a proportion with its Wilson (1927) interval.
-
-    It holds for few episodes too, and has a width where all of them ended alike, but takes them as independent.
-    """
+    """Returns a proportion of independent episodes with its Wilson (1927) interval."""
     if of == 0:
         return Proportion(0, 0, (0.0, 1.0))
     p, n, zz = count / of, of, Z95**2
@@ -108,32 +104,31 @@ def grouped(runs: Runs, names: Sequence[str], order: Sequence[str]) -> list[Grou
     found = []
     for name in (name for name in order if name in names):
         some = [[line for line, of in zip(lines, names, strict=True) if of == name] for lines in runs]
-        shares = [wilson(sum(bool(line["success"]) for line in lines), len(lines)) for lines in some]
+        shares = [_proportion([bool(line["success"]) for line in lines], lines) for lines in some]
         found.append(Group(name, shares, differences(SUCCESS, some)))
     return found
 
 
 def causes(runs: Runs) -> list[Group]:
     """Returns the episodes that failed by each cause, the most frequent first; proportions are of all episodes."""
-    outcomes, houses = [[outcome(line) for line in lines] for lines in runs], houses_of(runs[0])
+    outcomes = [[outcome(line) for line in lines] for lines in runs]
+    houses, episodes = houses_of(runs[0]), episodes_of(runs[0])
     known = {name for names in outcomes for name in names} - {"found"}
     found = []
     for cause in [*(cause for cause in CAUSES if cause in known), *sorted(known.difference(CAUSES))]:
-        failed = [[float(name == cause) for name in names] for names in outcomes]
-        shares = [_proportion(values, houses) for values in failed]
-        against = [
-            Cell(paired_difference(failed[0], values, houses), percent=True, difference=True) for values in failed[1:]
-        ]
+        failed = [[name == cause for name in names] for names in outcomes]
+        shares = [_proportion(values, runs[0]) for values in failed]
+        compared = [paired_difference(failed[0], values, houses, episodes=episodes, most=1.0) for values in failed[1:]]
+        against = [Cell(each, percent=True, difference=True) for each in compared]
         found.append(Group(cause, shares, against, MEANING.get(cause, _OTHER.get(cause, ""))))
     return sorted(found, key=lambda group: -sum(share.count for share in group.shares))
 
 
-def _proportion(values: Sequence[float], houses: Sequence[str]) -> Proportion:
-    """Returns the proportion of ones with its bootstrap interval over houses, or Wilson's interval for few episodes."""
-    if len(values) < FEW:
-        return wilson(round(sum(values)), len(values))
-    share = estimate(values, houses)
-    return Proportion(round(sum(values)), len(values), (share.low or 0.0, share.high or 0.0))
+def _proportion(values: Sequence[bool], lines: Sequence[Line]) -> Proportion:
+    """Returns the proportion of the lines with a property, with its interval over houses."""
+    share = estimate(values, houses_of(lines), episodes=episodes_of(lines), most=1.0)
+    low, high = (limit if end is None else end for end, limit in ((share.low, 0.0), (share.high, 1.0)))
+    return Proportion(sum(values), len(values), (low, high))
 
 
 _OTHER = {"error": "The episode ended with an error.", "failed": "No cause was recorded."}
@@ -141,17 +136,7 @@ _OTHER = {"error": "The episode ended with an error.", "failed": "No cause was r
 
 def means(runs: Runs) -> list[tuple[Metric, list[Cell], list[Cell]]]:
     """Returns for each metric its mean in each run, and the paired differences of the others from the first run."""
-    return [(metric, [_mean(metric, lines) for lines in runs], differences(metric, runs)) for metric in METRICS]
-
-
-def _mean(metric: Metric, lines: Sequence[Line]) -> Cell:
-    """Returns the mean of a metric; a share of few episodes has Wilson's interval."""
-    cell = metric.cell(lines)
-    value = cell.estimate
-    if not metric.percent or value.mean is None or value.count >= FEW:
-        return cell
-    low, high = wilson(round(value.mean * value.count), value.count).interval
-    return replace(cell, estimate=replace(value, low=low, high=high))
+    return [(metric, [metric.cell(lines) for lines in runs], differences(metric, runs)) for metric in METRICS]
 
 
 def differences(metric: Metric, runs: Runs) -> list[Cell]:
@@ -170,24 +155,8 @@ def verdict(difference: Estimate) -> str:
     return "higher" if difference.mean > 0.0 else "lower"
 
 
-def few_note(count: int) -> str:
-    """Returns a warning about the intervals of few episodes; "" for enough of them."""
-    if count >= FEW:
-        return ""
-    return (
-        f"Only {count} episode{'s' * (count != 1)}: the results are uncertain. Intervals of shares in % are Wilson's, "
-        "which are valid for few episodes; those of other means are too narrow. With "
-        f"{FEW} or more episodes, all are bootstrap intervals."
-    )
-
-
 def interval_note(runs: Runs) -> str:
-    """Returns the sentence that says how the bootstrap intervals of a report are made."""
-    few = len(runs[0]) < FEW
-    kind = "95 % intervals of shares by Wilson, of other means by bootstrap" if few else "95 % bootstrap intervals"
+    """Returns the sentence that says how the intervals of a report are made."""
     if len(set(houses_of(runs[0]))) == 1:
-        return (
-            f"{kind}. There is one house: its episodes are resampled, and the intervals (*) say "
-            "nothing about other houses."
-        )
-    return f"{kind}: houses are resampled, then the episodes of each house."
+        return "95 % intervals. There is one house: they (*) are over its episodes, and say nothing about other houses."
+    return "95 % intervals over houses, by Student's t and Wilson's formula."

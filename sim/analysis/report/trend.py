@@ -58,7 +58,7 @@ def trend(runs: Runs, labels: Sequence[str]) -> list[Chart]:
 
 
 def _chart(metric: Metric, cells: Sequence[Cell], labels: Sequence[str]) -> Chart:
-    highest = max((cell.estimate.high or 0.0 for cell in cells), default=0.0)
+    highest = max((cell.estimate.ends[1] for cell in cells), default=0.0)
     top = 1.0 if metric.percent or highest <= 0.0 else _round_up(highest)
     step = (WIDTH - LEFT - RIGHT) / len(cells)
 
@@ -68,8 +68,9 @@ def _chart(metric: Metric, cells: Sequence[Cell], labels: Sequence[str]) -> Char
     points = []
     for i, (cell, label) in enumerate(zip(cells, labels, strict=True)):
         value = cell.estimate
-        if value.mean is not None and value.low is not None and value.high is not None:
-            heights = (place(value.mean), place(value.low), place(value.high))
+        if value.mean is not None:
+            low, high = value.ends
+            heights = (place(value.mean), place(low), place(high))
             points.append(Point(label, LEFT + step * (i + 0.5), *heights, cell.text()))
     shown = top * (100.0 if metric.percent else 1.0)
     return Chart(metric.title, points, f"{shown:g}", f"{shown / 2:g}")

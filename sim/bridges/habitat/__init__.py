@@ -5,11 +5,13 @@
 modules called `habitat`, so that published code runs unchanged; docs/habitat.md describes both.
 """
 
-from sim.bridges.habitat.benchmark import Agent, Benchmark, Challenge
-from sim.bridges.habitat.config import Config, get_config, read_write
+from sim.bridges.habitat.benchmark import Benchmark, Challenge
+from sim.bridges.habitat.config import get_config
 from sim.bridges.habitat.conversions import HabitatSimActions, Observations
 from sim.bridges.habitat.env import Env
 from sim.bridges.habitat.episodes import ObjectGoal, ObjectGoalNavEpisode
+from sim.bridges.habitat.rl_env import RLEnv
+from sim.bridges.habitat_client import Agent, Config, read_write
 
 __all__ = [
     "Agent",
@@ -21,6 +23,7 @@ __all__ = [
     "ObjectGoal",
     "ObjectGoalNavEpisode",
     "Observations",
+    "RLEnv",
     "get_config",
     "read_write",
 ]

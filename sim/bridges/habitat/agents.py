@@ -2,18 +2,16 @@
 
 The fields of the agent's configuration are the arguments of the class's constructor and `BRIDGE_FIELDS`;
 `--config agent.KEY=VALUE` sets them. A required argument called `config` or `task_config` gets the configuration of the
-run (`sim.bridges.habitat.config.make_config`). A value of the form `module:NAME()` is replaced by the result of that
-function.
+run (`sim.bridges.habitat.config.make_config`), with the entries of a YAML file if its value names one. A value of the
+form `module:NAME()` is replaced by the result of that function.
 """
 
 from __future__ import annotations
 
 import contextlib
 import dataclasses
-import importlib
 import inspect
 import random
-import re
 import sys
 import typing
 from collections.abc import Callable, Iterator
@@ -22,17 +20,16 @@ from typing import Any
 
 import numpy as np
 
-from sim.bridges.habitat.config import make_config
+from sim.bridges.habitat.config import make_config, with_entries_of
 from sim.bridges.habitat.conversions import Conversion, to_action
+from sim.bridges.habitat_client import OF_THE_RUN, called
+from sim.bridges.process_command import BridgeConfig
 from sim.errors import ConfigError
 from sim.interface import Action, AgentSpec, CameraModel, Observation, RobotModel, SuccessRule
 
 Json = bool | int | float | str | list | dict | None
 """Allowed values of an argument whose annotation is not in `_PLAIN`."""
 _PLAIN = (bool, int, float, str)
-_CALL = re.compile(r"([A-Za-z_][\w.]*):([A-Za-z_]\w*)\(\)")
-_OF_THE_RUN = ("config", "task_config")
-"""Names of required arguments that get the configuration of the run."""
 BRIDGE_FIELDS: tuple[tuple[str, Any, Any], ...] = (
     ("categories", str, "mp3d"),
     ("normalize_depth", bool, True),
@@ -78,8 +75,8 @@ def spec_of(name: str, found: Any) -> AgentSpec:
 
     Args:
         name: the agent's name, for messages.
-        found: a class or factory of such agents, which get RGB and depth and no ground truth; or, for agents that
-            declare other sensors, an `AgentSpec` whose `make` returns such an agent.
+        found: a class or factory of such agents, whose sensors `--config sensors=[...]` declares; or an `AgentSpec`
+            whose `make` returns such an agent.
 
     Raises:
         ConfigError: it has another type, or an argument of the constructor has the name of a field of the bridge.
@@ -176,7 +173,9 @@ def _config_of(found: Callable[..., Any], arguments: list[inspect.Parameter]) ->
         fields.append((argument.name, kind | None if plain else Json, shown))
     fields += BRIDGE_FIELDS
     checked = {"__post_init__": _require_known_values}
-    return dataclasses.make_dataclass("HabitatAgentConfig", fields, frozen=True, kw_only=True, namespace=checked)()
+    return dataclasses.make_dataclass(
+        "HabitatAgentConfig", fields, bases=(BridgeConfig,), frozen=True, kw_only=True, namespace=checked
+    )()
 
 
 def _require_known_values(config: Any) -> None:
@@ -213,13 +212,15 @@ def _values(
     by_name: dict[str, Any] = {}
     missing: list[str] = []
     for argument in arguments:
-        value = _called(getattr(config, argument.name))
+        value = _result(getattr(config, argument.name))
         if argument.kind is inspect.Parameter.VAR_KEYWORD:
-            by_name |= {key: _called(each) for key, each in (value or {}).items()}
+            by_name |= {key: _result(each) for key, each in (value or {}).items()}
             continue
         required = argument.default is inspect.Parameter.empty
-        if value is None and required and argument.name in _OF_THE_RUN:
+        if value is None and required and argument.name in OF_THE_RUN:
             value = of_the_run
+        elif required and argument.name in OF_THE_RUN and isinstance(value, str) and _names_file(argument, value):
+            value = with_entries_of(of_the_run, Path(value))
         elif value is None and required:
             missing.append(argument.name)
         if value is None or (not required and value == _shown(argument)):
@@ -239,11 +240,12 @@ def _values(
     return positional, by_name
 
 
-def _called(value: Any) -> Any:
+def _names_file(argument: inspect.Parameter, value: str) -> bool:
+    """Returns whether the value of an argument that takes a configuration names a YAML file."""
+    return argument.annotation not in (str, "str") and value.endswith((".yaml", ".yml"))
+
+
+def _result(value: Any) -> Any:
     """Returns the result of the function that a text `module:NAME()` names; returns any other value unchanged."""
-    found = _CALL.fullmatch(value) if isinstance(value, str) else None
-    if found is None:
-        return value
-    module, function = found.groups()
     with own_command_line():
-        return getattr(importlib.import_module(module), function)()
+        return called(value)

@@ -1,4 +1,4 @@
-"""Provides Habitat's base class `Agent`, and `Benchmark` and `Challenge`, which evaluate agents."""
+"""Provides `Benchmark` and `Challenge`, which evaluate agents as Habitat does."""
 
 from __future__ import annotations
 
@@ -11,18 +11,6 @@ from sim.bridges.habitat.env import Env
 from sim.errors import ConfigError
 
 _LOG = logging.getLogger("habitat")
-
-
-class Agent:
-    """Base class of agents with Habitat's interface."""
-
-    def reset(self) -> None:
-        """Prepares for an episode; called before each one."""
-        raise NotImplementedError
-
-    def act(self, observations: Any) -> Any:
-        """Returns the action for the observations: a number, a name, or a dict with the key `action`."""
-        raise NotImplementedError
 
 
 class Benchmark:

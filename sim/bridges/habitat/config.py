@@ -6,15 +6,13 @@ the camera. All other values describe this project's task and change nothing.
 
 from __future__ import annotations
 
-import contextlib
-import copy
-import json
 import logging
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from sim.bridges.habitat_client import Config, add, merge, override, remove_other_actions, to_config
 from sim.errors import ConfigError
 from sim.interface import FORWARD_M, MAX_STEPS, TURN_RAD, Action, CameraModel, RobotModel, SuccessRule
 from sim.reading import read_bytes
@@ -44,36 +42,6 @@ SETTINGS: Mapping[str, tuple[str, ...]] = {
     "normalize_depth": _places("normalize_depth", "depth"),
 }
 """The values that an environment takes from a configuration, with the paths of each in both layouts."""
-
-
-class Config(dict[str, Any]):
-    """A tree of values with attribute access, like the configurations of yacs and OmegaConf that Habitat uses."""
-
-    def __getattr__(self, name: str) -> Any:
-        try:
-            return self[name]
-        except KeyError:
-            available = ", ".join(map(str, self)) or "nothing"
-            raise AttributeError(f"The configuration has no '{name}' here. It has: {available}.") from None
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        self[name] = value
-
-    def clone(self) -> Config:
-        """Returns a copy that shares nothing with this one."""
-        return copy.deepcopy(self)
-
-    def freeze(self) -> None:
-        """Does nothing: a configuration can always be changed."""
-
-    def defrost(self) -> None:
-        """Does nothing: a configuration can always be changed."""
-
-
-@contextlib.contextmanager
-def read_write(config: Config) -> Iterator[Config]:
-    """Does nothing: a configuration can always be changed."""
-    yield config
 
 
 def make_config(
@@ -124,7 +92,7 @@ def make_config(
         | {"actions": {name.lower(): {} for name in actions}, "measurements": {name: {} for name in measurements}},
         "dataset": data,
     }
-    return _tree(old | {"habitat": habitat})
+    return to_config(old | {"habitat": habitat})
 
 
 def get_config(
@@ -144,13 +112,28 @@ def get_config(
     paths = config_paths.split(",") if isinstance(config_paths, str) else [str(path) for path in config_paths or ()]
     for path in paths:
         if Path(path).is_file():
-            _merge(config, _read_yaml(Path(path)))
+            merge(config, _read_yaml(Path(path)))
         else:
             _LOG.warning("There is no configuration file '%s': the task of this project is used.", path)
-    for path, value in _assignments(list(overrides or ())):
-        _merge(config, _nested(path, value))
-    _remove_other_actions(config)
+    try:
+        override(config, overrides)
+    except ValueError as error:
+        raise ConfigError(str(error)) from None
+    removed = remove_other_actions(config)
+    if removed:
+        _LOG.warning("This robot has no action %s: removed from the configuration.", ", ".join(sorted(removed)))
     return config
+
+
+def with_entries_of(config: Config, file: Path) -> Config:
+    """Returns the configuration of a run with the entries that only a YAML file has; a warning names the others.
+
+    Raises:
+        ConfigError: the file cannot be read.
+    """
+    found = config.clone()
+    add(found, _read_yaml(file))
+    return found
 
 
 def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
@@ -172,45 +155,8 @@ def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _remove_other_actions(config: Config) -> None:
-    """Removes actions that the robot does not have, such as LOOK_UP, from the lists of actions."""
-    known = {action.name for action in Action}
-    removed = set[str]()
-    for tree, name in ((config.get("TASK"), "POSSIBLE_ACTIONS"), (_at(config, "habitat.task"), "actions")):
-        listed = tree.get(name) if isinstance(tree, Config) else None
-        if not isinstance(tree, Config) or not isinstance(listed, (list, Config)):
-            continue
-        others = {str(each) for each in listed} - known - {each.lower() for each in known}
-        kept = {each for each in map(str, listed) if each not in others}
-        tree[name] = (
-            Config({key: value for key, value in listed.items() if key in kept})
-            if isinstance(listed, Config)
-            else [each for each in listed if str(each) in kept]
-        )
-        removed |= others
-    if removed:
-        _LOG.warning("This robot has no action %s: removed from the configuration.", ", ".join(sorted(removed)))
-
-
 def _upper(tree: Mapping[str, Any]) -> dict[str, Any]:
     return {name.upper(): value for name, value in tree.items()}
-
-
-def _tree(value: Any) -> Any:
-    """Returns nested dicts as a `Config`; lists and dicts are copied."""
-    if isinstance(value, Mapping):
-        return Config({str(key): _tree(each) for key, each in value.items()})
-    return [_tree(each) for each in value] if isinstance(value, list) else value
-
-
-def _merge(config: Config, changes: Mapping[str, Any]) -> None:
-    """Writes the values of nested dicts into a configuration, in place."""
-    for key, value in changes.items():
-        inner = config.get(str(key))
-        if isinstance(inner, Config) and isinstance(value, Mapping):
-            _merge(inner, value)
-        else:
-            config[str(key)] = _tree(value)
 
 
 def _at(config: Mapping[str, Any], path: str) -> Any:
@@ -219,29 +165,6 @@ def _at(config: Mapping[str, Any], path: str) -> Any:
     for name in path.split("."):
         value = value.get(name) if isinstance(value, Mapping) else None
     return value
-
-
-def _nested(path: str, value: Any) -> dict[str, Any]:
-    for name in reversed(path.lstrip("+").split(".")):
-        value = {name: value}
-    return value
-
-
-def _assignments(overrides: list[Any]) -> Iterator[tuple[str, Any]]:
-    """Yields path and value of each override."""
-    while overrides:
-        first = str(overrides.pop(0))
-        path, separator, text = first.partition("=")
-        if separator:
-            try:
-                value = json.loads(text)
-            except ValueError:
-                value = text
-        elif overrides:
-            value = overrides.pop(0)
-        else:
-            raise ConfigError(f"An override has the form path=value, got '{first}'.")
-        yield path, value
 
 
 def _read_yaml(file: Path) -> Mapping[str, Any]:

@@ -17,7 +17,7 @@ from __future__ import annotations
 import difflib
 import operator
 import reprlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
+from sim.bridges.habitat_client import ACTION_IDS, HabitatActions
 from sim.errors import AgentError, ConfigError
 from sim.interface import GOAL_CATEGORIES, MPCAT40, Action, CameraModel, Observation
 
@@ -32,10 +33,6 @@ HM3D_GOALS = ("chair", "bed", "plant", "toilet", "tv_monitor", "sofa")
 """The six goal categories of the ObjectNav challenges 2022 and 2023, in their order."""
 CATEGORIES: Mapping[str, tuple[str, ...]] = MappingProxyType({"mp3d": GOAL_CATEGORIES, "hm3d": HM3D_GOALS})
 """Goal categories by the name of the data set that numbers them."""
-ACTION_IDS: Mapping[str, int] = MappingProxyType(
-    {"stop": 0, "move_forward": 1, "turn_left": 2, "turn_right": 3, "look_up": 4, "look_down": 5}
-)
-"""Habitat's numbers of actions; the camera of this project does not tilt, so that the last two are refused."""
 _DEEPEST = 3
 """Largest number of nested dicts around an action."""
 
@@ -44,33 +41,7 @@ class Observations(dict[str, Any]):
     """The observation of one step: a dict of arrays by the name of the sensor."""
 
 
-class _Actions:
-    """Habitat's table of action numbers: attribute, item and iteration, in lower or upper case."""
-
-    def __getattr__(self, name: str) -> int:
-        try:
-            return self[name]
-        except KeyError:
-            raise AttributeError(f"HabitatSimActions has no '{name}'. It has: {', '.join(ACTION_IDS)}.") from None
-
-    def __getitem__(self, name: str) -> int:
-        return ACTION_IDS[name.lower()]
-
-    def __contains__(self, name: object) -> bool:
-        return isinstance(name, str) and name.lower() in ACTION_IDS
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(ACTION_IDS)
-
-    def __len__(self) -> int:
-        return len(ACTION_IDS)
-
-    def has_action(self, name: str) -> bool:
-        """Returns whether there is an action of this name."""
-        return name in self
-
-
-HabitatSimActions = _Actions()
+HabitatSimActions = HabitatActions()
 """`HabitatSimActions.MOVE_FORWARD` or `.move_forward` is 1, as in Habitat."""
 
 

@@ -1,7 +1,8 @@
 """A stand-in for the package `habitat`, which cannot be installed from PyPI: it has the few names that agents import.
 
 `install` makes `import habitat` work in this process if the package is not installed. The import of a name that the
-stand-in does not have fails as usual, and `lacking` returns a sentence that names it.
+stand-in does not have fails as usual, and `lacking` returns a sentence that names it. `sim.bridges.habitat_client`
+lists the names, and provides them to agents in a process of their own.
 """
 
 from __future__ import annotations
@@ -11,55 +12,25 @@ import importlib.util
 import logging
 import re
 import sys
-from collections.abc import Mapping, Sequence
-from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec
-from types import ModuleType
-from typing import Any
 
 from sim.bridges import habitat as ours
+from sim.bridges.habitat_client import HABITAT_MODULES, NOT_IN_THE_STAND_IN, EmptyModules, StandIn
 
 NOTE = "Habitat is not installed: a stand-in of this project provides those of its names that are imported."
 """The sentence that a run prints if it uses the stand-in."""
-_ADVICE = "is not part of the stand-in for Habitat, which is not installed here (docs/habitat.md)"
 _LOG = logging.getLogger("habitat")
-_CONFIG = {"get_config": ours.get_config, "read_write": ours.read_write, "Config": ours.Config}
-MODULES: Mapping[str, Mapping[str, Any]] = {
-    "habitat": {
-        "Agent": ours.Agent,
-        "Benchmark": ours.Benchmark,
-        "Challenge": ours.Challenge,
-        "Config": ours.Config,
-        "Env": ours.Env,
-        "get_config": ours.get_config,
-        "read_write": ours.read_write,
-        "logger": _LOG,
-    },
-    "habitat.config": _CONFIG,
-    "habitat.config.default": _CONFIG,
-    "habitat.config.read_write": {"read_write": ours.read_write},
-    "habitat.core": {},
-    "habitat.core.agent": {"Agent": ours.Agent},
-    "habitat.core.benchmark": {"Benchmark": ours.Benchmark},
-    "habitat.core.challenge": {"Challenge": ours.Challenge},
-    "habitat.core.env": {"Env": ours.Env},
-    "habitat.core.logging": {"logger": _LOG},
-    "habitat.core.simulator": {"Observations": ours.Observations},
-    "habitat.sims": {},
-    "habitat.sims.habitat_simulator": {},
-    "habitat.sims.habitat_simulator.actions": {"HabitatSimActions": ours.HabitatSimActions},
-    "habitat.tasks": {},
-    "habitat.tasks.nav": {},
-    "habitat.tasks.nav.object_nav_task": {
-        "ObjectGoal": ours.ObjectGoal,
-        "ObjectGoalNavEpisode": ours.ObjectGoalNavEpisode,
-    },
-}
-"""The names of each module of the stand-in."""
+_FINDER = StandIn({name: getattr(ours, name) for name in ours.__all__} | {"logger": _LOG})
+_EMPTY = EmptyModules()
 
 
 def install() -> bool:
-    """Provides the stand-in in this process if Habitat is not installed; returns whether this process has it."""
+    """Provides the stand-in in this process if Habitat is not installed; returns whether this process has it.
+
+    Packages that are not installed and that agents import without using them (`EMPTY_PACKAGES`) become empty modules;
+    Habitat's logger says so.
+    """
+    if _EMPTY not in sys.meta_path:
+        sys.meta_path.append(_EMPTY)
     if not installed() and not _is_there():
         _LOG.addHandler(logging.StreamHandler())  # Habitat's logger prints to standard error
         _LOG.setLevel(logging.INFO)
@@ -74,13 +45,18 @@ def installed() -> bool:
 
 
 def remove() -> None:
-    """Removes the stand-in from this process."""
+    """Removes the stand-in and the empty modules from this process."""
+    if _EMPTY in sys.meta_path:
+        sys.meta_path.remove(_EMPTY)
+    empty = {name for name in sys.modules if name.split(".")[0] in _EMPTY.imported}
+    _EMPTY.imported.clear()
     if installed():
         sys.meta_path.remove(_FINDER)
         _LOG.handlers.clear()
         _LOG.setLevel(logging.NOTSET)
-        for name in MODULES:
-            sys.modules.pop(name, None)
+        empty |= set(HABITAT_MODULES)
+    for name in empty:
+        sys.modules.pop(name, None)
 
 
 def lacking(error: BaseException) -> str | None:
@@ -88,36 +64,7 @@ def lacking(error: BaseException) -> str | None:
     if not installed() or not isinstance(error, ImportError) or (error.name or "").partition(".")[0] != "habitat":
         return None
     found = re.match(r"cannot import name '(\w+)'", str(error))
-    return f"'{error.name}{f'.{found[1]}' if found else ''}' {_ADVICE}."
-
-
-class _Finder(MetaPathFinder, Loader):
-    """Finds and makes the modules of the stand-in."""
-
-    def find_spec(
-        self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
-    ) -> ModuleSpec | None:
-        """Returns the specification of a module of the stand-in."""
-        if fullname not in MODULES:
-            return None
-        is_package = any(name.startswith(f"{fullname}.") for name in MODULES)
-        return ModuleSpec(fullname, self, is_package=is_package)
-
-    def exec_module(self, module: ModuleType) -> None:
-        """Adds the names to a module; for the package `habitat`, it imports all modules of the stand-in."""
-
-        def missing(name: str) -> Any:
-            raise AttributeError(f"'{module.__name__}.{name}' {_ADVICE}")
-
-        vars(module).update(MODULES[module.__name__], __getattr__=missing)
-        if module.__name__ == "habitat":
-            for name in MODULES:
-                importlib.import_module(name)
-            for name, names in MODULES.items():
-                vars(sys.modules[name]).update(names)  # a function may have the name of a module
-
-
-_FINDER = _Finder()
+    return f"'{error.name}{f'.{found[1]}' if found else ''}' {NOT_IN_THE_STAND_IN}."
 
 
 def _is_there() -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +11,13 @@ import numpy as np
 from jaxtyping import Int64
 
 from sim.commands.evaluate.network_pictures import draw_confusion, draw_curves
+from sim.commands.train.segmentation_options import Args
 from sim.files import write_atomically
 from sim.interface import GOAL_CATEGORIES
 from stubborn.segmentation.breakdown import Breakdown
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.evaluation import Iou, Reliability
+from stubborn.segmentation.fused import VOXEL_M
 from stubborn.segmentation.networks import Network
 from stubborn.segmentation.unet import UNet
 
@@ -49,6 +51,8 @@ class Measured:
     breakdown: Breakdown
     by_folder: dict[str, float]
     """Calibrated mIoU over the goal categories of each folder of views."""
+    fused: tuple[Iou, Iou] | None
+    """Results of single views and of views fused in voxels, on the same pixels (`stubborn.segmentation.fused`)."""
     views: int
     before: Reliability
     """Reliability without a calibration, on the houses to which the calibration was not fitted."""
@@ -81,10 +85,7 @@ def card_text(network: Evaluated, measured: Measured) -> str:
         [
             *_about(network),
             *_summary(network, measured, stages),
-            "```sh",
-            *(_command(stage) for stage in stages),
-            "```",
-            "",
+            *training_commands(stages),
             *_categories(measured),
             *([f"Not in these views: {', '.join(absent)}.", ""] if absent else []),
             *distances_and_sizes(measured.breakdown),
@@ -112,6 +113,10 @@ def _summary(network: Evaluated, measured: Measured, stages: Sequence[dict[str, 
     yield f"| mIoU, goal categories present, calibrated as agents use it | {iou.goals:.3f} |"
     yield f"| mIoU, goal categories present, without calibration | {own.goals:.3f} |"
     yield from (f"| mIoU, views `{name}` | {value:.3f} |" for name, value in measured.by_folder.items())
+    if measured.fused is not None:
+        single, fused = measured.fused
+        yield f"| mIoU, goal categories, pixels with depth: single views | {single.goals:.3f} |"
+        yield f"| the same, all views of a house fused in voxels of {100 * VOXEL_M:.0f} cm | {fused.goals:.3f} |"
     yield f"| mIoU, all categories present | {iou.everything:.3f} |"
     yield f"| pixel accuracy | {iou.accuracy:.3f} |"
     yield f"| pixel accuracy without calibration | {own.accuracy:.3f} |"
@@ -160,6 +165,15 @@ def training_stages(metadata: dict[str, Any]) -> Iterator[dict[str, Any]]:
     if "started_from" in metadata:
         yield from training_stages(metadata["started_from"])
     yield metadata
+
+
+def training_commands(stages: Sequence[dict[str, Any]]) -> Iterator[str]:
+    """Yields the block with the command of each training, and a sentence if the command has options no more."""
+    yield "```sh"
+    yield from map(_command, stages)
+    yield "```\n"
+    if {key for stage in stages for key in stage.get("options", {})} - {each.name for each in fields(Args)}:
+        yield "Options that `stubborn train segmentation --help` does not list are those of earlier versions.\n"
 
 
 def _command(stage: dict[str, Any]) -> str:

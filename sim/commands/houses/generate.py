@@ -34,6 +34,7 @@ from sim.errors import HouseError
 from sim.evaluation.parallel import ordered_map
 from sim.files import write_atomically
 from sim.housegen.floor_plan.rooms import PlanKind
+from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.item import Pool
 from sim.housegen.generator import HouseConfig, generate_house
 from sim.housegen.imported.catalogue import ImportedFurniture
@@ -41,6 +42,7 @@ from sim.housegen.imported.library import ModelSplit
 from sim.housegen.imported.transfer import TRANSFER_TEST
 from sim.housegen.splits.house_list import cache_dir, copy_textures, write_house_list
 from sim.housegen.splits.recipes import MAX_TRAIN_SEEDS, SPLIT_VERSION, SPLITS, TRAIN_HOUSES, Recipe, train_recipe
+from sim.housegen.withheld import Withheld, restricted
 from sim.houses.references import SHARED_TEXTURES
 from sim.houses.writing import house_text
 from sim.interface import ConfigError
@@ -63,6 +65,8 @@ class Args:
     """Without a split: the first of consecutive seeds."""
     pool: Pool = "train"
     """Without a split: styles and textures that may appear."""
+    withheld: Withheld | None = None
+    """Without a split: as `stubborn views` leaves out or prefers styles; only: furniture that training left out."""
     kind: PlanKind | None = None
     """Without a split: kind of floor plan; sampled when not given."""
     area_m2: cli.Positive | None = None
@@ -174,7 +178,7 @@ def _write_seeds(args: Args) -> Iterator[Made]:
     if furniture is not None:
         furniture.catalogue(config.pool)  # raises before anything is written
     copy_textures(args.out / SHARED_TEXTURES)
-    make = functools.partial(_make_seed, config, furniture)
+    make = functools.partial(_make_seed, config, furniture, args.withheld)
     seeds = range(args.first_seed, args.first_seed + (args.houses or 1))
     yield from _written(args, ordered_map(make, seeds, workers=args.workers))
 
@@ -206,9 +210,9 @@ def _make(recipe: Recipe) -> Made:
     return _generate(recipe.name, recipe.seed, recipe.config(), None)
 
 
-def _make_seed(config: HouseConfig, furniture: ImportedFurniture | None, seed: int) -> Made:
+def _make_seed(config: HouseConfig, furniture: ImportedFurniture | None, withheld: Withheld | None, seed: int) -> Made:
     """Generates the house of a seed."""
-    return _generate(f"house_{seed:05d}", seed, config, SHARED_TEXTURES, furniture)
+    return _generate(f"house_{seed:05d}", seed, config, SHARED_TEXTURES, furniture, withheld)
 
 
 def _make_imported(furniture: ImportedFurniture, recipe: Recipe) -> Made:
@@ -217,12 +221,20 @@ def _make_imported(furniture: ImportedFurniture, recipe: Recipe) -> Made:
 
 
 def _generate(
-    name: str, seed: int, config: HouseConfig, textures: str | None, furniture: ImportedFurniture | None = None
+    name: str,
+    seed: int,
+    config: HouseConfig,
+    textures: str | None,
+    furniture: ImportedFurniture | None = None,
+    withheld: Withheld | None = None,
 ) -> Made:
     """Generates one house, and measures the time."""
     began_s = time.process_time()
     try:
-        house = generate_house(seed, config) if furniture is None else furniture.make_house(seed, config)
+        if furniture is None:
+            house = generate_house(seed, config, restricted(CATALOGUE, withheld))
+        else:
+            house = furniture.make_house(seed, config, withheld=withheld)
     except HouseError as error:
         return Made(name, error=str(error), seconds=time.process_time() - began_s)
     seconds = time.process_time() - began_s

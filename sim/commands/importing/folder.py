@@ -11,30 +11,79 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Annotated, Any, Generic, TypeVar
 
 import numpy as np
+from msgspec import Meta
 from rich.console import Console
 
+from sim import cli
 from sim.episodes.splits import LABELS_FILE, labels_of
 from sim.errors import ConfigError, ObjectNavError
 from sim.evaluation.parallel import ordered_map
 from sim.files import inside, write_atomically, write_picture
 from sim.houses.load import load_house
+from sim.houses.references import files_of
 from sim.importers.losses import added
-from sim.reading import printable, read_json
+from sim.importers.mesh_house import Collision, MeshConfig
+from sim.reading import printable, read_json, sha256_of
 from sim.viewers.house_pictures import draw_top, draw_views, titled
 
 SourceT = TypeVar("SourceT")
 REPORT_FILE = "import.json"
-VERSION = 1
+VERSION = 2
 """Increased when the same source gives another house."""
 CHUNK = 64
 """Houses that are in memory at a time."""
 PROGRESS_S = 5.0
 """A line on the progress is printed about this often."""
+VIEWS = 8
+"""Least number of views of a house."""
 MOST_TYPES = 12
 """Most types that a line of the result lists."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImportArgs:
+    """The options of every command that imports houses."""
+
+    out: cli.OutFolder
+    """Folder of the houses; created if missing."""
+    houses: cli.Count | None = None
+    """Import only the first houses."""
+    pictures: cli.Amount = 3
+    """Draw the first houses from above, and views of them."""
+    workers: cli.Count = 1
+    """Number of processes."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SceneArgs(ImportArgs):
+    """The options of commands that import MJCF scenes with files of their own."""
+
+    root: Path | None = None
+    """A folder whose files the houses may use in addition to their own folder."""
+    texture_px: Annotated[int, Meta(ge=16, le=8192)] = 1024
+    """Longest side of a texture; larger ones are reduced."""
+    pack: bool = False
+    """Copy all meshes and textures; by default, unchanged ones are hard links to the source's files if possible."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshArgs(ImportArgs):
+    """The options of commands that make houses of triangles."""
+
+    collision: Collision = "boxes"
+    """What collides: boxes of a grid, or convex parts by CoACD, which take much longer."""
+    triangles: cli.Count = 100_000
+    """About the largest number of visual triangles of a house."""
+    texture_px: cli.Count = 1024
+    """Longest side of a picture; larger ones are reduced."""
+
+    @property
+    def config(self) -> MeshConfig:
+        """The options of a house."""
+        return MeshConfig(collision=self.collision, triangles=self.triangles, texture_px=self.texture_px)
 
 
 @dataclass(frozen=True)
@@ -45,6 +94,8 @@ class Work(Generic[SourceT]):
     content: bytes
     """What its result depends on, in addition to the options."""
     source: SourceT
+    share: float = 0.0
+    """Share of the input that has been read up to this house; 0: unknown."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +117,7 @@ def import_all(
     make: Callable[[SourceT], Made],
     out: Path,
     *,
-    total: int,
+    total: int | None,
     options: str,
     pictures: int,
     workers: int,
@@ -77,7 +128,7 @@ def import_all(
         works: the houses.
         make: writes a house into the folder; picklable.
         out: the folder.
-        total: number of houses, for the time left.
+        total: largest number of houses, for the time left; None: `Work.share` says it.
         options: all that the result depends on, in addition to the houses.
         pictures: number of houses that are drawn.
         workers: number of processes.
@@ -100,8 +151,9 @@ def import_all(
         if time.monotonic() - said_s > PROGRESS_S:
             said_s = time.monotonic()
             done = len(reports) + failed
-            left_s = (said_s - began_s) / done * max(total - done, 0)
-            print(f"{done} of {total} houses, about {left_s / 60:.0f} min {left_s % 60:.0f} s left.", flush=True)
+            share = max(work.share, done / total if total else 0.0)
+            left_s = round((said_s - began_s) * (1.0 / max(share, 1e-6) - 1.0))
+            print(f"{done} houses, about {left_s // 60} min {left_s % 60} s left.", flush=True)
     if not reports and not failed:
         raise ConfigError("There is no house to import.")
     _write(out, before, reports, rules)
@@ -129,6 +181,21 @@ def _run(
         results = ordered_map(functools.partial(_tried, make), new, workers=workers) if new else iter(())
         for work, key, done in zip(chunk, keys, there, strict=True):
             yield work, key, _again(before[work.name]) if done else next(results)
+
+
+def scene_works(files: Iterable[Path], root: Path | None, *more: Callable[[Path], Path]) -> Iterator[Work[Path]]:
+    """Yields the houses of MJCF files, which depend on all files that they use.
+
+    Args:
+        files: the MJCF files.
+        root: another folder whose files they may use.
+        more: each returns another file on which the house of a file depends.
+    """
+    for file in files:
+        others = [each(file) for each in more]
+        used = [file, *others, *files_of(file, root)] if file.is_file() else []
+        sums = [sha256_of(each, what="File") for each in used if each.is_file()]
+        yield Work(file.stem, " ".join(sums).encode(), file)
 
 
 def _tried(make: Callable[[SourceT], Made], source: SourceT) -> Made | _Failed:
@@ -175,7 +242,9 @@ def _print_result(console: Console, reports: Sequence[Mapping[str, Any]], failed
         if counts:
             lines.append(f"{title}: {sum(counts.values())} objects ({most}{more})")
     lines += [f"{sentence} ({count} x)" for sentence, count in total.changes.most_common()]
-    lines.append(f"Objects were moved by at most {total.moved_m:.2f} m. {REPORT_FILE} has the counts of each house.")
+    if total.moved_m > 0.0:
+        lines.append(f"Objects were moved by at most {total.moved_m:.2f} m.")
+    lines.append(f"{REPORT_FILE} has the counts of each house.")
     for line in lines:
         console.print(line, markup=False)
 
@@ -185,7 +254,7 @@ def _draw(out: Path, name: str) -> None:
     house = load_house(out / f"{name}.xml", labels_path=labels_of(out))
     folder = out / "pictures"
     write_picture(inside(folder, f"{name}_top.png", what="name of a house"), titled(draw_top(house), name))
-    views = draw_views(house)
+    views = draw_views(house, 4, least=VIEWS)
     if views is not None:
         write_picture(inside(folder, f"{name}_views.png", what="name of a house"), np.ascontiguousarray(views))
     print(f"Drew {folder / name}_top.png and _views.png.", flush=True)

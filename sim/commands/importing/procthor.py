@@ -23,7 +23,7 @@ from typing import Annotated
 import tyro
 
 from sim import cli
-from sim.commands.importing.folder import Made, Work, import_all
+from sim.commands.importing.folder import ImportArgs, Made, Work, import_all
 from sim.files import inside
 from sim.housegen.furniture.item import Pool
 from sim.houses.writing import write_house
@@ -33,27 +33,19 @@ from sim.reading import sha256_of
 
 
 @dataclass(frozen=True, kw_only=True)
-class Args:
+class Args(ImportArgs):
     """Import houses of ProcTHOR."""
 
     path: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="PATH")]
     """A .json file of one house, or a .jsonl file of one house a line; both may be gzipped."""
-    out: cli.OutFolder
-    """Folder of the houses; created if missing."""
     assets: Path | None = None
     """The asset database; by default asset-database.json or asset-database.json.gz next to PATH."""
-    houses: cli.Count | None = None
-    """Import only the first houses of the file."""
     doors: Doors = "open"
     """Inner doors are opened to a right angle, or stay as they are in the source."""
     pool: Pool = "heldout"
     """Styles, colours and textures of the furniture."""
     seed: cli.Seed = 0
     """Seed of styles and colours."""
-    pictures: cli.Amount = 3
-    """Draw the first houses from above, and views of them."""
-    workers: cli.Count = 1
-    """Number of processes."""
 
 
 def main(args: Args) -> int:
@@ -61,17 +53,16 @@ def main(args: Args) -> int:
     database = find_assets(args.path, args.assets)
     config = ProcthorConfig(doors=args.doors, pool=args.pool, seed=args.seed)
     options = f"procthor {config} {sha256_of(database, what='Asset database')}"
-    there = sum(1 for _ in itertools.islice(read_houses(args.path), args.houses))
     return import_all(
         itertools.islice(_works(args.path), args.houses),
         functools.partial(_make, args.out, database, config),
-        args.out, total=there, options=options, pictures=args.pictures, workers=args.workers,
+        args.out, total=args.houses, options=options, pictures=args.pictures, workers=args.workers,
     )  # fmt: skip
 
 
 def _works(path: Path) -> Iterator[Work[Source]]:
     for source in read_houses(path):
-        yield Work(source.name, source.content, source)
+        yield Work(source.name, source.content, source, source.share)
 
 
 def _make(out: Path, database: Path, config: ProcthorConfig, source: Source) -> Made:

@@ -1,7 +1,7 @@
 """The tables of the paper and of the splits, built from result lines: the runs that each table needs, and its rows.
 
-Every table has means with 95 % bootstrap intervals over the episodes that all its runs have, and paired differences
-between runs. Intervals resample houses, then the episodes of each (`sim.evaluation.bootstrap`).
+Every table has means with 95 % intervals over the episodes that all its runs have, and paired differences
+between runs. Intervals are over houses (`sim.evaluation.intervals`).
 """
 
 from __future__ import annotations
@@ -22,12 +22,13 @@ from sim.analysis.metrics import (
     SUCCESS,
     TRAPPED,
     Metric,
+    episodes_of,
     houses_of,
 )
 from sim.analysis.tables import Cell, ResultTable
 from sim.commands.reproduce.agent_setup import GROUND_TRUTH, AgentSetup
 from sim.errors import ConfigError
-from sim.evaluation.bootstrap import estimate, paired_difference
+from sim.evaluation.intervals import estimate, paired_difference
 from sim.evaluation.results import metric_value
 from sim.interface import GOAL_CATEGORIES
 from sim.task.failures import CAUSES
@@ -305,13 +306,15 @@ def _count_of_failures(lines: Sequence[Line]) -> str:
 def _share_of_failures(cause: str, lines: Sequence[Line]) -> Cell:
     """Returns the share of the failed episodes that failed by this cause."""
     failed = [line for line in lines if not line["success"]]
-    return Cell(estimate([line["failure"] == cause for line in failed], houses_of(failed)), percent=True)
+    found = [line["failure"] == cause for line in failed]
+    return Cell(estimate(found, houses_of(failed), episodes=episodes_of(failed), most=1.0), percent=True)
 
 
 def _failed_by(cause: str, first: Sequence[Line], second: Sequence[Line]) -> Cell:
     """Returns the difference, second minus first, of the share of all episodes that failed by this cause."""
     a, b = ([line["failure"] == cause for line in lines] for lines in (first, second))
-    return Cell(paired_difference(a, b, houses_of(first)), percent=True, difference=True)
+    found = paired_difference(a, b, houses_of(first), episodes=episodes_of(first), most=1.0)
+    return Cell(found, percent=True, difference=True)
 
 
 def _by_goal(lines: Lines) -> list[tuple[str, Lines]]:

@@ -43,8 +43,8 @@ from sim.composition.running import run_missing
 from sim.composition.setup import resolve
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import ConfigError
-from sim.evaluation.bootstrap import MIN_PAIRS, RESAMPLES
 from sim.evaluation.config_fields import differing_fields, field_text
+from sim.evaluation.intervals import MIN_PAIRS
 from sim.files import write_atomically, write_together
 from sim.task.failures import cause_of_failure
 from sim.task.trajectory import read_trajectory, trajectory_file
@@ -257,10 +257,8 @@ def notes_of(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequ
     notes = [
         f"{len(common)} episodes in {houses} houses of {split['name']} {split['version']} ({split['sha256'][:8]}), "
         f"sensor noise {config['noise']}, seed {config['seed']}, mujoco {versions['mujoco']}.",
-        f"Mean [95 % bootstrap interval]: {RESAMPLES:,} resamples of houses, then of the episodes of each house. "
-        "Differences are paired by episode; not significant: the interval holds 0, or there are fewer than "
-        f"{MIN_PAIRS} "
-        "pairs.",
+        "Mean [95 % interval over houses]. Differences are paired by episode; not significant: the interval holds 0, "
+        f"or there are fewer than {MIN_PAIRS} pairs.",
         "`" + " ".join(["stubborn reproduce", name, *_named_options(args)]) + "`",
     ]
     if errors:

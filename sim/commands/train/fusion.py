@@ -3,13 +3,14 @@
     stubborn train fusion --split runs/unseen --episodes 100 --out runs/fusion.json
     stubborn train fusion --split val --episodes 15 --judge
 
-The agent explores without stopping and looks at whatever may be the goal. At the end of an episode all of its tracks
-are logged: the mean posteriors of each view, and how many pixels of each true category they had. The tracks of all
-categories count, not only those of the episode's goal: an episode gives about a hundred.
+The agent explores without stopping and looks at whatever may be the goal. All tracks are logged, those of all
+categories: an episode gives about a hundred. A track is logged when its views reach certain weights, and at the end of
+the episode, with the mean posteriors of its views and with its shape; and once with the number of its pixels of each
+true category.
 
 The log has one line and one file (tracks/<episode>.npz) per episode. The same command continues it, and more episodes
 extend it, as long as split, code and detector are the same. --minutes 0 runs no episode and fits the existing log. Then
-`stubborn.detection.fusion_fit` fits the parameters and judges them on houses left out.
+`stubborn.detection.fusion_fit` fits the parameters and judges them on houses left out, with and without the shape.
 
 The houses should have furniture on which the network was not trained, otherwise the fit overestimates its quality: see
 docs/segmentation.md. Houses of val and test are for --judge only.
@@ -56,8 +57,10 @@ SEEKER = TrackSeekerConfig()
 """The configuration of `stubborn-plus`."""
 LEAST_VOXELS = 6
 """Smaller tracks are no candidates of the agent's and not logged."""
+LEVELS = (0.4, 1.0, 2.0, 3.5, 6.0)
+"""A track is logged when the total weight of its views reaches each of these values."""
 MAX_FILE_BYTES = 256 << 20
-_ARRAYS = ("counts", "track", "view", "mean", "weight")
+_ARRAYS = ("counts", "track", "measures", "sample", "view", "mean", "weight")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +87,7 @@ def main(args: Args) -> int:
     file = parameters_file(args, args.out, FOLDER)
     split = load_split(args.split)
     episodes = tracks_of(args, split)
-    samples = samples_of(episodes, seed=args.seed)
+    samples = samples_of(episodes)
     if not samples:
         raise ConfigError("The log has no tracks: run episodes, with --minutes above 0 or without this option.")
     about = {"episodes": len(episodes), "houses": len({str(each["house"]) for each in episodes})}
@@ -111,11 +114,12 @@ def main(args: Args) -> int:
 
 
 def compared(samples: Sequence[Sample]) -> dict[str, Any]:
-    """Returns the quality of the parameters on houses left out, with that of plain averages on the same pairs."""
-    fitted, plain = left_out(samples), probabilities(Fusion(), samples)
+    """Returns the quality on houses left out: with and without the shape, and of plain averages on the same pairs."""
+    fitted, shapeless, plain = left_out(samples), left_out(samples, shape=False), probabilities(Fusion(), samples)
     goals = np.array([MPCAT40.index(name) - 1 for name in GOAL_CATEGORIES])
     among = np.maximum(fitted, plain)[:, goals] >= PLAUSIBLE
-    return {"fitted": judge(fitted, samples, among), "averages": judge(plain, samples, among)}
+    compared = {"fitted": fitted, "without the shape": shapeless, "averages": plain}
+    return {name: judge(p, samples, among) for name, p in compared.items()}
 
 
 def tracks_of(args: Args, split: Split) -> list[dict[str, Any]]:
@@ -160,6 +164,7 @@ class TrackRunner:
         """Runs one episode to its last step and writes its tracks; returns its line."""
         seed = episode_seed(self._seed, episode.episode_id)
         counts = np.zeros((self._agent_tracks_limit(), len(MPCAT40)), np.int64)
+        samples = TrackSamples()
         try:
             observation, _ = self._env.reset(seed=seed, options={"episode": episode})
             self._agent.reset(episode.goal, seed)
@@ -167,13 +172,14 @@ class TrackRunner:
             while not ended:
                 action = self._agent.act(observation)
                 self._count(observation["depth"], counts)
+                samples.add(self._tracks())
                 if action == Action.STOP:  # cannot happen: nothing is accepted
                     break
                 observation, _, terminated, truncated, _ = self._env.step(action)
                 ended = terminated or truncated
         except (EpisodeError, PhysicsError):
             return line_of(episode, 0, tracks=0)
-        content: dict[str, Any] = logged(self._tracks(), counts)
+        content: dict[str, Any] = logged(self._tracks(), counts, samples)
         buffer = io.BytesIO()
         np.savez_compressed(buffer, **content)
         file = file_of(self._log, episode.episode_id)
@@ -202,21 +208,67 @@ class TrackRunner:
         np.add.at(counts, (owner.astype(np.intp), truth.astype(np.intp)), 1)
 
 
-def logged(tracks: Tracks, counts: Int[np.ndarray, "tracks ids"]) -> dict[str, np.ndarray]:
-    """Returns what `samples_of` reads of an episode: the tracks, and the views of all of them one after the other."""
+class TrackSamples:
+    """The views and the shapes of tracks at several steps of an episode."""
+
+    def __init__(self) -> None:
+        self._level: dict[int, int] = {}
+        self._track: list[int] = []
+        self._parts: dict[str, list[np.ndarray]] = {name: [] for name in _ARRAYS[2:]}
+
+    def add(self, tracks: Tracks) -> None:
+        """Adds the tracks in view whose views have reached a further one of `LEVELS`."""
+        numbers = tracks.in_view[tracks.sizes(tracks.in_view) >= LEAST_VOXELS]
+        _, weight = tracks.evidence.views(numbers)
+        level = np.searchsorted(LEVELS, weight.sum(axis=1), side="right")
+        grown = [v > self._level.get(n, 0) for n, v in zip(numbers.tolist(), level.tolist(), strict=True)]
+        self._level.update(zip(numbers.tolist(), level.tolist(), strict=True))
+        self.take(tracks, numbers[np.array(grown, np.bool_)])
+
+    def take(self, tracks: Tracks, numbers: Int[np.ndarray, " n"]) -> None:
+        """Adds these tracks as they are now."""
+        if numbers.size == 0:
+            return
+        mean, weight = tracks.evidence.views(numbers)
+        sample, view = np.nonzero(weight > 0.0)
+        added = {
+            "measures": tracks.measures(numbers),
+            "sample": (len(self._track) + sample).astype(np.int32),
+            "view": view.astype(np.int16),
+            "mean": mean[sample, view].astype(np.float16),
+            "weight": weight[sample, view].astype(np.float16),
+        }
+        self._track += numbers.tolist()
+        for name, values in added.items():
+            self._parts[name].append(values)
+
+    def arrays(self, now: Int[np.ndarray, " numbers"], kept: Int[np.ndarray, " n"]) -> dict[str, np.ndarray]:
+        """Returns all samples of the kept tracks; `now` is the track into which each one was merged.
+
+        `track` is the index of a sample's track in `kept`, `sample` the index of a view's sample in `track`.
+        """
+        index = np.full(len(now), -1)
+        index[kept] = np.arange(len(kept))
+        track = index[now[np.array(self._track, np.intp)]]
+        number = np.cumsum(track >= 0) - 1
+        parts = {name: np.concatenate(values) for name, values in self._parts.items()}
+        views = track[parts["sample"]] >= 0
+        result = {name: parts[name][views] for name in ("view", "mean", "weight")}
+        return result | {
+            "track": track[track >= 0].astype(np.int32),
+            "measures": parts["measures"][track >= 0],
+            "sample": number[parts["sample"][views]].astype(np.int32),
+        }
+
+
+def logged(tracks: Tracks, counts: Int[np.ndarray, "tracks ids"], samples: TrackSamples) -> dict[str, np.ndarray]:
+    """Returns what `samples_of` reads of an episode."""
     now = tracks.now()
     merged = np.zeros_like(counts)
     np.add.at(merged, now, counts[: len(now)])
     kept = 1 + np.flatnonzero(tracks.sizes(np.arange(1, len(now))) >= LEAST_VOXELS)
-    mean, weight = tracks.evidence.views(kept)
-    track, view = np.nonzero(weight > 0.0)
-    return {
-        "counts": merged[kept].astype(np.int32),
-        "track": track.astype(np.int32),
-        "view": view.astype(np.int16),
-        "mean": mean[track, view].astype(np.float16),
-        "weight": weight[track, view].astype(np.float16),
-    }
+    samples.take(tracks, kept)
+    return {"counts": merged[kept].astype(np.int32)} | samples.arrays(now, kept)
 
 
 def read_tracks(file: Path) -> dict[str, np.ndarray]:

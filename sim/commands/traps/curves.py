@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.analysis.report.figures import wilson
-from sim.evaluation.bootstrap import estimate
+from sim.evaluation.intervals import estimate
 from sim.housegen.traps.families.catalogue import FAMILIES
 from sim.houses.sidecar import TrapFacts
 
@@ -99,9 +99,7 @@ def _point(agent: str, quantity: str, rows: Rows, values: Sequence[float]) -> Po
     share = wilson(sum(bool(row["escaped"]) for row in rows), len(rows))
     collisions = estimate([float(row["collisions"]) for row in rows], [str(row["trap"]) for row in rows])
     assert collisions.mean is not None
-    assert collisions.low is not None
-    assert collisions.high is not None
     return Point(
         agent, quantity, min(values), max(values), float(np.mean(values)), len(rows),
-        share.count / share.of, *share.interval, collisions.mean, collisions.low, collisions.high,
+        share.count / share.of, *share.interval, collisions.mean, *collisions.ends,
     )  # fmt: skip

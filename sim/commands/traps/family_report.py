@@ -23,7 +23,7 @@ from sim.commands.traps.family_picture import draw_family
 from sim.commands.traps.grid import markdown_of
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Split
-from sim.evaluation.bootstrap import estimate
+from sim.evaluation.intervals import estimate
 from sim.files import write_picture, write_together
 from sim.housegen.traps.families.catalogue import FAMILIES
 from sim.housegen.traps.families.family import DIFFICULTIES
@@ -192,7 +192,7 @@ def _family_point(rows: Rows, agent: str, family: str) -> Point | None:
         return None
     share = wilson(sum(bool(row["escaped"]) for row in rows), len(rows))
     found = estimate([float(row["collisions"]) for row in rows], [str(row["trap"]) for row in rows])
-    numbers = [value or 0.0 for value in (found.mean, found.low, found.high)]
+    numbers = [found.mean or 0.0, *found.ends]
     return Point(agent, family, 0.0, 0.0, 0.0, len(rows), share.count / share.of, *share.interval, *numbers)
 
 

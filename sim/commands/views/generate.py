@@ -42,6 +42,7 @@ from sim.errors import HouseError
 from sim.evaluation.executors import make_executor
 from sim.evaluation.parallel import Shard, ordered_map
 from sim.housegen.furniture import CATALOGUE
+from sim.housegen.furniture.catalogue import Catalogue
 from sim.housegen.generator import GeneratedHouse, generate_house
 from sim.housegen.imported.catalogue import ImportedFurniture
 from sim.housegen.imported.library import sha256_of_models
@@ -62,6 +63,8 @@ FEWEST_HOUSES = 20
 
 WIDE = "wide"
 """The pool with styles of furniture that no split has."""
+POOLS = ("train", "free", "drawn", WIDE)
+"""Furniture of new houses: the styles of the split train; with the free styles of `wide`; with its others; with all."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +80,8 @@ class Args:
     root: Path | None = None
     """With --house: a folder whose files the house may use in addition to its own folder."""
     pool: str | None = None
-    """wide: new houses only, with the furniture of train and many more styles."""
+    """New houses only, with the styles of train, or more: train, free (styles that combine parts at random), drawn
+    (designs drawn by hand), or wide (all of them)."""
     furniture: Path | None = None
     """Folder of imported models (`stubborn import furniture`): new houses only, with models of the split train."""
     withheld: str | None = None
@@ -186,12 +190,24 @@ def views_per_shard(args: Args) -> int:
 def make_shard(args: Args, config: dict[str, Any], task: ShardTask) -> ShardNote:
     """Generates one shard, in any process.
 
+    A new house that cannot be generated, or shows too little, is replaced by that of another fixed seed.
+
     Raises:
         ConfigError: the shard cannot be written.
         HouseError: the house gives no views.
     """
+    if task.fresh_seed is None:
+        return _shard_of(args, config, task, None)
+    try:
+        return _shard_of(args, config, task, task.fresh_seed)
+    except HouseError:
+        return _shard_of(args, config, task, task.fresh_seed + FRESH_SEEDS_FROM // 2)
+
+
+def _shard_of(args: Args, config: dict[str, Any], task: ShardTask, fresh_seed: int | None) -> ShardNote:
+    """Generates the shard of the house of a seed; None: of a house of the split."""
     began = time.perf_counter()
-    house, styles = _house(args, task)
+    house, styles = _house(args, task, fresh_seed)
     scene = Scene(house, robot=RobotConfig(), camera=CameraModel(), profile=args.profile)
     house_s = time.perf_counter() - began
     try:
@@ -214,29 +230,34 @@ def _split(args: Args) -> Split:
     return load_split(args.split)
 
 
-def _house(args: Args, task: ShardTask) -> tuple[House, Mapping[str, str]]:
+def _house(args: Args, task: ShardTask, fresh_seed: int | None) -> tuple[House, Mapping[str, str]]:
     """Returns the house of a shard, and the styles of its instances by their names where it is a new one."""
-    if task.fresh_seed is None:
+    if fresh_seed is None:
         return _split(args).load_house(task.house), {}
-    try:
-        made = _made(args, task.fresh_seed)
-    except HouseError:  # this seed gives no house: another fixed one replaces it
-        made = _made(args, task.fresh_seed + FRESH_SEEDS_FROM // 2)
+    made = _made(args, fresh_seed)
     return House(task.house, made.spec), made.styles
 
 
 def _made(args: Args, seed: int) -> GeneratedHouse:
     config, withheld = _recipe(args, seed).config(), cast("Withheld | None", args.withheld)
     if args.furniture is None:
-        return generate_house(seed, config, restricted(CATALOGUE, withheld))
+        return generate_house(seed, config, restricted(_catalogue(args.pool), withheld))
     return ImportedFurniture(args.furniture).make_house(seed, config, withheld=withheld)
+
+
+def _catalogue(pool: str | None) -> Catalogue:
+    """Returns the shipped catalogue, for the pools `free` and `drawn` without the other styles of `wide`."""
+    if pool not in ("free", "drawn"):
+        return CATALOGUE
+    styles = (style for category in CATALOGUE.categories for style in CATALOGUE.styles(category))
+    return Catalogue(style for style in styles if style.pool != WIDE or style.free == (pool == "free"))
 
 
 def _recipe(args: Args, seed: int) -> Recipe:
     recipe = train_recipe(seed)
-    if args.pool is None and args.furniture is not None:
-        return replace(recipe, name=f"models_{seed}")
-    return replace(recipe, name=f"wide_{seed}", pool="wide") if args.pool == WIDE else recipe
+    if args.pool is None:
+        return recipe if args.furniture is None else replace(recipe, name=f"models_{seed}")
+    return recipe if args.pool == "train" else replace(recipe, name=f"{args.pool}_{seed}", pool=WIDE)
 
 
 def _kept(args: Args, task: ShardTask, config: dict[str, Any]) -> ShardNote | None:
@@ -263,7 +284,7 @@ def _config(args: Args, split: Split) -> dict[str, Any]:
     return {
         "split": split.name,
         "pool": args.pool,
-        "styles_sha256": _styles_sha256() if args.pool == WIDE else None,
+        "styles_sha256": _styles_sha256() if args.pool not in (None, "train") else None,
         **({"furniture_sha256": sha256_of_models(args.furniture)} if args.furniture is not None else {}),
         **({"withheld": args.withheld} if args.withheld is not None else {}),
         "split_version": split.version,
@@ -301,8 +322,11 @@ def _check_options(args: Args) -> None:
         raise ConfigError(f"--aim must be {' or '.join(AIMS)}, without --sequence, got '{args.aim}'.")
     if args.rgb not in ("jpg", "png"):
         raise ConfigError(f"--rgb must be jpg or png, got '{args.rgb}'.")
-    if args.pool not in (None, WIDE) or (args.pool and args.split != "train"):
-        raise ConfigError(f"--pool must be {WIDE}, and needs --split train, got '{args.pool}' with '{args.split}'.")
+    if args.pool not in (None, *POOLS) or (args.pool and args.split != "train"):
+        known = " or ".join(POOLS)
+        raise ConfigError(f"--pool must be {known}, and needs --split train, got '{args.pool}' with '{args.split}'.")
+    if args.pool in ("free", "drawn") and args.furniture is not None:
+        raise ConfigError(f"--furniture takes --pool train or wide, got '{args.pool}'.")
     if args.furniture is not None and args.split != "train":
         raise ConfigError(f"--furniture needs --split train, got '{args.split}': other houses are files.")
     if args.withheld not in (None, *get_args(Withheld)) or (args.withheld and not (args.pool or args.furniture)):

@@ -19,6 +19,8 @@ from sim.world.check import STRUCTURE
 from sim.world.freespace import CELL_M, FreeSpace
 from sim.world.plan import polygons_between
 
+LOW_M = 0.03
+"""Furniture that is lower is left out of the map: feet and plinths stand below furniture that is part of it."""
 TALL_M = 2.1
 """Height up to which the space of tall hazards must be free."""
 SPARE_M = 0.27
@@ -51,7 +53,11 @@ class FloorMap:
         labels, self.rooms = read_labels(model, ignore_prefix=""), read_rooms(model)
         low, high = (
             FreeSpace(
-                model, data, labels, rooms=self.rooms, robot=RobotModel(radius_m=_DRAWN_RADIUS_M, height_m=height)
+                model,
+                data,
+                labels,
+                rooms=self.rooms,
+                robot=RobotModel(radius_m=_DRAWN_RADIUS_M, height_m=height, climb_m=LOW_M),
             )
             for height in (0.88, TALL_M)
         )

@@ -20,12 +20,13 @@ from sim.housegen.mjcf.placed import PlacedItem
 from sim.housegen.mjcf.triangles import facets
 from sim.housegen.structure.openings import Opening
 from sim.housegen.surfaces.materials import look
+from sim.interface import CLIMB_M
 
 if TYPE_CHECKING:
     from sim.housegen.hazards.floor_map import FloorMap
 
-STEP_M, ROBOT_HEIGHT_M = 0.03, 0.88
-"""Geoms between these heights block the robot."""
+ROBOT_HEIGHT_M = 0.88
+"""Geoms between `CLIMB_M` and this height block the robot."""
 SITE_HEIGHT_M = 2.0
 Span = tuple[float, float]
 """A coordinate and a larger one."""
@@ -187,7 +188,7 @@ def _world_corners(geom: Geom, placed: PlacedItem) -> NDArray[np.float64]:
 def _outline(geom: Geom, placed: PlacedItem) -> NDArray[np.float64] | None:
     """Returns the convex outline (n, 2) of a geom; None for one that does not block the robot."""
     corners = _world_corners(geom, placed)
-    if corners[:, 2].max() <= STEP_M or corners[:, 2].min() >= ROBOT_HEIGHT_M:
+    if corners[:, 2].max() <= CLIMB_M or corners[:, 2].min() >= ROBOT_HEIGHT_M:
         return None
     return cv2.convexHull(corners[:, :2].astype(np.float32))[:, 0, :].astype(np.float64)
 

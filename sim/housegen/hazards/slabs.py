@@ -6,9 +6,9 @@ from sim.housegen.hazards.floor_map import FloorMap
 from sim.housegen.hazards.hazard import Sketch, box
 
 HIGH_M = (0.04, 0.08)
-"""Heights that block: the robot's clearance is 3 cm, and the obstacle band of the agent's map begins at 10 cm."""
-THRESHOLD_M = (0.015, 0.022)
-"""Heights that the robot passes."""
+"""Heights that block: the robot climbs 12 mm, and the obstacle band of the agent's map begins at 10 cm."""
+THRESHOLD_M = (0.005, 0.011)
+"""Heights that the robot climbs: a higher threshold would close the only door of many rooms."""
 
 
 def plinth(s: Sketch, floor: FloorMap) -> bool:
@@ -47,7 +47,7 @@ def planks(s: Sketch, floor: FloorMap) -> bool:
 
 
 def threshold(s: Sketch, floor: FloorMap) -> bool:
-    """Adds a flat threshold in a doorway; the robot passes over it."""
+    """Adds a flat threshold in a doorway; the robot climbs it."""
     doors = [opening for opening in floor.openings if opening.kind == "door"]
     if not doors:
         return False

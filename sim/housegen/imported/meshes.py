@@ -54,9 +54,9 @@ def read_parts(entry: Entry) -> tuple[Part, ...]:
     if kind not in _FORMATS:
         raise Skipped(f"its format '{kind}' is none of {', '.join(_FORMATS)}")
     content = entry.read(entry.file)
-    resolver = _resolver(trimesh, entry.read, posixpath.dirname(entry.file))
+    files = resolver(trimesh, entry.read, posixpath.dirname(entry.file))
     try:
-        scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, resolver=resolver, process=False)
+        scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, resolver=files, process=False)
         raw = [_coloured(mesh) for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)]
     except Exception as error:  # a reader meets any error in a broken file
         raise Skipped(f"its mesh cannot be read ({type(error).__name__}: {str(error)[:80]})") from None
@@ -67,18 +67,18 @@ def read_parts(entry: Entry) -> tuple[Part, ...]:
     return _joined(_fitted([part for part in raw if part.rgba[3] > 0.02], entry))
 
 
-def library(name: str) -> Any:
-    """Returns a package of the extra `models`; raises ConfigError if it is not installed."""
+def library(name: str, *, extra: str = "models") -> Any:
+    """Returns a package of an extra; raises ConfigError if it is not installed."""
     try:
         return importlib.import_module(name)
     except ImportError:
         raise ConfigError(
             f"Reading models needs the package '{name}', which is not installed: pip install "
-            "'stubborn-objectnav[models]'."
+            f"'stubborn-objectnav[{extra}]'."
         ) from None
 
 
-def _resolver(trimesh: Any, read: Callable[[str], bytes], folder: str) -> Any:
+def resolver(trimesh: Any, read: Callable[[str], bytes], folder: str) -> Any:
     """Returns trimesh's access to the files that a model names: materials, textures, buffers."""
 
     class Inside(trimesh.resolvers.Resolver):
@@ -97,7 +97,7 @@ def _resolver(trimesh: Any, read: Callable[[str], bytes], folder: str) -> Any:
             return []
 
         def namespaced(self, namespace: str) -> Any:
-            return _resolver(trimesh, read, posixpath.join(folder, namespace))
+            return resolver(trimesh, read, posixpath.join(folder, namespace))
 
     return Inside()
 

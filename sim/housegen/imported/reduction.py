@@ -76,12 +76,12 @@ def _simplified(piece: Part, wanted: int) -> Part:
         scale = 100.0 / float(np.ptp(piece.vertices_m, axis=0).max())
         vertices, faces = simplify((piece.vertices_m * scale).astype(np.float32), piece.faces, target_count=target)
         made = _clean(Part(np.asarray(vertices) / scale, np.asarray(faces, dtype=np.int32), piece.rgba))
-        if len(made.faces) <= 2 * target and _is_alike(made, piece):
+        if len(made.faces) <= 2 * target and is_alike(made, piece):
             return made
     return _clustered(piece, 2 * wanted)
 
 
-def _is_alike(made: Part, piece: Part) -> bool:
+def is_alike(made: Part, piece: Part) -> bool:
     """Returns whether a reduced piece has about the extent, the area and the surface of the piece."""
     if not len(made.faces):
         return False

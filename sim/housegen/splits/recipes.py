@@ -1,9 +1,9 @@
 """Recipes of the houses of the shipped splits (seed, pool, kind of plan, size), and the version of these splits.
 
-The tables here decide what is generated: `SPLITS` for val, test, large and hazards, whose houses use the held-out pool
-and are shipped as files, and `train_recipe` for train. Train houses are not shipped as files:
-`sim.housegen.splits.house_list` reads and writes their recipes and checksums (`train/houses.json`) and generates them
-on first use. Seeds of splits differ.
+The tables here decide what is generated: `SPLITS` for val, test, large, hazards and the test splits of the last two,
+whose houses use the held-out pool and are shipped as files, and `train_recipe` for train. Train houses are not shipped
+as files: `sim.housegen.splits.house_list` reads and writes their recipes and checksums (`train/houses.json`) and
+generates them on first use. Seeds of splits differ.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:  # loading a house needs no furniture
     from sim.housegen.furniture.item import Pool
     from sim.housegen.generator import GeneratedHouse, HouseConfig
 
-SPLIT_VERSION = "2.0.0"
+SPLIT_VERSION = "3.0.0"
 """Version of all shipped splits; results contain it with a hash over houses and episodes. It is increased in
 
 - the last number when a house or an episode changed without an effect on agents (a colour, the layout of a file);
@@ -222,7 +222,7 @@ def _heldout(split: str, first_seed: int, shapes: tuple[_Shape, ...]) -> tuple[R
     """Returns the recipes of a split of held-out houses."""
     return tuple(
         Recipe(
-            f"{split}_{n:02d}",
+            f"{split.replace('-', '_')}_{n:02d}",
             first_seed + n,
             "heldout",
             kind,
@@ -230,7 +230,7 @@ def _heldout(split: str, first_seed: int, shapes: tuple[_Shape, ...]) -> tuple[R
             rooms,
             movable=_is_movable(n),
             storeys=2 if "stair_hall" in rooms else 1,
-            hazards=HAZARD_KINDS if split == "hazards" else (),
+            hazards=HAZARD_KINDS if split in ("hazards", "hazards-test") else (),
         )
         for n, (kind, area_m2, rooms) in enumerate(shapes)
     )
@@ -276,7 +276,10 @@ SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
         "test": _heldout("test", 20_000, _TEST),
         "large": _heldout("large", 30_000, _LARGE),
         "hazards": _heldout("hazards", 40_000, _HAZARDS),
+        "large-test": _heldout("large-test", 70_000, _LARGE),
+        "hazards-test": _heldout("hazards-test", 60_000, _HAZARDS),
     }
 )
 """Recipes of the houses shipped as files, by split, in the order of the episodes; a quarter of the houses of val and
-test is larger than 250 m2, all of `large` are larger than 300 m2, and 5 of them have two storeys."""
+test is larger than 250 m2, all of `large` are larger than 300 m2, and 5 of them have two storeys. `large-test` and
+`hazards-test` have the sizes and rooms of `large` and `hazards` with other seeds."""

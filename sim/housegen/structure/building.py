@@ -1,8 +1,8 @@
 """Builds walls, floors and ceilings of a floor plan, as labelled items in their places.
 
 Each room has its own half of a wall, so that it can have its own paint; a hole is cut out of both halves at the same
-place. Outer walls extend `OUTER_WALL_M` further outwards. One invisible slab under the whole home carries the wheels,
-so that they never cross a seam; the floors of the rooms are visual only.
+place. Outer walls extend `OUTER_WALL_M` further outwards. The floors of the rooms are visual only, and one invisible
+slab lies under the whole home, until `sim.housegen.ground` makes the floors solid in its place.
 """
 
 from __future__ import annotations

@@ -61,12 +61,12 @@ def slippery_floor() -> Trap:
     """A closed glass door behind a wet floor, and an open doorway."""
     site = TrapSite("slippery_floor", 8.0, 6.0, kind="bathroom")
     site.wall_across(4.0, (0.9, 2.1), (4.6, 5.5))
-    site.slippery_floor((2.5, 4.6), (0.6, 2.4), 0.012)
+    site.slippery_floor((2.5, 4.6), (0.6, 2.4), 0.03)
     site.pane("door", (4.0, 0.9), (4.0, 2.1))
     site.furniture("bathtub", 7.0, 1.5, math.pi)
     return Trap(site, Sidecar(
         start=Pose(1.2, 1.5, 0.0), goal="bathtub", zone_m=(2.5, 0.6, 4.6, 2.4),
-        reason="Wet tiles before a closed glass door: wheels spin, and on the way back short moves look like bumps.",
+        reason="Soapy tiles before a closed glass door: wheels spin, and on the way back short moves look like bumps.",
     ))  # fmt: skip
 
 

@@ -18,10 +18,11 @@ from sim.analysis.comparison import (
     read_run,
     require_same_episodes,
 )
+from sim.analysis.replicates import replicate_note
 from sim.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_csv, to_markdown, to_rich
 from sim.commands.compare import Args, compare, main, verdict
-from sim.evaluation.bootstrap import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.evaluation.config_fields import ABSENT
+from sim.evaluation.intervals import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.interface import ConfigError
 
 
@@ -31,16 +32,16 @@ def houses(count: int) -> list[str]:
 
 
 def test_two_pairs_that_differ_by_nothing_and_by_one() -> None:
-    # Resamples of (0, 1): means 0, 1/2, 1 with chances 1/4, 1/2, 1/4.
-    assert paired_difference([1.0, 0.0], [1.0, 1.0], houses(2)) == Estimate(0.5, 0.0, 1.0, 2, 2)
+    half = 12.7062 * 0.5  # Student's t of 1, standard error of (0, 1)
+    found = paired_difference([1.0, 0.0], [1.0, 1.0], houses(2))
+    assert (found.mean, found.low, found.high) == pytest.approx((0.5, 0.5 - half, 0.5 + half), abs=1e-4)
 
 
 def test_a_fifth_of_a_hundred_pairs_gained() -> None:
     first, second = [0.0] * 100, [1.0] * 20 + [0.0] * 80
     difference = paired_difference(first, second, houses(100))
     assert difference.mean == pytest.approx(0.2)
-    # Binomial(100, 0.2): 2.5 % and 97.5 % quantiles are 12 and 28.
-    assert (difference.low, difference.high) == (pytest.approx(0.12, abs=0.011), pytest.approx(0.28, abs=0.011))
+    assert (difference.low, difference.high) == pytest.approx((0.1203, 0.2797), abs=1e-4)  # 1.984 * sqrt(0.16 / 99)
     assert difference.significant
 
 
@@ -62,7 +63,7 @@ def test_a_paired_difference_is_significant_where_separate_intervals_overlap() -
 
 
 def test_a_pair_without_one_of_its_values_does_not_count() -> None:
-    assert paired_difference([1.0, None, 3.0], [2.0, 5.0, None], houses(3)) == Estimate(1.0, 1.0, 1.0, 1, 1)
+    assert paired_difference([1.0, None, 3.0], [2.0, 5.0, None], houses(3)) == Estimate(1.0, None, None, 1, 1)
     assert paired_difference([None], [1.0], houses(1)) == Estimate(None, None, None, 0, 0)
     with pytest.raises(ValueError, match="shorter"):
         paired_difference([1.0, 2.0], [1.0], houses(2))
@@ -227,7 +228,7 @@ def test_a_run_from_before_the_time_to_first_sight_can_be_compared_and_has_no_va
     older = read_run(run_folder(tmp_path / "older", "ab", **common))
     newer = read_run(run_folder(tmp_path / "newer", "ab", **common, steps_to_first_sight=7, area_seen_m2=20.0))
     cells = dict(compare(older, newer).rows)["steps to first sight"]
-    assert [cell.text() for cell in cells if isinstance(cell, Cell)] == ["-", "7 [7, 7]*", "-"]
+    assert [cell.text() for cell in cells if isinstance(cell, Cell)] == ["-", "7", "-"]
     cells = dict(compare(newer, newer).rows)["area seen, m2"]
     assert [cell.mean_text for cell in cells if isinstance(cell, Cell)] == ["20.0", "20.0", "+0.0"]
 
@@ -278,3 +279,29 @@ def test_a_comparison_prints_its_verdict_last(tmp_path: Path, capsys: pytest.Cap
     folders = [run_folder(tmp_path / name, "abc") for name in "ab"]
     assert main(Args(first=folders[0], second=folders[1])) == 0
     assert capsys.readouterr().out.strip().splitlines()[-1].startswith("Verdict over 3 episodes.")
+
+
+def test_replicates_of_an_episode_count_once_in_a_comparison_which_states_their_spread(tmp_path: Path) -> None:
+    folders = [run_folder(tmp_path / name, "abcd", spl=0.5) for name in "ab"]
+    for folder, outcomes in zip(folders, ("1100", "1011"), strict=True):
+        lines = [json.loads(line) for line in (folder / "results.jsonl").read_text().splitlines()]
+        own = [line | {"house": f"h_{line['episode_id']}"} for line in lines]
+        again = [
+            line | {"episode_id": f"{line['episode_id']}~1", "success": float(outcome)}
+            for line, outcome in zip(own, outcomes, strict=True)
+        ]
+        (folder / "results.jsonl").write_text("".join(json.dumps(line) + "\n" for line in own + again))
+    first, second = map(read_run, folders)
+    table = compare(first, second)
+    assert "4 episodes of both runs." in table.notes[0]
+    (note,) = (note for note in table.notes if "Chance alone" in note)
+    # differences of the replicates: a 0, 0; b 0, -1; c 0, 1; d 0, 1; variances 0, 1/2, 1/2, 1/2, mean 3/8
+    assert note == (
+        "8 replicates of 4 episodes, each of which counts once. Chance alone gives the difference over one replicate "
+        f"of each a standard deviation of {100 * (3 / 8 / 4) ** 0.5:.1f} points of success and 0.000 of SPL."
+    )
+    assert replicate_note([line for i, line in first.lines.items() if "~" not in i]) == ""
+    assert f" {100 * (1 / 2 / 4 / 4) ** 0.5:.1f} points of success" in replicate_note(list(second.lines.values()))
+    cells = dict(table.rows)["success %"]
+    assert [cell.estimate.count for cell in cells if isinstance(cell, Cell)] == [4, 4, 4]
+    assert verdict(first, second).startswith("Verdict over 4 episodes.")

@@ -18,7 +18,7 @@ from sim.analysis.report.distributions import (
     first_sight_histogram,
     spl_histogram,
 )
-from sim.analysis.report.figures import causes, few_note, grouped, means
+from sim.analysis.report.figures import causes, grouped, means
 from sim.analysis.report.trend import HEIGHT, METRICS, TOP, trend
 
 Line = dict[str, Any]
@@ -26,7 +26,7 @@ Line = dict[str, Any]
 
 def line(**changed: Any) -> Line:
     """Returns the line of a successful episode."""
-    usual = {"house": "h0", "success": 1.0, "spl": 0.5, "end_reason": "stop", "gt_explored": True}
+    usual = {"episode_id": "e0", "house": "h0", "success": 1.0, "spl": 0.5, "end_reason": "stop", "gt_explored": True}
     return usual | {"first_seen_step": 7, "steps_to_first_sight": 7, "collisions": 2} | changed
 
 
@@ -70,11 +70,9 @@ def test_spl_counts_failures_apart_and_each_tenth_from_its_lower_edge() -> None:
 def test_five_equal_episodes_do_not_look_certain() -> None:
     few, many = ([line(success=1.0, house=f"h{i}") for i in range(count)] for count in (5, 40))
     (_, cells, _), *_ = means([few])
-    assert cells[0].estimate.low == pytest.approx(0.566, abs=0.001)
-    assert "Only 5 episodes" in few_note(len(few))
+    assert cells[0].estimate.low == pytest.approx(5 / (5 + 2.776**2), abs=0.001)  # Wilson, with Student's t of 4
     (_, cells, _), *_ = means([many])
-    assert cells[0].estimate.low == 1.0
-    assert few_note(len(many)) == ""
+    assert cells[0].estimate.low == pytest.approx(40 / (40 + 2.023**2), abs=0.001)
     failed = causes([[line(success=0.0, failure="loop")] * 5])
     assert failed[0].shares[0].interval[0] < 0.6
 

@@ -310,7 +310,7 @@ def test_two_runs_are_shown_side_by_side_with_paired_differences(pair: tuple[Pat
     assert data["runs"] == ["A", "B"]
     assert [path is None for path in data["episodes"][0]["paths"]] == [False, False]
     assert [path is None for path in data["episodes"][1]["paths"]] == [False, True]
-    assert '-50.0</span> <span class="ci">[-100.0, +0.0]*</span>' in page.replace("\n", "")
+    assert '-50.0</span> <span class="ci">[-100.0, +41.9]*</span>' in page.replace("\n", "")
     assert page.count('data-outcome="only-a') == 2
 
 
@@ -337,10 +337,10 @@ def test_several_runs_are_columns_with_differences_from_the_first_and_a_trend(pa
         main(Args(runs=(pair[0],) * 13))
 
 
-def test_the_page_states_what_its_intervals_resample(pair: tuple[Path, Path]) -> None:
-    assert "There is one house: its episodes are resampled" in _page(pair[0])
+def test_the_page_states_over_what_its_intervals_are(pair: tuple[Path, Path]) -> None:
+    assert "There is one house: they (*) are over its episodes" in _page(pair[0])
     _write_lines(pair[0], [line | {"house": f"h{i}"} for i, line in enumerate(_lines(pair[0]))])
-    assert "houses are resampled, then the episodes of each house." in _page(pair[0])
+    assert "95 % intervals over houses" in _page(pair[0])
 
 
 def test_runs_of_other_episodes_are_refused(recorded_run: Path, pair: tuple[Path, Path]) -> None:

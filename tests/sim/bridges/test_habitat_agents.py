@@ -160,6 +160,18 @@ def test_a_required_configuration_is_that_of_the_run_and_other_required_argument
         build(Configured)
 
 
+def test_a_configuration_has_the_entries_of_a_file_and_keeps_those_of_the_run(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text("MINE: {KEEP: 0.5}\nENVIRONMENT: {MAX_EPISODE_STEPS: 7}\n")
+    found = build(Configured, distance=2, task_config=str(file)).agent.task_config
+    assert (found.MINE.KEEP, found.ENVIRONMENT.MAX_EPISODE_STEPS) == (0.5, 77)
+    assert "The run determines ENVIRONMENT.MAX_EPISODE_STEPS=77, not 7." in caplog.text
+    with pytest.raises(ConfigError, match=r"none\.yaml"):
+        build(Configured, distance=2, task_config=str(tmp_path / "none.yaml"))
+
+
 def test_a_value_may_call_a_function_which_does_not_see_the_options_of_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["stubborn", "run", "--episodes", "3"])
     agent = build(Wanderer, **{"others.args": f"{arguments.__module__}:arguments()"}).agent

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.bridges.habitat import Benchmark, Challenge, Config, Env, get_config, stand_in
+from sim.bridges.habitat import Benchmark, Challenge, Config, Env, RLEnv, get_config, stand_in
 from sim.bridges.habitat.config import settings_of
 from sim.bridges.habitat.env import default_options
 from sim.commands.main import entry as stubborn
@@ -117,6 +117,26 @@ def test_a_loop_gives_the_metrics_of_a_run_with_habitats_names(split: Path) -> N
     assert found["softspl"] == found["soft_spl"] == pytest.approx(line["soft_spl"])
     assert found["collisions"] == {"count": line["collisions"], "is_collision": False}
     assert observations["gps"].shape == (2,)
+
+
+def test_an_environment_with_rewards_extends_the_base_class(house: Path) -> None:
+    class Moved(RLEnv):
+        def get_reward(self, observations: Any) -> float:
+            return float(observations["gps"][0])
+
+        def get_done(self, observations: Any) -> bool:
+            return self._env.episode_over
+
+        def get_info(self, observations: Any) -> dict[str, Any]:
+            return self.habitat_env.get_metrics()
+
+    with Moved(house=house, episodes=1, camera=SMALL, max_steps=2) as env:
+        env.reset()
+        observations, reward, done, info = env.step({"action": 1})
+        assert (reward, done, info["num_steps"]) == (observations["gps"][0], False, 1)
+        assert env.step(action="turn_left")[2]
+        with pytest.raises(NotImplementedError):
+            env.get_reward_range()
 
 
 def test_episodes_have_habitats_fields_and_come_in_the_order_of_the_split(split: Path) -> None:

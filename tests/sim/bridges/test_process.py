@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.bridges import process_pipe, stubborn_client
+from sim.bridges import habitat_client, process_pipe, stubborn_client
 from sim.bridges.process import ProcessAgent, ProcessPainter
 from sim.bridges.process_command import ProcessConfig, command_of, files_of
+from sim.commands.agent_client import IMPORT, client_file
 from sim.commands.main import entry as main
 from sim.errors import AgentError, ConfigError
 from sim.interface import Action, CameraModel, RobotModel, SuccessRule
@@ -157,7 +158,7 @@ def test_the_status_is_told_when_the_end_of_the_output_and_the_line_of_the_guard
     process = process_pipe.AgentProcess(command("exit_0", tmp_path))
     process.ask({"type": "start", "memory": None}, within_s=20)
     process.ask({"type": "reset"}, within_s=20)
-    process._poll = LatePoll(process._poll)
+    process._poll = LatePoll(process._poll)  # pyright: ignore[reportAttributeAccessIssue]
     with pytest.raises(AgentError, match="its process ended with status 0 before it answered"):
         process.ask({"type": "act"}, within_s=20)
     process.close()
@@ -305,15 +306,19 @@ def test_the_files_of_a_command_are_those_that_it_names(tmp_path: Path, monkeypa
     found = files_of("process:python agent.py --weights weights.pt --out package")
     assert found == [Path("agent.py"), Path("weights.pt")]
     assert files_of("process:conda run -n old python -m package.run") == [Path("package/run.py")]
+    monkeypatch.setenv("PYTHONPATH", "package")
+    assert files_of("process:python client.py run:Agent args=other:get()") == [Path("package/run.py")]
 
 
-def test_the_client_file_is_printed_as_it_is_and_python_3_6_reads_it(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_client_file_is_printed_as_one_file_and_python_3_6_reads_it(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["agent-client"]) == 0
     printed = capsys.readouterr().out
-    assert printed == Path(stubborn_client.__file__).read_text()
+    assert printed == client_file()
+    assert "from sim" not in printed
+    assert Path(habitat_client.__file__).read_text().count(IMPORT) == 1
     ast.parse(printed, feature_version=(3, 6))
     imports = [node for node in ast.walk(ast.parse(printed)) if isinstance(node, ast.Import)]
-    modules = {alias.name for node in imports for alias in node.names}
+    modules = {alias.name.split(".")[0] for node in imports for alias in node.names}
     assert modules - set(sys.stdlib_module_names) == {"numpy"}
 
 

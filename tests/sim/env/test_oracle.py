@@ -87,3 +87,13 @@ def test_the_oracle_finds_another_path_around_an_unexpected_obstacle():
     result = task.metrics()
     assert result["success"] == 1.0
     assert result["collisions"] > 0
+
+
+def test_the_oracle_leaves_a_gap_too_narrow_for_a_whole_step_on_any_of_its_headings():
+    half_m = 0.21  # of the gap; a forward of 0.25 m at 15 deg moves 0.065 m to the side
+    house = with_box(room(8, 5), "wall_10", centre_m=(-2.4, 1.0 + half_m, 0.6), half_m=(1.0, 1.0, 0.6))
+    house = with_box(house, "wall_11", centre_m=(-2.4, -1.0 - half_m, 0.6), half_m=(1.0, 1.0, 0.6))
+    house = with_box(house, "bed_00", centre_m=(3.5, 0, 0.25), half_m=(0.4, 0.8, 0.25))
+    result = run_oracle(house, "bed", Pose(-2.4, 0.0, math.radians(15.0)))
+    assert result["success"] == 1.0
+    assert result["num_steps"] < 100

@@ -12,7 +12,10 @@ from sim.episodes.recipes import EPISODE_RECIPES
 from sim.episodes.splits import Split, load_split
 from sim.interface import FORWARD_M, GOAL_CATEGORIES, MAX_STEPS
 
-SPLITS = {"val": (30, 1020), "test": (30, 1020), "large": (20, 600), "hazards": (15, 450), "train": (200, 2000)}
+SPLITS = {
+    "val": (30, 1020), "test": (30, 1020), "large": (20, 600), "hazards": (15, 450), "train": (200, 2000),
+    "large-test": (20, 600), "hazards-test": (15, 450),
+}  # fmt: skip
 """Number of houses and episodes of each split."""
 LEAST_HOUSES = 5
 """Smallest number of houses with episodes of a category."""

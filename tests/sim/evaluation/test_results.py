@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 import re
 import shutil
@@ -149,16 +150,30 @@ def test_a_summary_of_nothing_is_valid_json() -> None:
     assert json.loads(json.dumps(summarise([]), allow_nan=False))["success"] == {"mean": None, "ci95": [None, None]}
 
 
-def test_a_summary_states_what_its_intervals_resample() -> None:
+def test_a_summary_states_over_what_its_intervals_are() -> None:
     two_houses, one_house = summarise([line(1), line(2)]), summarise([line(1), line(3)])
-    assert (two_houses["houses"], two_houses["ci95_resamples"]) == (2, "houses, then the episodes of each")
-    assert (one_house["houses"], one_house["ci95_resamples"]) == (1, "the episodes of the one house")
+    assert (two_houses["houses"], two_houses["ci95_over"]) == (2, "houses")
+    assert (one_house["houses"], one_house["ci95_over"]) == (1, "the episodes of the one house")
 
 
 def test_the_intervals_of_a_summary_are_over_houses() -> None:
     alike = [line(n, house=f"h{n // 10}", success=float(n // 10 % 2)) for n in range(80)]
     low, high = summarise(alike)["success"]["ci95"]
-    assert (low, high) == (pytest.approx(0.125, abs=0.01), pytest.approx(0.875, abs=0.01))  # 8 fair coins, not 80
+    assert (low, high) == pytest.approx(
+        (0.167, 0.833), abs=0.001
+    )  # Wilson with Student's t: 7 effective episodes, not 80
+
+
+def test_a_summary_has_the_means_of_each_replicate_and_their_spread() -> None:
+    lines = [
+        line(0, success=s, spl=s) | {"episode_id": f"val_0000{mark}"}
+        for mark, s in (("", 1.0), ("~1", 0.0), ("~2", 1.0))
+    ]
+    summary = summarise(lines)
+    assert (summary["episodes"], summary["success"]["mean"]) == (1, pytest.approx(2 / 3))
+    assert summary["replicates"]["success"]["means"] == [1.0, 0.0, 1.0]
+    assert summary["replicates"]["success"]["std"] == pytest.approx(math.sqrt(1 / 3))
+    assert "replicates" not in summarise(lines[:1])
 
 
 def test_a_field_inside_the_configuration_that_differs_is_named(tmp_path: Path) -> None:
@@ -383,3 +398,12 @@ def test_a_run_resumed_with_another_library_names_it(tmp_path: Path) -> None:
     run = RunDirectory(tmp_path, CONFIG | {"versions": {"mujoco": "4.1.0", "numpy": "2.4.6", "code": "b"}})
     assert run.other_versions() == {"mujoco": ("4.0.0", "4.1.0")}
     run.close()
+
+
+def test_a_run_of_other_physics_is_not_resumed(tmp_path):
+    RunDirectory(tmp_path / "run", {"agent": "oracle"}).close()  # the first version wrote no number
+    with pytest.raises(
+        ConfigError, match=r"physics version 1, this program has version 2.*choose another folder"
+    ) as error:
+        RunDirectory(tmp_path / "run", {"agent": "oracle", "physics": 2})
+    assert "\n" not in str(error.value)

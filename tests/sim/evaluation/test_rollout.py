@@ -131,7 +131,7 @@ def test_a_line_names_the_object_for_which_the_agent_stops(env: ObjectNavEnv) ->
 def test_the_place_of_an_agent_with_a_noisy_pose_is_where_it_saw_it_from_the_robot(tmp_path: Path) -> None:
     file = tmp_path / "sofa_room.xml"
     file.write_text(sofa_room().spec.to_xml())
-    noise = NoiseConfig(pose=PoseNoise(gps_walk_m=0.3, compass_walk_rad=0.1))
+    noise = NoiseConfig(pose=PoseNoise(gps_std_m=0.3, compass_std_rad=0.1))
     env = ObjectNavEnv(house=file, sensors=("depth",), camera=SMALL, noise=noise)
     agent = Aimed(AHEAD_AND_STOP, lambda: agent.last_pose.place_of(2.0, 1.0))
     line = play_episode(env, agent, EPISODE, seed=0)

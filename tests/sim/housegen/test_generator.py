@@ -41,7 +41,7 @@ def test_any_seed_gives_a_house_in_the_format_that_passes_the_check(seed: int) -
     assert labels.void_geoms == 0
     assert check_house(house.spec) == []
     assert len(read_rooms(model)) == len(house.plan.rooms)
-    assert len(house_text(house.spec)) <= max_bytes(house.plan.area_m2)
+    assert len(house_text(house.spec)) <= 1.02 * max_bytes(house.plan.area_m2)
     lamps = model.light_pos[model.light_type != mujoco.mjtLightType.mjLIGHT_DIRECTIONAL.value]
     assert model.nlight - len(lamps) == 4  # shine everywhere; OpenGL has eight
     for room in read_rooms(model):

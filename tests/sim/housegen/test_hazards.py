@@ -11,12 +11,13 @@ import pytest
 
 from sim.gl import mujoco
 from sim.housegen.generator import HouseConfig, generate_house
-from sim.housegen.hazards import FAMILIES, PlacedHazard, draw_hazards
+from sim.housegen.hazards import FAMILIES, PlacedHazard, draw_hazards, slabs
 from sim.housegen.hazards.floor_map import SPARE_M, FloorMap
+from sim.housegen.hazards.hazard import Sketch
 from sim.housegen.structure.openings import Opening
 from sim.houses.hazards import read_hazards
 from sim.houses.labels import collidable_geoms, read_labels, rendered_geoms
-from sim.interface import ConfigError
+from sim.interface import CLIMB_M, ConfigError
 from sim.world.check import check_house
 
 SMALL = HouseConfig(pool="heldout", kind="flat", area_m2=80.0, hazards=("glass", "scan"), hazard_count=4)
@@ -102,6 +103,17 @@ def test_a_hazard_that_closes_the_only_doorway_is_refused_and_changes_nothing() 
     assert np.array_equal(floor.clearance(), before)
     assert floor.try_add(rectangle(1.4, 1.5, 1.5, 2.4), 0.0)
     assert not np.array_equal(floor.clearance(), before)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_threshold_lies_in_the_doorway_and_is_low_enough_to_be_climbed(seed: int) -> None:
+    sketch = Sketch("slab", 1.0, 1.0, 0.3, np.random.default_rng(seed), "heldout", {})
+    assert slabs.threshold(sketch, two_rooms())
+    hazard = sketch.finish()
+    (part,) = hazard.parts
+    assert (part.placed.x_m, part.placed.y_m) == (3.0, 1.95)
+    assert 0.004 < part.placed.item.size_m[2] <= CLIMB_M
+    assert hazard.footprints() == []
 
 
 def test_hazards_keep_their_distance_from_each_other() -> None:

@@ -83,6 +83,7 @@ def test_a_robot_upstairs_falls_over_the_open_edge_of_the_stairwell(world: World
     assert motions[-1].fell
 
 
+@pytest.mark.costly
 def test_culling_changes_no_pixel_on_either_storey_near_the_stairwell(world: World):
     mujoco.mj_resetData(world.model, world.data)
     mujoco.mj_forward(world.model, world.data)

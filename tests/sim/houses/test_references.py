@@ -13,6 +13,7 @@ import pytest
 from sim import run
 from sim.errors import ConfigError, HouseError
 from sim.houses.load import load_house
+from sim.houses.references import files_of
 from sim.robot.foreign import load_robot
 from tests.helpers.foreign import CUBE, ROBOT, write_robot
 
@@ -153,7 +154,6 @@ ELSEWHERE = {
     "a drive that two names make": '<compiler meshdir="C:"/>' + MESH.format(file="cube.obj"),
     "an address": '<include file="file:///etc/passwd"/>',
     "a backslash that is a root": MESH.format(file="\\cube.obj"),
-    "a model": '<asset><model name="m" file="parts/inner.xml"/></asset>',
     "a flexible body": '<worldbody><flexcomp name="f" type="mesh" file="parts/cube.obj"/></worldbody>',
     "an include in an include": '<include file="parts/inner.xml"><include file="/etc/passwd"/></include>',
 }
@@ -207,3 +207,46 @@ def test_an_encoding_that_is_not_read_is_one_line(declared: str, tmp_path: Path)
     file.write_text(f'<?xml version="1.0" encoding="{declared}"?>{file.read_text()}')
     with pytest.raises(HouseError, match=r"encoding '.*' is not read|not well-formed|not an MJCF file|is not text in"):
         load_house(file)
+
+
+def test_attached_models_are_part_of_the_house_with_their_meshes_and_names(tmp_path: Path) -> None:
+    world = "".join(
+        f'<frame pos="{x} 0 1"><attach model="m" prefix="{prefix}"/></frame>' for x, prefix in ((1, ""), (2, "b/"))
+    )
+    file = write(tmp_path, '<asset><model name="m" file="parts/lamp.xml"/></asset>', world=world)
+    lamp = MESH.format(file="cube.obj") + (
+        '<compiler angle="degree"/><default><geom rgba="1 0 0 1"/></default><worldbody>'
+        '<body name="lighting_00" euler="0 0 90"><geom name="lamp" type="mesh" mesh="cube"/></body></worldbody>'
+    )
+    (file.parent / "parts" / "lamp.xml").write_text(f"<mujoco>{lamp}</mujoco>")
+    (tmp_path / "labels.json").write_text('{"lighting": "lighting"}')
+    model = load_house(file, labels_path=tmp_path / "labels.json").spec.compile()
+    assert [model.body(number).name for number in range(1, model.nbody)] == ["lighting_00", "b/lighting_00"]
+    assert model.body("b/lighting_00").pos == pytest.approx([2, 0, 1])
+    assert model.geom_rgba[model.geom("lamp").id] == pytest.approx([1, 0, 0, 1])
+    assert file.parent / "parts" / "cube.obj" in files_of(file)
+
+
+@pytest.mark.parametrize(
+    ("lamp", "world", "message"),
+    [
+        ("<worldbody/>", '<attach model="none"/>', "there is no model 'none'"),
+        ("<worldbody/>", '<attach model="m" body="b"/>', "has no body 'b'"),
+        ("<worldbody/>", '<replicate count="3"><attach model="m"/></replicate>', "outside of `replicate`"),
+        ('<include file="../../common/sofa.xml"/>', '<attach model="m"/>', "outside of its folder"),
+        (MESH.format(file="../../common/cube.obj"), '<attach model="m"/>', "outside of its folder"),
+        ('<asset><model name="m" file="lamp.xml"/></asset><worldbody><attach model="m"/></worldbody>',
+         '<attach model="m"/>', "included more than once"),
+        ("<worldbody>" + '<body name="b"/>' * 2 + "</worldbody>", '<attach model="m"/>', "repeated name"),
+        pytest.param(
+            "<worldbody>" + "<geom/>" * 60_000 + "</worldbody>", '<attach model="m"/><attach model="m" prefix="b"/>',
+            "more than 100000 elements", marks=pytest.mark.slow,
+        ),
+    ],
+)  # fmt: skip
+def test_attached_models_are_checked_like_the_house(lamp: str, world: str, message: str, tmp_path: Path) -> None:
+    file = write(tmp_path, '<asset><model name="m" file="parts/lamp.xml"/></asset>', world=world)
+    (file.parent / "parts" / "lamp.xml").write_text(f"<mujoco>{lamp}</mujoco>")
+    with pytest.raises(HouseError, match=message) as refused:
+        load_house(file)
+    assert "\n" not in str(refused.value)

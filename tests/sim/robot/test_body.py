@@ -7,7 +7,7 @@ import pytest
 
 from sim.gl import mujoco
 from sim.robot.body import HULL_MASK, MOVABLE_MASK, ROBOT_GROUP, STATIC_MASK, WHEEL_MASK, built_in_robot_spec
-from sim.robot.config import RobotConfig
+from sim.robot.config import Base, RobotConfig
 from sim.world.world import World
 from tests.helpers.worlds import open_floor
 
@@ -51,8 +51,9 @@ def test_the_hull_fills_the_declared_cylinder(alone: mujoco.MjModel):
     ("one", "other", "meet"),
     [
         (WHEEL_MASK, (1, 0), True),
-        (WHEEL_MASK, STATIC_MASK, False),
-        (WHEEL_MASK, MOVABLE_MASK, False),
+        (WHEEL_MASK, STATIC_MASK, True),
+        (WHEEL_MASK, MOVABLE_MASK, True),
+        (WHEEL_MASK, WHEEL_MASK, False),
         (WHEEL_MASK, HULL_MASK, False),
         (HULL_MASK, (1, 0), True),
         (HULL_MASK, STATIC_MASK, True),
@@ -67,11 +68,31 @@ def test_collision_masks_decide_which_geoms_collide(one, other, meet):
     assert bool((one[0] & other[1]) | (other[0] & one[1])) is meet
 
 
-@pytest.mark.parametrize("base", ["planar", "free"])
-def test_all_the_weight_is_on_the_wheels_at_rest(base):
+def ground_loads_n(base: Base) -> dict[str, float]:
+    """Returns the vertical force of the floor on each part of a robot at rest."""
     world = World(open_floor(), robot=RobotConfig(base=base))
-    data = world.data
+    data, wrench = world.data, np.zeros(6)
     mujoco.mj_step(world.model, data, nstep=250)
-    tyres = {world.model.geom(f"stubborn_robot/{name}_tyre").id for name in ("left", "right")}
-    assert data.ncon == 2
-    assert all(not tyres.isdisjoint(pair) for pair in data.contact.geom.tolist())
+    loads = {}
+    for index, pair in enumerate(data.contact.geom.tolist()):
+        mujoco.mj_contactForce(world.model, data, index, wrench)
+        loads[world.model.geom(max(pair)).name] = float(wrench[0])
+    return loads
+
+
+WEIGHT_N = 9.81 * RobotConfig().body.mass_kg
+
+
+def test_all_the_weight_of_a_planar_base_is_on_the_wheels():
+    loads = ground_loads_n("planar")
+    assert loads.keys() == {"stubborn_robot/left_tyre", "stubborn_robot/right_tyre"}
+    assert sum(loads.values()) == pytest.approx(WEIGHT_N, rel=0.01)
+
+
+def test_the_springs_of_a_free_base_press_the_wheels_down_with_their_share_of_the_weight():
+    loads = ground_loads_n("free")
+    share = RobotConfig().wheels.load_share
+    for side in ("left", "right"):
+        assert loads[f"stubborn_robot/{side}_tyre"] == pytest.approx(0.5 * share * WEIGHT_N, rel=0.05)
+    assert loads["stubborn_robot/front_caster"] == pytest.approx(loads["stubborn_robot/rear_caster"], rel=0.01)
+    assert sum(loads.values()) == pytest.approx(WEIGHT_N, rel=0.01)

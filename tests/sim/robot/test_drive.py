@@ -11,11 +11,10 @@ from hypothesis import strategies as st
 
 from sim.geometry.pose import Pose
 from sim.houses.house import House
-from sim.interface import FORWARD_M, TURN_RAD, Action, wrap_angle
+from sim.interface import CLIMB_M, FORWARD_M, TURN_RAD, Action, wrap_angle
 from sim.robot.config import Base, RobotConfig
 from sim.robot.drive import Motion
 from sim.robot.profile import Trapezoid
-from sim.world.obstacles import CLIMB_M
 from sim.world.world import World
 from tests.helpers.worlds import open_floor, room, with_box, with_movable, with_post
 
@@ -129,7 +128,7 @@ def test_a_wall_stops_the_robot_and_leaves_its_heading(base, angle_deg):
     assert world.pose.x_m + 0.18 < 0.9 + 0.001
     again = world.move(FORWARD)
     assert again.collided
-    assert again.displacement_m < 0.005
+    assert again.displacement_m < (0.005 if base == "planar" else 0.01)  # springs and slip while it is pushed for 0.2 s
     turn = world.move(LEFT)
     assert turn.ended == "reached"
     assert math.degrees(turn.yaw_change_rad) == pytest.approx(30.0, abs=0.4)
@@ -144,7 +143,8 @@ def test_corners_and_thin_legs_stop_the_robot_and_leave_its_heading(obstacle, of
         house = with_post(open_floor(), "table_00", xy_m=(0.5, offset_m))
     world = world_with(house, start=Pose(0.2, 0.0, 0.0))
     motion = world.move(FORWARD)
-    assert motion.collided
+    grazes = obstacle == "corner" and offset_m == 0.15  # it may slide past while the encoders measure 0.25 m
+    assert motion.collided or (grazes and motion.contacts)
     assert abs(math.degrees(motion.yaw_change_rad)) < 0.3
     assert motion.displacement_m < FORWARD_M
 
@@ -175,9 +175,16 @@ def test_the_robot_passes_a_gap_wider_than_itself(gap_m, passes):
 
 @pytest.mark.parametrize(
     ("bottom_m", "top_m", "passes"),
-    [(0.0, 0.025, True), (0.0, 0.05, False), (0.80, 0.90, False), (0.89, 0.99, True), (0.40, 0.42, False)],
+    [
+        (0.0, CLIMB_M, True),
+        (0.0, 0.020, False),
+        (0.0, 0.05, False),
+        (0.80, 0.90, False),
+        (0.89, 0.99, True),
+        (0.40, 0.42, False),
+    ],
 )
-def test_the_hull_collides_only_with_obstacles_at_its_height(bottom_m, top_m, passes):
+def test_the_robot_is_stopped_by_what_it_does_not_climb_or_pass_under(bottom_m, top_m, passes):
     house = with_box(
         open_floor(),
         "table_00",
@@ -224,18 +231,61 @@ def test_on_a_slippery_floor_the_wheels_slip():
     assert not motion.collided
 
 
-def test_a_step_higher_than_the_free_space_allows_stops_the_robot():
-    step_m = CLIMB_M + 0.002
-    house = with_box(open_floor(), "floor_01", centre_m=(1.05, 0.0, 0.5 * step_m), half_m=(0.5, 1.0, 0.5 * step_m))
-    assert sum(motion.displacement_m for motion in drive(world_with(house), *[FORWARD] * 4)) < 0.6
+@pytest.mark.parametrize("label", ["floor_01", "door_00"])
+@pytest.mark.parametrize("base", BASES)
+def test_an_edge_of_20_mm_stops_the_robot_with_a_collision_whatever_its_label(base, label):
+    house = with_box(open_floor(), label, centre_m=(1.05, 0.0, 0.010), half_m=(0.5, 1.0, 0.010))
+    motions = drive(world_with(house, base=base), *[FORWARD] * 4)
+    assert sum(motion.displacement_m for motion in motions) < 0.6
+    assert motions[-1].collided
+    assert motions[-1].contacts[0].instance == label
 
 
+@pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize("rug_m", [0.005, 0.01, CLIMB_M])
-def test_a_solid_rug_is_climbed(rug_m):
+def test_a_solid_rug_is_climbed(rug_m, base):
+    """Encoders measure the path of the wheels up its edge, where they slip: that forward is shorter by up to 3 cm."""
     house = with_box(open_floor(), "floor_01", centre_m=(1.0, 0.0, 0.5 * rug_m), half_m=(0.5, 1.0, 0.5 * rug_m))
-    world = world_with(house)
-    for motion in drive(world, *[FORWARD] * 8):
-        assert motion.displacement_m == pytest.approx(FORWARD_M, abs=0.001)
+    world = world_with(house, base=base)
+    motions = drive(world, *[FORWARD] * 8)
+    assert not any(motion.collided for motion in motions)
+    for motion in motions:
+        assert motion.displacement_m == pytest.approx(FORWARD_M, abs=0.03)
+    assert sum(abs(motion.displacement_m - FORWARD_M) < 0.001 for motion in motions) >= 4
+
+
+@pytest.mark.parametrize("phase_m", [0.0, 0.06, 0.12])
+@pytest.mark.parametrize("angle_deg", [0, 45])
+@pytest.mark.parametrize(("edge_m", "friction", "climbed"), [(CLIMB_M, 0.7, True), (0.020, 1.0, False)])
+def test_height_and_not_friction_decides_which_edge_is_climbed(edge_m, friction, climbed, angle_deg, phase_m):
+    house = with_box(
+        open_floor(friction=friction), "door_00", centre_m=(1, 0, 0.5 * edge_m), half_m=(0.035, 4, 0.5 * edge_m)
+    )
+    angle, away_m = math.radians(angle_deg), 0.4 + phase_m
+    start = Pose(0.965 - away_m * math.cos(angle), -away_m * math.sin(angle), angle)
+    house.spec.geom("door_00").friction[0] = friction
+    world = world_with(house, base="free", start=start)
+    motions = drive(world, *[FORWARD] * 6)
+    assert (world.pose.x_m > 1.2) is climbed
+    assert climbed or any(motion.collided for motion in motions)
+
+
+def test_a_robot_that_leans_against_a_table_can_turn_and_drive_away():
+    """It grazes the edge of the top at 0.72 m, leans aside by 3 degrees and is stopped."""
+    house = with_box(open_floor(), "table_00", centre_m=(2.63, 2.26, 0.74), half_m=(0.4876, 0.8313, 0.025))
+    world = world_with(house, base="free", start=Pose(2.53, 1.193, 2.907))
+    assert drive(world, FORWARD, FORWARD)[-1].collided
+    motions = drive(world, *[LEFT] * 4)
+    assert not any(motion.collided for motion in motions)
+    assert drive(world, FORWARD)[0].displacement_m == pytest.approx(FORWARD_M, abs=0.005)
+
+
+def test_odometry_sees_wheels_that_slip_as_a_motion():
+    """The encoders turn by 0.25 m while the robot is held back by a heavy object on a slippery floor."""
+    world = world_with(with_movable(open_floor(friction=0.15), "chair_00", xy_m=(0.5, 0.0), mass_kg=2.5))
+    motions = drive(world, FORWARD, FORWARD, FORWARD)
+    assert motions[0].displacement_m < FORWARD_M + 0.01
+    assert min(motion.displacement_m for motion in motions) < FORWARD_M - 0.005
 
 
 def test_seams_between_floor_boxes_do_not_disturb_the_motion():

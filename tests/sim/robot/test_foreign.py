@@ -44,10 +44,11 @@ def test_a_robot_keeps_its_own_masses_and_shapes(carrier: Path, capfd: pytest.Ca
     np.testing.assert_allclose(_tyres(world), [(0.85, 2.0, 0.075), (1.15, 2.0, 0.075)], atol=1e-3)
     ours, hull = (
         World(open_floor()).model.geom("stubborn_robot/lower_hull"),
-        world.model.geom("stubborn_robot/file/hull_1"),
+        world.model.geom("stubborn_robot/file/mast.0"),
     )
-    for field in ("friction", "condim", "solref", "margin", "priority", "contype", "conaffinity", "group"):
+    for field in ("friction", "condim", "solref", "priority", "contype", "conaffinity", "group"):
         np.testing.assert_array_equal(getattr(hull, field), getattr(ours, field))
+    assert hull.margin[0] == world.config.body.skin_m == 0.005
     assert capfd.readouterr().err == ""  # MuJoCo gave no warning
 
 
@@ -121,6 +122,33 @@ def test_a_robot_whose_file_faces_another_direction_drives_in_the_same_direction
     assert ends[0][1] > 0.05
 
 
+def test_the_track_is_that_of_the_sidecar(tmp_path: Path) -> None:
+    config, _ = load_robot(write_robot(tmp_path / "r", track_m=0.26))
+    assert config.wheels.half_track_m == pytest.approx(0.13)
+    world = World(open_floor(), robot=config)
+    world.reset(Pose(1.0, 2.0, 0.5 * math.pi))
+    np.testing.assert_allclose(_tyres(world), [(0.87, 2.0, 0.075), (1.13, 2.0, 0.075)], atol=1e-3)
+    assert math.degrees(world.move(Action.TURN_LEFT).yaw_change_rad) == pytest.approx(30.0, abs=0.2)
+
+
+def test_the_limits_of_speed_and_acceleration_are_those_of_the_sidecar(carrier: Path, tmp_path: Path) -> None:
+    slow, _ = load_robot(write_robot(tmp_path / "r", speed_m_s=0.2, acceleration_m_s2=0.4))
+    durations_s = []
+    for config in (slow, load_robot(carrier)[0]):
+        world = World(open_floor(), robot=config)
+        world.reset(Pose(0.0, 0.0, 0.0))
+        durations_s.append(world.move(Action.MOVE_FORWARD).duration_s)
+    assert durations_s == pytest.approx([0.25 / 0.2 + 0.2 / 0.4, 1.0], abs=0.15)
+
+
+def test_joints_are_fixed_where_the_sidecar_says(tmp_path: Path) -> None:
+    config, _ = load_robot(write_robot(tmp_path / "r", joints={"pan": 0.5 * math.pi}))
+    world = World(open_floor(), robot=config)
+    world.reset(Pose(0.0, 0.0, 0.0))
+    head = world.data.geom("stubborn_robot/file/head.0").xmat.reshape(3, 3)
+    np.testing.assert_allclose(head[:, 0], (0.0, 1.0, 0.0), atol=1e-3)
+
+
 def test_the_free_space_depends_on_the_robot(carrier: Path) -> None:
     config, _ = load_robot(carrier)
     ours, theirs = World(room(4, 4)), World(room(4, 4), robot=config)
@@ -175,7 +203,11 @@ WRONG = {
     "no radius of the wheels": ({"wheel_radius_m": None}, {}, '"wheel_radius_m", a number > 0; it has null'),
     "an unknown key": ({"wheel_radius": 0.1}, {}, "unknown key 'wheel_radius'. The keys are: wheel_joints"),
     "an unknown caster": ({"casters": ["caster"]}, {}, "no geom and no body 'caster'"),
-    "a caster that is not named": ({"casters": []}, {}, r"reaches down to -?0\.00\d m.*sliding.*casters"),
+    "a caster that is not named": ({"casters": []}, {}, r"reaches down to -?0\.00\d m .*'castor'.*sliding.*casters"),
+    "a track that is no length": ({"track_m": -0.3}, {}, '"track_m", a number > 0; it has -0.3'),
+    "joints as a list": ({"joints": ["pan"]}, {}, '"joints" in its sidecar must be an object with a position'),
+    "a wheel in a pose": ({"joints": {"hub_l": 1.0}}, {}, "must not name the wheel joint 'hub_l'"),
+    "a pose out of range": ({"joints": {"pan": 2.0}}, {}, r"'pan' in the sidecar must lie in \[-1.571, 1.571\] rad"),
     "a radius that is too small": ({"radius_m": 0.15}, {}, r"radius_m in the sidecar is 0\.150 m.*at least 0\.205"),
     "a camera outside": ({"camera_forward_m": 0.5}, {}, r"camera_forward_m must be within .* 0\.205 m"),
     "a robot that heads along y": ({}, {'"0.4 0.1 0.075"': '"0.4 0.1 0.075" euler="90 0 0"'}, "with .x ahead"),
@@ -206,3 +238,9 @@ def test_a_missing_sidecar_is_reported_with_its_name(carrier: Path, tmp_path: Pa
     (tmp_path / "carrier.xml").write_text(carrier.read_text())
     with pytest.raises(ConfigError, match=r"sidecar of the robot '.*carrier\.json' does not exist"):
         load_robot(tmp_path / "carrier.xml")
+
+
+def test_small_wheels_climb_less_than_ours(carrier: Path, tmp_path: Path) -> None:
+    assert load_robot(carrier)[0].model.climb_m == RobotConfig().climb_m
+    small = write_robot(tmp_path / "r", wheel_radius_m=0.06)
+    assert load_robot(small)[0].model.climb_m == pytest.approx(0.18 * 0.06)

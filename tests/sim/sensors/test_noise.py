@@ -16,7 +16,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.labels import read_labels
-from sim.interface import SENSORS, Action, CameraModel, ConfigError, wrap_angle
+from sim.interface import FORWARD_M, SENSORS, Action, CameraModel, ConfigError, wrap_angle
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.sensors.actuation_noise import ActuationNoise
 from sim.sensors.depth_noise import DepthNoise, NoisyDepth
@@ -51,13 +51,79 @@ def sensed(config: DepthNoise, depth_m: np.ndarray, seed: int = 0) -> np.ndarray
     return noise.apply({"depth": depth_m}, {}, np.random.default_rng(seed))["depth"]
 
 
+PUBLISHED_MM = {1.0: 4.1, 2.0: 16.5, 4.0: 66.0}
+"""Random error of a D435 by Intel's formula: 0.08 px of disparity, 388 px of focal length, 5 cm of baseline."""
+
+
 @pytest.mark.parametrize("distance_m", [1.0, 2.0, 4.0])
 @pytest.mark.parametrize("preset", ["realsense", "harsh"])
 def test_std_of_a_walls_depth_grows_with_range_as_configured(preset: str, distance_m: float) -> None:
-    config = replace(get_noise(preset).depth, step_1_m=0.0)
+    config = replace(get_noise(preset).depth, step_1_m=0.0, bias_1_m=0.0, baseline_m=0.0)
     error_m = sensed(config, wall(distance_m)).astype(float) - distance_m
     assert error_m.std() == pytest.approx(config.axial_m + config.axial_1_m * distance_m**2, rel=0.05)
-    assert abs(error_m.mean()) < 0.01 * error_m.std()
+    assert abs(error_m.mean()) < 0.05 * error_m.std()
+    if preset == "realsense":
+        assert 1000.0 * error_m.std() == pytest.approx(PUBLISHED_MM[distance_m], rel=0.05, abs=1.2)
+
+
+@pytest.mark.parametrize("preset", ["realsense", "harsh"])
+def test_errors_of_neighbours_are_alike_within_the_matching_window(preset: str) -> None:
+    """Means over windows of w px share w - k of w columns at a distance of k: the correlation is 1 - k / w."""
+    config = replace(get_noise(preset).depth, step_1_m=0.0, bias_1_m=0.0, baseline_m=0.0, lateral_px=0.0)
+    error_m = np.stack([sensed(config, wall(2.0), seed) for seed in range(4)]).astype(float) - 2.0
+    power = (error_m**2).mean()
+    for k in (1, 3, 5, config.window_px, 2 * config.window_px):
+        wanted = max(0.0, 1.0 - k / config.window_px)
+        assert (error_m[:, :, k:] * error_m[:, :, :-k]).mean() / power == pytest.approx(wanted, abs=0.03)
+        assert (error_m[:, k:] * error_m[:, :-k]).mean() / power == pytest.approx(wanted, abs=0.03)
+
+
+def test_the_systematic_error_is_smooth_and_constant_and_differs_between_episodes() -> None:
+    """Its standard deviation is 1 % of the distance at 2 m, half of the data sheet's limit, and grows with z^2."""
+    config = DepthNoise(bias_1_m=get_noise("realsense").depth.bias_1_m)
+    noisy, rng = NoisyDepth(config, SMALL), np.random.default_rng(0)
+    errors_m = []
+    for _ in range(300):
+        noisy.begin(np.zeros(1, np.float32))
+        walls = [np.full((48, 64), distance_m, np.float32) for distance_m in (1.0, 1.0, 2.0, 4.0)]
+        first, again, *far = (noisy.apply({"depth": depth_m}, {}, rng)["depth"] - depth_m[0, 0] for depth_m in walls)
+        np.testing.assert_array_equal(first, again)
+        errors_m.append([first, *far])
+        assert np.abs(np.diff(first)).max() < 0.05 * 0.005
+    std_m = np.array(errors_m)[:, :, 24, 32].std(axis=0)
+    np.testing.assert_allclose(std_m, [0.005, 0.02, 0.08], rtol=0.15)
+
+
+@pytest.mark.parametrize(("near_m", "far_m"), [(0.8, 3.0), (1.0, 2.0), (2.0, 4.0)])
+@pytest.mark.parametrize("preset", ["realsense", "harsh"])
+def test_a_near_object_casts_a_shadow_to_its_left_as_wide_as_in_a_stereo_camera(
+    preset: str, near_m: float, far_m: float
+) -> None:
+    """The shadow is f b (1 / near - 1 / far) px wide, and the band at the left border f b / far."""
+    baseline_m = get_noise(preset).depth.baseline_m
+    focal_baseline = CAMERA.focal_px * baseline_m
+    depth_m = wall(far_m)
+    depth_m[100:200, 300:400] = near_m
+    lost = sensed(DepthNoise(baseline_m=baseline_m), depth_m) == 0.0
+    shadow_px = focal_baseline * (1.0 / near_m - 1.0 / far_m)
+    assert abs(lost[150, 100:].sum() - shadow_px) <= 0.5
+    assert lost[150, 300 - round(shadow_px) : 300].all()
+    assert abs(lost[:, :100].sum() / SHAPE[0] - focal_baseline / far_m) <= 0.5
+    assert not lost[:100, 100:].any()
+    assert not lost[200:, 100:].any()
+    seen = depth_m[~lost]
+    np.testing.assert_array_equal(sensed(DepthNoise(baseline_m=baseline_m), depth_m)[~lost], seen)
+
+
+def test_a_slanted_wall_and_pixels_without_return_cast_no_shadow() -> None:
+    """A wall 0.3 m to the right of the optical axis, and a missing part of a flat one."""
+    columns = np.arange(SHAPE[1]) + 0.5 - SHAPE[1] / 2
+    beside = np.clip(CAMERA.focal_px * 0.3 / np.maximum(columns, 1e-3), 0.5, 4.9).astype(np.float32)
+    config = DepthNoise(baseline_m=0.05)
+    assert (sensed(config, np.ascontiguousarray(np.broadcast_to(beside, SHAPE)))[:, 100:] > 0.0).all()
+    holed = wall(2.0)
+    holed[:, 300:310] = 0.0
+    np.testing.assert_array_equal(sensed(config, holed)[:, 100:], holed[:, 100:])
 
 
 def test_axial_noise_can_be_nguyens() -> None:
@@ -101,13 +167,12 @@ def test_shifts_have_the_configured_std_in_both_directions_and_are_uncorrelated(
 
 
 @pytest.mark.parametrize("radius_px", [1, 2])
-def test_edges_lose_and_spread_the_configured_shares(radius_px: int) -> None:
-    config = DepthNoise(edge_dropout=0.4, edge_flying=0.25, edge_radius_px=radius_px)
+def test_edges_spread_the_configured_share(radius_px: int) -> None:
+    config = DepthNoise(edge_flying=0.25, edge_radius_px=radius_px)
     images = np.stack([sensed(config, step_of(1.0, 3.0), seed) for seed in range(20)])
     middle = SHAPE[1] // 2
     edge = images[:, :, middle - radius_px : middle + radius_px]
     flying = (edge > 1.0) & (edge < 3.0)
-    assert (edge == 0.0).mean() == pytest.approx(0.4, rel=0.05)
     assert flying.mean() == pytest.approx(0.25, rel=0.05)
     assert edge[flying].mean() == pytest.approx(2.0, rel=0.02)
     assert edge[flying].std() == pytest.approx(2.0 / math.sqrt(12), rel=0.05)
@@ -121,7 +186,7 @@ def test_a_slanted_floor_has_no_edges() -> None:
     below = np.maximum(np.arange(SHAPE[0]) + 0.5 - SHAPE[0] / 2, 1e-3) / CAMERA.focal_px
     floor = np.minimum(CAMERA.height_m / below, 5.0).astype(np.float32)
     depth_m = np.ascontiguousarray(np.broadcast_to(floor[:, None], SHAPE))
-    np.testing.assert_array_equal(sensed(DepthNoise(edge_dropout=0.5, edge_flying=0.5), depth_m), depth_m)
+    np.testing.assert_array_equal(sensed(DepthNoise(edge_flying=1.0), depth_m), depth_m)
 
 
 def test_a_surface_next_to_pixels_without_return_has_no_flying_pixels() -> None:
@@ -178,7 +243,7 @@ def test_gloss_is_of_glass_mirrors_and_polish() -> None:
 
 def test_the_limits_of_depth_keep_their_meaning() -> None:
     """Saturated pixels and those without return do not change; noise leaves [0.5, 5] only to 0."""
-    config = replace(get_noise("harsh").depth, edge_dropout=0.0, edge_flying=0.0, lateral_px=0.0)
+    config = replace(get_noise("harsh").depth, baseline_m=0.0, edge_flying=0.0, lateral_px=0.0)
     for value in (0.0, 5.0):
         np.testing.assert_array_equal(sensed(config, wall(value)), value)
     for distance_m in (0.505, 4.95):
@@ -227,34 +292,35 @@ def test_dark_and_bright_saturate() -> None:
         assert abs(seen.astype(int) - grey).max() < 30
 
 
-def readings(config: PoseNoise, *, episodes: int, actions: int) -> tuple[np.ndarray, np.ndarray]:
-    """Returns errors of gps (episodes, actions + 1, 2) and compass (episodes, actions + 1) at (1, -2) m and 3.1 rad."""
-    noisy, rng = NoisyPose(config), np.random.default_rng(0)
-    true = {"gps": np.array([1.0, -2.0], np.float32), "compass": np.array([3.1], np.float32)}
-    seen = []
-    for _ in range(episodes):
-        noisy.begin(np.empty(0, np.float32))
-        seen.append([noisy.apply(true, {}, rng) for _ in range(actions + 1)])
-    errors = np.array([[reading["gps"] - true["gps"] for reading in episode] for episode in seen])
-    yaws = [[wrap_angle(float(reading["compass"][0]) - 3.1) for reading in episode] for episode in seen]
-    assert all(-np.pi < reading["compass"][0] <= np.float32(np.pi) for episode in seen for reading in episode)
-    return errors, np.array(yaws)
-
-
 def test_gps_and_compass_have_the_configured_white_noise() -> None:
-    gps, compass = readings(PoseNoise(gps_std_m=0.05, compass_std_rad=0.03), episodes=4, actions=1000)
-    assert gps[..., 0].std() == pytest.approx(0.05, rel=0.05)
-    assert gps[..., 1].std() == pytest.approx(0.05, rel=0.05)
-    assert compass.std() == pytest.approx(0.03, rel=0.05)
-    assert abs(np.corrcoef(gps[0, 1:, 0], gps[0, :-1, 0])[0, 1]) < 0.1
+    noisy, rng = NoisyPose(PoseNoise(gps_std_m=0.05, compass_std_rad=0.03)), np.random.default_rng(0)
+    true = {"gps": np.array([1.0, -2.0], np.float32), "compass": np.array([3.1], np.float32)}
+    seen = [noisy.apply(true, {}, rng) for _ in range(4000)]
+    gps = np.array([reading["gps"] - true["gps"] for reading in seen])
+    yaws = np.array([wrap_angle(float(reading["compass"][0]) - 3.1) for reading in seen])
+    assert all(-np.pi < reading["compass"][0] <= np.float32(np.pi) for reading in seen)
+    np.testing.assert_allclose(gps.std(axis=0), 0.05, rtol=0.05)
+    assert yaws.std() == pytest.approx(0.03, rel=0.05)
+    assert abs(np.corrcoef(gps[1:, 0], gps[:-1, 0])[0, 1]) < 0.1
 
 
-def test_drift_starts_at_zero_and_grows_with_the_square_root_of_actions() -> None:
-    gps, compass = readings(PoseNoise(gps_walk_m=0.01, compass_walk_rad=0.004), episodes=1500, actions=64)
-    np.testing.assert_allclose(gps[:, 0], 0.0, atol=1e-6)
-    for actions in (4, 16, 64):
-        assert gps[:, actions].std() == pytest.approx(0.01 * math.sqrt(actions), rel=0.05)
-        assert compass[:, actions].std() == pytest.approx(0.004 * math.sqrt(actions), rel=0.05)
+@pytest.mark.parametrize("preset", ["realsense", "harsh"])
+def test_a_noisy_robot_knows_its_pose_by_odometry_only(preset: str, house: Path) -> None:
+    """Encoders that measure 20 % too much move the robot by less, while gps and compass read whole actions."""
+    drive_errors = ActuationNoise(encoder_scale=(1.2, 1.2), gyro_scale=(1.1, 1.1))
+    noise = replace(get_noise(preset), actuation=drive_errors)
+    sensors, start = ("odometry",), Pose(-1.0, -1.0, 0.3)
+    env = ObjectNavEnv(house=house, goal="sofa", start=start, camera=SMALL, noise=noise, sensors=sensors)
+    first = env.reset(seed=0)[0]
+    seen = [env.step(action)[0] for action in (Action.TURN_LEFT, Action.MOVE_FORWARD)][-1]
+    true = env.scene.world.pose.relative_to(start)
+    assert env.observation_space.contains(seen)
+    env.close()
+    for reading in (first, seen):
+        np.testing.assert_array_equal([*reading["gps"], *reading["compass"]], reading["odometry"])
+    assert np.hypot(*seen["gps"]) == pytest.approx(FORWARD_M, abs=0.01)
+    assert math.hypot(true.x_m, true.y_m) == pytest.approx(FORWARD_M / 1.2, abs=0.01)
+    assert seen["compass"][0] == pytest.approx(1.1 * true.yaw_rad, abs=0.01)
 
 
 def test_conditions_are_sampled_from_their_ranges() -> None:
@@ -299,7 +365,7 @@ def test_slip_and_short_moves_come_from_physics() -> None:
     spinning = drive(world, Conditions(floor_friction_scale=0.01))
     assert spinning[0] < 0.1
     sliding = drive(world, Conditions(floor_friction_scale=0.05))
-    assert sliding[0] > 0.3
+    assert abs(sliding[0] - 0.25) > 0.02  # the wheels have turned by 0.25 m
     uneven = drive(world, Conditions(motor_gain_scale=(0.8, 1.2)))
     assert abs(uneven[4] - nominal[4]) > 0.005
     assert drive(world, NOMINAL) == nominal
@@ -430,12 +496,15 @@ def test_the_true_readings_are_not_changed() -> None:
         (DepthNoise, {"lateral_px": math.nan}, "lateral_px"),
         (DepthNoise, {"hole_share": 1.5}, "hole_share"),
         (DepthNoise, {"hole_gloss": 1.0}, "hole_gloss"),
-        (DepthNoise, {"edge_dropout": 0.7, "edge_flying": 0.7}, "at most 1"),
+        (DepthNoise, {"baseline_m": -0.05}, "baseline_m"),
+        (DepthNoise, {"window_px": 6}, "odd"),
+        (DepthNoise, {"window_px": 1}, "window_px"),
         (DepthNoise, {"edge_radius_px": 1.5}, "whole"),
         (DepthNoise, {"step_1_m": "fine"}, "fine"),
         (RgbNoise, {"gain_std": 2.0}, "gain_std"),
         (RgbNoise, {"read_std": -1.0}, "read_std"),
-        (PoseNoise, {"gps_walk_m": math.inf}, "gps_walk_m"),
+        (PoseNoise, {"gps_std_m": math.inf}, "gps_std_m"),
+        (PoseNoise, {"from_odometry": "yes"}, "from_odometry"),
         (ActuationNoise, {"floor_friction_scale": (1.0, 0.5)}, "floor_friction_scale"),
         (ActuationNoise, {"motor_gain_scale": 0.9}, "motor_gain_scale"),
         (ActuationNoise, {"motor_gain_scale": (0.0, 1.0)}, "motor_gain_scale"),
@@ -467,7 +536,7 @@ def test_a_file_may_name_a_preset_and_change_some_of_it() -> None:
         ({"preset": "loud"}, "none, realsense, harsh"),
         ({"preset": ["harsh"]}, "none, realsense, harsh"),
         ({"sonar": {}}, "depth, rgb, pose, actuation"),
-        ({"depth": {"fog": 1.0}}, "edge_dropout"),
+        ({"depth": {"fog": 1.0}}, "baseline_m"),
         ({"depth": 3}, "depth"),
         ({"depth": {"hole_share": 2}}, "hole_share"),
         ({"actuation": {"motor_gain_scale": ["a", "b"]}}, "motor_gain_scale"),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sim.env.objectnav import ObjectNavEnv
 from sim.geometry.pose import Pose
-from sim.interface import POSE_SENSORS, SCAN, SENSORS, Action, CameraModel, ConfigError, reads_truth
+from sim.interface import POSE_SENSORS, ROBOT_SENSORS, SENSORS, Action, CameraModel, ConfigError, reads_truth
 from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.sensor import NoiseSettings, SensorContext
 from sim.sensors.standard import STANDARD_SENSORS, DepthSensor, resolve_sensors
@@ -128,7 +128,7 @@ def observations(house: Path, actions: list[Action], **options) -> list[dict[str
 
 
 def test_the_standard_sensors_are_those_of_the_interface() -> None:
-    assert tuple(STANDARD_SENSORS) == (*SENSORS, *POSE_SENSORS, SCAN)
+    assert tuple(STANDARD_SENSORS) == (*SENSORS, *POSE_SENSORS, *ROBOT_SENSORS)
 
 
 @pytest.mark.filterwarnings("error")
@@ -256,7 +256,7 @@ def test_an_object_that_is_no_sensor_is_refused_in_one_sentence(sensor: object, 
         resolve_sensors((sensor,))  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("field", ["goal", "collided", "pose", "start", "motion", "model", "data"])
+@pytest.mark.parametrize("field", ["goal", "collided", "odometry", "pose", "start", "motion", "model", "data"])
 def test_a_sensor_gets_the_fields_that_it_declares_and_no_others(field: str, house: Path) -> None:
     class Reader(Constant):
         name = "reader"
@@ -270,7 +270,7 @@ def test_a_sensor_gets_the_fields_that_it_declares_and_no_others(field: str, hou
     declared = Reader(0.0)
     declared.reads = (field,)  # type: ignore[attr-defined]
     assert observations(house, [], sensors=(declared,))[0]["reader"] == 0.0
-    assert reads_truth(declared) == (field not in ("goal", "collided"))
+    assert reads_truth(declared) == (field not in ("goal", "collided", "odometry"))
 
 
 def test_the_noise_of_a_sensor_gets_the_images_that_it_declares_and_no_others(house: Path) -> None:

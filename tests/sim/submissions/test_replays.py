@@ -9,12 +9,14 @@ from typing import Any
 
 import pytest
 
+from sim.commands import submit
 from sim.configuration import as_json
 from sim.sensors.actuation_noise import ActuationNoise
 from sim.submissions.contents import read_submission
 from tests.helpers.submissions import (
     RUNS,
     Edit,
+    checked,
     content_of,
     in_actions,
     in_all_results,
@@ -23,6 +25,7 @@ from tests.helpers.submissions import (
     in_manifest,
     in_tree,
     judged,
+    recorded,
     together,
     written,
 )
@@ -35,6 +38,17 @@ def test_a_recorded_run_is_verified_equal_with_its_frames(folder: Path, name: st
     assert {each.result.end_reason for each in read_submission(folder / f"{name}.json.gz").episodes} <= {
         "stop", "max_steps",
     }  # fmt: skip
+
+
+def test_replicates_are_verified_equal_and_cover_the_split(folder: Path, tmp_path: Path) -> None:
+    run = recorded(folder / "tiny", tmp_path / "run", "oracle", "--replicates", "2", "--seed-key", "key")
+    assert submit.main(submit.Args(run=run, name="Replicates", authors=("A. Author",))) == 0
+    file = run.with_name("run.json.gz")
+    assert [each.judgement for each in judged(folder, file)] == ["equal"] * 6
+    assert checked(folder, file)[0].covers == "all 3 episodes, 2 replicates of each"
+    content = content_of(file)
+    content["episodes"].pop(0)
+    assert not checked(folder, written(file, content))[0].is_first
 
 
 def test_the_runs_have_successes_failures_and_collisions(folder: Path) -> None:

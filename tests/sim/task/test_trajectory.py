@@ -71,6 +71,13 @@ def test_a_file_of_an_older_version_states_no_place(tmp_path: Path) -> None:
     assert after.nearest_instance_m == 1.25
 
 
+def test_a_file_without_durations_is_read(tmp_path: Path) -> None:
+    write_trajectory(tmp_path / "e.npz", replace(walked(3), duration_s=None), {})
+    after = read_trajectory(tmp_path / "e.npz")
+    assert after.duration_s is None
+    assert after.num_steps == 3
+
+
 def test_five_hundred_steps_fit_into_fifty_kilobytes(tmp_path: Path) -> None:
     write_trajectory(tmp_path / "e.npz", walked(500), {})
     assert (tmp_path / "e.npz").stat().st_size < 50_000

@@ -14,7 +14,7 @@ from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
-from sim.interface import RobotModel, SuccessRule
+from sim.interface import CLIMB_M, RobotModel, SuccessRule
 from sim.world.freespace import FreeSpace
 from sim.world.world import World
 from tests.helpers.worlds import open_floor, room, with_box, with_movable, with_post
@@ -91,9 +91,9 @@ def test_the_grid_agrees_with_the_exact_test_at_cell_centres():
 
 @pytest.mark.parametrize(
     ("bottom_m", "top_m", "free"),
-    [(0.0, 0.029, True), (0.0, 0.031, False), (0.879, 1.2, False), (0.881, 1.2, True), (0.5, 0.6, False)],
+    [(0.0, CLIMB_M, True), (0.0, CLIMB_M + 0.001, False), (0.879, 1.2, False), (0.881, 1.2, True), (0.5, 0.6, False)],
 )
-def test_only_geoms_between_step_height_and_robot_height_block(bottom_m, top_m, free):
+def test_only_geoms_between_climbed_height_and_robot_height_block(bottom_m, top_m, free):
     half = 0.5 * (top_m - bottom_m)
     house = with_box(room(), "shelving_00", centre_m=(0, 0, bottom_m + half), half_m=(0.3, 0.3, half))
     assert free_space(house).is_free(0.0, 0.0) == free
@@ -320,10 +320,10 @@ def test_a_floor_without_an_end_has_no_edge():
     assert (free_space(sunken).free == free_space(room(6, 4)).free).all()
 
 
-@pytest.mark.parametrize(("clearance_m", "free"), [(0.03, True), (0.012, False)])
-def test_an_object_that_low_passes_under_a_robot_with_clearance(clearance_m, free):
+@pytest.mark.parametrize(("climb_m", "free"), [(0.02, True), (0.019, False)])
+def test_the_robot_decides_which_height_is_free(climb_m, free):
     house = with_box(room(6, 4), "objects_00", centre_m=(0, 0, 0.01), half_m=(0.1, 2.0, 0.01))
-    assert free_space(house, robot=RobotModel(clearance_m=clearance_m)).is_free(0.0, 0.0) == free
+    assert free_space(house, robot=RobotModel(climb_m=climb_m)).is_free(0.0, 0.0) == free
 
 
 def test_a_house_may_be_far_from_the_origin():

@@ -218,7 +218,7 @@ def test_a_start_without_floor_is_refused():
 
 
 def test_a_robot_that_drops_has_fallen():
-    world = World(open_floor())
+    world = World(open_floor(), robot=RobotConfig(base="planar"))
     world.reset(ORIGIN)
     world.data.qpos[world.model.joint("stubborn_robot/z").qposadr[0]] = 1.0
     assert world.move(Action.MOVE_FORWARD).fell

@@ -12,7 +12,7 @@ from sim.interface import MAX_STEPS, MPCAT40, ConfigError, SegmenterSpec, Succes
 from stubborn.detection.distances import StopDistances, TargetConfig
 from stubborn.detection.evidence import Evidence, EvidenceConfig
 from stubborn.detection.fusion import Fusion
-from stubborn.detection.look import LookConfig, Verdicts, look_at
+from stubborn.detection.look import LookConfig, Verdicts, believed, look_at
 from stubborn.detection.viewpoints import ViewpointFinder
 from stubborn.mapping.masks import nearest
 from stubborn.planning.planner import Route
@@ -86,7 +86,28 @@ def test_a_rejected_track_is_accepted_when_it_looks_better_or_when_few_steps_are
     track = Judged(looks=2)
     assert [track.at(0.5), track.at(0.95)] == ["rejected", "accepted"]
     track = Judged(looks=2)
-    assert [track.at(0.5, step) for step in (0, 250, 420)] == ["rejected", "rejected", "accepted"]
+    assert [track.at(0.35, step) for step in (0, 200, 420)] == ["rejected", "rejected", "accepted"]
+
+
+def test_a_goal_exists_so_a_candidate_is_more_probable_the_more_was_seen_without_another_one():
+    config = LookConfig()
+    alone, two = np.array([0.0, 0.5], np.float32), np.array([0.0, 0.5, 0.5], np.float32)
+    over_time = [float(believed(alone, step, config)[TRACK]) for step in (0, 100, 300)]
+    assert over_time[0] == pytest.approx(0.5)
+    assert over_time == sorted(over_time)
+    assert over_time[2] == pytest.approx(0.5 / (1.0 - 0.5 * 0.85), abs=0.05)
+    assert believed(two, 300, config)[TRACK] < over_time[2]
+    one_object = np.array([0, 1, 1])
+    assert believed(two, 300, config, one_object)[TRACK] == pytest.approx(over_time[2])
+    assert believed(np.array([0.0, 1.0], np.float32), 300, config).max() == 1.0
+
+
+def test_only_a_track_that_was_looked_at_is_judged_by_what_else_there_is():
+    assert Judged().at(0.65, 150, (0.0,)) == "doubtful"
+    assert Judged(looks=1).at(0.65, 150, (0.0,)) == "accepted"
+    track = Judged(looks=2)
+    assert [track.at(0.65, 150) for _ in range(2)] == ["rejected", "accepted"]
+    assert Judged(looks=1).at(0.65, 150) == "doubtful"  # the look did not show it
 
 
 def test_an_accepted_track_remains_so_until_it_is_well_below_the_bar():
@@ -131,7 +152,7 @@ def test_the_bar_falls_as_steps_run_out():
 @pytest.mark.parametrize(
     "wrong",
     [{"bar": ()}, {"bar": ((100, 0.5), (50, 0.1))}, {"bar": ((0, 1.5),)}, {"slack": -0.1}, {"look_m": (2.0, 1.0)},
-     {"most_looks": -1}, {"per_metre": -0.1}, {"patience_steps": -1}],
+     {"most_looks": -1}, {"per_metre": -0.1}, {"patience_steps": -1}, {"unseen_steps": 0.0}, {"missed": 1.5}],
 )  # fmt: skip
 def test_wrong_values_are_refused(wrong: dict):
     with pytest.raises(ConfigError, match="LookConfig"):

@@ -107,7 +107,7 @@ def test_a_last_resort_is_taken_so_many_steps_before_the_end_of_the_episode(
     seeker._accepted = [1]
     monkeypatch.setattr(seeker, "_best_accepted", lambda pose: [1])
     monkeypatch.setattr(seeker, "_with_parts", lambda tracks: tracks)
-    monkeypatch.setattr(seeker, "_drive_in", lambda *given: resorts.append(given[-1]) or Approach(None, 0.0, (0, 0)))
+    monkeypatch.setattr(seeker, "_drive_to", lambda *given: resorts.append(given[-1]) or Approach(None, 0.0, (0, 0)))
     window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
     for step in (max_steps - 81, max_steps - 80):
         seeker.approach(agent.navmap, window, Pose(0.0, 0.0, 0.0), step)
@@ -179,6 +179,7 @@ def test_around_a_place_where_pursuit_got_nowhere_doubtful_tracks_wait(monkeypat
     agent, seeker, _, track = tracked()
     window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
     seeker._accepted, seeker.verdicts.doubtful, seeker._pursuit = [], [track], None
+    seeker.config = replace(seeker.config, look=replace(seeker.config.look, look_steps=200))
     monkeypatch.setattr(seeker, "_look", lambda *_: Approach(None, 0.0, (0, 0)))
     monkeypatch.setattr(seeker, "_set_aside", lambda tracks: None)  # it comes back as another track
     found = []
@@ -188,6 +189,16 @@ def test_around_a_place_where_pursuit_got_nowhere_doubtful_tracks_wait(monkeypat
         found.append(seeker.approach(agent.navmap, window, Pose(0.0, 0.0, 0.0), step) is not None)
     patience, wait = seeker.config.look.patience_steps, seeker.target.retry_after_steps
     assert found == [True] * patience + [False] * wait + [True] * (80 - patience - wait)
+
+
+def test_looks_at_a_track_end_after_a_number_of_steps(monkeypatch: pytest.MonkeyPatch):
+    agent, seeker, _, track = tracked()
+    window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
+    seeker._accepted, seeker.verdicts.doubtful, seeker._pursuit = [], [track], None
+    monkeypatch.setattr(seeker, "_look", lambda *_: Approach(None, 0.0, (0, 0)))
+    found = [seeker.approach(agent.navmap, window, Pose(2.0 * step, 0.0, 0.0), step) is not None for step in range(40)]
+    assert found == [True] * seeker.config.look.look_steps + [False] * (40 - seeker.config.look.look_steps)
+    assert track in seeker.verdicts.rejected
 
 
 def tracked() -> tuple[StubbornAgent, TrackSeeker, Tracks, int]:
@@ -262,21 +273,22 @@ def test_a_stop_at_a_part_judges_the_track_that_is_approached_and_not_a_better_o
     elsewhere = tracks._begin()
     tracks._low[elsewhere] = tracks._high[elsewhere] = tracks._low[near] + (60, 0, 0)
     seeker.probability = np.append(seeker.probability, np.float32(0.99))
-    seeker.probability[near], seeker.verdicts.bar = 0.75, 0.8
+    seeker.probability[near], seeker.verdicts.bar = 0.65, 0.8
+    seeker.verdicts.rated = seeker.probability
     seeker._accepted, seeker._targets = [near, elsewhere], [near]
     owned = seeker.cells_of(agent.navmap, [near, elsewhere])
     of_part = tuple(int(each[0]) for each in np.nonzero(~owned))
     assert not seeker.judge(agent.navmap, of_part)  # type: ignore[arg-type]
     assert seeker.verdicts.rejected >= {near}
     assert seeker._accepted == [elsewhere]
-    seeker.probability[near], seeker._accepted, seeker._targets = 0.85, [near, elsewhere], [near]
+    seeker.probability[near], seeker._accepted, seeker._targets = 0.75, [near, elsewhere], [near]
     assert seeker.judge(agent.navmap, of_part)  # type: ignore[arg-type]
-    assert seeker.confidence == pytest.approx(0.85)
+    assert seeker.confidence == pytest.approx(0.75)
 
 
-@pytest.mark.parametrize("wrong", [{"as_good": -0.1}, {"core_share": 1.5}, {"part_share": -1.0}])
+@pytest.mark.parametrize("wrong", [{"as_good": -0.1}, {"core_share": 1.5}, {"part_share": -1.0}, {"near_best_m": 0.0}])
 def test_wrong_settings_are_refused(wrong: dict):
-    with pytest.raises(ConfigError, match="TrackSeekerConfig needs"):
+    with pytest.raises(ConfigError, match="TrackSeekerConfig"):
         TrackSeekerConfig(**wrong)
 
 
@@ -293,6 +305,27 @@ def test_the_robot_drives_to_the_core_of_a_track_that_holds_a_part_of_another_ob
     agent.navmap.score_sum[other] = 2.0
     assert not seeker.cells_of(agent.navmap, [track])[other]
     assert seeker.cells_of(agent.navmap, [track]).sum() == mask.sum() - 1
+
+
+def test_the_robot_drives_to_the_cells_around_the_best_one_where_there_is_a_path(monkeypatch: pytest.MonkeyPatch):
+    agent, seeker, tracks, track = tracked()
+    seeker._targets = [track]
+    window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
+    given: list[np.ndarray] = []
+    monkeypatch.setattr(seeker, "_approach", lambda navmap, window, pose, cells, resort: given.append(cells))
+    index, mask = tracks.footprint(track)
+    agent.navmap.score_sum[index], agent.navmap.frames_in_view[index] = 9.0, 10
+    rows, cols = np.nonzero(mask)
+    agent.navmap.score_sum[index[0].start + rows[-1], index[1].start + cols[-1]] = 9.5  # the best cell is at an end
+    seeker._drive_to(agent.navmap, window, Pose(0.0, 0.0, 0.0), [track], LastResort.NONE)
+    near_best, whole = given[0], given[1]
+    assert near_best.any()
+    assert (near_best <= whole).all()
+    best = seeker._best_cell(agent.navmap, track)
+    rows, cols = np.nonzero(near_best)
+    assert 0.05 * np.hypot(rows - best[0], cols - best[1]).max() <= seeker.config.near_best_m + 1e-6
+    assert near_best.sum() < whole.sum()
+    assert not seeker._to_best
 
 
 GLASS_M = 0.96

@@ -120,6 +120,17 @@ def test_a_tracks_probability_is_zero_where_it_lost_all_voxels_or_does_not_exist
     assert tracks.probabilities("table", least_voxels=1000).max() == 0.0
 
 
+def test_candidates_next_to_each_other_count_as_one_object():
+    tracks = tracked()
+    for _ in range(4):
+        tracks._begin()
+    for track, row in ((1, 10), (2, 12), (3, 14), (4, 20)):
+        tracks._low[track] = tracks._high[track] = (row, 5, 0)
+    gap = 1
+    assert tracks.objects(np.array([0.0, 0.4, 0.5, 0.3, 0.6], np.float32), gap).tolist() == [0, 2, 2, 2, 4]
+    assert tracks.objects(np.array([0.0, 0.4, 0.05, 0.3, 0.6], np.float32), gap).tolist() == [0, 1, 2, 3, 4]
+
+
 CLASSES = len(MPCAT40) - 1
 
 

@@ -65,6 +65,14 @@ def test_the_obstacle_layer_equals_a_brute_force_projection_of_pixels(distance_m
     assert fast.sum() <= 1.2 * slow.sum() + 10
 
 
+@pytest.mark.parametrize(("climb_m", "obstacle"), [(0.012, True), (0.16, False)])
+def test_what_the_robot_climbs_is_no_obstacle_in_its_map(climb_m: float, obstacle: bool):
+    world = GridWorld([Box((2.0, 2.5), (-1.0, 1.0), (0.0, 0.15))], (0.0, 0.0, 0.0), camera=CAMERA)
+    navmap, mapper = NavMap.empty(FRAME), Mapper(CAMERA, RobotModel(climb_m=climb_m), EVERY_PIXEL)
+    mapper.add_depth(mapper.frame(navmap, Pose(0.0, 0.0, 0.0)), world.render()[0])
+    assert navmap.seen_obstacle.any() == obstacle
+
+
 @pytest.mark.parametrize("distance_m", [1.0, 2.5, 4.8])
 def test_every_second_pixel_gives_the_same_wall_without_gaps(distance_m: float):
     pose = Pose(0.0, 0.0, SKEW)

@@ -25,22 +25,27 @@ TABLE = Box((1.2, 2.0), (-0.6, 0.6), (0.70, 0.75), "table")
 CHAIR_ID = 3
 
 
-def noisy(depth: np.ndarray, preset: str, rng: np.random.Generator) -> np.ndarray:
-    noise = NoisyDepth(get_noise(preset).depth, CAMERA)
-    noise.begin(np.zeros(1, np.float32))
-    return noise.apply({"depth": depth}, {"geom": np.zeros(depth.shape, np.int32)}, rng)["depth"]
+class Noise:
+    """The noise of one episode; its systematic error is the same in all frames."""
+
+    def __init__(self, preset: str, seed: int) -> None:
+        self._model, self._rng = NoisyDepth(get_noise(preset).depth, CAMERA), np.random.default_rng(seed)
+        self._model.begin(np.zeros(1, np.float32))
+
+    def added_to(self, depth: np.ndarray) -> np.ndarray:
+        return self._model.apply({"depth": depth}, {"geom": np.zeros(depth.shape, np.int32)}, self._rng)["depth"]
 
 
 def look_around(
     boxes: list[Box], preset: str, frames: int = 20, poses: list[tuple[float, float]] | None = None
 ) -> tuple[NavMap, np.ndarray]:
     """Returns the map after turns by 30 degrees at some places, and each cell's distance to the surfaces."""
-    mapper, navmap, rng = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(FRAME), np.random.default_rng(0)
+    mapper, navmap, noise = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(FRAME), Noise(preset, 0)
     for i in range(frames):
         x_m, y_m = (poses or [(0.0, 0.0)])[i % len(poses or [0])]
         yaw_rad = math.radians(30.0 * i)
         depth, _ = GridWorld(boxes, (x_m, y_m, yaw_rad), camera=CAMERA).render()
-        mapper.add_depth(mapper.frame(navmap, Pose(x_m, y_m, yaw_rad)), noisy(depth, preset, rng))
+        mapper.add_depth(mapper.frame(navmap, Pose(x_m, y_m, yaw_rad)), noise.added_to(depth))
     cell_x_m, cell_y_m = FRAME.mesh()
     gaps = [
         np.hypot(
@@ -53,10 +58,10 @@ def look_around(
 
 
 @pytest.mark.parametrize(
-    ("preset", "within_m", "most_cells"), [("none", 0.04, 0), ("realsense", 0.20, 0), ("harsh", 0.25, 20)]
+    ("preset", "within_m", "most_cells"), [("none", 0.04, 0), ("realsense", 0.30, 0), ("harsh", 0.60, 20)]
 )
 def test_noise_puts_no_obstacle_into_free_air_of_a_room_seen_from_within(preset: str, within_m: float, most_cells: int):
-    """Counted as they come, 131 cells lie in free air with `realsense` and 1,800 with `harsh`."""
+    """No filter removes the systematic error; at 5 m its standard deviation is 12 cm or 25 cm (`harsh`)."""
     navmap, gap_m = look_around([*ROOM, TABLE], preset, poses=[(0.0, 0.0), (-1.0, 0.6), (0.2, -1.5)])
     x_m, y_m = FRAME.mesh()
     air = (np.abs(x_m) < 3.0) & (np.abs(y_m) < 3.0) & (gap_m > within_m)
@@ -80,10 +85,10 @@ def test_a_leg_of_two_centimetres_is_mapped(preset: str, distance_m: float):
     for offset_m in np.linspace(-0.3, 0.3, 7):
         leg = Box((distance_m, distance_m + 0.02), (offset_m - 0.01, offset_m + 0.01), (0.0, 0.45))
         depth, _ = GridWorld([leg, *ROOM[1:]], (0.0, 0.0, 0.0), camera=CAMERA).render()
-        navmap, rng = NavMap.empty(FRAME), np.random.default_rng(1)
+        navmap, noise = NavMap.empty(FRAME), Noise(preset, 1)
         mapper = Mapper(CAMERA, RobotModel(), MappingConfig())
         for _ in range(3):
-            mapper.add_depth(mapper.frame(navmap, Pose(0.0, 0.0, 0.0)), noisy(depth, preset, rng))
+            mapper.add_depth(mapper.frame(navmap, Pose(0.0, 0.0, 0.0)), noise.added_to(depth))
         row, col = FRAME.cell(distance_m, offset_m)
         assert navmap.seen_obstacle[row - 1 : row + 2, col - 1 : col + 2].any()
 
@@ -128,9 +133,9 @@ def test_target_pixels_at_the_rim_do_not_put_candidates_behind_or_before_the_tar
     chair = Box((1.5, 1.9), (-0.25, 0.25), (0.0, 0.9), "chair")
     depth, semantic = GridWorld([*ROOM, chair], (0.0, 0.0, 0.0), camera=CAMERA).render()
     target = (semantic == CHAIR_ID).astype(np.float32)
-    mapper, navmap, rng = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(FRAME), np.random.default_rng(2)
+    mapper, navmap, noise = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(FRAME), Noise(preset, 2)
     for step in range(20):
-        seen = noisy(depth, preset, rng)
+        seen = noise.added_to(depth)
         mapper.add_scores(mapper.frame(navmap, Pose(0.0, 0.0, 0.0)), seen, Scores(target, 1.0 - target), step)
     x_m, _ = FRAME.centres(*np.nonzero(navmap.score_max > 0.5))
     assert x_m.min() > 1.5 - 0.12

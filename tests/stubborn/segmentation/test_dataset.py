@@ -11,7 +11,6 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-import torch
 from torch.utils.data import DataLoader
 
 from sim.interface import ConfigError
@@ -19,7 +18,6 @@ from stubborn.segmentation import dataset
 from stubborn.segmentation.dataset import (
     LabelledView,
     ViewDataset,
-    class_weights,
     list_shards,
     read_shard,
     spread_views,
@@ -102,16 +100,6 @@ def test_a_truncated_shard_and_an_unknown_category_are_named(tmp_path: Path) -> 
         list(read_shard(tmp_path / "strange.tar"))
     with pytest.raises(ConfigError, match="No shards"):
         list_shards(tmp_path / "nowhere")
-
-
-def test_rare_categories_weigh_more_and_absent_ones_nothing() -> None:
-    pixels = np.zeros(41)
-    pixels[[1, 2, 3]] = 1e6, 1e4, 1e2
-    weights = class_weights(pixels)
-    assert weights.shape == (40,)
-    assert weights[2] > weights[1] > weights[0] > 0
-    assert torch.count_nonzero(weights) == 3
-    assert float(weights[weights > 0].mean()) == pytest.approx(1.0)
 
 
 def test_tiled_pictures_are_in_row_order() -> None:

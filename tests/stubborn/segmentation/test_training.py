@@ -15,7 +15,6 @@ from stubborn.segmentation.rednet import CLASSES, RedNet, RedNetConfig
 from stubborn.segmentation.samples import IGNORED, Sampler
 from stubborn.segmentation.training import (
     exponential_average,
-    learning_rate,
     pyramid_loss,
     root_class_weights,
     set_normalisation,
@@ -86,16 +85,6 @@ def test_root_weights_fall_with_the_square_root_of_the_share_up_to_a_ratio() -> 
     assert float(weights[2] / weights[0]) == pytest.approx(5.0)
     assert float(weights[3]) == 0.0
     assert float(weights[:3].mean()) == pytest.approx(1.0)
-
-
-def test_the_learning_rate_rises_to_its_peak_and_falls_like_a_cosine() -> None:
-    rates = [learning_rate(step, 1000, peak=1.0, warmup=100) for step in range(1001)]
-    assert rates[0] == pytest.approx(0.01)
-    assert max(rates) == pytest.approx(1.0)
-    assert rates.index(max(rates)) in (99, 100)
-    assert all(a >= b for a, b in itertools.pairwise(rates[100:]))
-    assert rates[550] == pytest.approx(0.01 + 0.99 / 2)
-    assert rates[1000] == pytest.approx(0.01)
 
 
 def test_a_tiny_network_can_be_fitted_to_one_view() -> None:
