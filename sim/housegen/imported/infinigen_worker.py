@@ -195,6 +195,7 @@ def bake(bpy: Any, whole: Any) -> np.ndarray:
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
     scene.cycles.samples = 1
+    scene.render.threads_mode, scene.render.threads = "FIXED", 1
     scene.render.bake.target = "VERTEX_COLORS"
     scene.render.bake.use_clear = True
     for attribute in list(whole.data.color_attributes):
