@@ -5,8 +5,8 @@ stubborn houses generate --furniture runs/models --houses 4 --out runs/houses
 
 A source is a folder with catalogues of Sweet Home 3D (.sh3f), or with OBJ, glTF or other models and a table
 models.csv or models.toml (docs/furniture.md); several sources become one folder of models. `stubborn import furniture
-infinigen` makes a source. This command needs the extra `models`. No model is part of this repository. You are responsible for following the licences; they are written into models.json and into the houses,
-together with the authors.
+infinigen` makes a source. This command needs the extra `models`. No model is part of this repository. You are
+responsible for following the licences; they are written into models.json and into the houses, with the authors.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Makes a folder of models with Infinigen's generators, by a process of the user's Python in which Infinigen is installed.
+"""Makes a folder of models with Infinigen's generators, by a process of the user's Python that has Infinigen.
 
 The folder is a source of `stubborn import furniture`: a GLB file for each asset, and `models.csv`. A record in JSON for
 each asset says how it was made or why it failed, so that a stopped run resumes. `infinigen_worker` runs in the process.
@@ -15,10 +15,10 @@ import select
 import signal
 import subprocess
 import time
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import msgspec
 
@@ -57,17 +57,60 @@ class Generator:
     two_sided: bool = False
     """True: leaves, shades or cloth that are seen from both sides."""
 
+    dimensions_m: tuple[tuple[float, float], ...] | None = None
+    """Ranges of depth, width and height for generators that take them; None: what the generator draws."""
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """Further arguments of the class."""
+    title: str = ""
+    """The beginning of the names of its files; "": the name of the class."""
+
     @property
     def name(self) -> str:
-        """The beginning of the names of its files."""
-        return self.factory.rpartition(".")[2].removesuffix("Factory")
+        """The beginning of the names of its files, of letters only."""
+        return self.title or self.factory.rpartition(".")[2].removesuffix("Factory")
 
 
+_CABINET, _DRAWERS = "shelves.KitchenCabinetFactory", {"drawer_only": True}
 GENERATORS: tuple[Generator, ...] = (
     Generator("seating.ChairFactory", "chair", ("dining",)),
+    Generator("seating.OfficeChairFactory", "chair", ("office",)),
+    Generator("seating.ArmChairFactory", "chair", ("arm",)),
+    Generator("seating.BarChairFactory", "stool", ("bar",)),
     Generator("seating.SofaFactory", "sofa"),
+    Generator("seating.BedFactory", "bed"),
+    Generator("seating.PillowFactory", "cushion", ("throw", "floor"), two_sided=True),
+    Generator("tables.TableDiningFactory", "table", ("dining",)),
+    Generator("tables.CoffeeTableFactory", "table", ("coffee",)),
+    Generator("tables.SideTableFactory", "table", ("side",)),
+    Generator("tables.TableCocktailFactory", "table", ("side",)),
+    Generator("shelves.SimpleDeskFactory", "table", ("desk",)),
+    Generator("shelves.SidetableDeskFactory", "table", ("nightstand",)),
+    Generator("shelves.SingleCabinetFactory", "cabinet", ("display",)),
+    Generator(_CABINET, "cabinet", ("sideboard",), dimensions_m=((0.35, 0.45), (0.8, 1.6), (0.7, 0.95)),
+              title="Sideboard"),
+    Generator(_CABINET, "cabinet", ("wardrobe",), dimensions_m=((0.5, 0.6), (0.9, 1.8), (1.6, 2.1)), title="Wardrobe"),
+    Generator("shelves.TVStandFactory", "cabinet", ("media",)),
+    Generator(_CABINET, "chest_of_drawers", ("dresser",), dimensions_m=((0.4, 0.5), (0.7, 1.3), (0.7, 1.1)),
+              options=_DRAWERS, title="Dresser"),
+    Generator(_CABINET, "chest_of_drawers", ("nightstand",), dimensions_m=((0.35, 0.45), (0.4, 0.5), (0.5, 0.68)),
+              options=_DRAWERS, title="Nightstand"),
+    Generator("shelves.KitchenIslandFactory", "counter", ("island",)),
     Generator("bathroom.ToiletFactory", "toilet"),
-)
+    Generator("bathroom.BathtubFactory", "bathtub"),
+    Generator("bathroom.StandingSinkFactory", "sink", ("standing",)),
+    Generator("clothes.TowelFactory", "towel", ("top",), "top"),
+    Generator("clothes.PantsFactory", "clothes", ("floor", "top"), "top"),
+    Generator("clothes.ShirtFactory", "clothes", ("floor", "top"), "top"),
+    Generator("appliances.TVFactory", "tv_monitor", ("tv",), "top"),
+    Generator("appliances.MonitorFactory", "tv_monitor", ("monitor",), "top"),
+    Generator("tableware.PlantContainerFactory", "plant", ("top",), "top", two_sided=True),
+    Generator("tableware.LargePlantContainerFactory", "plant", ("floor",), two_sided=True),
+    Generator("shelves.SimpleBookcaseFactory", "shelving", ("bookcase",)),
+    Generator("shelves.LargeShelfFactory", "shelving", ("bookcase",)),
+    Generator("shelves.CellShelfFactory", "shelving", ("bookcase",)),
+    Generator("lamp.FloorLampFactory", "lighting", ("floor",), two_sided=True),
+    Generator("lamp.DeskLampFactory", "lighting", ("table",), "top", two_sided=True),
+)  # fmt: skip
 """The generators whose assets rooms ask for. Infinigen has none for showers, fireplaces and training machines."""
 
 
@@ -166,7 +209,7 @@ def _made(worker: _Worker, out: Path, generator: Generator, seed: int, limit_s: 
     answer = worker.ask(
         {
             "factory": generator.factory, "seed": seed, "file": str(file.resolve()), "two_sided": generator.two_sided,
-            "triangles": MOST_TRIANGLES,
+            "triangles": MOST_TRIANGLES, "dimensions_m": generator.dimensions_m, "options": dict(generator.options),
         },
         limit_s,
     )  # fmt: skip

@@ -1,8 +1,9 @@
 """Makes assets with Infinigen's generators; runs in the user's environment, where `infinigen` and `bpy` are installed.
 
 Each line on stdin is a request in JSON: `factory` ("seating.ChairFactory", below `infinigen.assets.objects`), `seed`,
-`file` (a GLB file to write), `two_sided` and `triangles` (largest number). Each line on stdout answers one request:
-`extent_m`, `triangles`, or `error`. A first line says that the worker is ready. All else that is printed goes to stderr.
+`file` (a GLB file to write), `two_sided`, `triangles` (largest number), `options` (arguments of the class) and
+`dimensions_m` (None, or ranges of depth, width and height from which its argument `dimensions` is drawn). Each line on stdout answers one request:
+`extent_m`, `triangles`, or `error`. A first line says that the worker is ready. All other output goes to stderr.
 
 Colours: every shader is replaced by an emission of its base colour, which Cycles bakes into the vertices; a material
 gets the mean colour of its triangles. Patterns and roughness are lost. Colours in the file are sRGB values, as `rgba`
@@ -50,10 +51,14 @@ def make(bpy: Any, request: dict[str, Any]) -> dict[str, Any]:
     butil.clear_scene()
     module, _, name = request["factory"].rpartition(".")
     factory_type = getattr(importlib.import_module(f"{OBJECTS}.{module}"), name)
+    options = dict(request["options"])
+    if request["dimensions_m"]:
+        low, high = np.array(request["dimensions_m"]).T
+        options["dimensions"] = tuple(np.random.default_rng(request["seed"]).uniform(low, high).tolist())
     with fixed_seed(request["seed"]):
-        factory = factory_type(request["seed"])
+        factory = factory_type(request["seed"], **options)
         asset = factory.spawn_asset(request["seed"])
-        factory.finalize_assets([asset])
+        factory.finalize_assets(asset)
     whole = joined(bpy, asset)
     reduce_triangles(bpy, whole, request["triangles"])
     vertices, faces, slots = arrays_of(whole)
