@@ -18,7 +18,7 @@ from tests.helpers.models import write_folder
 pytest.importorskip("trimesh")
 pytest.importorskip("fast_simplification")
 
-FAKE = '''
+FAKE = """
 import importlib.util, json, os, sys, time
 import numpy as np
 spec = importlib.util.spec_from_file_location("worker", WORKER)
@@ -45,7 +45,7 @@ for line in sys.stdin:
     colours = {0: (0.8, 0.1, 0.1, 1.0), 1: (0.1, 0.1, 0.8, 1.0)}
     worker.write_glb(asked["file"], np.array(corners), faces, slots, colours, two_sided=asked["two_sided"])
     print(json.dumps({"extent_m": [0.5, 0.4, 1.0], "triangles": 24}), flush=True)
-'''
+"""
 """A process that makes a chair whose back is at the smallest x, and hangs, ends or fails for some names."""
 
 CHAIR = Generator("seats.ChairFactory", "chair", ("dining",))
@@ -76,9 +76,7 @@ def test_an_asset_that_hangs_ends_the_process_or_fails_is_left_out_and_the_next_
 def test_a_second_run_makes_only_the_assets_that_were_not_tried(tmp_path: Path, asked: Path) -> None:
     generators = [CHAIR, Generator("seats.BadFactory", "chair", ("dining",))]
     python = Path(sys.executable)
-    first = make_assets(tmp_path / "out", python, generators, [0, 1], limit_s=9.0)
-    assert next(first).error == ""
-    first.close()
+    assert next(make_assets(tmp_path / "out", python, generators, [0, 1], limit_s=9.0)).error == ""
     again = list(make_assets(tmp_path / "out", python, generators, [0, 1], limit_s=9.0))
     assert [(asset.generator, asset.seed) for asset in again] == [("Chair", 0), ("Bad", 0), ("Chair", 1), ("Bad", 1)]
     list(make_assets(tmp_path / "out", python, generators, [0, 1], limit_s=9.0))

@@ -138,8 +138,13 @@ class _Answer(msgspec.Struct):
 
 
 def make_assets(
-    out: Path, python: Path, generators: Sequence[Generator], seeds: Sequence[int], *, limit_s: float,
-) -> Iterator[Asset]:  # fmt: skip
+    out: Path,
+    python: Path,
+    generators: Sequence[Generator],
+    seeds: Sequence[int],
+    *,
+    limit_s: float,
+) -> Iterator[Asset]:
     """Yields the record of each asset, of every generator for the first seed, then for the next; writes `models.csv`.
 
     Assets that have a record are not made again, failed ones neither: a seed gives the same asset each time.
@@ -170,8 +175,8 @@ def write_table(out: Path) -> int:
     """Writes `models.csv` with all assets in a folder; returns their number."""
     by_name = {generator.name: generator for generator in GENERATORS}
     text = io.StringIO()
-    table = csv.DictWriter(text, _COLUMNS, lineterminator="\n")
-    table.writeheader()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(_COLUMNS)
     count = 0
     for record in sorted(out.glob("*_[0-9]*.json")):
         asset, model = _before(record), record.with_suffix(".glb")
@@ -183,15 +188,15 @@ def write_table(out: Path) -> int:
     return count
 
 
-def _row(generator: Generator, extent_m: tuple[float, float, float], file: str) -> dict[str, object]:
+def _row(generator: Generator, extent_m: tuple[float, float, float], file: str) -> tuple[object, ...]:
     """Returns the row of an asset: its width is across its front."""
     depth, width, height = extent_m
     if round(generator.front_deg / 90.0) % 2:
         depth, width = width, depth
-    return dict(zip(_COLUMNS, (
-        file, generator.category, " ".join(generator.uses), width, depth, height, generator.front_deg,
-        generator.mount, generator.elevation_m, AUTHOR, LICENCE,
-    ), strict=True))  # fmt: skip
+    return (
+        file, generator.category, " ".join(generator.uses), width, depth, height, generator.front_deg, generator.mount,
+        generator.elevation_m, AUTHOR, LICENCE,
+    )  # fmt: skip
 
 
 def _before(record: Path) -> Asset | None:

@@ -2,8 +2,9 @@
 
 Each line on stdin is a request in JSON: `factory` ("seating.ChairFactory", below `infinigen.assets.objects`), `seed`,
 `file` (a GLB file to write), `two_sided`, `triangles` (largest number), `options` (arguments of the class) and
-`dimensions_m` (None, or ranges of depth, width and height from which its argument `dimensions` is drawn). Each line on stdout answers one request:
-`extent_m`, `triangles`, or `error`. A first line says that the worker is ready. All other output goes to stderr.
+`dimensions_m` (None, or ranges of depth, width and height from which its argument `dimensions` is drawn). Each line on
+stdout answers one request: `extent_m`, `triangles`, or `error`. A first line says that the worker is ready. All other
+output goes to stderr.
 
 Colours: every shader is replaced by an emission of its base colour, which Cycles bakes into the vertices; a material
 gets the mean colour of its triangles. Patterns and roughness are lost. Colours in the file are sRGB values, as `rgba`
@@ -135,7 +136,7 @@ def colours_of(
     """Returns the sRGB colour and the opacity of each material that has triangles."""
     materials = [slot.material for slot in whole.material_slots]
     glass = {n for n, material in enumerate(materials) if is_glass(material)}
-    seen: set[str] = set()
+    seen: set[int] = set()
     for material in materials:
         if material.use_nodes:
             emit_base_colours(material.node_tree, seen)
@@ -170,11 +171,11 @@ def transmission(node: Any) -> float:
     return 0.0 if given is None or given.is_linked else float(given.default_value)
 
 
-def emit_base_colours(tree: Any, seen: set[str]) -> None:
+def emit_base_colours(tree: Any, seen: set[int]) -> None:
     """Replaces every shader in a tree of nodes, and in its groups, by an emission of its base colour."""
-    if tree.name in seen:
+    if tree.as_pointer() in seen:  # trees of materials share one name
         return
-    seen.add(tree.name)
+    seen.add(tree.as_pointer())
     for node in list(tree.nodes):
         if node.type == "GROUP" and node.node_tree:
             emit_base_colours(node.node_tree, seen)
