@@ -70,6 +70,9 @@ def test_an_asset_that_hangs_ends_the_process_or_fails_is_left_out_and_the_next_
     assert errors == {
         "Slow": "no answer within 3 s", "Crash": "the process has ended", "Bad": "ValueError: no mesh", "Chair": ""
     }  # fmt: skip
+    assert [asset.limit_s for asset in assets] == [3.0, 0.0, 0.0, 0.0]
+    again = make_assets(tmp_path / "out", Path(sys.executable), generators, [0], limit_s=4.0)
+    assert next(again).error == "no answer within 4 s"
     assert not list((tmp_path / "out").glob("*.part"))
 
 

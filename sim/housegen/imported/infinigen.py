@@ -125,6 +125,8 @@ class Asset:
     """Lengths along Infinigen's x, y and z axes; None where it failed."""
     triangles: int = 0
     error: str = ""
+    limit_s: float = 0.0
+    """The time limit that it did not keep; 0: another reason, or none."""
     version: int = VERSION
 
 
@@ -147,7 +149,8 @@ def make_assets(
 ) -> Iterator[Asset]:
     """Yields the record of each asset, of every generator for the first seed, then for the next; writes `models.csv`.
 
-    Assets that have a record are not made again, failed ones neither: a seed gives the same asset each time.
+    Assets that have a record are not made again, failed ones neither: a seed gives the same asset each time. Those that
+    took too long are tried again with a longer limit.
 
     Raises:
         ConfigError: the Python cannot be started, or has no Infinigen.
@@ -159,7 +162,7 @@ def make_assets(
             for generator in generators:
                 record = out / f"{generator.name}_{seed:04d}.json"
                 asset = _before(record)
-                if asset is None:
+                if asset is None or 0.0 < asset.limit_s < limit_s:
                     if worker is None or not worker.runs:
                         worker = _Worker(python, out / LOG)
                     asset = _made(worker, out, generator, seed, limit_s)
@@ -218,10 +221,11 @@ def _made(worker: _Worker, out: Path, generator: Generator, seed: int, limit_s: 
         },
         limit_s,
     )  # fmt: skip
+    late = bool(answer.error) and not worker.runs and time.monotonic() - began_s >= limit_s
     error = answer.error or ("" if answer.extent_m and file.is_file() else "no file was written")
     return Asset(
         generator.name, seed, round(time.monotonic() - began_s, 1), None if error else answer.extent_m,
-        answer.triangles, error,
+        answer.triangles, error, limit_s if late else 0.0,
     )  # fmt: skip
 
 
