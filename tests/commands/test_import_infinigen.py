@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sim.commands.importing import furniture as import_furniture
@@ -12,6 +13,7 @@ from sim.commands.importing import infinigen as import_infinigen
 from sim.errors import ConfigError
 from sim.housegen.imported import infinigen
 from sim.housegen.imported.infinigen import Generator, make_assets, write_table
+from sim.housegen.imported.infinigen_worker import write_glb
 from sim.housegen.imported.library import read_index, read_shape
 from tests.helpers.models import write_folder
 
@@ -19,17 +21,7 @@ pytest.importorskip("trimesh")
 pytest.importorskip("fast_simplification")
 
 FAKE = """
-import importlib.util, json, os, sys, time
-import numpy as np
-spec = importlib.util.spec_from_file_location("worker", WORKER)
-worker = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(worker)
-import trimesh  # before the time limits count
-BOXES = [((-0.25, -0.2, 0.0), (0.25, 0.2, 0.5)), ((-0.25, -0.2, 0.5), (-0.2, 0.2, 1.0))]
-SIDES = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6),
-         (1, 3, 5), (3, 7, 5)]
-corners = [[p[n >> k & 1][k] for k in range(3)] for p in BOXES for n in range(8)]
-faces = np.array([[n + 8 * b for n in side] for b in range(2) for side in SIDES])
+import json, os, shutil, sys, time
 print(json.dumps({"ready": "fake"}), flush=True)
 for line in sys.stdin:
     asked = json.loads(line)
@@ -41,21 +33,28 @@ for line in sys.stdin:
     if "Bad" in asked["factory"]:
         print(json.dumps({"error": "ValueError: no mesh"}), flush=True)
         continue
-    slots = np.repeat([0, 1], 12)
-    colours = {0: (0.8, 0.1, 0.1, 1.0), 1: (0.1, 0.1, 0.8, 1.0)}
-    worker.write_glb(asked["file"], np.array(corners), faces, slots, colours, two_sided=asked["two_sided"])
+    shutil.copyfile(MODEL, asked["file"])
     print(json.dumps({"extent_m": [0.5, 0.4, 1.0], "triangles": 24}), flush=True)
 """
-"""A process that makes a chair whose back is at the smallest x, and hangs, ends or fails for some names."""
-
+"""A process that writes the same model each time, and hangs, ends or fails for some names."""
+BOXES = (((-0.25, -0.2, 0.0), (0.25, 0.2, 0.5)), ((-0.25, -0.2, 0.5), (-0.2, 0.2, 1.0)))
+"""A seat, and a back at the smallest x."""
+SIDES = (
+    (0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4), (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6),
+    (1, 3, 5), (3, 7, 5),
+)  # fmt: skip
 CHAIR = Generator("seats.ChairFactory", "chair", ("dining",))
 
 
 @pytest.fixture
 def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Puts the small process in place of the one with Infinigen; returns the file of the requests that it got."""
-    script, requests = tmp_path / "fake.py", tmp_path / "asked.txt"
-    script.write_text(f"WORKER, ASKED = {str(infinigen.WORKER)!r}, {str(requests)!r}\n{FAKE}")
+    script, requests, model = (tmp_path / name for name in ("fake.py", "asked.txt", "chair.glb"))
+    corners = [[box[n >> k & 1][k] for k in range(3)] for box in BOXES for n in range(8)]
+    faces = np.array([[n + 8 * b for n in side] for b in range(2) for side in SIDES])
+    colours = {0: (0.8, 0.1, 0.1, 1.0), 1: (0.1, 0.1, 0.8, 1.0)}
+    write_glb(str(model), np.array(corners), faces, np.repeat([0, 1], 12), colours, two_sided=False)
+    script.write_text(f"ASKED, MODEL = {str(requests)!r}, {str(model)!r}\n{FAKE}")
     monkeypatch.setattr(infinigen, "WORKER", script)
     return requests
 
@@ -65,14 +64,14 @@ def test_an_asset_that_hangs_ends_the_process_or_fails_is_left_out_and_the_next_
 ) -> None:
     names = ("Slow", "Crash", "Bad", "Chair")
     generators = [Generator(f"seats.{name}Factory", "chair", ("dining",)) for name in names]
-    assets = list(make_assets(tmp_path / "out", Path(sys.executable), generators, [0], limit_s=3.0))
+    assets = list(make_assets(tmp_path / "out", Path(sys.executable), generators, [0], limit_s=1.0))
     errors = {asset.generator: asset.error for asset in assets}
     assert errors == {
-        "Slow": "no answer within 3 s", "Crash": "the process has ended", "Bad": "ValueError: no mesh", "Chair": ""
+        "Slow": "no answer within 1 s", "Crash": "the process has ended", "Bad": "ValueError: no mesh", "Chair": ""
     }  # fmt: skip
-    assert [asset.limit_s for asset in assets] == [3.0, 0.0, 0.0, 0.0]
-    again = make_assets(tmp_path / "out", Path(sys.executable), generators, [0], limit_s=4.0)
-    assert next(again).error == "no answer within 4 s"
+    assert [asset.limit_s for asset in assets] == [1.0, 0.0, 0.0, 0.0]
+    again = make_assets(tmp_path / "out", Path(sys.executable), generators, [0], limit_s=2.0)
+    assert next(again).error == "no answer within 2 s"
     assert not list((tmp_path / "out").glob("*.part"))
 
 
