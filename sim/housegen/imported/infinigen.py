@@ -56,6 +56,8 @@ class Generator:
     elevation_m: float = 0.0
     two_sided: bool = False
     """True: leaves, shades or cloth that are seen from both sides."""
+    upright: bool = False
+    """True: an asset that lies flat is set on its edge."""
 
     dimensions_m: tuple[tuple[float, float], ...] | None = None
     """Ranges of depth, width and height for generators that take them; None: what the generator draws."""
@@ -78,7 +80,8 @@ GENERATORS: tuple[Generator, ...] = (
     Generator("seating.BarChairFactory", "stool", ("bar",)),
     Generator("seating.SofaFactory", "sofa"),
     Generator("seating.BedFactory", "bed"),
-    Generator("seating.PillowFactory", "cushion", ("throw", "floor"), two_sided=True),
+    Generator("seating.PillowFactory", "cushion", ("throw",), "top", upright=True, title="Cushion"),
+    Generator("seating.PillowFactory", "cushion", ("floor",), title="FloorCushion"),
     Generator("tables.TableDiningFactory", "table", ("dining",)),
     Generator("tables.CoffeeTableFactory", "table", ("coffee",)),
     Generator("tables.SideTableFactory", "table", ("side",)),
@@ -99,8 +102,8 @@ GENERATORS: tuple[Generator, ...] = (
     Generator("bathroom.BathtubFactory", "bathtub"),
     Generator("bathroom.StandingSinkFactory", "sink", ("standing",)),
     Generator("clothes.TowelFactory", "towel", ("top",), "top"),
-    Generator("clothes.PantsFactory", "clothes", ("floor", "top"), "top"),
-    Generator("clothes.ShirtFactory", "clothes", ("floor", "top"), "top"),
+    Generator("clothes.PantsFactory", "clothes", ("floor",)),
+    Generator("clothes.ShirtFactory", "clothes", ("floor",)),
     Generator("appliances.TVFactory", "tv_monitor", ("tv",), "top"),
     Generator("appliances.MonitorFactory", "tv_monitor", ("monitor",), "top"),
     Generator("tableware.PlantContainerFactory", "plant", ("top",), "top", two_sided=True),
@@ -214,13 +217,12 @@ def _made(worker: _Worker, out: Path, generator: Generator, seed: int, limit_s: 
     """Returns the record of a new asset."""
     file = out / f"{generator.name}_{seed:04d}.glb"
     began_s = time.monotonic()
-    answer = worker.ask(
-        {
-            "factory": generator.factory, "seed": seed, "file": str(file.resolve()), "two_sided": generator.two_sided,
-            "triangles": MOST_TRIANGLES, "dimensions_m": generator.dimensions_m, "options": dict(generator.options),
-        },
-        limit_s,
-    )  # fmt: skip
+    request = {
+        "factory": generator.factory, "seed": seed, "file": str(file.resolve()), "two_sided": generator.two_sided,
+        "upright": generator.upright, "triangles": MOST_TRIANGLES, "options": dict(generator.options),
+        "dimensions_m": generator.dimensions_m,
+    }  # fmt: skip
+    answer = worker.ask(request, limit_s)
     late = bool(answer.error) and not worker.runs and time.monotonic() - began_s >= limit_s
     error = answer.error or ("" if answer.extent_m and file.is_file() else "no file was written")
     return Asset(

@@ -1,10 +1,10 @@
 """Makes assets with Infinigen's generators; runs in the user's environment, where `infinigen` and `bpy` are installed.
 
 Each line on stdin is a request in JSON: `factory` ("seating.ChairFactory", below `infinigen.assets.objects`), `seed`,
-`file` (a GLB file to write), `two_sided`, `triangles` (largest number), `options` (arguments of the class) and
-`dimensions_m` (None, or ranges of depth, width and height from which its argument `dimensions` is drawn). Each line on
-stdout answers one request: `extent_m`, `triangles`, or `error`. A first line says that the worker is ready. All other
-output goes to stderr.
+`file` (a GLB file to write), `two_sided`, `upright`, `triangles` (largest number), `options` (arguments of the class)
+and `dimensions_m` (None, or ranges of depth, width and height from which its argument `dimensions` is drawn). Each line
+on stdout answers one request: `extent_m`, `triangles`, or `error`. A first line says that the worker is ready. All
+other output goes to stderr.
 
 Colours: every shader is replaced by an emission of its base colour, which Cycles bakes into the vertices; a material
 gets the mean colour of its triangles. Patterns and roughness are lost. Colours in the file are sRGB values, as `rgba`
@@ -64,6 +64,8 @@ def make(bpy: Any, request: dict[str, Any]) -> dict[str, Any]:
     reduce_triangles(bpy, whole, request["triangles"])
     vertices, faces, slots = arrays_of(whole)
     colours = colours_of(bpy, whole, vertices, faces, slots)
+    if request["upright"]:
+        vertices = vertices[:, [2, 0, 1]]
     write_glb(request["file"], vertices, faces, slots, colours, two_sided=request["two_sided"])
     extent = np.ptp(vertices[np.unique(faces)], axis=0)
     return {"extent_m": [round(float(side), 4) for side in extent], "triangles": len(faces)}
