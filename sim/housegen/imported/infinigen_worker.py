@@ -62,6 +62,7 @@ def make(bpy: Any, request: dict[str, Any]) -> dict[str, Any]:
         factory.finalize_assets(asset)
     whole = joined(bpy, asset)
     reduce_triangles(bpy, whole, request["triangles"])
+    turn_outwards(whole)
     vertices, faces, slots = arrays_of(whole)
     colours = colours_of(bpy, whole, vertices, faces, slots)
     if request["upright"]:
@@ -114,6 +115,16 @@ def reduce_triangles(bpy: Any, whole: Any, most: int) -> None:
     if count > most:
         whole.modifiers.new("fewer", "DECIMATE").ratio = most / count
         bpy.ops.object.modifier_apply(modifier="fewer")
+
+
+def turn_outwards(whole: Any) -> None:
+    """Turns the triangles of each connected piece outwards: some generators make tops whose inside is shown."""
+    bmesh = importlib.import_module("bmesh")
+    mesh = bmesh.new()
+    mesh.from_mesh(whole.data)
+    bmesh.ops.recalc_face_normals(mesh, faces=mesh.faces)
+    mesh.to_mesh(whole.data)
+    mesh.free()
 
 
 def arrays_of(whole: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -181,6 +192,8 @@ def emit_base_colours(tree: Any, seen: set[int]) -> None:
     for node in list(tree.nodes):
         if node.type == "GROUP" and node.node_tree:
             emit_base_colours(node.node_tree, seen)
+        elif node.type == "TEX_BRICK":
+            node.inputs["Mortar Size"].default_value = 0.0  # without texture coordinates, all of it is black mortar
         elif node.type == "EMISSION":
             for link in list(node.inputs["Strength"].links):
                 tree.links.remove(link)
