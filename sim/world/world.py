@@ -60,6 +60,7 @@ class World:
         self._support = FloorSupport(self.model, self.data, self._floors, self.config)
         self._ground = np.concatenate([self._floors, np.flatnonzero(cover_geoms(self.model))])
         self._ground_friction = self.model.geom_friction[self._ground, 0].copy()
+        self._stood_at_m = 0.0
 
     @property
     def pose(self) -> Pose:
@@ -96,6 +97,7 @@ class World:
         mujoco.mj_step(self.model, self.data, nstep=round(physics.settle_s / physics.timestep_s))
         if not any(not geoms.isdisjoint(self._wheels) for geoms, _ in self._contacts()):
             raise EpisodeError(f"{self._describe(start)}: there is no floor at z = {start.floor_z_m:.2f} m.")
+        self._note_floor()
         self._driver.reset(start.yaw_rad, conditions)
         self._velocity_drive.reset(conditions)
 
@@ -109,7 +111,7 @@ class World:
         Raises:
             PhysicsError: NaN, an unstable state, or a robot that tipped over without an edge.
         """
-        z_before = self._body.z_m
+        z_before = self._note_floor()
         return self._checked(self._driver.run(Action(action)), z_before)
 
     def hold(self, command: Velocity, period_s: float) -> Motion:
@@ -117,8 +119,14 @@ class World:
 
         `fell` and errors are those of `move`. An episode is driven either by `move` or by `hold`.
         """
-        z_before = self._body.z_m
+        z_before = self._note_floor()
         return self._checked(self._velocity_drive.run(command, period_s), z_before)
+
+    def _note_floor(self) -> float:
+        """Returns the height of the body, and notes it as that of the floor that carries it while it is upright."""
+        if self._body.tilt_rad <= self.config.drive.blocked_tilt_rad:
+            self._stood_at_m = self._body.z_m
+        return self._body.z_m
 
     def _checked(self, motion: Motion, z_before: float) -> Motion:
         """Returns the motion, with `fell` set; see `move`."""
@@ -181,7 +189,7 @@ class World:
         if z_before - z > physics.max_drop_m:
             return True
         if self._body.tilt_rad > physics.max_tilt_rad:  # the origin of a body that lies on its side is not at the floor
-            return self._support.is_beyond_an_edge(x, y, self.pose.floor_z_m, yaw)
+            return self._support.is_beyond_an_edge(x, y, self._stood_at_m, yaw)
         return not self._support.carries(x, y, z, yaw)
 
     def _require_finite(self) -> None:

@@ -314,6 +314,21 @@ def goal_bits(posteriors, channels, first, every, least):
 
 
 @njit(cache=True)
+def enter_bits(seen, rows, cols, bits, counts):
+    """Sets bits in cells of a map.
+
+    Args:
+        seen: (rows, cols) uint32; it is changed.
+        rows: (n,) row of each point; `cols` is its column.
+        bits: (n,) uint32 bits of each point.
+        counts: (n,) bool; other points are left out.
+    """
+    for i in range(rows.size):
+        if counts[i]:
+            seen[rows[i], cols[i]] |= bits[i]
+
+
+@njit(cache=True)
 def scores_of_category(semantic, category):
     """Returns two float32 images: 1 where a pixel has the category, and 1 where it has another one (not 0)."""
     target, other = np.empty(semantic.shape, np.float32), np.empty(semantic.shape, np.float32)

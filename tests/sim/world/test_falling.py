@@ -36,6 +36,11 @@ def test_a_robot_that_drives_over_an_edge_has_fallen_when_its_axle_is_past_it(ba
     assert fell
 
 
+@pytest.mark.parametrize("drop_m", [0.06, 0.09, 0.12])
+def test_a_robot_that_tips_over_a_low_edge_onto_the_floor_below_has_fallen(drop_m):
+    assert any(falls(World(ledge(drop_m)), Pose(-0.8, -0.5, 0.0), 4))
+
+
 @pytest.mark.parametrize("drop_m", [0.025, 0.04])
 def test_a_threshold_is_not_an_edge(drop_m):
     assert not any(falls(World(ledge(drop_m)), Pose(-0.7, 0.0, 0.0), 5))
