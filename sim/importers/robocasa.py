@@ -3,8 +3,8 @@
 A kitchen is one MJCF file, as the environment saves it: often with a robot in it, and with absolute paths. Each fixture
 is a body `<fixture>_<group>_main` (`cab_1_main_group_main`, `wall_room_main`) that holds all its parts. The name of the
 fixture gives the category by the table of `sim.houses.taxonomies`; other names by their words, as `stubborn label`
-does. Visible geoms are in group 1 and have no contact; those that collide are in group 0 or 3. Most kitchens have walls on
-two sides: where a floor ends without one, a plain wall is added, so that no robot drives over the edge.
+does. Visible geoms are in group 1 and have no contact; those that collide are in group 0 or 3. Many kitchens have walls
+on two sides: where a floor ends without one, a plain wall is added, so that no robot drives over the edge.
 """
 
 from __future__ import annotations
@@ -293,7 +293,7 @@ def _add_rooms(spec: mujoco.MjSpec, model: mujoco.MjModel, labels: Labels) -> tu
 def _close(spec: mujoco.MjSpec, rooms: list[_Room], height_m: float) -> list[str]:
     """Adds walls outside of open sides, except where another floor goes on; returns the sides."""
     sides = []
-    for room, side in ((room, side) for room in rooms for side in room.open_sides):
+    for room, side in [(room, side) for room in rooms for side in room.open_sides]:
         floor, thick = room.floor.grown(ADDED_WALL_M), ADDED_WALL_M
         wall = {
             "west": Rect(floor.x0, floor.y0, floor.x0 + thick, floor.y1),
