@@ -293,22 +293,28 @@ def _add_rooms(spec: mujoco.MjSpec, model: mujoco.MjModel, labels: Labels) -> tu
 def _close(spec: mujoco.MjSpec, rooms: list[_Room], height_m: float) -> list[str]:
     """Adds walls outside of open sides, except where another floor goes on; returns the sides."""
     sides = []
-    for room, side in [(room, side) for room in rooms for side in room.open_sides]:
-        floor, thick = room.floor.grown(ADDED_WALL_M), ADDED_WALL_M
-        wall = {
-            "west": Rect(floor.x0, floor.y0, floor.x0 + thick, floor.y1),
-            "east": Rect(floor.x1 - thick, floor.y0, floor.x1, floor.y1),
-            "south": Rect(floor.x0, floor.y0, floor.x1, floor.y0 + thick),
-            "north": Rect(floor.x0, floor.y1 - thick, floor.x1, floor.y1),
-        }[side]
-        if any(wall.overlaps(other.floor) for other in rooms if other is not room):
-            continue
-        spec.worldbody.add_geom(
-            name=f"{ADDED}{len(sides)}", type=mujoco.mjtGeom.mjGEOM_BOX, rgba=WALL_RGBA,
-            pos=[*wall.centre, height_m / 2], size=[wall.width_m / 2, wall.depth_m / 2, height_m / 2],
-        )  # fmt: skip
-        sides.append(side)
+    for room in rooms:
+        for side in room.open_sides:
+            wall = _outside(room.floor, side)
+            if any(wall.overlaps(other.floor) for other in rooms if other is not room):
+                continue
+            spec.worldbody.add_geom(
+                name=f"{ADDED}{len(sides)}", type=mujoco.mjtGeom.mjGEOM_BOX, rgba=WALL_RGBA,
+                pos=[*wall.centre, height_m / 2], size=[wall.width_m / 2, wall.depth_m / 2, height_m / 2],
+            )  # fmt: skip
+            sides.append(side)
     return sides
+
+
+def _outside(floor: Rect, side: str) -> Rect:
+    """Returns the strip of a wall along one side of a floor, outside of it."""
+    around = floor.grown(ADDED_WALL_M)
+    return {
+        "west": Rect(around.x0, around.y0, floor.x0, around.y1),
+        "east": Rect(floor.x1, around.y0, around.x1, around.y1),
+        "south": Rect(around.x0, around.y0, around.x1, floor.y0),
+        "north": Rect(around.x0, floor.y1, around.x1, around.y1),
+    }[side]
 
 
 def _room(floor: Rect, walls: list[Rect]) -> _Room:
