@@ -72,7 +72,8 @@ class Generator:
         return self.title or self.factory.rpartition(".")[2].removesuffix("Factory")
 
 
-_CABINET, _DRAWERS = "shelves.KitchenCabinetFactory", {"drawer_only": True}
+_CABINET, _CLOSED = "shelves.KitchenCabinetFactory", {"drawer_only": True}
+"""Each column of this cabinet has a door or drawers at random; without the option, it may be open."""
 GENERATORS: tuple[Generator, ...] = (
     Generator("seating.ChairFactory", "chair", ("dining",)),
     Generator("seating.OfficeChairFactory", "chair", ("office",)),
@@ -90,13 +91,10 @@ GENERATORS: tuple[Generator, ...] = (
     Generator("shelves.SidetableDeskFactory", "table", ("nightstand",)),
     Generator("shelves.SingleCabinetFactory", "cabinet", ("display",)),
     Generator(_CABINET, "cabinet", ("sideboard",), dimensions_m=((0.35, 0.45), (0.8, 1.6), (0.7, 0.95)),
-              title="Sideboard"),
-    Generator(_CABINET, "cabinet", ("wardrobe",), dimensions_m=((0.5, 0.6), (0.9, 1.8), (1.6, 2.1)), title="Wardrobe"),
+              options=_CLOSED, title="Sideboard"),
+    Generator(_CABINET, "cabinet", ("wardrobe",), dimensions_m=((0.5, 0.6), (0.9, 1.8), (1.6, 2.1)),
+              options=_CLOSED, title="Wardrobe"),
     Generator("shelves.TVStandFactory", "cabinet", ("media",)),
-    Generator(_CABINET, "chest_of_drawers", ("dresser",), dimensions_m=((0.4, 0.5), (0.7, 1.3), (0.7, 1.1)),
-              options=_DRAWERS, title="Dresser"),
-    Generator(_CABINET, "chest_of_drawers", ("nightstand",), dimensions_m=((0.35, 0.45), (0.4, 0.5), (0.5, 0.68)),
-              options=_DRAWERS, title="Nightstand"),
     Generator("shelves.KitchenIslandFactory", "counter", ("island",)),
     Generator("bathroom.ToiletFactory", "toilet"),
     Generator("bathroom.BathtubFactory", "bathtub"),
@@ -114,7 +112,8 @@ GENERATORS: tuple[Generator, ...] = (
     Generator("lamp.FloorLampFactory", "lighting", ("floor",), two_sided=True),
     Generator("lamp.DeskLampFactory", "lighting", ("table",), "top", two_sided=True),
 )  # fmt: skip
-"""The generators whose assets rooms ask for. Infinigen has none for showers, fireplaces and training machines."""
+"""The generators whose assets rooms ask for. Infinigen has none for chests of drawers, showers, seating, fireplaces and
+training machines, and none whose pictures or hanging towels survive the loss of patterns."""
 
 
 @dataclass(frozen=True)
