@@ -86,7 +86,6 @@ GENERATORS: tuple[Generator, ...] = (
     Generator("tables.TableDiningFactory", "table", ("dining",)),
     Generator("tables.CoffeeTableFactory", "table", ("coffee",)),
     Generator("tables.SideTableFactory", "table", ("side",)),
-    Generator("tables.TableCocktailFactory", "table", ("side",)),
     Generator("shelves.SimpleDeskFactory", "table", ("desk",)),
     Generator("shelves.SidetableDeskFactory", "table", ("nightstand",)),
     Generator("shelves.SingleCabinetFactory", "cabinet", ("display",)),
