@@ -47,7 +47,7 @@ COMMANDS: Mapping[str, Command] = {
     "label": Command("sim.commands.label", "Propose and check label rules for a scene from elsewhere"),
     "import furniture": Command("sim.commands.importing.furniture", "Import models of furniture for generated houses"),
     "import furniture infinigen": Command(
-        "sim.commands.importing.infinigen", "Make furniture with the generators of an installed Infinigen"
+        "sim.commands.importing.infinigen", "Make furniture with an installed Infinigen"
     ),
     "import procthor": Command("sim.commands.importing.procthor", "Import houses of ProcTHOR"),
     "import molmospaces": Command("sim.commands.importing.molmospaces", "Import houses of MolmoSpaces"),

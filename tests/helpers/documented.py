@@ -631,6 +631,7 @@ STAND_INS = (
     "flat.glb",
     "scenes",
     "/usr/share/sweethome3d/furniture",
+    "infinigen/bin/python",
     "my_house.xml",
     "my_settings.toml",
     "flat.xml",

@@ -23,7 +23,7 @@ from typing import IO, Any
 import msgspec
 
 from sim.errors import ConfigError
-from sim.files import write_atomically
+from sim.files import open_to_grow, write_atomically
 from sim.housegen.furniture.item import Mount
 from sim.reading import parse_json, read_json
 
@@ -239,7 +239,7 @@ class _Worker:
     def __init__(self, python: Path, log: Path) -> None:
         self._buffer = b""
         try:
-            with log.open("ab") as errors:
+            with open_to_grow(log) as errors:
                 # -P: modules next to the script do not hide those of the user's environment.
                 self._process = subprocess.Popen(
                     [str(python), "-P", str(WORKER)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors,
