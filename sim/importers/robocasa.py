@@ -68,7 +68,7 @@ _POSITIONS = ("bottom", "middle", "top")
 
 @dataclass(frozen=True)
 class _Room:
-    """A floor as far as its walls, and the sides of the whole floor that no wall closes."""
+    """A floor up to its walls, and the sides of the whole floor that no wall closes."""
 
     rect: Rect
     floor: Rect
@@ -120,7 +120,7 @@ def import_kitchen(file: Path, *, root: Path | None = None, texture_px: int | No
         rooms, height_m = _add_rooms(spec, model, labels)
         for side in _close(spec, rooms, height_m):
             changes[f"The floor had an edge without a wall on its {side} side; a plain wall was added."] += 1
-        rules |= {f"^{ADDED}": "wall"}
+            rules[f"^{ADDED}"] = "wall"
         text = text_of(spec)
     except HouseError as error:
         raise HouseError(f"Kitchen '{file}': {error}") from None
@@ -272,7 +272,7 @@ def _any_number(name: str) -> str:
 
 
 def _add_rooms(spec: mujoco.MjSpec, model: mujoco.MjModel, labels: Labels) -> tuple[list[_Room], float]:
-    """Adds a site for each floor, as far as its walls; returns the rooms and their height in metres."""
+    """Adds a site for each floor, up to its walls; returns the rooms and their height in metres."""
     data = posed(model)
     solid = collidable_geoms(model)
     floors = [int(geom) for geom in np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & solid)]
@@ -330,7 +330,8 @@ def _room(floor: Rect, walls: list[Rect]) -> _Room:
             a, b = (wall.x0, wall.x1) if along_x else (wall.y0, wall.y1)
             near, far = (wall.y0, wall.y1) if along_x else (wall.x0, wall.x1)
             face = far if inward > 0 else near
-            if -NEAR_EDGE_M < (face - edge) * inward < NEAR_EDGE_M and b - a > far - near:
+            beside = min(b, hi) > max(a, lo)
+            if beside and -NEAR_EDGE_M < (face - edge) * inward < NEAR_EDGE_M and b - a > far - near:
                 faces.append(face)
                 spans.append((max(a, lo), min(b, hi)))
         if faces and max(b - a for a, b in spans) >= CLOSED_SHARE * (hi - lo):

@@ -12,7 +12,7 @@ from sim.commands.importing import furniture as import_furniture
 from sim.commands.importing import infinigen as import_infinigen
 from sim.errors import ConfigError
 from sim.housegen.imported import infinigen
-from sim.housegen.imported.infinigen import Generator, make_assets, write_table
+from sim.housegen.imported.infinigen import Generator, make_assets
 from sim.housegen.imported.infinigen_worker import write_glb
 from sim.housegen.imported.library import read_index, read_shape
 from tests.helpers.models import write_folder
@@ -105,15 +105,6 @@ def test_the_folder_is_a_source_of_furniture_that_joins_another(
     (back,) = (part for part in shape.parts if part.vertices_m[:, 2].max() > 0.9)
     assert back.rgba == (0.102, 0.102, 0.8, 1.0)
     assert back.vertices_m[:, 0].max() < 0.0
-
-
-def test_the_width_of_a_model_is_across_its_front(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    sideways = Generator("seats.ChairFactory", "chair", ("dining",), front_deg=90.0)
-    monkeypatch.setattr(infinigen, "GENERATORS", (sideways,))
-    (tmp_path / "Chair_0000.glb").write_bytes(b"")
-    (tmp_path / "Chair_0000.json").write_text('{"generator": "Chair", "seed": 0, "seconds": 1, "extent_m": [1, 2, 3]}')
-    assert write_table(tmp_path) == 1
-    assert "chair,dining,1.0,2.0,3.0,90.0,floor" in (tmp_path / "models.csv").read_text()
 
 
 def test_a_python_without_infinigen_and_an_unknown_category_are_refused(tmp_path: Path) -> None:

@@ -1,16 +1,10 @@
-r"""Makes new shapes of furniture with the generators of an installed Infinigen, as a source of imported models.
+"""Makes new shapes of furniture with the generators of an installed Infinigen, as a source of imported models.
 
 stubborn import furniture infinigen --python ~/infinigen/bin/python --out runs/infinigen
 stubborn import furniture --source runs/infinigen /usr/share/sweethome3d/furniture --out runs/models
 
 The Python is one of version 3.11 with `infinigen` (BSD-3-Clause, parts GPL) and `bpy` (GPL-3.0), which are not part of
-this repository:
-
-    python3.11 -m venv ~/infinigen
-    ~/infinigen/bin/pip install --no-deps infinigen==1.15.5 bpy==4.2.0
-    ~/infinigen/bin/pip install "numpy<2" "scipy<1.12" "scikit-image<0.23" "scikit-learn<1.4" "trimesh<3.23" \
-        "shapely<=2.0.5" "opencv-python-headless<4.9" "imageio<2.32" gin-config matplotlib networkx pandas psutil tqdm \
-        rtree python-fcl geomdl OpenEXR coacd submitit
+this repository; `--help` says how they are installed.
 
 Assets have a plain colour for each material. An asset that fails or takes too long is left out and reported. The same
 command resumes; a larger `--count` adds assets.
@@ -34,9 +28,10 @@ class Args:
     """Make furniture with the generators of an installed Infinigen, for `stubborn import furniture`."""
 
     python: Path
-    """Python 3.11 with `infinigen` 1.15.5 and `bpy` 4.2.0 (`pip install --no-deps`), numpy<2, scipy, scikit-image,
-    scikit-learn<1.4, trimesh<3.23, shapely<=2.0.5, opencv-python-headless<4.9, imageio<2.32, gin-config, matplotlib,
-    networkx, pandas, psutil, tqdm, rtree, python-fcl, geomdl, OpenEXR, coacd and submitit."""
+    """Python 3.11 of an environment of its own, after `pip install --no-deps infinigen==1.15.5 bpy==4.2.0` and
+    `pip install "numpy<2" "scipy<1.12" "scikit-image<0.23" "scikit-learn<1.4" "trimesh<3.23" "shapely<=2.0.5"
+    "opencv-python-headless<4.9" "imageio<2.32" gin-config matplotlib networkx pandas psutil tqdm rtree python-fcl
+    geomdl OpenEXR coacd submitit`."""
     out: cli.OutFolder
     """Folder for the models and models.csv; assets in it are kept."""
     count: cli.Count = 8

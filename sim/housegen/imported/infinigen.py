@@ -36,10 +36,7 @@ MOST_TRIANGLES = 30_000
 """Triangles of a file; the import reduces them further."""
 START_S = 300.0
 """Longest time until the process is ready."""
-_COLUMNS = (
-    "file", "category", "uses", "width_m", "depth_m", "height_m", "front_deg", "mount", "elevation_m", "author",
-    "license",
-)  # fmt: skip
+_COLUMNS = ("file", "category", "uses", "width_m", "depth_m", "height_m", "mount", "author", "license")
 
 
 @dataclass(frozen=True)
@@ -51,14 +48,10 @@ class Generator:
     category: str
     uses: tuple[str, ...] = ()
     mount: Mount = "floor"
-    front_deg: float = 0.0
-    """Heading of the front of its assets, counter-clockwise from Infinigen's x axis."""
-    elevation_m: float = 0.0
     two_sided: bool = False
     """True: leaves, shades or cloth that are seen from both sides."""
     upright: bool = False
     """True: an asset that lies flat is set on its edge."""
-
     dimensions_m: tuple[tuple[float, float], ...] | None = None
     """Ranges of depth, width and height for generators that take them; None: what the generator draws."""
     options: Mapping[str, Any] = field(default_factory=dict)
@@ -172,35 +165,28 @@ def make_assets(
     finally:
         if worker is not None:
             worker.end()
-        write_table(out)
+        _write_table(out)
 
 
-def write_table(out: Path) -> int:
-    """Writes `models.csv` with all assets in a folder; returns their number."""
+def _write_table(out: Path) -> None:
+    """Writes `models.csv` with all assets in a folder."""
     by_name = {generator.name: generator for generator in GENERATORS}
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(_COLUMNS)
-    count = 0
     for record in sorted(out.glob("*_[0-9]*.json")):
         asset, model = _before(record), record.with_suffix(".glb")
         generator = by_name.get(asset.generator) if asset is not None else None
         if asset is not None and generator is not None and asset.extent_m is not None and model.is_file():
             table.writerow(_row(generator, asset.extent_m, model.name))
-            count += 1
     write_atomically(out / TABLE, text.getvalue())
-    return count
 
 
 def _row(generator: Generator, extent_m: tuple[float, float, float], file: str) -> tuple[object, ...]:
-    """Returns the row of an asset: its width is across its front."""
+    """Returns the row of an asset: its front is towards Infinigen's x axis."""
     depth, width, height = extent_m
-    if round(generator.front_deg / 90.0) % 2:
-        depth, width = width, depth
-    return (
-        file, generator.category, " ".join(generator.uses), width, depth, height, generator.front_deg, generator.mount,
-        generator.elevation_m, AUTHOR, LICENCE,
-    )  # fmt: skip
+    uses = " ".join(generator.uses)
+    return file, generator.category, uses, width, depth, height, generator.mount, AUTHOR, LICENCE
 
 
 def _before(record: Path) -> Asset | None:
@@ -279,7 +265,6 @@ class _Worker:
             try:
                 return parse_json(line, _Answer, where="the answer of the process")
             except ConfigError as error:
-                line = b""
                 reason = str(error).rstrip(".")
         else:
             reason = f"no answer within {limit_s:g} s" if self.runs else "the process has ended"

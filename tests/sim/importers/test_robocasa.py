@@ -89,6 +89,12 @@ def test_a_side_where_another_floor_goes_on_gets_no_wall(tmp_path: Path) -> None
     assert [line.split(" side")[0].split()[-1] for line in added] == ["south", "east", "north"]
 
 
+def test_a_wall_beyond_the_corner_leaves_a_closed_side_closed(tmp_path: Path) -> None:
+    beyond = fixture("wall_far_room_main", "1 .02 1.5", "6 .02 1.5")
+    scene = import_kitchen(write_kitchen(tmp_path, fixtures=FIXTURES + beyond), root=tmp_path)
+    assert not any("its north side" in line for line in scene.report["changes"])
+
+
 def test_textures_are_reduced_and_unused_ones_are_left_out(split: Path) -> None:
     (file,) = (split / "files").iterdir()
     picture = cv2.imread(str(file))
