@@ -202,7 +202,7 @@ class Mapper:
         navmap, camera_pose, window = frame.navmap, frame.camera_pose, frame.window
         rays, pick = self._rays_for(posteriors.shape[1:])
         bits: UInt32[np.ndarray, "h w"] = goal_bits(
-            posteriors, _GOAL_CHANNELS, pick[0].start, pick[0].step, np.float32(self.config.candidate_score)
+            posteriors[:, *pick], _GOAL_CHANNELS, np.float32(self.config.candidate_score)
         )
         if not bits.any():
             return
