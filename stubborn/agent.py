@@ -94,6 +94,14 @@ class AgentConfig:
                 f"{(MAX_REACH - 2) * self.cell_m:g} m with AgentConfig.cell_m = {self.cell_m:g}."
             )
 
+    def for_robot(self, robot: RobotModel) -> AgentConfig:
+        """Returns the configuration for a robot: distances to obstacles grow by what it is wider than the default."""
+        wider_m = robot.radius_m - RobotModel().radius_m
+        if wider_m <= 0.0:
+            return self
+        marks = replace(self.collisions, near_edge_m=self.collisions.near_edge_m + wider_m)
+        return replace(self, planning=self.planning.widened(wider_m), collisions=marks)
+
 
 class StubbornAgent:
     """Maps obstacles, collisions and scores, explores towards corners, and approaches candidates of the goal."""
@@ -118,10 +126,11 @@ class StubbornAgent:
                 `Mapper.add_scores`), and the agent goes nearer before it stops.
             success: the rule by which a STOP counts.
             verifier: judges candidates, if the seeker asks it; by default it accepts all.
-            config: all other parameters, with the configurations of explorer, seeker and object layers.
+            config: all other parameters, with the configurations of explorer, seeker and object layers; see
+                `AgentConfig.for_robot`.
             max_steps: actions of an episode; near their end the agent takes more risk.
         """
-        self.config = config
+        self.config = config = config.for_robot(robot)
         self.robot = robot
         self.segmenter = segmenter
         self.policies = collision_policies(config.avoidance, config.untrap)
