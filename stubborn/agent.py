@@ -17,6 +17,7 @@ from sim.interface import (
     FORWARD_M,
     GOAL_CATEGORIES,
     MAX_STEPS,
+    TURN_RAD,
     Action,
     CameraModel,
     ConfigError,
@@ -213,7 +214,9 @@ class StubbornAgent:
             self._feel(self.felt, pose, failed, observation)
         elif failed:
             mark_collision(self.navmap, pose, self.policies.marked, config)
-        self.untrap.observe(self.last_action, failed)
+        turned_rad = abs(wrap_angle(pose.yaw_rad - before.yaw_rad))
+        turns = self.last_action in (Action.TURN_LEFT, Action.TURN_RIGHT)
+        self.untrap.observe(self.last_action, failed or (turns and turned_rad < 0.5 * TURN_RAD))
 
     def _feel(self, felt: FeltSurfaces, pose: Pose, failed: bool, observation: Observation) -> None:
         """Enters a failed move into the felt surfaces; without progress, what was avoided is tried again."""

@@ -1,10 +1,18 @@
-"""Brute-force untrap mode (paper: Path Planning Module): turn and push until a forward moves the robot."""
+"""Brute-force untrap mode (paper: Path Planning Module): turn and push until a forward moves the robot.
+
+The paper's robot is round and can always turn. The shoulder of another one may touch something at its side, so that
+turns are blocked: then the mode begins too, with a turn to the other side.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from sim.interface import Action, ConfigError
+
+_BLOCKED_TURNS = 2
+"""The mode begins after this many turns in a row that did not turn the robot."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +41,7 @@ class Untrap:
     def reset(self) -> None:
         """Forgets the last episode."""
         self._failed = 0
+        self._blocked_turns = 0
         self._active = False
         self._side = Action.TURN_RIGHT  # the first entry turns to the other side
         self._turn_next = True
@@ -43,15 +52,23 @@ class Untrap:
         return self._active
 
     def observe(self, action: Action | None, failed: bool) -> None:
-        """Notes the outcome of the last action; `failed` as in `stubborn.mapping.collision_marks.is_collision`."""
-        if action is not Action.MOVE_FORWARD:
-            return
-        if not failed:
-            self._failed, self._active = 0, False
-            return
-        self._failed += 1
-        if self._failed >= self.failed_forwards and not self._active:
-            self._active, self._turn_next = True, True
+        """Notes the outcome of the last action.
+
+        Args:
+            action: the action; None: there was none.
+            failed: for a forward, as in `stubborn.mapping.collision_marks.is_collision`; for a turn, True if the robot
+                did not turn.
+        """
+        if action is Action.MOVE_FORWARD:
+            self._failed = self._failed + 1 if failed else 0
+            self._active = self._active and failed
+            begins = self._failed >= self.failed_forwards
+        else:
+            self._blocked_turns = self._blocked_turns + 1 if failed else 0
+            begins = self._blocked_turns >= _BLOCKED_TURNS and math.isfinite(self.failed_forwards)
+            self._side = action if begins and action is not None and not self._active else self._side
+        if begins and not self._active:
+            self._active, self._turn_next, self._blocked_turns = True, True, 0
             self._side = Action.TURN_LEFT if self._side is Action.TURN_RIGHT else Action.TURN_RIGHT
 
     def next_action(self) -> Action | None:
