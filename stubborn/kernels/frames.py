@@ -300,11 +300,12 @@ def goal_bits(posteriors, channels, least):
         channels: (goals,) the channel of each goal category.
         least: float32.
     """
-    bits = np.zeros(posteriors.shape[1:], np.uint32)
-    for row in range(bits.shape[0]):
+    _, rows, cols = posteriors.shape
+    bits = np.zeros((rows, cols), np.uint32)
+    for row in range(rows):
         for goal in range(channels.size):
             channel, bit = channels[goal], np.uint32(1) << np.uint32(goal)
-            for col in range(bits.shape[1]):  # there is no branch, so that it is vectorised
+            for col in range(cols):  # there is no branch, so that it is vectorised
                 bits[row, col] |= bit if posteriors[channel, row, col] > least else np.uint32(0)
     return bits
 
