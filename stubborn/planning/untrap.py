@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from sim.interface import Action, ConfigError
 
 _BLOCKED_TURNS = 2
-"""The mode begins after this many turns in a row that did not turn the robot."""
+"""The mode begins after this many turns that did not turn the robot, without a forward or another turn between."""
+_OTHER_SIDE = {Action.TURN_LEFT: Action.TURN_RIGHT, Action.TURN_RIGHT: Action.TURN_LEFT}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,16 +61,19 @@ class Untrap:
                 did not turn.
         """
         if action is Action.MOVE_FORWARD:
-            self._failed = self._failed + 1 if failed else 0
+            self._failed, self._blocked_turns = self._failed + 1 if failed else 0, 0
             self._active = self._active and failed
-            begins = self._failed >= self.failed_forwards
-        else:
+            if self._failed >= self.failed_forwards:
+                self._begin(_OTHER_SIDE[self._side])
+        elif action in _OTHER_SIDE:
             self._blocked_turns = self._blocked_turns + 1 if failed else 0
-            begins = self._blocked_turns >= _BLOCKED_TURNS and math.isfinite(self.failed_forwards)
-            self._side = action if begins and action is not None and not self._active else self._side
-        if begins and not self._active:
-            self._active, self._turn_next, self._blocked_turns = True, True, 0
-            self._side = Action.TURN_LEFT if self._side is Action.TURN_RIGHT else Action.TURN_RIGHT
+            if self._blocked_turns >= _BLOCKED_TURNS and math.isfinite(self.failed_forwards):
+                self._begin(_OTHER_SIDE[action])
+
+    def _begin(self, side: Action) -> None:
+        """Begins the mode with a turn to a side, if it is not active."""
+        if not self._active:
+            self._active, self._side, self._turn_next = True, side, True
 
     def next_action(self) -> Action | None:
         """Returns the action of the mode, or None while the robot is not trapped."""

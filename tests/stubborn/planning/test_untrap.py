@@ -79,9 +79,9 @@ def test_a_count_below_one_is_refused():
 @pytest.mark.parametrize(("blocked", "other"), [(L, R), (R, L)])
 def test_two_blocked_turns_start_it_with_a_turn_to_the_other_side(blocked: Action, other: Action):
     untrap = Untrap(UntrapConfig().failed_forwards)
-    for action, failed in ((blocked, True), (blocked, False), (blocked, True)):
+    for action, failed in ((blocked, True), (blocked, False), (blocked, True), (F, False), (blocked, True)):
         untrap.observe(action, failed)
-    assert untrap.next_action() is None
+        assert untrap.next_action() is None
     untrap.observe(blocked, True)
     assert [untrap.next_action(), untrap.next_action()] == [other, F]
     untrap.observe(F, False)
