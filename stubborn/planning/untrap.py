@@ -65,7 +65,7 @@ class Untrap:
             self._active = self._active and failed
             if self._failed >= self.failed_forwards:
                 self._begin(_OTHER_SIDE[self._side])
-        elif action in _OTHER_SIDE:
+        elif action is Action.TURN_LEFT or action is Action.TURN_RIGHT:
             self._blocked_turns = self._blocked_turns + 1 if failed else 0
             if self._blocked_turns >= _BLOCKED_TURNS and math.isfinite(self.failed_forwards):
                 self._begin(_OTHER_SIDE[action])
