@@ -22,7 +22,7 @@ def crate(w: Workbench) -> None:
     for bottom in (0.0, high - board):
         w.box(x, (y[0] + board, y[1] - board), (bottom, bottom + board), wood)
     step = (high - 2 * board) / slats
-    for i in range(slats):  # the depth camera sees through the gaps
+    for i in range(slats):
         low = board + i * step
         w.box((x[0], x[0] + 0.012), (y[0] + board, y[1] - board), (low, low + 0.7 * step), wood)
     w.top(x, y, high, kind="seat")

@@ -17,6 +17,7 @@ from sim.interface import (
     FORWARD_M,
     GOAL_CATEGORIES,
     MAX_STEPS,
+    TURN_RAD,
     Action,
     CameraModel,
     ConfigError,
@@ -94,6 +95,14 @@ class AgentConfig:
                 f"{(MAX_REACH - 2) * self.cell_m:g} m with AgentConfig.cell_m = {self.cell_m:g}."
             )
 
+    def for_robot(self, robot: RobotModel) -> AgentConfig:
+        """Returns the configuration for a robot: distances to obstacles grow by what it is wider than the default."""
+        wider_m = robot.radius_m - RobotModel().radius_m
+        if wider_m <= 0.0:
+            return self
+        marks = replace(self.collisions, near_edge_m=self.collisions.near_edge_m + wider_m)
+        return replace(self, planning=self.planning.widened(wider_m), collisions=marks)
+
 
 class StubbornAgent:
     """Maps obstacles, collisions and scores, explores towards corners, and approaches candidates of the goal."""
@@ -118,10 +127,11 @@ class StubbornAgent:
                 `Mapper.add_scores`), and the agent goes nearer before it stops.
             success: the rule by which a STOP counts.
             verifier: judges candidates, if the seeker asks it; by default it accepts all.
-            config: all other parameters, with the configurations of explorer, seeker and object layers.
+            config: all other parameters, with the configurations of explorer, seeker and object layers; see
+                `AgentConfig.for_robot`.
             max_steps: actions of an episode; near their end the agent takes more risk.
         """
-        self.config = config
+        self.config = config = config.for_robot(robot)
         self.robot = robot
         self.segmenter = segmenter
         self.policies = collision_policies(config.avoidance, config.untrap)
@@ -204,7 +214,9 @@ class StubbornAgent:
             self._feel(self.felt, pose, failed, observation)
         elif failed:
             mark_collision(self.navmap, pose, self.policies.marked, config)
-        self.untrap.observe(self.last_action, failed)
+        turned_rad = abs(wrap_angle(pose.yaw_rad - before.yaw_rad))
+        turns = self.last_action in (Action.TURN_LEFT, Action.TURN_RIGHT)
+        self.untrap.observe(self.last_action, failed or (turns and turned_rad < 0.5 * TURN_RAD))
 
     def _feel(self, felt: FeltSurfaces, pose: Pose, failed: bool, observation: Observation) -> None:
         """Enters a failed move into the felt surfaces; without progress, what was avoided is tried again."""

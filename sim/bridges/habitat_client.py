@@ -62,8 +62,8 @@ class Config(dict):
         try:
             return self[name]
         except KeyError:
-            available = ", ".join(map(str, self)) or "nothing"
-            raise AttributeError(f"The configuration has no '{name}' here. It has: {available}.") from None
+            content = f"It has: {', '.join(map(str, self))}." if self else "It is empty."
+            raise AttributeError(f"The configuration has no '{name}' here. {content}") from None
 
     def __setattr__(self, name: str, value: Any) -> None:
         self[name] = value

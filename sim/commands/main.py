@@ -46,6 +46,9 @@ COMMANDS: Mapping[str, Command] = {
     "traps report": Command("sim.commands.traps.report", "Report which agent escapes from which trap"),
     "label": Command("sim.commands.label", "Propose and check label rules for a scene from elsewhere"),
     "import furniture": Command("sim.commands.importing.furniture", "Import models of furniture for generated houses"),
+    "import furniture infinigen": Command(
+        "sim.commands.importing.infinigen", "Make furniture with an installed Infinigen"
+    ),
     "import procthor": Command("sim.commands.importing.procthor", "Import houses of ProcTHOR"),
     "import molmospaces": Command("sim.commands.importing.molmospaces", "Import houses of MolmoSpaces"),
     "import robocasa": Command("sim.commands.importing.robocasa", "Import kitchens of RoboCasa and others in MJCF"),
@@ -99,7 +102,7 @@ def entry(argv: Sequence[str] | None = None) -> int:
 
 def split(words: Sequence[str]) -> tuple[str, list[str]]:
     """Returns the longest known sub-command or group at the start of a command line, and the words after it."""
-    for length in (2, 1):
+    for length in (3, 2, 1):
         name = " ".join(words[:length])
         if len(words) >= length and (name in COMMANDS or name in _groups()):
             return name, list(words[length:])
@@ -117,7 +120,7 @@ def _run(name: str, words: Sequence[str]) -> int:
 
 
 def _groups() -> set[str]:
-    """Returns the first words of the sub-commands that have two."""
+    """Returns the first words of the sub-commands that have more than one."""
     return {name.split()[0] for name in COMMANDS if " " in name}
 
 

@@ -3,7 +3,8 @@
 A kitchen is one MJCF file, as the environment saves it: often with a robot in it, and with absolute paths. Each fixture
 is a body `<fixture>_<group>_main` (`cab_1_main_group_main`, `wall_room_main`) that holds all its parts. The name of the
 fixture gives the category by the table of `sim.houses.taxonomies`; other names by their words, as `stubborn label`
-does. Visible geoms are in group 1 and have no contact; those that collide are in group 0 or 3.
+does. Visible geoms are in group 1 and have no contact; those that collide are in group 0 or 3. Many kitchens have walls
+on two sides: where a floor ends without one, a plain wall is added, so that no robot drives over the edge.
 """
 
 from __future__ import annotations
@@ -50,7 +51,14 @@ ROOM_M2 = 1.0
 NEAR_EDGE_M = 0.5
 """A wall closes the side of a floor if it is at most this far inside of it."""
 CLOSED_SHARE = 0.5
-"""Share of a side that its wall covers at least."""
+"""Share of a side that its wall covers at least; the room ends at this wall."""
+GAP_M = 0.1
+"""A side whose walls leave more than this open gets a wall."""
+ADDED_WALL_M = 0.1
+"""Thickness of walls that are added."""
+ADDED = "wall_added_"
+"""Beginning of their names."""
+WALL_RGBA = (0.86, 0.85, 0.82, 1.0)
 WALL_M = 3.0
 """Height of rooms without walls."""
 _GROUP = re.compile(r"_[a-z]+_group(?:_\w+)?$|_room$")
@@ -60,9 +68,10 @@ _POSITIONS = ("bottom", "middle", "top")
 
 @dataclass(frozen=True)
 class _Room:
-    """A floor, and the sides of it that have no wall."""
+    """A floor up to its walls, and the sides of the whole floor that no wall closes."""
 
     rect: Rect
+    floor: Rect
     open_sides: tuple[str, ...]
 
 
@@ -108,9 +117,10 @@ def import_kitchen(file: Path, *, root: Path | None = None, texture_px: int | No
         labels = read_labels(model, rules=rules, ignore_prefix="")
         if labels.void_geoms:
             changes["A visible geom has no category; it is an obstacle."] += labels.void_geoms
-        rooms = _add_rooms(spec, model, labels)
-        for side in (side for room in rooms for side in room.open_sides):
-            changes[f"The floor has no wall on its {side} side, where the robot can drive over the edge."] += 1
+        rooms, height_m = _add_rooms(spec, model, labels)
+        for side in _close(spec, rooms, height_m):
+            changes[f"The floor had an edge without a wall on its {side} side; a plain wall was added."] += 1
+            rules[f"^{ADDED}"] = "wall"
         text = text_of(spec)
     except HouseError as error:
         raise HouseError(f"Kitchen '{file}': {error}") from None
@@ -261,46 +271,82 @@ def _any_number(name: str) -> str:
     return "^" + r"\d+".join(re.escape(part) for part in re.split(r"\d+", name)) + "$"
 
 
-def _add_rooms(spec: mujoco.MjSpec, model: mujoco.MjModel, labels: Labels) -> list[_Room]:
-    """Adds a site for each floor, as far as its walls; returns the rooms."""
+def _add_rooms(spec: mujoco.MjSpec, model: mujoco.MjModel, labels: Labels) -> tuple[list[_Room], float]:
+    """Adds a site for each floor, up to its walls; returns the rooms and their height in metres."""
     data = posed(model)
     solid = collidable_geoms(model)
     floors = [int(geom) for geom in np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & solid)]
     walls = [int(geom) for geom in np.flatnonzero((labels.geom_category == MPCAT40_ID["wall"]) & solid)]
     boxes = [box_of(model, data, geom) for geom in walls]
-    top_m = max((float(data.geom_xpos[geom, 2]) * 2.0 for geom in walls), default=WALL_M)
+    top_m = max(1.0, max((float(data.geom_xpos[geom, 2]) * 2.0 for geom in walls), default=WALL_M))
     rooms: list[_Room] = []
     for geom in floors:
         if abs(data.geom_xpos[geom, 2]) > 1.0:
             continue
         room = _room(box_of(model, data, geom), boxes)
         if room.rect.area_m2 >= ROOM_M2 and not any(room.rect.overlaps(other.rect) for other in rooms):
-            add_room(spec, f"room_kitchen_{len(rooms):02d}", room.rect, max(top_m, 1.0))
+            add_room(spec, f"room_kitchen_{len(rooms):02d}", room.rect, top_m)
             rooms.append(room)
-    return rooms
+    return rooms, top_m
+
+
+def _close(spec: mujoco.MjSpec, rooms: list[_Room], height_m: float) -> list[str]:
+    """Adds walls outside of open sides, except where another floor goes on; returns the sides."""
+    sides = []
+    for room in rooms:
+        for side in room.open_sides:
+            wall = _outside(room.floor, side)
+            if any(wall.overlaps(other.floor) for other in rooms if other is not room):
+                continue
+            spec.worldbody.add_geom(
+                name=f"{ADDED}{len(sides)}", type=mujoco.mjtGeom.mjGEOM_BOX, rgba=WALL_RGBA,
+                pos=[*wall.centre, height_m / 2], size=[wall.width_m / 2, wall.depth_m / 2, height_m / 2],
+            )  # fmt: skip
+            sides.append(side)
+    return sides
+
+
+def _outside(floor: Rect, side: str) -> Rect:
+    """Returns the strip of a wall along one side of a floor, outside of it."""
+    around = floor.grown(ADDED_WALL_M)
+    return {
+        "west": Rect(around.x0, around.y0, floor.x0, around.y1),
+        "east": Rect(floor.x1, around.y0, around.x1, around.y1),
+        "south": Rect(around.x0, around.y0, around.x1, floor.y0),
+        "north": Rect(around.x0, floor.y1, around.x1, around.y1),
+    }[side]
 
 
 def _room(floor: Rect, walls: list[Rect]) -> _Room:
     """Returns a floor, each side of which is moved to the inner face of a wall that covers most of it."""
     x0, y0, x1, y1 = floor.x0, floor.y0, floor.x1, floor.y1
-    closed = {}
+    closed, open_sides = {}, []
     for side, (lo, hi) in {"west": (y0, y1), "east": (y0, y1), "south": (x0, x1), "north": (x0, x1)}.items():
         along_x = side in ("south", "north")
         edge = {"west": x0, "east": x1, "south": y0, "north": y1}[side]
         inward = 1.0 if side in ("west", "south") else -1.0
-        faces, covered = [], 0.0
+        faces, spans = [], []
         for wall in walls:
             a, b = (wall.x0, wall.x1) if along_x else (wall.y0, wall.y1)
             near, far = (wall.y0, wall.y1) if along_x else (wall.x0, wall.x1)
             face = far if inward > 0 else near
-            if -NEAR_EDGE_M < (face - edge) * inward < NEAR_EDGE_M and b - a > far - near:
+            beside = min(b, hi) > max(a, lo)
+            if beside and -NEAR_EDGE_M < (face - edge) * inward < NEAR_EDGE_M and b - a > far - near:
                 faces.append(face)
-                covered = max(covered, min(b, hi) - max(a, lo))
-        if faces and covered >= CLOSED_SHARE * (hi - lo):
+                spans.append((max(a, lo), min(b, hi)))
+        if faces and max(b - a for a, b in spans) >= CLOSED_SHARE * (hi - lo):
             closed[side] = (max if inward > 0 else min)(faces)
+        if _uncovered_m(lo, hi, spans) > GAP_M:
+            open_sides.append(side)
     west, east = max(x0, closed.get("west", x0)), min(x1, closed.get("east", x1))
     south, north = max(y0, closed.get("south", y0)), min(y1, closed.get("north", y1))
-    open_sides = tuple(side for side in ("west", "east", "south", "north") if side not in closed)
-    if west >= east or south >= north:
-        return _Room(floor, open_sides)
-    return _Room(Rect(west, south, east, north), open_sides)
+    inner = floor if west >= east or south >= north else Rect(west, south, east, north)
+    return _Room(inner, floor, tuple(open_sides))
+
+
+def _uncovered_m(lo: float, hi: float, spans: list[tuple[float, float]]) -> float:
+    """Returns the longest part of an interval that no span covers."""
+    longest, end = 0.0, lo
+    for a, b in sorted(spans):
+        longest, end = max(longest, a - end), max(end, b)
+    return max(longest, hi - end)

@@ -60,7 +60,7 @@ class World:
         self._support = FloorSupport(self.model, self.data, self._floors, self.config)
         self._ground = np.concatenate([self._floors, np.flatnonzero(cover_geoms(self.model))])
         self._ground_friction = self.model.geom_friction[self._ground, 0].copy()
-        self._stood_at_m = 0.0
+        self._stood_at_m = 0.0  # the height of the body when it was last upright after a motion
 
     @property
     def pose(self) -> Pose:
@@ -111,7 +111,7 @@ class World:
         Raises:
             PhysicsError: NaN, an unstable state, or a robot that tipped over without an edge.
         """
-        z_before = self._note_floor()
+        z_before = self._body.z_m
         return self._checked(self._driver.run(Action(action)), z_before)
 
     def hold(self, command: Velocity, period_s: float) -> Motion:
@@ -119,14 +119,8 @@ class World:
 
         `fell` and errors are those of `move`. An episode is driven either by `move` or by `hold`.
         """
-        z_before = self._note_floor()
+        z_before = self._body.z_m
         return self._checked(self._velocity_drive.run(command, period_s), z_before)
-
-    def _note_floor(self) -> float:
-        """Returns the height of the body, and notes it as that of the floor that carries it while it is upright."""
-        if self._body.tilt_rad <= self.config.drive.blocked_tilt_rad:
-            self._stood_at_m = self._body.z_m
-        return self._body.z_m
 
     def _checked(self, motion: Motion, z_before: float) -> Motion:
         """Returns the motion, with `fell` set; see `move`."""
@@ -134,7 +128,13 @@ class World:
         if motion.action != Action.STOP and self._has_fallen(z_before):
             return replace(motion, fell=True)
         self._require_upright()
+        self._note_floor()
         return motion
+
+    def _note_floor(self) -> None:
+        """Notes the height of an upright body: that of the floor that carries it."""
+        if self._body.tilt_rad <= self.config.drive.blocked_tilt_rad:
+            self._stood_at_m = self._body.z_m
 
     def _place_on_floor(self, start: Pose) -> None:
         """Puts the wheels on the highest floor (for example a rug) at the start."""

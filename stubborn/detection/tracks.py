@@ -276,7 +276,10 @@ class Tracks:
         """
         shown = overlap >= max(self.config.merge_share * overlap.sum(), self.config.least_pixels)
         shown[0], shown[best] = False, True
-        same = np.unique(self._now[np.flatnonzero(shown & (category == category[best]))]).tolist()
+        parts = np.flatnonzero(shown & (category == category[best]))
+        if parts.size == 1:
+            return int(self._now[best])
+        same = np.unique(self._now[parts]).tolist()
         for track in same[1:]:
             low, high = self._low[track], self._high[track] + 1
             volume = self._owner.reshape(self._shape)[tuple(slice(a, b) for a, b in zip(low, high, strict=True))]

@@ -17,6 +17,8 @@ from sim.geometry.pose import Pose
 from sim.interface import TURN_RAD, Action, CameraModel, ConfigError, wrap_angle
 from stubborn.mapping.navmap import NavMap
 
+_TURNS = (*range(-5, 0), *range(1, 7))
+"""The headings that are compared, in turns to the left."""
 _RAYS = 72
 _STEP_M = 0.05  # a cell: longer steps would pass through thin walls
 _GAP_STEPS = 4
@@ -75,11 +77,12 @@ class Glancer:
     def _worth_a_look(self, navmap: NavMap, pose: Pose) -> float | None:
         """Returns the heading that would show most new ground; None: no heading shows enough."""
         hidden_m2 = self.hidden_area_m2(navmap, pose)
+        headings_rad = [wrap_angle(pose.yaw_rad + turn * TURN_RAD) for turn in _TURNS]
+        apart_rad = self._bearing_rad - np.array(headings_rad)[:, None]
+        in_view = np.abs(np.arctan2(np.sin(apart_rad), np.cos(apart_rad))) <= self._half_view_rad
         best_gain_m2, best_rad = 0.0, None
-        for turn in (*range(-5, 0), *range(1, 7)):
-            heading_rad = wrap_angle(pose.yaw_rad + turn * TURN_RAD)
-            in_view = np.abs(np.arctan2(*_sin_cos(self._bearing_rad - heading_rad))) <= self._half_view_rad
-            gain_m2 = float(hidden_m2[in_view].sum()) - 2 * abs(turn) * self.config.gain_per_turn_m2
+        for turn, heading_rad, seen in zip(_TURNS, headings_rad, in_view, strict=True):
+            gain_m2 = float(hidden_m2[seen].sum()) - 2 * abs(turn) * self.config.gain_per_turn_m2
             if gain_m2 > best_gain_m2 and not self._looked(pose, heading_rad):
                 best_gain_m2, best_rad = gain_m2, heading_rad
         return best_rad
@@ -101,7 +104,3 @@ class Glancer:
             and abs(wrap_angle(look.yaw_rad - heading_rad)) <= _SAME_HEADING_RAD
             for look in self._looks
         )
-
-
-def _sin_cos(angle_rad: Float64[np.ndarray, " n"]) -> tuple[Float64[np.ndarray, " n"], Float64[np.ndarray, " n"]]:
-    return np.sin(angle_rad), np.cos(angle_rad)

@@ -292,25 +292,37 @@ def highest_scores(rows, cols, target, other, in_view, target_of, other_of):
 
 
 @njit(cache=True)
-def goal_bits(posteriors, channels, first, every, least):
-    """Returns a uint32 image (rows / every, cols / every) with bit g where goal category g is probable.
+def goal_bits(posteriors, channels, least):
+    """Returns a uint32 image (rows, cols) with bit g where goal category g has a probability above `least`.
 
     Args:
         posteriors: (classes, rows, cols) float32.
         channels: (goals,) the channel of each goal category.
-        first: the first row and column that is used; then every `every`-th.
-        every: distance of the rows and columns that are used.
-        least: a probability above this sets the bit.
+        least: float32.
     """
     _, rows, cols = posteriors.shape
-    bits = np.zeros(((rows - first + every - 1) // every, (cols - first + every - 1) // every), np.uint32)
-    for goal in range(channels.size):
-        bit, channel = np.uint32(1) << np.uint32(goal), posteriors[channels[goal]]
-        for i in range(bits.shape[0]):
-            for j in range(bits.shape[1]):
-                if channel[first + i * every, first + j * every] > least:
-                    bits[i, j] |= bit
+    bits = np.zeros((rows, cols), np.uint32)
+    for row in range(rows):
+        for goal in range(channels.size):
+            channel, bit = channels[goal], np.uint32(1) << np.uint32(goal)
+            for col in range(cols):  # there is no branch, so that it is vectorised
+                bits[row, col] |= bit if posteriors[channel, row, col] > least else np.uint32(0)
     return bits
+
+
+@njit(cache=True)
+def enter_bits(seen, rows, cols, bits, counts):
+    """Sets bits in cells of a map.
+
+    Args:
+        seen: (rows, cols) uint32; it is changed.
+        rows: (n,) row of each point; `cols` is its column.
+        bits: (n,) uint32 bits of each point.
+        counts: (n,) bool; other points are left out.
+    """
+    for i in range(rows.size):
+        if counts[i]:
+            seen[rows[i], cols[i]] |= bits[i]
 
 
 @njit(cache=True)

@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float32, Int, UInt32
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError, RobotModel, Scores
-from stubborn.kernels.frames import goal_bits
+from stubborn.kernels.frames import enter_bits, goal_bits
 from stubborn.mapping.drops import DropConfig, Drops
 from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.object_layers import FrameScores, ObjectLayers, ObjectLayersConfig
@@ -202,7 +202,7 @@ class Mapper:
         navmap, camera_pose, window = frame.navmap, frame.camera_pose, frame.window
         rays, pick = self._rays_for(posteriors.shape[1:])
         bits: UInt32[np.ndarray, "h w"] = goal_bits(
-            posteriors, _GOAL_CHANNELS, pick[0].start, pick[0].step, np.float32(self.config.candidate_score)
+            posteriors[:, *pick], _GOAL_CHANNELS, np.float32(self.config.candidate_score)
         )
         if not bits.any():
             return
@@ -211,8 +211,7 @@ class Mapper:
         counts &= window.frame.contains(
             points.rows, points.cols
         )  # at the edge of the map the camera sees points outside the map
-        seen = navmap.goals_seen[window.index]
-        np.bitwise_or.at(seen, (points.rows[counts], points.cols[counts]), bits[points.valid][counts])
+        enter_bits(navmap.goals_seen[window.index], points.rows, points.cols, bits[points.valid], counts)
 
     def _confirm(
         self, found: Bool[np.ndarray, "h w"], d: Float32[np.ndarray, "h w"]

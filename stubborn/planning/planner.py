@@ -20,7 +20,10 @@ from stubborn.planning.avoidance import ProvenGround
 
 @dataclass(frozen=True, kw_only=True)
 class PlanningConfig:
-    """Safety distances, traversability costs and the choice of the next step."""
+    """Safety distances, traversability costs and the choice of the next step.
+
+    Distances to obstacles are those of a robot of radius 0.18 m; see `AgentConfig.for_robot`.
+    """
 
     dilation_m: float = 0.15
     """Obstacles grow by this distance; the robot's centre stays outside the grown obstacles."""
@@ -60,6 +63,11 @@ class PlanningConfig:
         ):
             if not getattr(self, name) >= 0.0:
                 raise ConfigError(f"PlanningConfig.{name} must be >= 0, got {getattr(self, name)}.")
+
+    def widened(self, by_m: float) -> PlanningConfig:
+        """Returns the configuration of a robot whose radius is larger by `by_m`."""
+        names = ("dilation_m", "clearance_m", "preferred_clearance_m", "own_ground_m")
+        return replace(self, **{name: getattr(self, name) + by_m for name in names})
 
     def reach_cells(self, cell_m: float) -> int:
         """Returns the distance to obstacles, in cells, beyond which no cost and no rule depends on it."""

@@ -1,10 +1,19 @@
-"""Brute-force untrap mode (paper: Path Planning Module): turn and push until a forward moves the robot."""
+"""Brute-force untrap mode (paper: Path Planning Module): turn and push until a forward moves the robot.
+
+The paper's robot is round and can always turn. The shoulder of another one may touch something at its side, so that
+turns are blocked: then the mode begins too, with a turn to the other side.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from sim.interface import Action, ConfigError
+
+_BLOCKED_TURNS = 2
+"""The mode begins after this many turns that did not turn the robot, without a forward or another turn between."""
+_OTHER_SIDE = {Action.TURN_LEFT: Action.TURN_RIGHT, Action.TURN_RIGHT: Action.TURN_LEFT}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +42,7 @@ class Untrap:
     def reset(self) -> None:
         """Forgets the last episode."""
         self._failed = 0
+        self._blocked_turns = 0
         self._active = False
         self._side = Action.TURN_RIGHT  # the first entry turns to the other side
         self._turn_next = True
@@ -43,16 +53,27 @@ class Untrap:
         return self._active
 
     def observe(self, action: Action | None, failed: bool) -> None:
-        """Notes the outcome of the last action; `failed` as in `stubborn.mapping.collision_marks.is_collision`."""
-        if action is not Action.MOVE_FORWARD:
-            return
-        if not failed:
-            self._failed, self._active = 0, False
-            return
-        self._failed += 1
-        if self._failed >= self.failed_forwards and not self._active:
-            self._active, self._turn_next = True, True
-            self._side = Action.TURN_LEFT if self._side is Action.TURN_RIGHT else Action.TURN_RIGHT
+        """Notes the outcome of the last action.
+
+        Args:
+            action: the action; None: there was none.
+            failed: for a forward, as in `stubborn.mapping.collision_marks.is_collision`; for a turn, True if the robot
+                did not turn.
+        """
+        if action is Action.MOVE_FORWARD:
+            self._failed, self._blocked_turns = self._failed + 1 if failed else 0, 0
+            self._active = self._active and failed
+            if self._failed >= self.failed_forwards:
+                self._begin(_OTHER_SIDE[self._side])
+        elif action is Action.TURN_LEFT or action is Action.TURN_RIGHT:
+            self._blocked_turns = self._blocked_turns + 1 if failed else 0
+            if self._blocked_turns >= _BLOCKED_TURNS and math.isfinite(self.failed_forwards):
+                self._begin(_OTHER_SIDE[action])
+
+    def _begin(self, side: Action) -> None:
+        """Begins the mode with a turn to a side, if it is not active."""
+        if not self._active:
+            self._active, self._side, self._turn_next = True, side, True
 
     def next_action(self) -> Action | None:
         """Returns the action of the mode, or None while the robot is not trapped."""

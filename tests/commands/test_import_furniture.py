@@ -23,7 +23,7 @@ def test_the_result_counts_what_is_imported_and_what_is_left_out(
     source = write_folder(tmp_path / "source", chairs=3)
     entries = [properties("a", "/a.obj"), properties("b", "/b.obj"), properties("c", "/a.obj", name="Thing")]
     write_catalogue(source / "more.sh3f", entries, {"a.obj": obj_text(CHAIR)})
-    assert import_furniture.main(import_furniture.Args(source=source, out=tmp_path / "out", verbose=True)) == 0
+    assert import_furniture.main(import_furniture.Args(source=(source,), out=tmp_path / "out", verbose=True)) == 0
     printed = capsys.readouterr().out
     assert "chair: 3 train, 1 transfer" in printed
     assert "left out: Thing: no category for it (group Living room)" in printed
@@ -33,7 +33,7 @@ def test_the_result_counts_what_is_imported_and_what_is_left_out(
 
 def test_a_source_without_a_usable_model_ends_with_status_1(tmp_path: Path) -> None:
     (tmp_path / "models.csv").write_text("file,category,width_m,depth_m,height_m\nnone.obj,chair,1,1,1\n")
-    assert import_furniture.main(import_furniture.Args(source=tmp_path, out=tmp_path / "out")) == 1
+    assert import_furniture.main(import_furniture.Args(source=(tmp_path,), out=tmp_path / "out")) == 1
 
 
 def test_options_that_do_not_fit_are_refused(tmp_path: Path) -> None:
@@ -45,7 +45,7 @@ def test_options_that_do_not_fit_are_refused(tmp_path: Path) -> None:
         generate_views.main(generate_views.Args(out=tmp_path, split="val", furniture=tmp_path))
     (tmp_path / "file").write_text("")
     with pytest.raises(ConfigError, match="not a folder"):
-        import_furniture.main(import_furniture.Args(source=tmp_path, out=tmp_path / "file"))
+        import_furniture.main(import_furniture.Args(source=(tmp_path,), out=tmp_path / "file"))
 
 
 def test_views_with_models_are_of_new_houses_only(tmp_path: Path) -> None:
@@ -59,7 +59,7 @@ def test_views_with_models_are_of_new_houses_only(tmp_path: Path) -> None:
 @pytest.mark.costly
 def test_a_view_house_shows_models(tmp_path: Path) -> None:
     import_furniture.main(
-        import_furniture.Args(source=write_folder(tmp_path / "source", chairs=12), out=tmp_path / "out")
+        import_furniture.Args(source=(write_folder(tmp_path / "source", chairs=12),), out=tmp_path / "out")
     )
     args = generate_views.Args(out=tmp_path, furniture=tmp_path / "out", pool="wide")
     assert "Somebody" in generate_views._made(args, 3_000_004).spec.comment

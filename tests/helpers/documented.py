@@ -560,6 +560,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         " --explorers corners poni:goal=wrong",
     ),
     "stubborn import furniture --source my_models --out runs/models": _MODELS,
+    "stubborn import furniture infinigen --python infinigen/bin/python --out runs/infinigen": Only(
+        "needs an installed Infinigen; tests/commands/test_import_infinigen.py has a process in its place"
+    ),
+    "stubborn import furniture --source runs/infinigen my_models --out runs/models": _MODELS,
     "stubborn import procthor train.jsonl.gz --out runs/procthor": (
         _FOREIGN.replace("foreign", "procthor") + 'write_small_house(Path("{tmp}/source"))\'',
         "stubborn import procthor {tmp}/source/houses.jsonl.gz --out {tmp}/houses",
@@ -627,6 +631,7 @@ STAND_INS = (
     "flat.glb",
     "scenes",
     "/usr/share/sweethome3d/furniture",
+    "infinigen/bin/python",
     "my_house.xml",
     "my_settings.toml",
     "flat.xml",

@@ -41,11 +41,16 @@ APARTMENT = boxes_from_plan(
 
 
 def run(
-    boxes: list[Box], start: tuple[float, float, float], goal: str, max_steps: int = 400
+    boxes: list[Box],
+    start: tuple[float, float, float],
+    goal: str,
+    max_steps: int = 400,
+    robot: RobotModel = RobotModel(),  # noqa: B008 - frozen
 ) -> tuple[Trace, StubbornAgent]:
-    agent = agents.make("stubborn", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter())
+    agent = agents.make("stubborn", camera=SMALL_CAMERA, robot=robot, segmenter=GroundTruthSegmenter())
     assert isinstance(agent, StubbornAgent)
-    return run_episode(GridWorld(boxes, start, camera=SMALL_CAMERA), agent, goal, max_steps=max_steps), agent
+    world = GridWorld(boxes, start, camera=SMALL_CAMERA, robot=robot)
+    return run_episode(world, agent, goal, max_steps=max_steps), agent
 
 
 @pytest.mark.parametrize("goal", ["bed", "picture", "cushion", "cabinet", "chair", "table"])
@@ -94,6 +99,14 @@ def test_glass_is_hit_marked_and_passed():
     assert trace.goal_distance_m < 1.0
     assert 1 <= trace.collisions <= 12
     assert agent.navmap.pessimistic_marks.any()
+
+
+def test_with_a_wider_robot_it_keeps_farther_from_obstacles():
+    trace, agent = run(APARTMENT, (1.2, 0.7, 1.9), "picture", robot=RobotModel(radius_m=0.30))
+    assert trace.stopped
+    assert trace.collisions <= 5  # with the distances of the default robot there are 115
+    assert agent.config.planning.dilation_m == pytest.approx(0.27)
+    assert AgentConfig().for_robot(RobotModel(radius_m=0.15)) == AgentConfig()
 
 
 def test_walled_in_it_keeps_pushing_instead_of_freezing():

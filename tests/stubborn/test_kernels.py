@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sim.geometry.grid import GridFrame, Window
 from sim.geometry.pose import Pose
 from sim.interface import MPCAT40_ID, CameraModel
-from stubborn.kernels.frames import shows_no_noise
+from stubborn.kernels.frames import enter_bits, shows_no_noise
 from stubborn.kernels.grids import bilinear, distance_within, speeds
 from stubborn.mapping.masks import connected, distance_to, farther_than
 from stubborn.mapping.navmap import NavMap
@@ -256,6 +256,21 @@ def test_exact_posteriors_are_one_for_the_category_and_zero_for_void() -> None:
     posteriors = GroundTruthSegmenter().posteriors({"semantic": semantic})
     middle = semantic[2::4, 2::4]
     assert np.array_equal(posteriors, middle == np.arange(1, 41)[:, None, None])
+
+
+def test_exact_posteriors_are_made_once_for_each_frame() -> None:
+    segmenter, frames = GroundTruthSegmenter(), [np.full((8, 8), category, np.uint8) for category in (3, 5)]
+    first = segmenter.posteriors({"semantic": frames[0]})
+    assert segmenter.posteriors({"semantic": frames[0]}) is first
+    second = segmenter.posteriors({"semantic": frames[1]})
+    assert (first[2].all(), second[2].any(), second[4].all()) == (True, False, True)
+
+
+def test_bits_are_added_to_those_of_a_cell_where_they_count() -> None:
+    seen = np.array([[1, 2]], np.uint32)
+    rows, cols = np.zeros(3, np.int32), np.array([0, 0, 1], np.int32)
+    enter_bits(seen, rows, cols, np.array([4, 8, 16], np.uint32), np.array([True, True, False]))
+    assert seen.tolist() == [[13, 2]]
 
 
 def test_a_reach_whose_square_is_no_short_number_is_refused() -> None:

@@ -72,8 +72,10 @@ def make_config(
     motion = {"forward_step_size": FORWARD_M, "turn_angle": round(math.degrees(TURN_RAD))}
     actions = [action.name for action in Action]
     task = {"type": "ObjectNav-v1", "success_distance": distance_m, "goal_sensor_uuid": "objectgoal"}
-    measurements = ["distance_to_goal", "success", "spl", "soft_spl", "collisions"]
-    steps, data = {"max_episode_steps": max_steps}, {"type": "ObjectNav-v1", "split": split}
+    measurements = {"distance_to_goal": {}, "success": {"success_distance": distance_m}}
+    measurements |= {"spl": {}, "soft_spl": {}, "collisions": {}}
+    steps, order = {"max_episode_steps": max_steps}, {"iterator_options": {"shuffle": False}}
+    data = {"type": "ObjectNav-v1", "split": split}
     old = {
         "ENVIRONMENT": _upper(steps),
         "SIMULATOR": _upper(motion)
@@ -86,10 +88,9 @@ def make_config(
     }
     sensors = {"rgb_sensor": rgb, "depth_sensor": depth}
     habitat = {
-        "environment": steps,
+        "environment": steps | order,
         "simulator": motion | {"agents": {"main_agent": body | {"sim_sensors": sensors}}},
-        "task": task
-        | {"actions": {name.lower(): {} for name in actions}, "measurements": {name: {} for name in measurements}},
+        "task": task | {"actions": {name.lower(): {} for name in actions}, "measurements": measurements},
         "dataset": data,
     }
     return to_config(old | {"habitat": habitat})
@@ -101,18 +102,20 @@ def get_config(
     """Returns the configuration of this project's task, changed by files and by overrides.
 
     Args:
-        config_paths: YAML files of either layout; several are separated by commas. If there is no file at a path, it
-            names a configuration that comes with Habitat: it changes nothing, and a warning is logged.
+        config_paths: YAML files of either layout; several are separated by commas. A relative path whose folder does
+            not exist names a configuration that comes with Habitat: it changes nothing, and a warning is logged.
         overrides: texts `path=value`, or paths and values alternately.
 
     Raises:
-        ConfigError: a file cannot be read, or an override has another form.
+        ConfigError: a file does not exist or cannot be read, or an override has another form.
     """
     config = make_config()
     paths = config_paths.split(",") if isinstance(config_paths, str) else [str(path) for path in config_paths or ()]
     for path in paths:
         if Path(path).is_file():
             merge(config, _read_yaml(Path(path)))
+        elif Path(path).is_absolute() or (Path(path).parent.name and Path(path).parent.is_dir()):
+            raise ConfigError(f"There is no configuration file '{path}' in its folder.")
         else:
             _LOG.warning("There is no configuration file '%s': the task of this project is used.", path)
     try:

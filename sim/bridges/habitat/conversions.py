@@ -129,11 +129,11 @@ def to_action(given: Any) -> Action:
         inner = inner[0]
     number = ACTION_IDS.get(inner.lower()) if isinstance(inner, str) else _whole_number(inner)
     if number in (ACTION_IDS["look_up"], ACTION_IDS["look_down"]):
-        raise AgentError(f"act() returned {reprlib.repr(given)}: the camera of this robot does not tilt.")
+        raise AgentError(f"Action {reprlib.repr(given)}: the camera of this robot does not tilt.")
     if number is None or number not in tuple(Action):
         names = ", ".join(f"{number} {name}" for name, number in ACTION_IDS.items() if number < len(Action))
         raise AgentError(
-            f'act() returned {reprlib.repr(given)}; an action is one of {names}, or a dict {{"action": one of these}}.'
+            f'{reprlib.repr(given)} is no action. An action is one of {names}, or a dict {{"action": one of these}}.'
         )
     return Action(number)
 

@@ -158,6 +158,9 @@ class Env:
         """Frees the renderers; the environment cannot be used any more."""
         self._env.close()
 
+    def __getattr__(self, name: str) -> Any:
+        raise _lacks(self, "Env", name)
+
     def __enter__(self) -> Env:
         return self
 
@@ -214,6 +217,9 @@ class Simulator:
         state = habitat.to_agent_state(self._env.scene.world.pose)
         return AgentState(np.array(state["position"], np.float32), np.array(state["rotation"], np.float32))
 
+    def __getattr__(self, name: str) -> Any:
+        raise _lacks(self, "Env.sim", name)
+
 
 class AgentState:
     """A pose in Habitat's frame: y up, an agent without rotation looks along -z."""
@@ -223,6 +229,12 @@ class AgentState:
         """Metres, float32 (3,)."""
         self.rotation = rotation
         """A quaternion xyzw, float32 (4,)."""
+
+
+def _lacks(thing: object, what: str, name: str) -> AttributeError:
+    """Returns the error for an attribute that Habitat's class has and ours does not."""
+    names = sorted({n for n in (*dir(type(thing)), *vars(thing)) if not n.startswith("_")})
+    return AttributeError(f"{what} of this project has no '{name}'. It has: {', '.join(names)}.")
 
 
 def _camera(given: dict[str, Any]) -> CameraModel:

@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 
+from sim.bridges.habitat_client import Config, to_config
 from sim.episodes import habitat
 from sim.episodes.splits import Episode, Split
 from sim.reading import read_gzip_json
@@ -22,8 +23,8 @@ class ObjectGoal:
     object_category: str
     position: list[float]
     """Centre of the instance in Habitat's frame: y up, metres."""
-    view_points: list[dict[str, Any]] = field(default_factory=list)
-    """Positions at which a STOP succeeds: `{"agent_state": {"position": ..., "rotation": ...}}`."""
+    view_points: list[Config] = field(default_factory=list)
+    """Positions at which a STOP succeeds, as attributes or keys: `agent_state.position` and `.rotation`."""
 
     @property
     def object_name(self) -> str:
@@ -65,7 +66,7 @@ class ObjectGoalNavEpisode:
                 object_id=str(each.object_id),
                 object_category=each.object_category,
                 position=each.position,
-                view_points=each.view_points,
+                view_points=[to_config(place) for place in each.view_points],
             )
             for each in content.goals_by_category.get(self.goals_key, [])
         ]

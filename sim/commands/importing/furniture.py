@@ -3,10 +3,10 @@
 stubborn import furniture --source /usr/share/sweethome3d/furniture --out runs/models
 stubborn houses generate --furniture runs/models --houses 4 --out runs/houses
 
-The source is a folder with catalogues of Sweet Home 3D (.sh3f), or with OBJ, glTF or other models and a table
-models.csv or models.toml (docs/furniture.md). This command needs the extra `models`. No model is part of this
-repository. You are responsible for following the licences; they are written into models.json and into the houses,
-together with the authors.
+A source is a folder with catalogues of Sweet Home 3D (.sh3f), or with OBJ, glTF or other models and a table
+models.csv or models.toml (docs/furniture.md); several sources become one folder of models. `stubborn import furniture
+infinigen` makes a source. This command needs the extra `models`. No model is part of this repository. You are
+responsible for following the licences; they are written into models.json and into the houses, with the authors.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ REPORT_EVERY = 50
 class Args:
     """Import models of furniture that you have installed, for use in generated houses."""
 
-    source: Path
-    """Folder with .sh3f files, or with models and a models.csv or models.toml (columns: docs/furniture.md)."""
+    source: tuple[Path, ...]
+    """Folders with .sh3f files, or with models and a models.csv or models.toml (columns: docs/furniture.md)."""
     out: cli.OutFolder
     """Folder for models.json and the meshes; created if missing."""
     verbose: bool = False
@@ -43,7 +43,7 @@ def main(args: Args) -> int:
     check_installed()
     if args.out.exists() and not args.out.is_dir():
         raise ConfigError(f"--out '{args.out}' is a file, not a folder.")
-    found = list(read_source(args.source))
+    found = [entry for source in args.source for entry in read_source(source)]
     by_ident = {entry.ident: entry for entry in found if isinstance(entry, Entry)}
     left_out = [entry for entry in found if not isinstance(entry, Entry)]
     models: list[Model] = []

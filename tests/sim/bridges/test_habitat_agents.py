@@ -127,7 +127,7 @@ def test_an_action_is_understood_in_all_of_habitats_forms(given: Any) -> None:
     ],
 )  # fmt: skip
 def test_anything_else_is_refused_in_a_line_that_lists_the_actions(given: Any) -> None:
-    with pytest.raises(AgentError, match="an action is one of 0 stop, 1 move_forward, 2 turn_left, 3 turn_right"):
+    with pytest.raises(AgentError, match="An action is one of 0 stop, 1 move_forward, 2 turn_left, 3 turn_right"):
         to_action(given)
 
 

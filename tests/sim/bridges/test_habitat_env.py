@@ -148,7 +148,7 @@ def test_episodes_have_habitats_fields_and_come_in_the_order_of_the_split(split:
         episode = env.current_episode
         assert (episode.scene_id, episode.goals_key) == ("mjcf_houses/mine/sofa_room.xml", "sofa_room.xml_sofa")
         assert [goal.object_category for goal in episode.goals] == [episode.object_category]
-        assert episode.goals[0].view_points[0]["agent_state"]["position"] == episode.start_position
+        assert episode.goals[0].view_points[0].agent_state.position == episode.start_position
         np.testing.assert_allclose(env.sim.get_agent_state().position, episode.start_position, atol=1e-3)
     with pytest.raises(ConfigError, match="episodes must be 1 to 3, got 4"):
         Env(split=split, episodes=4)
@@ -226,6 +226,32 @@ def test_metrics_before_the_first_episode_are_refused(env: Env) -> None:
 def test_a_camera_off_the_axis_is_refused(house: Path, position: Any) -> None:
     with pytest.raises(ConfigError, match="POSITION of a camera"):
         Env(house=house, position=position)
+
+
+def test_what_habitats_environment_has_and_this_one_lacks_is_said_with_what_there_is(split: Path) -> None:
+    with Env(split=split, camera=SMALL) as env:
+        with pytest.raises(AttributeError, match=r"^Env of this project has no 'task'\. It has: .*current_episode, "):
+            _ = env.task
+        with pytest.raises(AttributeError, match=r"^Env\.sim of this .* no 'pathfinder'\. It has: get_agent_state, "):
+            _ = env.sim.pathfinder
+        assert not hasattr(env, "task")
+        with pytest.raises(AgentError, match=r"^'fly' is no action\. An action is one of 0 stop, "):
+            env.step("fly")
+
+
+def test_a_mistyped_configuration_is_refused_and_one_of_habitats_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "configs").mkdir()
+    monkeypatch.chdir(tmp_path)
+    for path in ("configs/none.yaml", str(tmp_path / "none.yaml")):
+        with pytest.raises(ConfigError, match=r"^There is no configuration file '.*none\.yaml' in its folder\.$"):
+            get_config(path)
+    assert get_config("benchmark/nav/objectnav/objectnav_hm3d.yaml") == get_config()
+    assert get_config().habitat.environment.iterator_options.shuffle is False
+    assert get_config().habitat.task.measurements.success.success_distance == 1.0
+    with pytest.raises(AttributeError, match=r"no 'x' here\. It is empty\.$"):
+        _ = get_config().habitat.task.measurements.spl.x
 
 
 def test_a_configuration_file_of_either_layout_sets_split_steps_and_camera(tmp_path: Path) -> None:

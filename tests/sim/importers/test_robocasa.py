@@ -47,6 +47,7 @@ def test_fixtures_have_the_categories_of_their_names(split: Path) -> None:
         "wall_room_main": "wall", "wall_left_room_main": "wall", "floor_room_main": "floor",
         "counter_main_main_group_main": "counter", "stack_1_main_group_1_main": "cabinet",
         "cab_1_main_group_main": "cabinet", "fridge_main_group_main": "appliances", "distr_counter_main": "objects",
+        "wall_added_0": "wall", "wall_added_1": "wall",
     }  # fmt: skip
     cabinet = next(each for each in labels.instances if each.name == "cab_1_main_group_main")
     assert "cab_1_main_group_door" in [model.geom(geom).name for geom in cabinet.geom_ids]
@@ -65,7 +66,7 @@ def test_the_robot_and_invisible_specks_are_gone_and_the_report_names_them(split
     assert changes["A visible geom has no category; it is an obstacle."] == 1
 
 
-def test_the_room_ends_at_the_walls_and_open_sides_are_reported(split: Path) -> None:
+def test_the_room_ends_at_the_walls_and_open_sides_get_walls(split: Path) -> None:
     _, model = load(split)
     (room,) = read_rooms(model)
     (x, y, _), (half_x, half_y, _) = room.boxes[0]
@@ -75,6 +76,23 @@ def test_the_room_ends_at_the_walls_and_open_sides_are_reported(split: Path) -> 
     assert report["area_m2"] == pytest.approx(4.04 * 4.02, abs=0.01)
     sides = [side for side in ("west", "east", "south", "north") if f"its {side} side" in " ".join(report["changes"])]
     assert sides == ["east", "south"]
+    east, south = (model.geom(f"wall_added_{number}") for number in range(2))
+    assert (east.pos[0], south.pos[1]) == pytest.approx((4.04 + 0.05, -4.02 - 0.05))
+    assert (east.size[1], south.size[0]) == pytest.approx((2.02 + 0.1, 2.04 + 0.1))
+    assert (east.pos[2] + east.size[2], south.pos[2] - south.size[2]) == pytest.approx((3.0, 0.0))
+
+
+def test_a_side_where_another_floor_goes_on_gets_no_wall(tmp_path: Path) -> None:
+    next_door = fixture("floor_2_room_main", "1 2.02 .02", "5.04 -2 -.02")
+    scene = import_kitchen(write_kitchen(tmp_path, fixtures=FIXTURES + next_door), root=tmp_path)
+    added = [line for line in scene.report["changes"] if "a plain wall was added" in line]
+    assert [line.split(" side")[0].split()[-1] for line in added] == ["south", "east", "north"]
+
+
+def test_a_wall_beyond_the_corner_leaves_a_closed_side_closed(tmp_path: Path) -> None:
+    beyond = fixture("wall_far_room_main", "1 .02 1.5", "6 .02 1.5")
+    scene = import_kitchen(write_kitchen(tmp_path, fixtures=FIXTURES + beyond), root=tmp_path)
+    assert not any("its north side" in line for line in scene.report["changes"])
 
 
 def test_textures_are_reduced_and_unused_ones_are_left_out(split: Path) -> None:

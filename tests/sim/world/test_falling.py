@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
+from sim.errors import PhysicsError
 from sim.geometry.pose import Pose
+from sim.gl import mujoco
+from sim.houses.house import House
 from sim.interface import Action
 from sim.robot.config import RobotConfig
 from sim.task.objectnav import Task
@@ -39,6 +44,20 @@ def test_a_robot_that_drives_over_an_edge_has_fallen_when_its_axle_is_past_it(ba
 @pytest.mark.parametrize("drop_m", [0.06, 0.09, 0.12])
 def test_a_robot_that_tips_over_a_low_edge_onto_the_floor_below_has_fallen(drop_m):
     assert any(falls(World(ledge(drop_m)), Pose(-0.8, -0.5, 0.0), 4))
+
+
+def test_a_robot_that_tips_over_below_two_low_steps_has_not_fallen_over_an_edge():
+    house = House("steps", mujoco.MjSpec())
+    for number in range(3):
+        middle_m = (2.0 * number - 1.0, 0.0, -0.04 * number - 0.05)
+        house = with_box(house, f"floor_{number:02d}", centre_m=middle_m, half_m=(1.0, 2.0, 0.05))
+    world = World(house)
+    assert not any(falls(world, Pose(-0.5, 0.0, 0.0), 14))
+    assert world.pose.x_m > 2.3
+    joint = world.model.joint("stubborn_robot/free").qposadr[0]
+    world.data.qpos[joint + 2 : joint + 7] = (0.10, math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0)
+    with pytest.raises(PhysicsError, match="tipped over"):
+        world.move(FORWARD)
 
 
 @pytest.mark.parametrize("drop_m", [0.025, 0.04])

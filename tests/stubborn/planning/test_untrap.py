@@ -1,3 +1,5 @@
+import math
+
 import pytest
 
 from sim.interface import Action, ConfigError
@@ -72,3 +74,22 @@ def test_the_side_alternates_from_entry_to_entry_and_a_new_episode_begins_left()
 def test_a_count_below_one_is_refused():
     with pytest.raises(ConfigError, match=">= 1, got 0"):
         UntrapConfig(failed_forwards=0)
+
+
+@pytest.mark.parametrize(("blocked", "other"), [(L, R), (R, L)])
+def test_two_blocked_turns_start_it_with_a_turn_to_the_other_side(blocked: Action, other: Action):
+    untrap = Untrap(UntrapConfig().failed_forwards)
+    for action, failed in ((blocked, True), (blocked, False), (blocked, True), (F, False), (blocked, True)):
+        untrap.observe(action, failed)
+        assert untrap.next_action() is None
+    untrap.observe(blocked, True)
+    assert [untrap.next_action(), untrap.next_action()] == [other, F]
+    untrap.observe(F, False)
+    assert untrap.next_action() is None
+
+
+def test_without_the_mode_blocked_turns_start_nothing():
+    untrap = Untrap(math.inf)
+    for _ in range(5):
+        untrap.observe(L, True)
+    assert untrap.next_action() is None
