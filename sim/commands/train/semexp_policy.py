@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import torch
 from gymnasium import spaces
-from torch import Tensor
+from torch import Tensor, nn
 from torch.optim import Adam
 
 from stubborn.exploration.semexp_net import NetConfig, SemExpNet
@@ -32,6 +33,8 @@ class SemExpPolicy(ActorCriticPolicy):
 
     def _build(self, lr_schedule: Schedule) -> None:
         self.net = SemExpNet(self._config)
+        _initialise(self.net)
+        self.net.to(memory_format=torch.channels_last)  # quicker convolutions
         self.optimizer = Adam(self.parameters(), lr=lr_schedule(1), eps=1e-5)
 
     def _outputs(self, obs: PyTorchObs) -> tuple[Distribution, Tensor]:
@@ -58,3 +61,15 @@ class SemExpPolicy(ActorCriticPolicy):
     def predict_values(self, obs: PyTorchObs) -> Tensor:
         """Returns the values."""
         return self._outputs(obs)[1]
+
+
+def _initialise(net: SemExpNet) -> None:
+    """Sets the initial weights: orthogonal, so that the features depend on the maps from the start (PyTorch's own
+    initial weights of six layers nearly do not), and a policy whose mean is near the middle of the local map."""
+    for layer in net.modules():
+        if isinstance(layer, nn.Conv2d | nn.Linear):
+            nn.init.orthogonal_(layer.weight, gain=2.0**0.5)
+            assert layer.bias is not None
+            nn.init.zeros_(layer.bias)
+    nn.init.orthogonal_(net.network.critic_linear.weight, gain=1.0)
+    nn.init.orthogonal_(net.dist.fc_mean.weight, gain=0.01)
