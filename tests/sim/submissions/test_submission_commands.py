@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from sim.analysis.comparison import read_run
-from sim.commands import leaderboard, verify
+from sim.commands import leaderboard, submit, verify
 from sim.errors import ConfigError
 from sim.submissions.packing import About, pack
 from tests.helpers.submissions import (
@@ -42,6 +42,14 @@ def test_the_exit_status_says_whether_the_results_hold(
     content["episodes"][1]["result"].update(success=0.0, spl=0.0, failure="misc")
     assert verify.main(verify.Args(file=written(tmp_path / "forged.json.gz", content), **options)) == 1
     assert "NOT VERIFIED: 1 episodes are different" in capsys.readouterr().out
+
+
+def test_an_agent_that_gets_no_segmentation_declares_none(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = submit.Args(run=folder / "process", name="x", authors=(), out=tmp_path / "x.json.gz")
+    assert submit.main(words) == 0
+    assert "in a process of its own; semantics not used; " in capsys.readouterr().out
 
 
 def test_a_run_without_its_actions_is_refused_with_the_command_that_records(folder: Path, tmp_path: Path) -> None:
