@@ -42,6 +42,7 @@ HABITAT_MODULES = {
     "habitat.tasks": "",
     "habitat.tasks.nav": "",
     "habitat.tasks.nav.object_nav_task": "ObjectGoal ObjectGoalNavEpisode",
+    "habitat.tasks.nav.shortest_path_follower": "ShortestPathFollower",
 }
 """The modules of Habitat that agents import, with their names; the stand-in for Habitat provides these."""
 NOT_IN_THE_STAND_IN = "is not part of the stand-in for Habitat, which is not installed here (docs/habitat.md)"
@@ -288,7 +289,9 @@ class _Env:
     """Refuses to be made: the episodes run in the simulator."""
 
     def __init__(self, *_: Any, **__: Any) -> None:
-        raise RuntimeError("habitat.Env runs in the simulator's process: stubborn habitat 'SCRIPT ARGUMENTS'")
+        raise RuntimeError(
+            "Episodes and shortest paths are in the simulator's process: stubborn habitat 'SCRIPT ARGUMENTS'"
+        )
 
 
 class HabitatActions:
@@ -365,8 +368,8 @@ def _provide_habitat():
     objects = {
         "Agent": Agent, "Benchmark": _Benchmark, "Challenge": _Challenge, "Config": Config, "Env": _Env,
         "HabitatSimActions": HabitatActions(), "ObjectGoal": _Record, "ObjectGoalNavEpisode": _Record,
-        "Observations": _Observations, "RLEnv": _Env, "get_config": _get_config, "logger": LOG,
-        "read_write": read_write,
+        "Observations": _Observations, "RLEnv": _Env, "ShortestPathFollower": _Env, "get_config": _get_config,
+        "logger": LOG, "read_write": read_write,
     }  # fmt: skip
     sys.meta_path.insert(0, StandIn(objects))
 

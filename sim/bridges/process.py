@@ -28,7 +28,17 @@ from sim.configuration import as_json
 from sim.errors import AgentError, ConfigError
 from sim.evaluation.own_code import one_line
 from sim.evaluation.rollout import ask
-from sim.interface import GOAL_CATEGORIES, Action, Agent, AgentSpec, CameraModel, Observation, RobotModel, SuccessRule
+from sim.interface import (
+    GOAL_CATEGORIES,
+    MPCAT40,
+    Action,
+    Agent,
+    AgentSpec,
+    CameraModel,
+    Observation,
+    RobotModel,
+    SuccessRule,
+)
 from sim.task.trajectory import FARTHEST_M
 from sim.viewers.viewer import Colour
 
@@ -119,6 +129,7 @@ class ProcessAgent:
             "success": as_json(success),
             "max_steps": max_steps,
             "goals": list(GOAL_CATEGORIES),
+            "labels": list(MPCAT40),
         }
         self._conversion = _conversion(camera, config)
         if self._conversion is not None:

@@ -26,8 +26,8 @@ the agent's map for videos, uint8 RGB (h, w, 3), and `state()` returns a few wor
 
 `serve` also takes a class or a function that gets the description of the task and returns the agent:
 `make(setup)` with `setup.camera.width_px`, `height_px`, `hfov_rad`, `height_m`, `min_depth_m`, `max_depth_m`,
-`setup.robot.radius_m`, `height_m`, `setup.success.distance_m`, `setup.max_steps` and `setup.goals`, the categories in
-the order of `objectgoal`.
+`setup.robot.radius_m`, `height_m`, `setup.success.distance_m`, `setup.max_steps`, `setup.goals`, the categories in
+the order of `objectgoal`, and `setup.labels`, those in the order of the numbers in `semantic` images.
 
 Protocol: messages pass through standard input and output, so that any program which forwards these (ssh, docker run -i)
 can connect the two processes. What the agent prints goes to standard error. A message consists of `PREFIX` (mark,

@@ -17,13 +17,13 @@ from typing import Annotated
 import tyro
 
 from sim import cli
-from sim.analysis.tables import to_csv, to_markdown
+from sim.analysis.tables import to_markdown
 from sim.commands.verify import verify
 from sim.errors import ConfigError
 from sim.files import write_atomically, write_together
 from sim.reading import printable, sha256_of
 from sim.submissions.contents import read_submission
-from sim.submissions.leaderboard import Row, is_current, report_file, submission_files, tables
+from sim.submissions.leaderboard import Row, csv_of, is_current, report_file, submission_files, tables
 from sim.submissions.report import Report, read_report
 from sim.submissions.verification import Choices
 
@@ -57,7 +57,7 @@ def main(args: Args) -> int:
     found = tables(rows)
     if not found:
         raise ConfigError(f"No submission in '{args.folder}' can be shown. {' '.join(left_out)}")
-    write_together({args.folder / "table.md": to_markdown(found), args.folder / "table.csv": to_csv(found)})
+    write_together({args.folder / "table.md": to_markdown(found), args.folder / "table.csv": csv_of(rows)})
     print(printable(to_markdown(found)))
     for reason in left_out:
         print(printable(f"Left out: {reason}"))

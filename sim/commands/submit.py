@@ -54,8 +54,10 @@ def main(args: Args) -> int:
     inputs, count = submission.manifest.inputs, len(submission.episodes)
     isolated = "in a process of its own" if inputs.isolated else "in the process of the simulator"
     print(f"{out}: {count} episodes of {submission.manifest.split.name}, {size / 1000:.0f} KB.")
+    segmentation = submission.config_tree(where=str(out)).get("segmentation") or {}
+    semantics = inputs.semantics if segmentation.get("name") else "not used"
     print(
-        f"Declared: agent '{inputs.agent}' {isolated}; semantics {inputs.semantics}; ground truth {truth_of(inputs)}; "
+        f"Declared: agent '{inputs.agent}' {isolated}; semantics {semantics}; ground truth {truth_of(inputs)}; "
         f"noise {inputs.noise}."
     )
     print(f"Check it: {command('verify', out)}")

@@ -81,12 +81,12 @@ def verify(file: Path, choices: Choices) -> dict[str, Any]:
     """Verifies a submission, prints the outcome, and returns it (`sim.submissions.report`)."""
     checked = check(file, choices, truth_of_agents())
     for line in _head(checked):
-        print(printable(line))
+        print(printable(line), flush=True)
     found: list[Verdict] = []
-    seconds = 0.0
+    seconds, total = 0.0, len(checked.submission.episodes)
     for verdict, took_s in verdicts(checked, choices):
-        print(printable(_line(verdict)), flush=True)
         found.append(verdict)
+        print(printable(f"[{len(found)}/{total}] {_line(verdict)}"), flush=True)
         seconds += took_s
     report = report_of(checked, choices, found, seconds)
     for line in _summary(checked, choices, found, seconds):

@@ -1,7 +1,8 @@
-"""The oracle: an agent that follows the true shortest path with the same four actions and the same body.
+"""Agents that follow the true shortest path with the same four actions and the same body.
 
-The oracle is an upper bound: if it fails, the task, the free space or the robot is wrong. It finds its route by
-weighted A* over steps of "turn, then drive 0.25 m" on the 12 headings, with the geodesic distance as heuristic. It
+The oracle heads for the goal of its episode. It is an upper bound: if it fails, the task, the free space or the robot
+is wrong. A `Follower` heads for any destination, and is the oracle's way of driving. It finds its route by weighted A*
+over steps of "turn, then drive 0.25 m" on the 12 headings, with the geodesic distance as heuristic. It
 searches again if the robot is not where the route expects it; a step that was blocked is not tried again. Where whole
 steps do not lead to the goal, as in a narrow gap between furniture, the route also has steps that an obstacle ends.
 """
@@ -12,7 +13,8 @@ import heapq
 import itertools
 import math
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Protocol
 
 import cv2
@@ -21,7 +23,7 @@ from numpy.typing import NDArray
 
 from sim.interface import FORWARD_M, TURN_RAD, Action, Observation
 from sim.task.objectnav import Task
-from sim.world.freespace import CELL_M
+from sim.world.freespace import CELL_M, FreeSpace
 
 HEADINGS = round(math.tau / TURN_RAD)
 HEURISTIC_WEIGHT = 1.5
@@ -64,6 +66,20 @@ class HasScene(Protocol):
         ...
 
 
+@dataclass(frozen=True, eq=False)
+class Destination:
+    """The places where a route may end."""
+
+    space: FreeSpace
+    """The free space of their storey."""
+    cells: NDArray[np.bool_]
+    """(rows, cols) the cells of these places."""
+    distance_m: NDArray[np.float32]
+    """(rows, cols) geodesic distance to the nearest of them; inf: no path."""
+    reached: Callable[[float, float], bool]
+    """Whether an exact position, x and y in metres, is one of them."""
+
+
 class Oracle:
     """An `Agent` that reads the ground truth from its environment and ignores its observations."""
 
@@ -75,20 +91,36 @@ class Oracle:
         task = self._env.scene.task
         floor_z_m = task.start.floor_z_m
         space, target = task.truth.space(floor_z_m), task.truth.target(goal, floor_z_m)
-        self._frame, self._region, self._distance_m = space.frame, target.region, target.distance_m
-        self._clearance_m = cv2.distanceTransform(space.free.astype(np.uint8), cv2.DIST_L2, 5) * CELL_M  # 0: not free
-        inner = cv2.erode(target.reached.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(np.bool_)
-        self._goal_cells = inner if inner.any() else target.reached
+        places = Destination(space, target.reached, target.distance_m, target.region.succeeds)
+        self._follower = Follower(self._env, places)
+
+    def act(self, observation: Observation) -> Action:
+        """Returns the next action of the route; STOP as soon as it succeeds."""
+        del observation
+        action = self._follower.next_action()
+        return Action.TURN_LEFT if action is None else action
+
+
+class Follower:
+    """Follows the shortest path from where the robot is to a destination."""
+
+    def __init__(self, env: HasScene, to: Destination) -> None:
+        self._env = env
+        self._reached = to.reached
+        self._frame, self._distance_m = to.space.frame, to.distance_m
+        free = to.space.free.astype(np.uint8)
+        self._clearance_m = cv2.distanceTransform(free, cv2.DIST_L2, 5) * CELL_M  # 0: not free
+        inner = cv2.erode(to.cells.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(np.bool_)
+        self._goal_cells = inner if inner.any() else to.cells
         self._swept_m = np.zeros((HEADINGS, 0, 2))
         self._route: deque[tuple[Action, Node]] = deque()
         self._expected: Node | None = None
         self._blocked: set[Key] = set()
 
-    def act(self, observation: Observation) -> Action:
-        """Returns the next action of the route; STOP as soon as it succeeds."""
-        del observation
+    def next_action(self) -> Action | None:
+        """Returns the next action of the route; STOP at the destination, None where no step leads nearer to it."""
         here = self._here()
-        if self._region.succeeds(*here[:2]):
+        if self._reached(*here[:2]):
             return Action.STOP
         if self._expected is not None and not _same(here, self._expected):
             self._blocked.add(_key(here))
@@ -97,7 +129,7 @@ class Oracle:
             actions, reached = self._search(here, whole=True)
             self._route.extend(actions if reached else self._search(here, whole=False)[0])
         if not self._route:
-            return Action.TURN_LEFT
+            return None
         action, self._expected = self._route.popleft()
         return action
 

@@ -13,12 +13,15 @@ from sim.episodes.splits import Episode, Split
 from sim.errors import ConfigError
 from sim.interface import TRUE_IMAGES, Action
 from sim.robot.config import PHYSICS_VERSION
-from sim.submissions.contents import Entry, Inputs, Submission
+from sim.submissions.contents import Entry, Inputs, Result, Submission
 from sim.submissions.setting import Setting
+from sim.task import metrics
 
 Truth = Literal["none", "noisy", "yes"]
 """Whether ground truth reached the agent: `noisy` is the true segmentation with the errors of a simulated detector."""
 STOP = str(int(Action.STOP))
+ROUNDING = 1e-6
+"""Largest error of a recorded SPL."""
 
 
 def require_consistent(
@@ -135,3 +138,21 @@ def _require_entry(entry: Entry, known: Episode, submission: Submission, setting
         raise ConfigError(f"{where} has {len(actions)} actions; the task allows {setting.task.max_steps}.")
     if STOP in actions[:-1]:
         raise ConfigError(f"{where} has actions after STOP, which ends an episode.")
+    _require_coherent(result, actions, where)
+
+
+def _require_coherent(result: Result, actions: str, where: str) -> None:
+    """Raises ConfigError where the numbers of a result contradict each other."""
+    stopped = actions.endswith(STOP)
+    if stopped != (result.end_reason == "stop"):
+        last = "is STOP" if stopped else "is not STOP"
+        raise ConfigError(f"{where} ended with '{result.end_reason}', and its last action {last}.")
+    if result.success and not stopped:
+        raise ConfigError(f"{where} is a success without STOP.")
+    if bool(result.success) != (result.failure is None):
+        raise ConfigError(f"{where} has success {result.success:g} and the cause of failure '{result.failure}'.")
+    wanted = metrics.spl(bool(result.success), result.shortest_path, result.path_length or 0.0)
+    if not abs((result.spl or 0.0) - wanted) <= ROUNDING:
+        raise ConfigError(
+            f"{where} has spl {result.spl:.6g}; its success, shortest_path and path_length give {wanted:.6g}."
+        )

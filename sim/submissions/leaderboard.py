@@ -7,7 +7,9 @@ FOLDER/table.md, FOLDER/table.csv   written by `stubborn leaderboard`
 
 from __future__ import annotations
 
+import csv
 import html
+import io
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,9 +26,18 @@ from sim.submissions.checks import truth_of
 from sim.submissions.contents import SUFFIX, Submission
 from sim.submissions.report import Report
 
+LEAST_EPISODES = 50
+"""With fewer, an interval of the success is about 30 points wide, and a lucky start of a split is no result."""
 SUBMISSIONS, REPORTS = "submissions", "reports"
 HEADER = (
-    "row", "authors", "ground truth", "noise", "own process", "episodes", "success %", "SPL", "collisions", "verified",
+    "row", "authors", "ground truth (declared)", "own process (declared)", "noise", "episodes", "success %", "SPL",
+    "collisions", "verified",
+)  # fmt: skip
+
+CSV_COLUMNS = (
+    "split", "version", "split_sha256", "name", "authors", "links", "agent", "ground_truth_declared",
+    "own_process_declared", "noise", "episodes", "success", "success_low", "success_high", "spl", "spl_low", "spl_high",
+    "collisions", "collisions_low", "collisions_high", "verified", "file",
 )  # fmt: skip
 
 
@@ -45,6 +56,8 @@ class Row:
             return f"{self.report.different} episodes are different in the replay"
         if not self.report.is_first:
             return "its episodes were chosen by the authors; the first ones of the split are allowed"
+        if self.report.episodes < LEAST_EPISODES:
+            return f"it has {self.report.episodes} episodes; a row needs {LEAST_EPISODES}"
         if self.report.nonstandard:
             return f"not the standard: {self.report.nonstandard[0]}"
         inputs = self.submission.manifest.inputs
@@ -80,8 +93,7 @@ def tables(rows: Sequence[Row]) -> list[ResultTable]:
     found = []
     by_split: dict[tuple[str, str, str], list[Row]] = {}
     for row in (each for each in rows if not each.refusal):
-        split = row.submission.manifest.split
-        by_split.setdefault((split.name, split.version, split.sha256), []).append(row)
+        by_split.setdefault(_split(row), []).append(row)
     for (name, version, sha256), members in sorted(by_split.items()):
         title = f"{name} {version} ({sha256[:12]})"
         ordered = sorted(members, key=_rank)
@@ -91,8 +103,25 @@ def tables(rows: Sequence[Row]) -> list[ResultTable]:
 
 NOTES = (
     "Verified: every row's actions were replayed, and lead to its success, SPL and collisions. Intervals of 95 % are "
-    "over houses. Columns from authors to own process are what the authors declare.",
+    "over houses. Authors, ground truth and own process are what the authors declare.",
 )
+
+
+def csv_of(rows: Sequence[Row]) -> str:
+    """Returns the rows as CSV; shares are not in percent."""
+    stream = io.StringIO()
+    writer = csv.writer(stream)
+    writer.writerow(CSV_COLUMNS)
+    for row in sorted((each for each in rows if not each.refusal), key=lambda each: (_split(each), _rank(each))):
+        manifest, lines = row.submission.manifest, results_of(row.submission)
+        estimates = [metric.cell(lines).estimate for metric in (SUCCESS, SPL, COLLISIONS)]
+        numbers = (n for each in estimates for n in (each.mean, each.low, each.high))
+        writer.writerow([
+            *_split(row), manifest.name, "; ".join(manifest.authors), " ".join(manifest.links), manifest.inputs.agent,
+            truth_of(manifest.inputs), "yes" if manifest.inputs.isolated else "no", manifest.inputs.noise, len(lines),
+            *("" if n is None else round(n, 6) for n in numbers), _verified(row), row.file.name,
+        ])  # fmt: skip
+    return stream.getvalue()
 
 
 def results_of(submission: Submission) -> list[dict[str, Any]]:
@@ -102,16 +131,24 @@ def results_of(submission: Submission) -> list[dict[str, Any]]:
 
 def _cells(row: Row) -> list[Any]:
     manifest, lines = row.submission.manifest, results_of(row.submission)
-    exact = "equal" if not row.report.within_tolerance else f"to {100 * row.report.tolerance_m:g} cm"
     return [
         plain(", ".join(manifest.authors)),
         truth_of(manifest.inputs),
-        plain(manifest.inputs.noise),
         "yes" if manifest.inputs.isolated else "no",
+        plain(manifest.inputs.noise),
         str(len(set(episodes_of(lines)))),
         *(metric.cell(lines) for metric in (SUCCESS, SPL, COLLISIONS)),
-        exact,
+        _verified(row),
     ]
+
+
+def _verified(row: Row) -> str:
+    return "equal" if not row.report.within_tolerance else f"to {100 * row.report.tolerance_m:g} cm"
+
+
+def _split(row: Row) -> tuple[str, str, str]:
+    split = row.submission.manifest.split
+    return split.name, split.version, split.sha256
 
 
 def _name(row: Row) -> str:

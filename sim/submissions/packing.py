@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import PurePath
 from typing import Any
 
 import msgspec
@@ -77,13 +78,22 @@ def pack(run: Run, about: About) -> Submission:
         },
         "versions": run.recorded("versions"),
     }
-    kept = {key: value for key, value in config.items() if key not in LEFT_OUT}
+    kept = _without_folders({key: value for key, value in config.items() if key not in LEFT_OUT})
     return Submission(
         format=FORMAT,
         manifest=convert(manifest, Manifest, where="The manifest"),
         config=msgspec.Raw(json.dumps(kept, allow_nan=False).encode()),
         episodes=list(_entries(run)),
     )
+
+
+def _without_folders(value: Any) -> Any:
+    """Returns a configuration in which files of the user, such as weights, have their name without its folder."""
+    if isinstance(value, dict):
+        return {key: _without_folders(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_without_folders(each) for each in value]
+    return PurePath(value).name if isinstance(value, str) and PurePath(value).is_absolute() else value
 
 
 def recording(run: Run) -> str:

@@ -14,7 +14,9 @@ from sim import run
 from sim.analysis.comparison import read_run
 from sim.commands import compare as compare_runs
 from sim.commands.reproduce import reproduce
-from sim.commands.reproduce.paper_tables import PAPER_TABLES, table_named
+from sim.commands.reproduce.agent_setup import AgentSetup
+from sim.commands.reproduce.paper_figures import FIGURES, beside_paper
+from sim.commands.reproduce.paper_tables import PAPER_TABLES, TABLES, table_named
 from sim.episodes.splits import Episode, write_split
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError
@@ -296,6 +298,67 @@ def test_several_splits_take_turns_and_share_a_page(
     before = [file.read_bytes() for file in sorted(args.out.glob("*/results.jsonl"))]
     assert reproduce.main(both) == 0
     assert [file.read_bytes() for file in sorted(args.out.glob("*/results.jsonl"))] == before
+
+
+@pytest.fixture(scope="module")
+def lines(split: Path, tmp_path_factory: pytest.TempPathFactory) -> list[dict]:
+    """Returns the result lines of an agent, the goals in turns a sofa and a bed."""
+    args = reproduce.Args(
+        table="overall", split=str(split), agents=("oracle",), episodes=4, out=tmp_path_factory.mktemp("p")
+    )
+    reproduce.main(args)
+    return list(read_run(args.out / ORACLE).lines.values())
+
+
+@pytest.mark.parametrize("name", [*PAPER_TABLES, "splits"])
+def test_the_papers_figures_stand_beside_the_rows_of_the_same_name(name: str, lines: list[dict]) -> None:
+    table = table_named(name)
+    setups = table.setups()
+    first = table.build(dict.fromkeys(setups, lines), setups)[0]
+    beside = beside_paper(name, first)
+    columns = FIGURES.get(name, {})
+    assert beside.header == (*first.header, *(f"paper: {title}" for title in columns))
+    assert all(len(cells) == len(beside.header) - 1 for _, cells in beside.rows)
+    shown = {label: dict(zip(beside.header[1:], cells, strict=True)) for label, cells in beside.rows}
+    for title, column in columns.items():
+        for row, text in column.items():
+            found = [
+                cells
+                for label, cells in shown.items()
+                if re.fullmatch(rf"{re.escape(row)}( \(.*\)| stubborn.*)?", label)
+            ]
+            expected = 0 if name in ("categories", "exploration") and row not in ("sofa", "bed", "all") else 1
+            assert [cells[f"paper: {title}"] for cells in found] == [text] * expected, (title, row)
+
+
+def test_all_tables_of_the_paper_get_a_page(
+    args: reproduce.Args, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(reproduce, "PAPER_TABLES", ("overall", "categories"))
+    everything = replace(args, table="all", episodes=1)
+    assert reproduce.main(everything) == 0
+    page = (args.out / "tables" / f"{stem(everything)}.md").read_text()
+    assert page.index("**All agents**") < page.index("**Success, %, gt segmentation**")
+    assert "2 tables on" in capsys.readouterr().out
+
+
+def test_the_paper_is_beside_its_own_agents_only(
+    args: reproduce.Args, monkeypatch: pytest.MonkeyPatch, lines: list[dict]
+) -> None:
+    monkeypatch.setitem(TABLES, "categories", replace(TABLES["categories"], agents=AGENTS[:1]))
+    reproduce.main(replace(args, agents=()))
+    page = (args.out / "tables" / "categories_gt_tiny.md").read_text()
+    assert "| goal (episodes) | oracle | paper: Stubborn | paper: Single-Frame |" in page
+    assert re.search(r"\| bed \(1\) \| [^|]* \| 51 \| 44 \|", page)
+    reproduce.main(args)
+    assert "paper" not in (args.out / "tables" / f"{stem(args)}.md").read_text()
+
+
+def test_an_agent_of_a_table_can_have_a_segmentation_of_its_own() -> None:
+    setup = AgentSetup.named("cloned --semantics gt", "rednet")
+    assert (setup.semantics, setup.label) == ("gt", "cloned (gt)")
+    assert AgentSetup.named("cloned", "rednet").label == "cloned (rednet)"
+    assert [each.semantics for each in table_named("failures").setups()] == ["rednet"] * 3 + ["gt"]
 
 
 def test_all_tables_are_those_of_the_paper(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from sim.bridges.habitat.conversions import HabitatSimActions, Observations
 from sim.bridges.habitat.env import Env
 from sim.bridges.habitat.episodes import ObjectGoal, ObjectGoalNavEpisode
 from sim.bridges.habitat.rl_env import RLEnv
+from sim.bridges.habitat.shortest_path import ShortestPathFollower
 from sim.bridges.habitat_client import Agent, Config, read_write
 
 __all__ = [
@@ -24,6 +25,7 @@ __all__ = [
     "ObjectGoalNavEpisode",
     "Observations",
     "RLEnv",
+    "ShortestPathFollower",
     "get_config",
     "read_write",
 ]

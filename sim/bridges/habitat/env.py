@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sim.bridges.habitat.config import Config, make_config, settings_of
 from sim.bridges.habitat.conversions import Conversion, Observations, to_action
 from sim.bridges.habitat.episodes import ObjectGoalNavEpisode, to_habitat
+from sim.bridges.habitat.shortest_path import ShortestPaths
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes import habitat
 from sim.episodes.splits import Episode
@@ -204,18 +205,34 @@ class Simulator:
     """The part of Habitat's simulator that evaluation scripts read."""
 
     def __init__(self, env: ObjectNavEnv) -> None:
-        self._env = env
+        self.env = env
+        """The environment of this project."""
+        self.paths = ShortestPaths(env)
+        """Shortest paths on the storey of the running episode."""
 
     @property
     def previous_step_collided(self) -> bool:
         """Whether a body contact stopped the last move."""
-        motion = self._env.motion
+        motion = self.env.motion
         return motion is not None and bool(motion.collided)
 
     def get_agent_state(self, agent_id: int = 0) -> AgentState:
         """Returns the robot's true pose in Habitat's frame."""
-        state = habitat.to_agent_state(self._env.scene.world.pose)
+        state = habitat.to_agent_state(self.env.scene.world.pose)
         return AgentState(np.array(state["position"], np.float32), np.array(state["rotation"], np.float32))
+
+    def geodesic_distance(self, position_a: ArrayLike, position_b: ArrayLike, episode: object = None) -> float:
+        """Returns the length of the shortest path from a place to the nearest of one or several; inf: no path.
+
+        The free space is that at the start of the episode; a place that is not free counts as the free cell nearest
+        to it.
+
+        Args:
+            position_a: (3,) metres, Habitat's frame.
+            position_b: (3,) or (n, 3) metres, Habitat's frame.
+            episode: exists for scripts that give it; the running episode counts.
+        """
+        return self.paths.distance_m(position_a, position_b)
 
     def __getattr__(self, name: str) -> Any:
         raise _lacks(self, "Env.sim", name)

@@ -13,7 +13,7 @@ from sim.errors import ConfigError
 
 GROUND_TRUTH = "gt"
 """The segmentation of agents that do not use one: they are run once, under this name."""
-FORM = "AGENT [--explorer NAME] [--verification METHOD] [--config FIELD=VALUE ...]"
+FORM = "AGENT [--semantics SOURCE] [--explorer NAME] [--verification METHOD] [--config FIELD=VALUE ...]"
 """The text that `AgentSetup.named` takes."""
 
 
@@ -35,14 +35,16 @@ class AgentSetup:
 
     @classmethod
     def named(cls, name: str, semantics: str) -> AgentSetup:
-        """Returns the setup of a text such as "stubborn --explorer tour", with a source of segmentation.
+        """Returns the setup of a text such as "stubborn --explorer tour", with a source of segmentation, which the text
+        can replace.
 
         Raises:
             ConfigError: the text has another form than `FORM`.
         """
         options = _options(name)
         agent = options["agent"][0]
-        semantics = semantics if uses_segmentation(agent) else GROUND_TRUTH
+        chosen = (options.get("semantics") or [semantics])[0]
+        semantics = chosen if uses_segmentation(agent) else GROUND_TRUTH
         return cls(
             agent,
             semantics,
@@ -107,7 +109,7 @@ def _options(name: str) -> dict[str, list[str]]:
             options[of].append(word)
             continue
         of = word.removeprefix("--")
-        if of not in ("explorer", "verification", "config") or of in options:
+        if of not in ("semantics", "explorer", "verification", "config") or of in options:
             raise ConfigError(f"--agents: {name!r} has the option {word}; an agent is given as {FORM}.")
         options[of] = []
     for option, given in options.items():

@@ -5,7 +5,8 @@
     stubborn reproduce failures --minutes 0            # only the table, from the existing runs
     stubborn reproduce splits --splits val large hazards --episodes 200 --workers 2
 
-The tables of the paper are failures, ablation, exploration, categories and overall; `all` makes these five. The table
+The tables of the paper are failures, ablation, exploration, categories and overall, and `controls` is its figure of
+SemExp; `all` makes these six, and one page of all of them. The paper's figures stand beside ours. The table
 `verification` compares the methods of verification. `splits` compares the rows of the ablation and two explorers on
 each of several splits. `explorers` compares all explorers, also by the median time to first sight, and the learned ones
 with their controls.
@@ -37,6 +38,7 @@ from sim.analysis import display
 from sim.analysis.comparison import Line, Run, code_of, read_run
 from sim.analysis.tables import ResultTable, to_csv, to_markdown, to_rich
 from sim.commands.reproduce.agent_setup import AgentSetup, file_name
+from sim.commands.reproduce.paper_figures import beside_paper
 from sim.commands.reproduce.paper_tables import PAPER_TABLES, PaperTable, table_named
 from sim.composition.options import RunOptions
 from sim.composition.running import run_missing
@@ -63,7 +65,8 @@ class Args:
     """Run the missing episodes of a table, and write the table."""
 
     table: tyro.conf.Positional[str]
-    """failures, ablation, exploration, categories, overall, verification, splits, explorers, or all (the paper's)."""
+    """failures, ablation, exploration, controls, categories, overall, verification, splits, explorers, or all (the
+    first six, the paper's)."""
     episodes: cli.Count = 200
     """The first N episodes of each split."""
     workers: cli.Count = 1
@@ -84,7 +87,7 @@ class Args:
     """Source of segmentation, in place of the default of the table."""
     agents: tuple[str, ...] = ()
     """Agents, in place of the default of the table; the others are compared with the first. With options as
-    "AGENT [--explorer NAME] [--verification METHOD] [--config FIELD=VALUE ...]"."""
+    "AGENT [--semantics SOURCE] [--explorer NAME] [--verification METHOD] [--config FIELD=VALUE ...]"."""
     noise: str = "none"
     """Noise of sensors and drive."""
     seed: cli.Seed = 0
@@ -108,10 +111,12 @@ def main(args: Args) -> int:
     status = 0
     pages: dict[str, list[str]] = {name: [] for name in names}
     for of_split in splits:
-        for name, of_table in needed.items():
-            page = make_table(of_split, name, of_table, console)
-            status |= page is None
+        made = {name: make_table(of_split, name, of_table, console) for name, of_table in needed.items()}
+        status |= None in made.values()
+        for name, page in made.items():
             pages[name] += [f"## {of_split.split.name}\n\n{page}"] if page is not None else []
+        if len(names) > 1:
+            _write_all(of_split.args, [page for page in made.values() if page is not None], console)
     if len(splits) > 1:
         _write_pages(args, [each.args for each in splits], pages, console)
     return status
@@ -213,6 +218,8 @@ def write_table(
     """Builds one table, prints it, and writes it as Markdown and CSV; returns the Markdown."""
     lines = {setup: [with_cause(of, of.lines[i]) for i in common] for setup, of in runs.items()}
     parts = table.build(lines, list(runs))
+    if not args.agents:
+        parts[0] = beside_paper(name, parts[0])
     notes = notes_of(args, name, runs, common)
     folder, stem = args.out / "tables", stem_of(args, name)
     page = to_markdown(parts) + "\n" + "\n\n".join(notes) + "\n"
@@ -220,6 +227,14 @@ def write_table(
     _print(console, parts, notes)
     console.print(f"written to {folder / stem}.md and .csv\n", highlight=False)
     return page
+
+
+def _write_all(args: Args, pages: Sequence[str], console: Console) -> None:
+    """Writes the tables of one split on one page."""
+    if pages:
+        file = args.out / "tables" / f"{stem_of(args, args.table)}.md"
+        write_atomically(file, "\n".join(pages))
+        console.print(f"{len(pages)} tables on {file}", highlight=False)
 
 
 def _write_pages(args: Args, of_splits: Sequence[Args], pages: Mapping[str, Sequence[str]], console: Console) -> None:
@@ -261,6 +276,9 @@ def notes_of(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequ
         f"or there are fewer than {MIN_PAIRS} pairs.",
         "`" + " ".join(["stubborn reproduce", name, *_named_options(args)]) + "`",
     ]
+    spent_s = sum(of.lines[i].get("wall_time_s", 0.0) for of in runs.values() for i in common)
+    if spent_s:
+        notes.append(f"One process needed {spent_s / 3600.0:.1f} h for the {len(runs) * len(common)} episodes.")
     if errors:
         notes.append(f"{errors} episodes ended with an error and count as failures.")
     if len(codes) > 1:

@@ -129,7 +129,7 @@ def test_a_use_of_a_package_that_is_not_installed_is_an_error_that_names_it() ->
     [
         ("own.py", "import habitat.utils.visualizations", r"'habitat\.utils' is not part of the stand-in for Habitat"),
         ("own.py", "from habitat import make_dataset", "cannot import name 'make_dataset' from 'habitat'"),
-        ("own.py", "import habitat\nhabitat.Env()", "habitat.Env runs in the simulator's process: stubborn habitat"),
+        ("own.py", "import habitat\nhabitat.Env()", "Episodes and shortest paths are in the simulator's process"),
         ("own.py", "import habitat\nhabitat.Challenge(eval_remote=True)", "there is no evaluation server"),
         ("own.py", "print('nothing')", r"'own\.py' has given no agent to habitat\.Benchmark, habitat\.Challenge or"),
         ("published:Own", "", "missing 1 required positional argument: 'args'"),

@@ -232,7 +232,7 @@ def test_what_habitats_environment_has_and_this_one_lacks_is_said_with_what_ther
     with Env(split=split, camera=SMALL) as env:
         with pytest.raises(AttributeError, match=r"^Env of this project has no 'task'\. It has: .*current_episode, "):
             _ = env.task
-        with pytest.raises(AttributeError, match=r"^Env\.sim of this .* no 'pathfinder'\. It has: get_agent_state, "):
+        with pytest.raises(AttributeError, match=r"^Env\.sim of this .* no 'pathfinder'\. It has: env, geodesic"):
             _ = env.sim.pathfinder
         assert not hasattr(env, "task")
         with pytest.raises(AgentError, match=r"^'fly' is no action\. An action is one of 0 stop, "):

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from sim.analysis.comparison import read_run
 from sim.commands import submit
 from sim.configuration import as_json
 from sim.sensors.actuation_noise import ActuationNoise
 from sim.submissions.contents import read_submission
+from sim.submissions.packing import About, pack
 from tests.helpers.submissions import (
     RUNS,
     Edit,
@@ -63,6 +66,10 @@ def test_a_submission_is_small_and_names_no_folder_of_the_user(folder: Path) -> 
     assert file.stat().st_size < 6_000
     assert str(folder) not in json.dumps(content_of(file)["manifest"])
     assert "out" not in content_of(file)["config"]
+    run = read_run(folder / "random")
+    tree = run.config["config"] | {"detector": {"weights": "/home/me/mine.safetensors"}}
+    packed = pack(replace(run, config=run.config | {"config": tree}), About(name="x", authors=()))
+    assert b'"detector": {"weights": "mine.safetensors"}' in bytes(packed.config)
 
 
 def _swapped(content: dict[str, Any]) -> None:
@@ -79,21 +86,34 @@ def _without_noise(content: dict[str, Any]) -> None:
     content["manifest"]["inputs"]["noise"] = "own"
 
 
+def _claimed(content: dict[str, Any]) -> None:
+    """Makes the first episode a success that does not contradict itself."""
+    first = content["episodes"][0]
+    result, first["actions"] = first["result"], first["actions"][:-1] + "0"
+    share = result["shortest_path"] / max(result["shortest_path"], result["path_length"])
+    result.update(success=1.0, spl=share, end_reason="stop", failure=None)
+
+
+def _shorter(content: dict[str, Any]) -> None:
+    """Makes the path of the first episode the shortest one."""
+    result = content["episodes"][0]["result"]
+    result.update(spl=1.0, path_length=result["shortest_path"])
+
+
 def _turned(actions: str) -> str:
     return actions.replace("2", "3", 1) if "2" in actions else actions.replace("3", "2", 1)
 
 
 LIES: dict[str, tuple[str, Edit, str]] = {
-    "a success": ("random", in_first_result(success=1.0, end_reason="stop"), "success 1, in the replay 0"),
-    "a failure": ("oracle", in_first_result(success=0.0), "success 0, in the replay 1"),
-    "a higher SPL": ("oracle", in_first_result(spl=0.999999, path_length=1.0), "spl"),
+    "a success": ("random", _claimed, "success 1, in the replay 0"),
+    "a failure": ("oracle", in_first_result(success=0.0, spl=0.0, failure="misc"), "success 0, in the replay 1"),
+    "a higher SPL": ("oracle", _shorter, "spl 1"),
     "fewer collisions": ("random", in_first_result(collisions=-1), "collisions -1"),
     "a shorter distance": ("random", in_first_result(distance_to_goal=0.1), "distance_to_goal 0.1, in the replay"),
-    "no shortest path": ("oracle", in_first_result(shortest_path=None), "shortest_path None"),
-    "another end": ("oracle", in_first_result(end_reason="max_steps"), "end_reason max_steps, in the replay stop"),
+    "no shortest path": ("oracle", in_first_result(shortest_path=None, spl=0.0), "shortest_path None"),
     "other actions": ("oracle", in_actions(_turned), "The replay leaves the recorded path before action"),
     "actions of another episode": ("oracle", _swapped, "in the replay"),
-    "no STOP": ("oracle", in_actions(lambda a: a[:-1], counted=True), "the episode has not ended after its"),
+    "no STOP": ("random", in_actions(lambda a: a[:-2], counted=True), "the episode has not ended after its"),
     "another robot": ("oracle", in_tree("robot.drive", forward_m=0.2), "leaves the recorded path"),
     "another success rule": ("oracle", in_tree("task.success", distance_m=0.3), "shortest_path"),
     "another seed": (
@@ -118,7 +138,7 @@ def test_a_replay_finds_a_lie(folder: Path, tmp_path: Path, lie: str) -> None:
 
 def test_a_result_that_no_action_can_have_made_is_told_from_changed_actions(folder: Path, tmp_path: Path) -> None:
     content = content_of(folder / "oracle.json.gz")
-    in_first_result(spl=0.5)(content)
+    in_first_result(soft_spl=0.5)(content)
     first, second, third = judged(folder, written(tmp_path / "forged.json.gz", content))
     assert "The actions lead along the recorded path, so the result itself was changed" in first.text
     assert (second.judgement, third.judgement) == ("equal", "equal")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import shutil
 from dataclasses import replace
@@ -11,7 +12,7 @@ from typing import Any
 import pytest
 
 from sim.analysis.comparison import read_run
-from sim.commands import leaderboard, verify
+from sim.commands import leaderboard, submit, verify
 from sim.errors import ConfigError
 from sim.submissions.packing import About, pack
 from tests.helpers.submissions import (
@@ -38,9 +39,17 @@ def test_the_exit_status_says_whether_the_results_hold(
         assert part in printed
     assert json.loads(report.read_text())["equal"] == 3
     content = content_of(folder / "oracle.json.gz")
-    content["episodes"][1]["result"]["success"] = 0.0
+    content["episodes"][1]["result"].update(success=0.0, spl=0.0, failure="misc")
     assert verify.main(verify.Args(file=written(tmp_path / "forged.json.gz", content), **options)) == 1
     assert "NOT VERIFIED: 1 episodes are different" in capsys.readouterr().out
+
+
+def test_an_agent_that_gets_no_segmentation_declares_none(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = submit.Args(run=folder / "process", name="x", authors=(), out=tmp_path / "x.json.gz")
+    assert submit.main(words) == 0
+    assert "in a process of its own; semantics not used; " in capsys.readouterr().out
 
 
 def test_a_run_without_its_actions_is_refused_with_the_command_that_records(folder: Path, tmp_path: Path) -> None:
@@ -68,13 +77,15 @@ def test_the_leaderboard_has_the_rows_that_hold(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("sim.submissions.setting.Setting.changes", lambda setting: [])  # the images are small
+    monkeypatch.setattr("sim.submissions.leaderboard.LEAST_EPISODES", 3)
     (tmp_path / "submissions").mkdir()
     content = content_of(folder / "random.json.gz")
     content["manifest"] |= {"name": "Our <b>agent</b> [x](y) | z", "authors": ["A. *Author*"]}
     written(tmp_path / "submissions" / "good.json.gz", content)
-    content["episodes"][0]["result"]["success"] = 1.0
+    content["episodes"][0]["result"]["collisions"] = 99
     written(tmp_path / "submissions" / "forged.json.gz", content)
     content = content_of(folder / "oracle.json.gz")
+    written(tmp_path / "submissions" / "few.json.gz", content | {"episodes": content["episodes"][:2]})
     content["episodes"] = content["episodes"][1:]
     written(tmp_path / "submissions" / "chosen.json.gz", content)
     (tmp_path / "submissions" / "broken.json.gz").write_bytes(b"x")
@@ -83,15 +94,18 @@ def test_the_leaderboard_has_the_rows_that_hold(
     printed = capsys.readouterr().out
     for part in (
         "forged.json.gz: 1 episodes are different", "chosen.json.gz: its episodes were chosen by the authors",
-        "broken.json.gz: Submission ",
+        "broken.json.gz: Submission ", "few.json.gz: it has 2 episodes; a row needs 3",
     ):  # fmt: skip
         assert f"Left out: {part}" in printed
     table = (tmp_path / "table.md").read_text()
     assert r"Our &lt;b&gt;agent&lt;/b&gt; \[x\]\(y\)" in table
     assert "| equal |" in table
     assert len([line for line in table.splitlines() if line.startswith("| ")]) == 3
-    assert "success" in (tmp_path / "table.csv").read_text()
+    (row,) = csv.DictReader((tmp_path / "table.csv").open())
+    assert (row["name"], row["authors"]) == ("Our <b>agent</b> [x](y) | z", "A. *Author*")
+    assert (row["noise"], row["episodes"], row["verified"]) == ("harsh", "3", "equal")
+    assert (row["ground_truth_declared"], row["own_process_declared"], row["success"]) == ("yes", "no", "0.0")
     monkeypatch.setattr(leaderboard, "verify", lambda file, choices: pytest.fail("a current report was made again"))
-    for name in ("forged", "chosen", "broken"):
+    for name in ("forged", "chosen", "few", "broken"):
         (tmp_path / "submissions" / f"{name}.json.gz").unlink()
     assert leaderboard.main(args) == 0
