@@ -39,9 +39,11 @@ class RewardConfig:
 
     per_metre: float = 0.1
     """Reward for each metre by which the path to the target became shorter, with the published weight."""
-    per_step: float = -0.005
-    """Reward for each primitive step. The published training rewards new area in view instead, which would pay for
-    not seeing the target here, where an episode ends when it is seen."""
+    per_m2: float = 0.02
+    """Reward for each square metre that was never in view before, with the published weight."""
+    per_step: float = -0.01
+    """Reward for each primitive step, about what a step earns in new area: without it, that reward would pay for not
+    seeing the target, since an episode ends when it is seen."""
     rest_at_sight: bool = True
     """True: the step that sees the target is also given the rest of the path, which the agent then drives by itself."""
 
@@ -95,13 +97,13 @@ class SemExpEnv(TwinEnv):
 
     def step(self, action: Any) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
         """Drives towards a goal cell; see the class."""
-        before_steps = self.episode.num_steps
+        before_m2, before_steps = self.episode.camera.area_seen_m2, self.episode.num_steps
         observation, progress_m, terminated, truncated, info = super().step(action)
         rest_m = self.episode.distance_m()
         if terminated and self.reward.rest_at_sight and math.isfinite(rest_m):
             progress_m += rest_m
-        steps = self.episode.num_steps - before_steps
-        reward = self.reward.per_metre * progress_m + self.reward.per_step * steps
+        shown_m2, steps = self.episode.camera.area_seen_m2 - before_m2, self.episode.num_steps - before_steps
+        reward = self.reward.per_metre * progress_m + self.reward.per_m2 * shown_m2 + self.reward.per_step * steps
         return observation, reward, terminated, truncated, info
 
     @property

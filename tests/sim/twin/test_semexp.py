@@ -55,10 +55,10 @@ def test_there_is_no_observation_before_the_first_episode(plans: Path):
         _ = SemExpEnv(plans).given
 
 
-def test_the_reward_of_an_episode_is_the_path_to_the_target_and_the_steps(plans: Path):
+def test_the_reward_of_an_episode_is_the_path_to_the_target_the_floor_seen_and_the_steps(plans: Path):
     env = SemExpEnv(plans)
     env.reset(seed=0, options=START)
-    first_m = env.episode.distance_m()
+    first_m, before_m2 = env.episode.distance_m(), env.episode.camera.area_seen_m2
     total, terminated, cell, info = 0.0, False, action((0.17, 0.9)), {}
     for _ in range(12):
         _, reward, terminated, _, info = env.step(cell)
@@ -67,8 +67,9 @@ def test_the_reward_of_an_episode_is_the_path_to_the_target_and_the_steps(plans:
             break
     assert terminated
     assert info["first_seen_step"] == info["num_steps"] > 0
-    assert total == pytest.approx(0.1 * first_m - 0.005 * info["num_steps"])
-    plain = SemExpEnv(plans, reward=RewardConfig(per_step=0.0, rest_at_sight=False))
+    seen_m2 = env.episode.camera.area_seen_m2 - before_m2
+    assert total == pytest.approx(0.1 * first_m + 0.02 * seen_m2 - 0.01 * info["num_steps"])
+    plain = SemExpEnv(plans, reward=RewardConfig(per_m2=0.0, per_step=0.0, rest_at_sight=False))
     plain.reset(seed=0, options=START)
     before = plain.episode.distance_m()
     assert plain.step(cell)[1] == pytest.approx(0.1 * (before - plain.episode.distance_m()))
