@@ -73,7 +73,7 @@ def test_a_training_writes_curve_and_weights_and_is_continued(
 def test_other_options_and_other_plans_do_not_continue_a_run(plans: Path, tmp_path: Path):
     out = tmp_path / "run"
     assert train_semexp.main(options(plans, out, goals=8)) == 0
-    with pytest.raises(ConfigError, match=r"run' holds a run with --rate = 0\.00025, this command has 0\.003; take"):
+    with pytest.raises(ConfigError, match=r"run' holds a run with --rate = 0\.0004, this command has 0\.003; take"):
         train_semexp.main(options(plans, out, rate=0.003))
     fewer = tmp_path / plans.name
     shutil.copytree(plans, fewer)
@@ -145,8 +145,8 @@ def test_fields_of_explorers_are_set():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"batch": 1}, "must be >= 2, got 1 and 160"),
-        ({"envs": 1, "rollout": 1}, "must be >= 2, got 40 and 1"),
+        ({"batch": 1}, "must be >= 2, got 1 and 240"),
+        ({"envs": 1, "rollout": 1}, "must be >= 2, got 60 and 1"),
         ({"beside": (Path("other"),)}, r"Curve 'other/train.csv' is not a table of numbers"),
     ],
 )

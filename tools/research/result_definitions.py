@@ -98,22 +98,26 @@ EXPLORERS = {
     "frontier": "`frontier`",
     "stubborn --explorer informed-tour": "`informed-tour`",
     "poni": "`poni`",
-    "semexp": "`semexp`",
-    "semexp --config agent.explorer.goal=wrong": "`semexp`, wrong goal",
     "cloned": "`cloned`",
     "random": "`random`",
     "oracle": "`oracle`",
 }
 EXPLORER_EPISODES = {"val": 200, "large": 300}
-PRIMARY_EXPLORERS = ("stubborn --explorer informed-tour", "poni", "semexp")
+PRIMARY_EXPLORERS = ("stubborn --explorer informed-tour", "poni")
 """Explorers whose comparison with corners is primary."""
 DRIFT = ("stubborn --noise realsense", "stubborn --noise realsense --config noise.pose.from_odometry=false")
 """Runs with gps and compass by odometry, and with the true pose."""
 DRIFT_EPISODES = 30
-CONTROLS = tuple(
-    f"semexp --config agent.explorer.{control}" for control in ("goal=wrong", "semantics=shuffled", "semantics=none")
-)
-"""Runs that show whether `semexp` uses the goal and the semantics; each is compared with it."""
+SEMEXP = {
+    "stubborn": "corners (`stubborn`)",
+    "semexp": "`semexp`",
+    "semexp --config agent.explorer.goal=wrong": "`semexp`, wrong goal",
+    "semexp --config agent.explorer.semantics=shuffled": "`semexp`, shuffled semantics",
+}
+"""The last two are controls: they show whether `semexp` uses the goal and the semantics, and are compared with it."""
+SEMEXP_VERSION, SEMEXP_EPISODES = "3.0.0", 60
+REPLACED = (("semexp", EARLIER),)
+"""Agents and versions of the splits whose runs are those of another agent, which had this name before."""
 NETWORK = (
     ("val", "stubborn", "naive Bayes", "stubborn", "rednet", 200),
     ("val", "stubborn", "none", "stubborn --verification none", "rednet", 200),
@@ -144,6 +148,7 @@ def page_tables() -> tuple[PageTable, ...]:
         _agents("further", FURTHER, FURTHER_EPISODES, dict.fromkeys(FURTHER, EARLIER)),
         _ablation(),
         _explorers(),
+        _semexp(),
         _network(),
     )
 
@@ -161,9 +166,9 @@ def comparisons() -> Iterator[Comparison]:
         for name in list(EXPLORERS)[1:]:
             first, second = run_key(split, name, "gt"), run_key(split, "stubborn", "gt")
             yield Comparison("explorers", first, second, episodes, name in PRIMARY_EXPLORERS)
-        for name in CONTROLS:
-            first, second = run_key(split, name, "gt"), run_key(split, "semexp", "gt")
-            yield Comparison("explorers", first, second, episodes, name == CONTROLS[0])
+    corners, semexp, *controls = (run_key("val", name, "gt", SEMEXP_VERSION) for name in SEMEXP)
+    for first, second in ((semexp, corners), *((control, semexp) for control in controls)):
+        yield Comparison("semexp", first, second, SEMEXP_EPISODES)
     yield from _network_comparisons()
     first, second = (run_key("val", name, "gt", HEADLINE_VERSIONS["val"]) for name in DRIFT)
     yield Comparison("drift", first, second, DRIFT_EPISODES)
@@ -226,6 +231,14 @@ def _explorers() -> PageTable:
         rows.append(((label,), (*cells, *_cells(of["large"], (MEDIAN,)))))
     header = ("explorer", "val: success %", "val: SPL", "large: success %", "large: SPL", "large: first sight")
     return PageTable("explorers", header, tuple(rows))
+
+
+def _semexp() -> PageTable:
+    rows = []
+    for name, label in SEMEXP.items():
+        row = RowKey(run_key("val", name, "gt", SEMEXP_VERSION), SEMEXP_EPISODES)
+        rows.append(((label,), _cells(row, (SUCCESS, SPL, MEDIAN))))
+    return PageTable("semexp", ("explorer", "success %", "SPL", "first sight"), tuple(rows))
 
 
 def _network() -> PageTable:

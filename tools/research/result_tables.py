@@ -45,6 +45,7 @@ from tools.research.result_definitions import (
     MEANS,
     MEDIAN,
     PRIMARY_METRICS,
+    REPLACED,
     RESOLVED,
     Comparison,
     PageTable,
@@ -84,7 +85,8 @@ def main(args: Args) -> int:
         console.print(text, markup=False, highlight=False, soft_wrap=True)
 
     with tempfile.TemporaryDirectory() as folder:
-        runs = read_archives(args.archives, Path(folder), say)
+        found = read_archives(args.archives, Path(folder), say)
+        runs = {key: run for key, run in found.items() if (key.agent, key.version) not in REPLACED}
         results = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
         pairs = list(comparisons())
         compared = with_families(pairs, [comparison_record(each, runs) for each in pairs])

@@ -83,14 +83,14 @@ class Args:
     """Folders of other runs to draw into the curve."""
     envs: cli.Count = 8
     """Number of environments, all in this process."""
-    rollout: cli.Count = 20
+    rollout: cli.Count = 30
     """Long-term goals of each environment between two updates."""
-    batch: cli.Count = 40
+    batch: cli.Count = 60
     """Long-term goals in a minibatch."""
     epochs: cli.Count = 2
     """Passes over the goals of an update; the published number is 4. A pass costs more time than new goals do."""
-    rate: cli.Positive = 2.5e-4
-    """Learning rate of Adam at the start; it falls to a tenth. The published one is a tenth of it."""
+    rate: cli.Positive = 4e-4
+    """Learning rate of Adam at the start; it falls to a tenth. The published one is 2.5e-5."""
     discount: cli.Share = 0.99
     """Discount from one long-term goal to the next."""
     entropy: cli.NotNegative = 0.001
