@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from sim import run
-from sim.analysis.comparison import read_run
+from sim.analysis.comparison import Line, read_run
 from sim.commands import compare as compare_runs
 from sim.commands.reproduce import reproduce
 from sim.commands.reproduce.agent_setup import AgentSetup
@@ -301,7 +301,7 @@ def test_several_splits_take_turns_and_share_a_page(
 
 
 @pytest.fixture(scope="module")
-def lines(split: Path, tmp_path_factory: pytest.TempPathFactory) -> list[dict]:
+def lines(split: Path, tmp_path_factory: pytest.TempPathFactory) -> list[Line]:
     """Returns the result lines of an agent, the goals in turns a sofa and a bed."""
     args = reproduce.Args(
         table="overall", split=str(split), agents=("oracle",), episodes=4, out=tmp_path_factory.mktemp("p")
@@ -311,7 +311,7 @@ def lines(split: Path, tmp_path_factory: pytest.TempPathFactory) -> list[dict]:
 
 
 @pytest.mark.parametrize("name", [*PAPER_TABLES, "splits"])
-def test_the_papers_figures_stand_beside_the_rows_of_the_same_name(name: str, lines: list[dict]) -> None:
+def test_the_papers_figures_stand_beside_the_rows_of_the_same_name(name: str, lines: list[Line]) -> None:
     table = table_named(name)
     setups = table.setups()
     first = table.build(dict.fromkeys(setups, lines), setups)[0]
@@ -343,7 +343,7 @@ def test_all_tables_of_the_paper_get_a_page(
 
 
 def test_the_paper_is_beside_its_own_agents_only(
-    args: reproduce.Args, monkeypatch: pytest.MonkeyPatch, lines: list[dict]
+    args: reproduce.Args, monkeypatch: pytest.MonkeyPatch, lines: list[Line]
 ) -> None:
     monkeypatch.setitem(TABLES, "categories", replace(TABLES["categories"], agents=AGENTS[:1]))
     reproduce.main(replace(args, agents=()))

@@ -106,7 +106,7 @@ def beside_paper(name: str, table: ResultTable) -> ResultTable:
         rows.append((label, [*cells, *(column.get(row or "", "") for column in columns.values())]))
         left.pop(row or "", None)
     if name == "overall":
-        without = [""] * (len(table.header) - 1)
+        without: list[Cell | str] = [""] * (len(table.header) - 1)
         rows += [(row, [*without, *(column.get(row, "") for column in columns.values())]) for row in left]
     header = (*table.header, *(f"paper: {title}" for title in columns))
     return replace(table, header=header, rows=rows, notes=(*table.notes, *((OTHERS,) if name == "overall" else ())))

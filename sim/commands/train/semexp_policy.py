@@ -34,7 +34,9 @@ class SemExpPolicy(ActorCriticPolicy):
     def _build(self, lr_schedule: Schedule) -> None:
         self.net = SemExpNet(self._config)
         _initialise(self.net)
-        self.net.to(memory_format=torch.channels_last)  # quicker convolutions
+        for weight in self.net.parameters():
+            if weight.ndim == 4:  # convolutions are quicker with it
+                weight.data = weight.data.contiguous(memory_format=torch.channels_last)
         self.optimizer = Adam(self.parameters(), lr=lr_schedule(1), eps=1e-5)
 
     def _outputs(self, obs: PyTorchObs) -> tuple[Distribution, Tensor]:

@@ -68,7 +68,7 @@ def test_a_submission_is_small_and_names_no_folder_of_the_user(folder: Path) -> 
     assert "out" not in content_of(file)["config"]
     run = read_run(folder / "random")
     tree = run.config["config"] | {"detector": {"weights": "/home/me/mine.safetensors"}}
-    packed = pack(replace(run, config=run.config | {"config": tree}), About(name="x", authors=()))
+    packed = pack(replace(run, config={**run.config, "config": tree}), About(name="x", authors=()))
     assert b'"detector": {"weights": "mine.safetensors"}' in bytes(packed.config)
 
 
