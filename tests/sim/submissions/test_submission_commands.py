@@ -109,3 +109,15 @@ def test_the_leaderboard_has_the_rows_that_hold(
     for name in ("forged", "chosen", "few", "broken"):
         (tmp_path / "submissions" / f"{name}.json.gz").unlink()
     assert leaderboard.main(args) == 0
+
+
+def test_the_leaderboard_of_the_repository_is_that_of_its_files(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Each submission has a current report, and the tables are those of all of them."""
+    monkeypatch.setattr(leaderboard, "verify", lambda file, choices: pytest.fail(f"{file} has no current report"))
+    shipped = Path(__file__).parents[3] / "leaderboard"
+    shutil.copytree(shipped, tmp_path / "leaderboard")
+    assert leaderboard.main(leaderboard.Args(folder=tmp_path / "leaderboard")) == 0
+    for name in ("table.md", "table.csv"):
+        assert (tmp_path / "leaderboard" / name).read_bytes() == (shipped / name).read_bytes()
