@@ -85,8 +85,7 @@ def main(args: Args) -> int:
         console.print(text, markup=False, highlight=False, soft_wrap=True)
 
     with tempfile.TemporaryDirectory() as folder:
-        found = read_archives(args.archives, Path(folder), say)
-        runs = {key: run for key, run in found.items() if (key.agent, key.version) not in REPLACED}
+        runs = read_archives(args.archives, Path(folder), say)
         results = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
         pairs = list(comparisons())
         compared = with_families(pairs, [comparison_record(each, runs) for each in pairs])
@@ -112,12 +111,14 @@ def main(args: Args) -> int:
 
 
 def row_keys(runs: Mapping[RunKey, ArchivedRun]) -> list[RowKey]:
-    """Returns the rows of results.csv in order: each run with all its episodes, and what the page's tables need.
+    """Returns the rows of results.csv in order: each run with all its episodes but those of `REPLACED`, and what the
+    page's tables need.
 
     Raises:
         ConfigError: a table needs a run that the archive does not have.
     """
-    keys = {RowKey(key, run.episodes) for key, run in runs.items()}
+    kept = (item for item in runs.items() if (item[0].agent, item[0].version) not in REPLACED)
+    keys = {RowKey(key, run.episodes) for key, run in kept}
     for table in page_tables():
         for key in table.needed():
             if key.run not in runs:
