@@ -77,6 +77,7 @@ def test_a_calibration_is_fitted_written_and_improves_calibration(tmp_path: Path
         assert drawn.std() > 5.0
 
 
+@pytest.mark.costly
 def test_another_resolution_is_evaluated_and_written_with_the_calibration(tmp_path: Path, weights: Path) -> None:
     for name in ("one", "two"):
         write_views(tmp_path / name, 4)

@@ -52,10 +52,16 @@ def test_causes_are_shares_of_the_failed_episodes_and_their_differences_of_all()
     assert cell(causes, "trapped", first).estimate.mean == pytest.approx(0.1)
     assert cell(causes, "explore", second).estimate.mean == pytest.approx(19 / 20)
     assert dict(causes.rows)["failed episodes"] == ["10 of 40", "20 of 40"]
-    explore = cell(differences, "explore", "stubborn - stubborn --verification none")
+    explore = cell(differences, "explore", f"{first} - {second}")
     assert explore.estimate.mean == pytest.approx(-10 / 40)
     assert explore.verdict == "lower"
-    assert cell(differences, "trapped", "stubborn - stubborn --verification none").verdict == "not significant"
+    assert cell(differences, "trapped", f"{first} - {second}").verdict == "not significant"
+
+
+def test_agents_with_two_segmentations_have_columns_of_their_own() -> None:
+    setups = TABLES["failures"].setups()
+    for table in TABLES["failures"].build(lines_of(setups, failed=(1, 2, 3, 4)), setups):
+        assert len(set(table.header)) == len(table.header)
 
 
 def test_an_agent_that_never_fails_has_no_causes() -> None:
@@ -114,7 +120,9 @@ def test_explorers_are_compared_by_the_median_time_to_first_sight() -> None:
 
 
 def test_tables_share_their_runs_and_the_oracle_runs_once() -> None:
-    assert set(TABLES["categories"].setups()) <= set(TABLES["failures"].setups()) <= set(TABLES["overall"].setups())
+    network = {setup for setup in TABLES["failures"].setups() if setup.semantics == "rednet"}
+    assert set(TABLES["categories"].setups()) | network <= set(TABLES["overall"].setups())
+    assert set(TABLES["controls"].setups()[:1]) <= set(TABLES["exploration"].setups())
     assert TABLES["ablation"].setups()[-1] == TABLES["exploration"].setups()[0] == AgentSetup("stubborn", "gt")
     assert AgentSetup("oracle", "gt") in TABLES["overall"].setups(semantics="rednet")
     assert TABLES["overall"].setups(("random", "stubborn"), "rednet") == (
@@ -148,7 +156,7 @@ def test_a_setup_is_written_as_on_the_command_line(name: str, setup: AgentSetup,
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("stubborn --explore tour", r"has the option --explore; an agent is given as AGENT \[--explorer NAME\]"),
+        ("stubborn --explore tour", r"has the option --explore; an agent is given as AGENT \[--semantics SOURCE\]"),
         ("stubborn --explorer", "needs one name for explorer"),
         ("stubborn frontier", "needs one name for agent"),
         ("--explorer tour", "needs one name for agent"),
@@ -167,7 +175,7 @@ def test_the_table_of_verification_has_all_methods() -> None:
 
 
 def test_an_unknown_table_is_refused_with_the_tables_that_exist() -> None:
-    with pytest.raises(ConfigError, match="failures, ablation, exploration, categories, overall"):
+    with pytest.raises(ConfigError, match="failures, ablation, exploration, controls, categories, overall"):
         table_named("failure")
 
 

@@ -120,6 +120,7 @@ def test_demonstrations_of_too_few_houses_and_another_size_are_refused(tmp_path:
         train_cloned.main(args)
 
 
+@pytest.mark.costly
 def test_searches_in_plans_are_rendered_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     args = twin_demonstrations.Args(out=tmp_path, houses=1, episodes=2, kind="studio")
     assert twin_demonstrations.main(args) == 0

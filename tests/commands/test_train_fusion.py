@@ -58,6 +58,7 @@ def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(split: Pa
     assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
 
 
+@pytest.mark.costly
 def test_a_file_holds_the_tracks_only(split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """NumPy before 2.2 stores each keyword of `savez_compressed` as an array."""
     given: list[set[str]] = []

@@ -83,7 +83,7 @@ def failures(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
         ResultTable(
             "failures_differences",
             "Episodes that failed by each cause, difference in % of all episodes",
-            ("cause", *(_named(pair) for pair in pairs)),
+            ("cause", *(f"{a.label} - {b.label}" for a, b in pairs)),
             [(cause, [_failed_by(cause, lines[b], lines[a]) for a, b in pairs]) for cause in CAUSES],
         ),
     ]
