@@ -2,9 +2,9 @@
 
 The oracle heads for the goal of its episode. It is an upper bound: if it fails, the task, the free space or the robot
 is wrong. A `Follower` heads for any destination, and is the oracle's way of driving. It finds its route by weighted A*
-over steps of "turn, then drive 0.25 m" on the 12 headings, with the geodesic distance as heuristic. It
-searches again if the robot is not where the route expects it; a step that was blocked is not tried again. Where whole
-steps do not lead to the goal, as in a narrow gap between furniture, the route also has steps that an obstacle ends.
+over steps of "turn, then drive 0.25 m" on the 12 headings, with the geodesic distance as heuristic. It searches again
+if the robot is not where the route expects it; a step that was blocked is not tried again. Where whole steps do not
+lead to the goal, as in a narrow gap between furniture, the route also has steps that an obstacle ends.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ class Follower:
         self._blocked: set[Key] = set()
 
     def next_action(self) -> Action | None:
-        """Returns the next action of the route; STOP at the destination, None where no step leads nearer to it."""
+        """Returns the next action of the route; STOP at the destination, None where no step can lead to it."""
         here = self._here()
         if self._reached(*here[:2]):
             return Action.STOP

@@ -55,7 +55,7 @@ class AgentSetup:
 
     @property
     def name(self) -> str:
-        """The text that `named` takes."""
+        """The text that `named` takes, without the segmentation."""
         return shlex.join((self.agent, *(word for words in self._changes().values() for word in words)))
 
     @property

@@ -89,8 +89,8 @@ FIGURES: Mapping[str, Columns] = {
 }
 """The columns of each table of `paper_tables` that the paper has too."""
 OTHERS = (
-    "The last rows are agents with checkpoints that cannot be had here. docs/tables/published_agents.csv has the "
-    "commands that run the code of each, or why there are none."
+    "The last rows are agents with checkpoints that cannot be had here. For all but TreasureHunt, "
+    "docs/tables/published_agents.csv has the commands that run their code, or says why there are none."
 )
 
 

@@ -9,12 +9,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 
 from sim.analysis.comparison import read_run
 from sim.commands import leaderboard, submit, verify
 from sim.errors import ConfigError
+from sim.submissions.contents import read_submission
+from sim.submissions.leaderboard import Row
 from sim.submissions.packing import About, pack
+from sim.submissions.report import Report
 from tests.helpers.submissions import (
     content_of,
     written,
@@ -109,6 +113,18 @@ def test_the_leaderboard_has_the_rows_that_hold(
     for name in ("forged", "chosen", "few", "broken"):
         (tmp_path / "submissions" / f"{name}.json.gz").unlink()
     assert leaderboard.main(args) == 0
+
+
+def test_replicates_are_no_further_episodes_of_a_row(folder: Path) -> None:
+    submission = read_submission(folder / "oracle.json.gz")
+    copies = [
+        msgspec.structs.replace(e, result=msgspec.structs.replace(e.result, episode_id=f"{e.result.episode_id}~{i}"))
+        for e in submission.episodes
+        for i in range(1, 41)
+    ]
+    report = Report("0" * 64, 1, 120, 120, 0, 0, 0, is_first=True, nonstandard=(), tolerance_m=0.01)
+    fake = msgspec.structs.replace(submission, episodes=copies)
+    assert Row(Path("x"), fake, report).episodes == 3
 
 
 def test_the_leaderboard_of_the_repository_is_that_of_its_files(
