@@ -1,4 +1,4 @@
-"""Reads and writes files of weights: safetensors whose header holds the size of the network.
+"""Reads and writes files of weights: safetensors whose header holds the size of the network, and PyTorch checkpoints.
 
 A file is written in one step and checked when it is read. The header's values are JSON. One of them, named
 `<family>_config`, holds the size; the others describe how the weights were made. Only modules that need PyTorch import
@@ -9,23 +9,39 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
+import re
+import struct
+import tarfile
+import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, BinaryIO, Generic, TypeVar
 
 import msgspec
+import numpy as np
 import torch
+from numpy._core import multiarray
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 from torch import Tensor, nn
 from torch.overrides import TorchFunctionMode
 
 from sim.interface import ConfigError
-from sim.reading import convert, open_plain, reason_of
+from sim.reading import convert, open_plain, reason_of, require_small_zip
 
 MAX_WEIGHT = 1e12
 """Largest magnitude of a number in a file of weights."""
+_BROKEN_PICKLE = (
+    pickle.UnpicklingError, RuntimeError, OSError, EOFError, LookupError, ValueError, TypeError, AttributeError,
+    AssertionError, ArithmeticError, MemoryError, struct.error,
+)  # fmt: skip
+"""The exceptions that `torch.load` raises for files that are not checkpoints."""
+_NUMPY_NUMBERS = [multiarray.scalar, np.dtype, *{type(np.dtype(code)) for code in "?bBhHiIlLqQefd"}]
+"""Functions with which pickles make NumPy's numbers; they run no other code. Trainers store metrics as such numbers."""
+_TERMINAL_CODE = re.compile(r"\x1b\[[0-9;]*m")
+MAX_CHECKPOINT_BYTES = 2 << 30
 
 ConfigT = TypeVar("ConfigT")
 NetworkT = TypeVar("NetworkT", bound=nn.Module)
@@ -120,6 +136,51 @@ def read_weights(file: Path) -> tuple[dict[str, Tensor], dict[str, Any]]:
         except (ValueError, RecursionError):
             decoded[key] = text
     return tensors, decoded
+
+
+def read_checkpoint(file: Path, *, device: torch.device | str = "cpu") -> Mapping[str, Any]:
+    """Returns the content of a PyTorch file, without running pickled code.
+
+    Raises:
+        ConfigError: the file is broken, expands to more than `MAX_CHECKPOINT_BYTES`, or holds no table.
+    """
+    with open_plain(file, what="Weights") as stream:
+        content = _load(file, stream, device)
+    if not isinstance(content, Mapping):
+        raise ConfigError(f"Weights '{file}' hold a {type(content).__name__}, not a table of tensors.")
+    return content
+
+
+def _load(file: Path, stream: BinaryIO, device: torch.device | str) -> Any:
+    """Returns the content of an open PyTorch file; raises ConfigError like `read_checkpoint`."""
+    if _is_tar(stream):
+        raise ConfigError(f"Weights '{file}' are a tar file, which PyTorch wrote before version 0.4; save them again.")
+    if _is_zip(stream):
+        require_small_zip(file, what="Weights", most=MAX_CHECKPOINT_BYTES)
+    stream.seek(0)
+    try:
+        with torch.serialization.safe_globals(_NUMPY_NUMBERS):
+            return torch.load(stream, map_location=device, weights_only=True)
+    except _BROKEN_PICKLE as error:
+        reason = _TERMINAL_CODE.sub("", str(error)).partition("WeightsUnpickler error: ")
+        reason = " ".join((reason[2] or reason[0]).split("\n")[0].split()) or type(error).__name__
+        raise ConfigError(f"Weights '{file}' cannot be read as a PyTorch checkpoint of tensors: {reason}") from None
+
+
+def _is_tar(stream: BinaryIO) -> bool:
+    """Returns whether a file begins with the header of a tar file, which `torch.load` would give to `tarfile`."""
+    try:
+        tarfile.TarInfo.frombuf(stream.read(tarfile.BLOCKSIZE), "utf-8", "surrogateescape")
+    except tarfile.TarError:
+        return False
+    return True
+
+
+def _is_zip(stream: BinaryIO) -> bool:
+    try:
+        return zipfile.is_zipfile(stream)
+    except zipfile.BadZipFile:  # it is a zip file, in several parts
+        return True
 
 
 def with_weights(file: Path, given: Mapping[str, Tensor], build: Callable[[], NetworkT]) -> NetworkT:

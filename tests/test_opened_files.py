@@ -23,8 +23,7 @@ from sim.evaluation.results import RunDirectory
 from sim.files import open_to_grow
 from sim.geometry import compiling
 from sim.reading import image_size_px, read_csv, read_json
-from stubborn.network_files import with_weights
-from stubborn.segmentation.checkpoints import read_checkpoint
+from stubborn.network_files import read_checkpoint, with_weights
 from stubborn.segmentation.dataset import read_members, read_shard
 
 ROOT = Path(__file__).parents[1]

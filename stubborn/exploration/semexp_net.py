@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import msgspec
 import numpy as np
@@ -19,7 +19,7 @@ from torch import Tensor, nn
 
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from stubborn.exploration.semexp_input import CELLS, GEOMETRY, GIBSON, HEADINGS, PolicyInput
-from stubborn.network_files import Family, with_weights
+from stubborn.network_files import Family, read_checkpoint, with_weights
 
 _POOLINGS = 8
 """Factor by which the network's own poolings reduce the edge of a map."""
@@ -164,14 +164,9 @@ def load(file: Path) -> SemExpNet:
     """
     if file.suffix not in (".pth", ".pt"):
         return FILES.load(file)[0]
-    try:
-        given: Any = torch.load(file, map_location="cpu", weights_only=True)
-    except Exception as error:  # torch raises errors of many types for a broken file
-        raise ConfigError(f"Weights '{file}' cannot be read: {type(error).__name__}.") from None
+    given = read_checkpoint(file)
     names = ("network.goal_emb.weight", "network.linear1.weight")
-    if not isinstance(given, dict) or not all(
-        isinstance(given.get(name), Tensor) and given[name].ndim == 2 for name in names
-    ):
+    if not all(isinstance(given.get(name), Tensor) and given[name].ndim == 2 for name in names):
         raise ConfigError(f"Weights '{file}' are not of semexp: they need the tensors {' and '.join(names)}.")
     hidden, inputs = given[names[1]].shape
     cells = _POOLINGS * round(max(inputs - 16, 0) ** 0.5 / 32**0.5)

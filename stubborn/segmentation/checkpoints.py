@@ -6,40 +6,24 @@ run: PyTorch files are read with `torch.load(weights_only=True)`.
 
 from __future__ import annotations
 
-import pickle
-import re
-import struct
-import tarfile
-import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Annotated, Any, BinaryIO
+from typing import Annotated, Any
 
 import msgspec
-import numpy as np
 import torch
-from numpy._core import multiarray
 from torch import Tensor
 
 from sim.interface import ConfigError
-from sim.reading import Number, convert, open_plain, require_small_zip
-from stubborn.network_files import read_weights, with_weights, write_weights
+from sim.reading import Number, convert
+from stubborn.network_files import read_checkpoint, read_weights, with_weights, write_weights
 from stubborn.segmentation.networks import FAMILIES, Architecture, Network, build_network, family
 from stubborn.segmentation.rednet import PUBLISHED
 
 _WRAPPERS = ("model_state", "state_dict", "model")
 _PARALLEL_PREFIX = "module."
 _CONFIG_KEY = "{family}_config"
-_BROKEN_PICKLE = (
-    pickle.UnpicklingError, RuntimeError, OSError, EOFError, LookupError, ValueError, TypeError, AttributeError,
-    AssertionError, ArithmeticError, MemoryError, struct.error,
-)  # fmt: skip
-"""The exceptions that `torch.load` raises for files that are not checkpoints."""
-_NUMPY_NUMBERS = [multiarray.scalar, np.dtype, *{type(np.dtype(code)) for code in "?bBhHiIlLqQefd"}]
-"""Functions with which pickles make NumPy's numbers; they run no other code. Trainers store metrics as such numbers."""
-_TERMINAL_CODE = re.compile(r"\x1b\[[0-9;]*m")
-MAX_CHECKPOINT_BYTES = 2 << 30
 MAX_SIZE = 4096
 """Largest number of channels, blocks or classes that a header may give."""
 
@@ -118,51 +102,6 @@ def unwrap(content: Mapping[str, Any], file: Path) -> dict[str, Tensor]:
         if not isinstance(value, Tensor):
             raise ConfigError(f"Weights '{file}': '{name}' is a {type(value).__name__}, not a tensor.")
     return tensors
-
-
-def read_checkpoint(file: Path, *, device: torch.device | str = "cpu") -> Mapping[str, Any]:
-    """Returns the content of a PyTorch file, without running pickled code.
-
-    Raises:
-        ConfigError: the file is broken, expands to more than `MAX_CHECKPOINT_BYTES`, or holds no table.
-    """
-    with open_plain(file, what="Weights") as stream:
-        content = _load(file, stream, device)
-    if not isinstance(content, Mapping):
-        raise ConfigError(f"Weights '{file}' hold a {type(content).__name__}, not a table of tensors.")
-    return content
-
-
-def _load(file: Path, stream: BinaryIO, device: torch.device | str) -> Any:
-    """Returns the content of an open PyTorch file; raises ConfigError like `read_checkpoint`."""
-    if _is_tar(stream):
-        raise ConfigError(f"Weights '{file}' are a tar file, which PyTorch wrote before version 0.4; save them again.")
-    if _is_zip(stream):
-        require_small_zip(file, what="Weights", most=MAX_CHECKPOINT_BYTES)
-    stream.seek(0)
-    try:
-        with torch.serialization.safe_globals(_NUMPY_NUMBERS):
-            return torch.load(stream, map_location=device, weights_only=True)
-    except _BROKEN_PICKLE as error:
-        reason = _TERMINAL_CODE.sub("", str(error)).partition("WeightsUnpickler error: ")
-        reason = " ".join((reason[2] or reason[0]).split("\n")[0].split()) or type(error).__name__
-        raise ConfigError(f"Weights '{file}' cannot be read as a PyTorch checkpoint of tensors: {reason}") from None
-
-
-def _is_tar(stream: BinaryIO) -> bool:
-    """Returns whether a file begins with the header of a tar file, which `torch.load` would give to `tarfile`."""
-    try:
-        tarfile.TarInfo.frombuf(stream.read(tarfile.BLOCKSIZE), "utf-8", "surrogateescape")
-    except tarfile.TarError:
-        return False
-    return True
-
-
-def _is_zip(stream: BinaryIO) -> bool:
-    try:
-        return zipfile.is_zipfile(stream)
-    except zipfile.BadZipFile:  # it is a zip file, in several parts
-        return True
 
 
 def _config(file: Path, metadata: dict[str, Any]) -> Architecture:

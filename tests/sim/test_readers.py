@@ -41,7 +41,8 @@ from sim.twin.potential_files import SampleSet, write_samples
 from sim.twin.potentials import Potentials, Sample, SampleConfig
 from stubborn.detection.verification import FOLDER, FittedVerifier
 from stubborn.exploration.patches import MapPatch
-from stubborn.segmentation.checkpoints import load_network, read_checkpoint, save_network
+from stubborn.network_files import read_checkpoint
+from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.dataset import read_shard, stored_block_px
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
 from tests.helpers.worlds import room

@@ -15,7 +15,7 @@ import torch
 from sim.files import open_to_grow, write_atomically
 from sim.interface import ConfigError
 from sim.reading import convert, read_bytes, read_csv, reason_of
-from stubborn.segmentation.checkpoints import read_checkpoint
+from stubborn.network_files import read_checkpoint
 
 ProgressT = TypeVar("ProgressT")
 

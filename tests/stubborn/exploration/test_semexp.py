@@ -236,11 +236,11 @@ EMBEDDING, LINEAR = (f"network.{name}.weight" for name in ("goal_emb", "linear1"
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"nothing", "cannot be read: "),
+        (b"nothing", "cannot be read as a PyTorch checkpoint"),
         ({"state": torch.zeros(2)}, f"they need the tensors {EMBEDDING} and {LINEAR}"),
         ({EMBEDDING: torch.zeros(16, 8), LINEAR: torch.zeros(2, 3)}, "are not of semexp"),
         ({EMBEDDING: torch.zeros(16, 8), LINEAR: torch.zeros(256, 7216)}, "is missing"),
-        ([1, 2], "are not of semexp"),
+        ([1, 2], "hold a list, not a table of tensors"),
     ],
 )
 def test_a_file_that_is_no_checkpoint_is_refused_by_a_sentence(content: object, message: str, tmp_path: Path):

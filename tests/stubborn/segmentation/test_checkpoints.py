@@ -12,8 +12,8 @@ import safetensors.torch
 import torch
 
 from sim.interface import ConfigError
-from stubborn.network_files import read_weights
-from stubborn.segmentation.checkpoints import load_network, read_checkpoint, save_network
+from stubborn.network_files import read_checkpoint, read_weights
+from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
 
 TINY = RedNetConfig(width=4, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
