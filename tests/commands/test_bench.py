@@ -79,6 +79,7 @@ def test_a_figure_is_met_according_to_its_goal(goal: Goal | None, met: bool | No
     assert Figure(**{**vars(FIGURE), "goal": goal}).met is met
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("quality", QUALITIES)
 def test_the_baseline_draws_what_our_camera_draws(quality: str) -> None:
     split = load_split("val")

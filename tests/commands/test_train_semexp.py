@@ -44,6 +44,7 @@ def options(plans: Path, out: Path, **changes: object) -> train_semexp.Args:
     return train_semexp.Args(plans=(plans,), out=out, **small)  # type: ignore[arg-type]
 
 
+@pytest.mark.costly
 def test_a_training_writes_curve_and_weights_and_is_continued(
     plans: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):

@@ -101,6 +101,7 @@ def test_glass_is_hit_marked_and_passed():
     assert agent.navmap.pessimistic_marks.any()
 
 
+@pytest.mark.costly
 def test_with_a_wider_robot_it_keeps_farther_from_obstacles():
     trace, agent = run(APARTMENT, (1.2, 0.7, 1.9), "picture", robot=RobotModel(radius_m=0.30))
     assert trace.stopped

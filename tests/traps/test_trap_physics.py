@@ -81,6 +81,7 @@ def test_the_oracle_escapes_from_every_trap_without_contact(truth_env, trap, hea
     assert trial.metrics["spl"] > 0.8
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(("trap", "heading", "name"), sample(AGENT_CASES, 1))
 def test_penetration_is_small_and_no_forward_action_is_too_long(short_env, trap, heading, name):
     trial, _ = run_in_trap(short_env, trap, heading, name)  # a fall or a tumble raises PhysicsError

@@ -227,6 +227,7 @@ def test_all_movables_of_a_house_rest_and_block_the_free_space() -> None:
     assert all(asleep(world, body) for body in bodies)
 
 
+@pytest.mark.costly
 def test_a_pushed_chair_is_rendered_and_blocks_at_its_new_place() -> None:
     world = world_with(item_of("chair", "train", "slat_back"))
     (body,) = movable_bodies(world.model)

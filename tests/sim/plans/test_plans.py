@@ -44,6 +44,7 @@ def plan_of(house: House) -> Plan:
     return plan
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("hiding_m", [0.4, 1.0, 2.0])
 def test_a_look_shows_the_share_of_the_goal_the_floor_and_the_map_that_the_real_camera_shows(hiding_m):
     house = furnished(hiding_m)
