@@ -14,7 +14,7 @@ from typing import Any
 
 from sim.analysis.tables import ResultTable
 from sim.errors import ConfigError
-from sim.evaluation.config_fields import Difference, differing_fields, field_text, is_same_file
+from sim.evaluation.config_fields import ABSENT, Difference, differing_fields, field_text, is_same_file
 from sim.evaluation.results import WITHOUT_EFFECT, read_record, read_result_lines
 from sim.task.trajectory import read_trajectory, trajectory_file
 
@@ -28,6 +28,8 @@ LETTERS = "ABCDEFGHIJKL"
 """Names of the runs that are compared, the first one `A`."""
 SAME_PATH_M = 0.05
 """Largest difference of the same shortest path measured by two versions of the code: one cell."""
+MOST_LACKING = 5
+"""A part of the configuration has a row for each field that not all runs have, up to this number of fields."""
 
 
 @dataclass(frozen=True)
@@ -84,14 +86,33 @@ def config_differences(first: Run, second: Run) -> list[Difference]:
 
 
 def differences_table(first: Run, *others: Run) -> ResultTable:
-    """Returns a table of the fields of config.json in which runs, A, B and so on, differ from the first one."""
+    """Returns a table of the fields of config.json in which runs, A, B and so on, differ from the first one.
+
+    Two agents may have no field in common: many fields of one part that only some of the runs have are one row.
+    """
     values: dict[str, list[str]] = {}
     for number, other in enumerate(others, start=1):
         for path, a, b in config_differences(first, other):
             values.setdefault(path, [_short_text(a)] * (1 + len(others)))[number] = _short_text(b)
     notes = () if values else ("The configurations are equal.",)
     header = ("field", *LETTERS[: 1 + len(others)])
-    return ResultTable("fields", "Fields in which the runs differ", header, sorted(values.items()), notes)
+    return ResultTable("fields", "Fields in which the runs differ", header, sorted(_counted(values).items()), notes)
+
+
+def _counted(values: Mapping[str, list[str]]) -> dict[str, list[str]]:
+    """Returns the rows of `differences_table` with the fields of each large part that not all runs have as one row."""
+    lacking: dict[str, list[str]] = {}
+    for path, texts in values.items():
+        if ABSENT.value in texts:
+            top, *inner = path.split(".")
+            lacking.setdefault(f"{top}.{inner[0]}" if top == "config" and inner else top, []).append(path)
+    rows = dict(values)
+    for part, paths in lacking.items():
+        if len(paths) > MOST_LACKING:
+            texts = [rows.pop(path) for path in paths]
+            had = [sum(text != ABSENT.value for text in of_run) for of_run in zip(*texts, strict=True)]
+            rows[f"{part}: fields of some runs only"] = [f"{count} fields" for count in had]
+    return rows
 
 
 def _short_text(value: Any) -> str:

@@ -252,6 +252,20 @@ def test_an_object_in_place_of_a_value_is_shown_by_its_number_of_fields(tmp_path
     assert shown == {"kind": ["(absent)", '"x"'], "own": ["null", "2 fields"]}
 
 
+def test_many_fields_of_a_part_that_one_run_lacks_are_one_row(tmp_path: Path) -> None:
+    first, second = (read_run(run_folder(tmp_path / name, "ab")) for name in "ab")
+    both = {"robot": {"radius_m": 0.1}, "agent": {"cell_m": 0.05}}
+    of_second = {name: 1 for name in "abcdef"} | {"cell_m": 0.1}
+    first = replace(first, config={**first.config, "config": both})
+    second = replace(second, config={**second.config, "config": {**both, "agent": of_second}, "few": dict(p=1, q=2)})
+    assert dict(differences_table(first, second).rows) == {
+        "config.agent: fields of some runs only": ["0 fields", "6 fields"],
+        "config.agent.cell_m": ["0.05", "0.1"],
+        "few.p": ["(absent)", "1"],
+        "few.q": ["(absent)", "2"],
+    }
+
+
 @pytest.mark.parametrize(
     ("gained", "episodes", "words"),
     [
