@@ -21,6 +21,7 @@ from sim.errors import ConfigError
 from sim.invocation import command
 from sim.submissions.checks import truth_of
 from sim.submissions.contents import SUFFIX, read_submission, write_submission
+from sim.submissions.leaderboard import LEAST_EPISODES
 from sim.submissions.packing import About, pack
 
 
@@ -60,5 +61,7 @@ def main(args: Args) -> int:
         f"Declared: agent '{inputs.agent}' {isolated}; semantics {semantics}; ground truth {truth_of(inputs)}; "
         f"noise {inputs.noise}."
     )
+    if count < LEAST_EPISODES:
+        print(f"A leaderboard shows submissions of {LEAST_EPISODES} episodes and more.")
     print(f"Check it: {command('verify', out)}")
     return 0

@@ -173,7 +173,8 @@ def load_split(name_or_path: str | Path) -> Split:
     if not folder.is_dir():
         there_is = ", ".join(shipped) or "none"
         raise ConfigError(
-            f"Unknown split '{name_or_path}': neither a shipped one (available: {there_is}) nor a folder."
+            f"Unknown split '{name_or_path}': neither a shipped one (available: {there_is}) nor a folder"
+            f"{', but a file' if folder.is_file() else ''}."
         )
     folder = folder.resolve()
     if not _index_of(folder).is_file():

@@ -77,7 +77,13 @@ def seal_file(folder: Path) -> Path:
 
 
 def write_seal(file: Path, seal: Seal) -> None:
-    """Writes a seal."""
+    """Writes a seal to a new file.
+
+    Raises:
+        ConfigError: the file exists.
+    """
+    if file.exists():
+        raise ConfigError(f"'{file}' exists: it may be a seal that was published; remove it, or name another file.")
     write_atomically(file, msgspec.json.format(msgspec.json.encode(seal), indent=2) + b"\n")
 
 
@@ -92,15 +98,29 @@ def read_seal(file: Path) -> Seal:
 
 def require_sealed(split: Split, seal: Seal) -> None:
     """Raises ConfigError where a split is not the one that was sealed."""
+    counts = len(split.houses), len(split.episodes)
+    if counts != (seal.houses, seal.episodes):
+        raise ConfigError(
+            f"'{split.name}' is not the sealed split: it has {counts[0]} houses and {counts[1]} episodes, "
+            f"the seal says {seal.houses} and {seal.episodes}."
+        )
     if split.sha256 == seal.split_sha256:
         return
-    here = versions_here()
-    other = [f"{name} {there} there and {here.get(name)} here" for name, there in seal.made_with.items()
-             if here.get(name) != there]  # fmt: skip
+    other = other_versions(seal)
     raise ConfigError(
         f"'{split.name}' is not the sealed split: its sha256 is {split.sha256[:16]}, the seal says "
         f"{seal.split_sha256[:16]}. {'Other versions: ' + '; '.join(other) if other else 'The versions are the same'}."
     )
+
+
+def other_versions(seal: Seal) -> list[str]:
+    """Returns a phrase for each version of the seal that is not the one here."""
+    here = versions_here()
+    return [
+        f"{name} {there} there and {here.get(name)} here"
+        for name, there in seal.made_with.items()
+        if here.get(name) != there
+    ]
 
 
 def new_secret(file: Path) -> str:

@@ -75,7 +75,10 @@ def check(file: Path, choices: Choices, truth_of_agents: Mapping[str, bool]) -> 
     setting = setting_of(config, where=where)
     name = submission.manifest.split.name
     if choices.split is None and name not in shipped_splits():
-        raise ConfigError(f"{where} was made on the split '{name}', which does not ship; give its folder with --split.")
+        raise ConfigError(
+            f"{where} was made on the split '{name}', which does not ship; give its folder with --split. That of a "
+            "sealed split is made after the deadline (`stubborn seal reveal`)."
+        )
     chosen = name if choices.split is None else str(choices.split)
     split = load_split(chosen)
     require_consistent(submission, config, setting, split, where=where)

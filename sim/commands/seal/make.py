@@ -42,7 +42,7 @@ class Args:
     out: cli.OutFolder
     """Folder of the split; its name is the split's, and part of the names of its episodes."""
     secret_file: Path
-    """File for the new secret, which must not exist."""
+    """File to which the new secret is written; it must not exist."""
     from_secret: bool = False
     """Take the secret that --secret-file holds already."""
     houses: cli.Count = 20
@@ -56,6 +56,8 @@ class Args:
 def main(args: Args) -> int:
     """Writes split, secret and seal; returns the exit status."""
     require_empty(args.out)
+    if seal_file(args.out).exists():
+        raise ConfigError(f"'{seal_file(args.out)}' exists; give a new folder.")
     secret = read_secret(args.secret_file) if args.from_secret else new_secret(args.secret_file)
     split = make_split(args.out, secret, houses=args.houses, episode_count=args.episodes, workers=args.workers)
     seal = seal_of(split, secret)

@@ -9,6 +9,7 @@ was sealed, and verify the submissions on it: `stubborn verify FILE --split seal
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -19,7 +20,7 @@ from sim import cli
 from sim.commands.seal.make import make_split, require_empty
 from sim.episodes.splits import Split, load_split
 from sim.errors import ConfigError
-from sim.submissions.sealing import Seal, digest_of, read_seal, read_secret, require_sealed
+from sim.submissions.sealing import Seal, digest_of, other_versions, read_seal, read_secret, require_sealed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,19 +44,34 @@ def main(args: Args) -> int:
     seal = read_seal(args.seal)
     if (args.split is None) == (args.secret_file is None):
         raise ConfigError("Give either --split FOLDER or --secret-file FILE.")
-    split = _made(args, seal) if args.split is None else load_split(args.split)
-    require_sealed(split, seal)
+    if args.split is None:
+        split = _made(args, seal)
+    else:
+        split = load_split(args.split)
+        require_sealed(split, seal)
     print(f"'{split.name}' is the sealed split: {seal.houses} houses, {seal.episodes} episodes.")
+    if args.split is not None and seal.secret_sha256 is not None:
+        print("Only the secret (--secret-file) shows that its houses were drawn from it.")
     return 0
 
 
 def _made(args: Args, seal: Seal) -> Split:
-    """Returns the split of the secret."""
+    """Returns the split of the secret; one that is not the sealed one is removed."""
     assert args.secret_file is not None
+    if seal.secret_sha256 is None:
+        raise ConfigError(f"'{args.seal}' is the seal of houses without a secret: give their folder, --split FOLDER.")
     if args.out is None or args.out.resolve().name != seal.name:
         raise ConfigError(f"With --secret-file, give --out with a folder named '{seal.name}', as the seal says.")
     secret = read_secret(args.secret_file)
     if digest_of(secret) != seal.secret_sha256:
         raise ConfigError(f"The secret in '{args.secret_file}' is not the sealed one.")
     require_empty(args.out)
-    return make_split(args.out, secret, houses=seal.houses, episode_count=seal.episodes, workers=args.workers)
+    for other in other_versions(seal):
+        print(f"Made with another version: {other}. The houses may differ.", flush=True)
+    split = make_split(args.out, secret, houses=seal.houses, episode_count=seal.episodes, workers=args.workers)
+    try:
+        require_sealed(split, seal)
+    except ConfigError:
+        shutil.rmtree(args.out)
+        raise
+    return split
