@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import torch
 
-from sim.commands.evaluate.network_card import training_commands, training_stages
+from sim.commands.evaluate.network_card import training_commands, training_stages, training_text
 from sim.commands.train import segmentation_trainer
 from sim.commands.train.segmentation import Args, Trainer, main
 from sim.datasets.coco import annotate
@@ -19,6 +19,7 @@ from sim.datasets.shards import write_shard
 from sim.datasets.views import View
 from sim.houses.labels import Instance
 from sim.interface import MPCAT40_ID, ConfigError
+from sim.paths import code_hash
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.networks import NETWORKS, build_network
 from stubborn.segmentation.rednet import COMPACT
@@ -145,7 +146,8 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
     slow = {"init": first, "size": None, "rate": 1e-9, "block_px": 2, "steps": 1, "evaluate_every": 1}
     assert main(options(tmp_path, out=tmp_path / "finer", **slow)) == 0
     (before, earlier), (after, card) = load_network(first), load_network(tmp_path / "finer/rednet.safetensors")
-    assert card["started_from"] == {key: earlier[key] for key in ("step", "hours", "options")}
+    assert card["started_from"] == {key: earlier[key] for key in ("step", "hours", "options", "code")}
+    assert earlier["code"] == f"code {code_hash()}"
     assert card["options"]["rate"] == "1e-09"
     assert (earlier["block_px"], card["block_px"]) == (1, 2)
     weights = [network.state_dict()["encoder.stem.0.weight"] for network in (before, after)]
@@ -154,7 +156,10 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
         main(options(tmp_path, out=tmp_path / "finest", **slow | {"init": tmp_path / "finer/rednet.safetensors"})) == 0
     )
     _, last = load_network(tmp_path / "finest/rednet.safetensors")
-    folders = [stage["options"]["out"] for stage in training_stages(last)]
+    stages = list(training_stages({**last, "averaged": True}))
+    text = training_text(stages[-1])
+    assert text == f"1 steps, {last['hours']} h, code {code_hash()}, then the mean with the weights before it"
+    folders = [stage["options"]["out"] for stage in stages]
     assert folders == [str(tmp_path / name) for name in ("out", "finer", "finest")]
     with pytest.raises(ConfigError, match="is not of size 'lite0'"):
         main(options(tmp_path, out=tmp_path / "other", init=first, size="lite0"))

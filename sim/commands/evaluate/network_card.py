@@ -122,10 +122,18 @@ def _summary(network: Evaluated, measured: Measured, stages: Sequence[dict[str, 
     yield f"| pixel accuracy without calibration | {own.accuracy:.3f} |"
     yield f"| number of views | {measured.views} |"
     yield f"| time per frame, {network.threads} thread{'s' * (network.threads != 1)} | {measured.frame_ms:.0f} ms |"
-    yield from (f"| training | {stage.get('step', '?')} steps, {stage.get('hours', '?')} h |" for stage in stages)
+    yield from (f"| training | {training_text(stage)} |" for stage in stages)
     yield f"| calibration error without calibration | {measured.before.error:.3f} |"
     yield f"| calibration error with calibration | {measured.after.error:.3f} |"
     yield ""
+
+
+def training_text(stage: dict[str, Any]) -> str:
+    """Returns length, code and end of a training; `averaged` is written where its weights were averaged by hand."""
+    phrases = [f"{stage.get('step', '?')} steps", f"{stage.get('hours', '?')} h"]
+    phrases += [str(stage["code"])] if "code" in stage else []
+    phrases += ["then the mean with the weights before it"] if stage.get("averaged") else []
+    return ", ".join(phrases)
 
 
 def _categories(measured: Measured) -> Iterable[str]:

@@ -17,6 +17,8 @@ from stubborn.segmentation.unet import MobileEncoder, UNet
 DEFAULT_SIZE = "compact-both"
 PRETRAINED_RATE = 0.1
 """Learning rate of an encoder with ImageNet weights, relative to that of all other parameters."""
+OF_TRAINING = ("step", "hours", "options", "code", "averaged", "started_from")
+"""Metadata of a network that say how it was trained; the networks that are trained further keep them."""
 
 
 def start_network(size: str | None, init: Path | None, *, imagenet: bool) -> tuple[str, Network, dict[str, Any]]:
@@ -42,7 +44,7 @@ def start_network(size: str | None, init: Path | None, *, imagenet: bool) -> tup
     known = next((name for name, config in NETWORKS.items() if config == model.config), None)
     if known is None or size not in (None, known):
         raise ConfigError(f"--init '{init}' is not of size '{size or ' or '.join(NETWORKS)}'.")
-    return known, model, {key: metadata[key] for key in ("step", "hours", "options", "started_from") if key in metadata}
+    return known, model, {key: metadata[key] for key in OF_TRAINING if key in metadata}
 
 
 def parameter_groups(model: Network, *, imagenet: bool) -> list[dict[str, Any]]:

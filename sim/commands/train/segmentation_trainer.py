@@ -28,6 +28,7 @@ from sim.commands.train.training_files import (
     save_state,
 )
 from sim.interface import CameraModel, ConfigError
+from sim.paths import code_hash
 from sim.reading import Count, Number
 from stubborn.segmentation.balanced import Batches, ViewIndex
 from stubborn.segmentation.checkpoints import save_network
@@ -265,6 +266,7 @@ class Trainer:
             "options": options,
             "recipe": asdict(RECIPE),
             "torch": torch.__version__,
+            "code": f"code {code_hash()}",
         }
 
     def _log(self, loss: float) -> None:
