@@ -74,7 +74,6 @@ def draw_curves(trainings: Sequence[Path], file: Path) -> None:
         right.plot(values[:, 0] + begin_h, values[:, 1], marker=".", color="tab:blue")
         right.plot(accuracy[:, 0] + begin_h, accuracy[:, 1], marker=".", color="tab:grey")
         begin_h += float(max(losses[-1, 0], values[-1, 0]))
-    left.set_yscale("log")
     left.set_ylabel("training loss")
     right.set_ylim(0.0, 1.0)
     right.legend(["mIoU of the goal categories", "pixel accuracy"], fontsize=8)
