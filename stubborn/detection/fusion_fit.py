@@ -31,8 +31,10 @@ TRUE_SHARE = 0.25
 background."""
 OFFSET_PRIOR = 30.0
 """Weight of the prior of the offsets, as a number of tracks."""
-SHAPE_PRIOR = 3.0
-"""Weight of the prior of the log-odds of each feature of the shape, as a number of tracks."""
+SHAPE_PRIOR = 100.0
+"""Weight of the prior of the log-odds of each feature of the shape, as a number of tracks. With a small prior, the fit
+learns the shapes of its few models. The houses left out have the same models and do not show it; 11 episodes of `val`
+do, by which the weight was chosen: log loss 0.491 with 3, 0.474 with 100, and 0.484 without the shape."""
 PLAUSIBLE = 0.1
 """Goals below this probability, before and after the fit, are left out: nearly all are true negatives."""
 _BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.85, 0.95, 1.0)

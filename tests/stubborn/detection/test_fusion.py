@@ -153,7 +153,7 @@ def sampled(
 
 
 def test_the_fit_tells_chairs_from_tables_by_their_height():
-    samples = sampled(200, chairs_called_tables=1.0, high_chairs=True)
+    samples = sampled(600, chairs_called_tables=1.0, high_chairs=True)
     fitted, shapeless = (fit(samples, shape=shape, steps=100) for shape in (True, False))
     assert shapeless.shape == {}
     assert fitted.shape.keys() == {*MPCAT40[1:]} - {*SURFACES} | {NOTHING}
