@@ -6,7 +6,7 @@
 | depth | float32 (h, w, 1), scaled from [min_depth_m, max_depth_m] of the camera to [0, 1]; 0: nearer, or no return |
 | semantic | int32 (h, w, 1), mpcat40 id |
 | gps | float32 (2,), metres forward and **right** of the start pose |
-| compass | float32 (1,), unchanged: radians, counter-clockwise |
+| compass | float32 (1,), radians, counter-clockwise; rounded to `COMPASS_STEP_RAD` |
 | objectgoal | int64 (1,), index into the categories of MP3D (those of this project) or HM3D |
 
 Source: `habitat.tasks.nav` and `habitat.sims.habitat_simulator` of Habitat-Lab 0.3.
@@ -15,6 +15,7 @@ Source: `habitat.tasks.nav` and `habitat.sims.habitat_simulator` of Habitat-Lab 
 from __future__ import annotations
 
 import difflib
+import math
 import operator
 import reprlib
 from collections.abc import Mapping
@@ -33,6 +34,9 @@ HM3D_GOALS = ("chair", "bed", "plant", "toilet", "tv_monitor", "sofa")
 """The six goal categories of the ObjectNav challenges 2022 and 2023, in their order."""
 CATEGORIES: Mapping[str, tuple[str, ...]] = MappingProxyType({"mp3d": GOAL_CATEGORIES, "hm3d": HM3D_GOALS})
 """Goal categories by the name of the data set that numbers them."""
+COMPASS_STEP_RAD = math.radians(0.2)
+"""Habitat's turns are exact, and agents turn towards what is more than half a turn aside. The turns of this robot end
+0.05 degrees farther: such an agent would swing between two headings for ever."""
 _DEEPEST = 3
 """Largest number of nested dicts around an action."""
 
@@ -88,6 +92,7 @@ class Conversion:
             found["semantic"] = found["semantic"].astype(np.int32)[:, :, None]
         forward_m, left_m = observation["gps"]
         found["gps"] = np.array([forward_m, 0.0 - left_m], np.float32)
+        found["compass"] = (np.round(observation["compass"] / COMPASS_STEP_RAD) * COMPASS_STEP_RAD).astype(np.float32)
         number = self.goal_number(GOAL_CATEGORIES[int(observation["objectgoal"][0])])
         found["objectgoal"] = np.array([number], np.int64)
         return found

@@ -96,6 +96,7 @@ def test_observations_have_habitats_form() -> None:
     assert found["depth"].dtype == np.float32
     np.testing.assert_allclose(found["depth"][0, :, 0], [0.0, 0.0, 0.5, 1.0])
     np.testing.assert_array_equal(found["gps"], np.array([1.0, -2.0], np.float32))
+    np.testing.assert_allclose(np.degrees(found["compass"]), [28.6], atol=1e-4)  # of 28.648 degrees
     assert found["objectgoal"].tolist() == [GOAL_CATEGORIES.index("bed")]
     assert not any(np.shares_memory(found[name], given[name]) for name in given)
 

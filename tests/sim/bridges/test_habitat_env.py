@@ -95,6 +95,21 @@ def split(house: Path, tmp_path: Path) -> Path:
     return folder
 
 
+def test_an_agent_that_turns_if_more_than_half_a_turn_is_missing_does_not_swing(split: Path) -> None:
+    with Env(split=split, camera=SMALL) as env:
+        env.reset()
+        env.step("turn_right")
+        observations = env.step("turn_right")
+        turns = []
+        for _ in range(8):  # to 45 degrees on the right: half a turn is missing at 60 and at 30 degrees
+            missing_deg = -45.0 - math.degrees(float(observations["compass"][0]))
+            turns.append("turn_right" if missing_deg < -15.001 else "turn_left" if missing_deg > 15.001 else None)
+            if turns[-1] is None:
+                break
+            observations = env.step(turns[-1])
+    assert turns == [None]
+
+
 def test_a_loop_gives_the_metrics_of_a_run_with_habitats_names(split: Path) -> None:
     actions = [Action.MOVE_FORWARD, Action.TURN_LEFT, Action.MOVE_FORWARD, Action.STOP]
     with Env(split=split, episodes=2, camera=SMALL) as env:
