@@ -246,6 +246,7 @@ _ENTRY = (
     " --out {tmp}/entry"
 )
 _SUBMIT = "stubborn submit {tmp}/entry --name 'My agent' --authors 'A. Author' --out {tmp}/my_agent.json.gz"
+_ROWS = "a row needs 50 episodes; tests/sim/submissions/test_submission_commands.py makes tables of fewer"
 _SEAL = "stubborn seal make --out {tmp}/sealed2027 --secret-file {tmp}/secret --houses 1 --episodes 2"
 TRIALS: dict[str, tuple[str, ...] | Only] = {
     "make run": _NEEDS_SETUP,
@@ -417,11 +418,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _SEAL,
         "stubborn seal reveal {tmp}/sealed2027.sealed.json --secret-file {tmp}/secret --out {tmp}/revealed/sealed2027",
     ),
-    "stubborn leaderboard leaderboard": (
-        _ENTRY,
-        _SUBMIT.replace("{tmp}/my", "{tmp}/submissions/my"),
-        "stubborn leaderboard {tmp}",
-    ),
+    "stubborn leaderboard leaderboard": Only(_ROWS),
+    "stubborn leaderboard challenge --splits revealed/sealed2027": Only(_ROWS),
     # docs/traps.md
     f"{_RUN} --split traps --semantics gt --episodes 21": (
         f"{_RUN} --split traps --semantics gt --episodes 1 --agent oracle --out {{tmp}}/run",
