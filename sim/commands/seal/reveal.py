@@ -19,7 +19,7 @@ import tyro
 from sim import cli
 from sim.commands.seal.make import make_split, require_empty
 from sim.episodes.splits import Split, load_split
-from sim.errors import ConfigError
+from sim.errors import ConfigError, ObjectNavError
 from sim.submissions.sealing import Seal, digest_of, other_versions, read_seal, read_secret, require_sealed
 
 
@@ -68,10 +68,10 @@ def _made(args: Args, seal: Seal) -> Split:
     require_empty(args.out)
     for other in other_versions(seal):
         print(f"Made with another version: {other}. The houses may differ.", flush=True)
-    split = make_split(args.out, secret, houses=seal.houses, episode_count=seal.episodes, workers=args.workers)
     try:
+        split = make_split(args.out, secret, houses=seal.houses, episode_count=seal.episodes, workers=args.workers)
         require_sealed(split, seal)
-    except ConfigError:
+    except ObjectNavError:
         shutil.rmtree(args.out)
         raise
     return split
