@@ -25,6 +25,13 @@ from sim.files import write_atomically
 EXAMPLES = Path("Stubborn") / "obj_id_data.pickle"
 """Examples of targets from which the agent learns to verify; without any, it accepts each candidate."""
 
+ENVIRONMENT = {
+    "OMP_NUM_THREADS": "1",
+    "MALLOC_MMAP_THRESHOLD_": "2000000000",
+    "MALLOC_TRIM_THRESHOLD_": "8000000000",
+}
+"""The published agent allocates tens of megabytes in each step; glibc then keeps them: 1.6 times as many steps a second."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
@@ -64,7 +71,7 @@ def stubborn(*words: str, folder: Path) -> None:
     """Runs `stubborn WORDS` in the folder of the published repository; raises CalledProcessError if it fails."""
     root = Path(__file__).parents[2]
     paths = [root, Path(__file__).parent, folder / "Stubborn"]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, paths)), "OMP_NUM_THREADS": "1"}
+    environment = {**os.environ, **ENVIRONMENT, "PYTHONPATH": os.pathsep.join(map(str, paths))}
     subprocess.run([sys.executable, "-m", "sim.commands.main", *words], cwd=folder, env=environment, check=True)
 
 
