@@ -29,6 +29,11 @@ class Approach:
     near_enough: bool = True
     """False: a STOP there would not count; the candidate can only be verified from there."""
 
+    @property
+    def length_m(self) -> float:
+        """Length of the route; slow ground counts as longer (see `Route`)."""
+        return 0.0 if self.route is None else self.route.length_m
+
 
 def approach_on(
     view: NavMap,

@@ -54,6 +54,8 @@ class Evidence:
         views, classes = config.sectors * (len(config.rings_m) + 1), len(IS_SURFACE)
         self._sums = np.zeros((tracks, views, classes), np.float32)
         self._weights = np.zeros((tracks, views), np.float32)
+        self._whole = np.zeros((tracks, views), np.float32)
+        """The part of the weights from frames in which the edge of the image does not cut the track."""
         self._shapes = np.zeros((tracks, FEATURES), np.float32)
         self._ring_weight = np.repeat(np.array(fusion.ring_weights, np.float32), config.sectors)
         self.probability: Float32[np.ndarray, "tracks classes"] = np.full((tracks, classes), 1.0 / classes, np.float32)
@@ -67,6 +69,7 @@ class Evidence:
         dx_m: Float64[np.ndarray, " n"],
         dy_m: Float64[np.ndarray, " n"],
         shape: Float32[np.ndarray, "n features"] | None = None,
+        whole: Bool[np.ndarray, " n"] | bool = True,
     ) -> None:
         """Enters one frame.
 
@@ -76,11 +79,13 @@ class Evidence:
             pixels: number of these pixels.
             dx_m: offset in x from the middle of each track to the camera; `dy_m` is the offset in y.
             shape: features of the shape of each track; None: not known.
+            whole: False for a track that the edge of the image cuts.
         """
         view = self._view(dx_m, dy_m)
         weight = np.minimum(pixels / np.float32(self.config.full_pixels), np.float32(1.0)).astype(np.float32)
         self._sums[tracks, view] += weight[:, None] * mean
         self._weights[tracks, view] += weight
+        self._whole[tracks, view] += weight * whole
         if shape is not None:
             self._shapes[tracks] = shape
         self.probability[tracks] = self._fused(tracks)
@@ -89,13 +94,15 @@ class Evidence:
         """Moves the views of a track to another one."""
         self._sums[into] += self._sums[track]
         self._weights[into] += self._weights[track]
+        self._whole[into] += self._whole[track]
         self._sums[track] = 0.0
         self._weights[track] = 0.0
+        self._whole[track] = 0.0
         self.probability[[track, into]] = self._fused(np.array([track, into]))
 
     def near_sectors(self, track: int) -> Bool[np.ndarray, " sectors"]:
-        """Returns the directions from which a track was seen well: from the right distance, with enough pixels."""
-        return np.asarray(self._weights[track].reshape(-1, self.config.sectors)[self.config.near_ring] >= 1.0)
+        """Returns the directions from which a track was seen well: whole, at the right distance, with enough pixels."""
+        return np.asarray(self._whole[track].reshape(-1, self.config.sectors)[self.config.near_ring] >= 1.0)
 
     def _view(self, dx_m: Float64[np.ndarray, " n"], dy_m: Float64[np.ndarray, " n"]) -> Int[np.ndarray, " n"]:
         sector = self.sector_of(np.arctan2(dy_m, dx_m))

@@ -31,6 +31,14 @@ class LookConfig:
     """A track below the bar is looked at if it has at least this probability."""
     keep: float = 0.6
     """A look continues until the probability falls below this share of `visit`."""
+    straight: float = 0.4
+    """A track with at least this probability is first looked at on the path to it: if it is the goal, nothing is lost.
+    Others are looked at from another direction at once."""
+    detour_m: float = 4.0
+    """A look is not worth a route that is longer than the straight line by more than this distance: it may lead around
+    the house, over ground never seen, to the other side of an object in a corner."""
+    switch: float = 0.2
+    """A look ends early if the probability of another track, less its distance's cost, is higher by this."""
     most_looks: int = 2
     """A track is looked at no more than this many times."""
     look_steps: int = 30
@@ -73,6 +81,9 @@ class LookConfig:
         if not 0.0 < self.look_m[0] < self.look_m[1]:
             raise ConfigError(f"LookConfig.look_m must be two growing distances > 0 m, got {self.look_m}.")
         for name in (
+            "straight",
+            "detour_m",
+            "switch",
             "most_looks",
             "per_metre",
             "step_back_steps",

@@ -308,9 +308,11 @@ class TrackSeeker:
 
     def _best_doubtful(self, tracks: list[int], pose: Pose) -> int:
         """Returns the track of the present look, or the one that is most worth a look."""
-        if self.pursued in tracks:
+        worth = dict(zip(tracks, self._worth(tracks, pose).tolist(), strict=True))
+        best = max(tracks, key=worth.__getitem__)
+        if self.pursued in tracks and worth[best] <= worth[self.pursued] + self.config.look.switch:
             return self.pursued
-        return tracks[int(np.argmax(self._worth(tracks, pose)))]
+        return best
 
     def _worth(self, tracks: list[int], pose: Pose) -> Float64[np.ndarray, " tracks"]:
         """Returns the probability of tracks, less the cost of their distance."""
@@ -378,26 +380,38 @@ class TrackSeeker:
             self._pushes += 1
 
     def _look(self, navmap: NavMap, window: Window, pose: Pose, track: int) -> Approach | None:
-        """Returns the approach to a place with a view of a track; None: the track was decided on or set aside."""
+        """Returns the approach to a place with a view of a track; None: the track was decided on or set aside.
+
+        A probable track is first looked at on the path to it, all others from a direction from which it was not seen.
+        """
+        look, likely = self.config.look, self.probability[track] >= self.config.look.straight
         tracks, cells = self._of_episode(), self.cells_of(navmap, [track])
         seen_from, middle_xy_m = tracks.evidence.near_sectors(track), tracks.track(track).middle_xy_m
         looked_from = seen_from | self._hidden.get(track, False)
+        away_m = math.hypot(middle_xy_m[0] - pose.x_m, middle_xy_m[1] - pose.y_m)
+        longest_m = away_m + look.detour_m
+        looks = self.verdicts.looks.get(track, 0)
+        if likely and looks == 0:
+            found = self._drive_in(navmap, window, pose, [track], LastResort.NONE)
+            if found is not None and found.length_m <= longest_m:
+                return found
         for part in (window, self._known(navmap)):
             view, mask = navmap.view(part), cells[part.index]
             if not mask.any():
                 continue
-            found = look_at(view, nearest(mask), middle_xy_m, looked_from, pose, self.finder, self.config.look)
-            if found is not None:
+            found = look_at(view, nearest(mask), middle_xy_m, looked_from, pose, self.finder, look)
+            if found is not None and found.length_m <= longest_m:
                 return _on_map(found, part)
-        if self.verdicts.looks.get(track, 0) or seen_from.any():
+        if looks or (seen_from.any() and not likely):
             self.verdicts.give_up(track)
             return None
         found = self._drive_in(navmap, window, pose, [track], LastResort.VERIFY)
-        if found is None:
-            if self.probability[track] >= self.verdicts.bar:
-                self.verdicts.looked(track)  # there is no place to step back to: the track is accepted now
-            self._set_aside([track])
-        return found
+        if found is not None and found.length_m <= longest_m:
+            return found
+        if self.probability[track] >= self.verdicts.bar:
+            self.verdicts.looked(track)  # there is no place to step back to: the track is accepted now
+        self._set_aside([track])
+        return None
 
     def _note_hidden(self, track: int) -> None:
         """Remembers that something hides a track from here, if this look at it did not show it."""

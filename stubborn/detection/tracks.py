@@ -8,6 +8,7 @@ mirror. Voxels that are hidden have no pixels, so a track is judged only where i
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -63,6 +64,8 @@ class TrackConfig:
     least_voxels: int = 6
     """With an imperfect detector, a track with fewer voxels is not a candidate: 6 voxels are 0.06 m2 of visible
     surface."""
+    inside_rad: float = 0.15
+    """A track whose middle is nearer than this angle to the image's left or right edge is not seen whole."""
     most_tracks: int = 2048
     """Limit of the number of tracks; objects beyond it are not tracked."""
     evidence: EvidenceConfig = field(default_factory=EvidenceConfig)
@@ -155,7 +158,9 @@ class Tracks:
             x_m, y_m = self.middles(self.in_view)
             seen = means[self.in_view], pixels[self.in_view]
             shape = features_of(self.measures(self.in_view)) if self.evidence.fusion.shape else None
-            self.evidence.add(self.in_view, *seen, pose.x_m - x_m, pose.y_m - y_m, shape)
+            off_rad = np.arctan2(y_m - pose.y_m, x_m - pose.x_m) - pose.yaw_rad
+            whole = np.cos(off_rad) >= math.cos(0.5 * self.camera.hfov_rad - self.config.inside_rad)
+            self.evidence.add(self.in_view, *seen, pose.x_m - x_m, pose.y_m - y_m, shape, whole)
 
     def probabilities(self, goal: str, least_voxels: int = 1) -> Float32[np.ndarray, " numbers"]:
         """Returns the probability of the goal for each track; 0 for entry 0 and for tracks with fewer voxels."""

@@ -152,7 +152,8 @@ def test_the_bar_falls_as_steps_run_out():
 @pytest.mark.parametrize(
     "wrong",
     [{"bar": ()}, {"bar": ((100, 0.5), (50, 0.1))}, {"bar": ((0, 1.5),)}, {"slack": -0.1}, {"look_m": (2.0, 1.0)},
-     {"most_looks": -1}, {"per_metre": -0.1}, {"patience_steps": -1}, {"unseen_steps": 0.0}, {"missed": 1.5}],
+     {"most_looks": -1}, {"per_metre": -0.1}, {"straight": -0.1}, {"detour_m": -1.0},
+     {"patience_steps": -1}, {"unseen_steps": 0.0}, {"missed": 1.5}],
 )  # fmt: skip
 def test_wrong_values_are_refused(wrong: dict):
     with pytest.raises(ConfigError, match="LookConfig"):

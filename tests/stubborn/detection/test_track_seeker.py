@@ -242,6 +242,68 @@ def test_a_look_that_was_blocked_is_not_repeated_from_the_same_side(monkeypatch:
     assert set(np.flatnonzero(looked_from[0]).tolist()) == {*np.flatnonzero(seen).tolist(), behind}
 
 
+def test_a_probable_track_is_first_looked_at_on_the_path_to_it(monkeypatch: pytest.MonkeyPatch):
+    agent, seeker, _, track = tracked()
+    window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
+    straight, around = Approach(None, 0.0, (0, 0)), Approach(None, 1.0, (0, 0))
+    monkeypatch.setattr(seeker, "_drive_in", lambda *_: straight)
+    monkeypatch.setattr(track_seeker, "look_at", lambda *_: around)
+    seeker.verdicts.looks.clear()
+
+    def bearing_rad(probability: float) -> float:
+        seeker.probability[track] = probability
+        found = seeker._look(agent.navmap, window, Pose(0.0, 0.0, 0.0), track)
+        assert found is not None
+        return found.bearing_rad
+
+    least = seeker.config.look.straight
+    assert [bearing_rad(least), bearing_rad(least - 0.1)] == [straight.bearing_rad, around.bearing_rad]
+    seeker.verdicts.looked(track)
+    assert bearing_rad(least) == around.bearing_rad
+
+
+def test_a_look_does_not_lead_around_the_house(monkeypatch: pytest.MonkeyPatch):
+    agent, seeker, tracks, track = tracked()
+    window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
+    here = Pose(*tracks.track(track).middle_xy_m, 0.0)
+    lengths_m = {"around": 0.0, "straight": 0.0}
+
+    def approach(name: str, bearing_rad: float) -> Approach:
+        found = Approach(None, bearing_rad, (0, 0))
+        monkeypatch.setattr(Approach, "length_m", property(lambda each: lengths_m[names[each.bearing_rad]]))
+        names[bearing_rad] = name
+        return found
+
+    names: dict[float, str] = {}
+    around, straight = approach("around", 1.0), approach("straight", 2.0)
+    monkeypatch.setattr(seeker, "_drive_in", lambda *given: straight if given[-1] is LastResort.VERIFY else None)
+    monkeypatch.setattr(track_seeker, "look_at", lambda *_: around)
+    seeker.verdicts.looks.clear()
+    seeker.probability[track] = seeker.config.look.straight
+    most_m = seeker.config.look.detour_m
+
+    def bearing_rad() -> float | None:
+        found = seeker._look(agent.navmap, window, here, track)
+        return None if found is None else found.bearing_rad
+
+    lengths_m["around"] = most_m
+    assert bearing_rad() == around.bearing_rad
+    lengths_m["around"] = most_m + 0.1
+    assert bearing_rad() == straight.bearing_rad
+    lengths_m["straight"] = most_m + 0.1
+    assert bearing_rad() is None
+    assert not seeker._is_due(track)  # it is tried again later
+
+
+def test_a_look_ends_where_another_track_is_worth_it_far_more(monkeypatch: pytest.MonkeyPatch):
+    _, seeker, _, one = tracked()
+    two, here = one + 1, Pose(0.0, 0.0, 0.0)
+    seeker.pursued = one
+    for gain, best in ((0.1, one), (0.3, two)):
+        monkeypatch.setattr(seeker, "_worth", lambda tracks, pose, gain=gain: np.array([0.4, 0.4 + gain]))
+        assert seeker._best_doubtful([one, two], here) == best
+
+
 def test_the_nearest_of_equally_good_tracks_is_approached_and_a_much_better_one_before_it():
     agent, seeker, tracks, one = tracked()
     assert agent.pose is not None

@@ -154,6 +154,16 @@ def test_looking_longer_from_one_place_is_no_further_evidence():
     assert once == pytest.approx(0.6, abs=0.05)
 
 
+def test_an_object_at_the_edge_of_the_image_is_not_seen_well():
+    narrow = Box((2.0, 2.4), (-0.2, 0.2), (0.0, 0.9), "table")
+    for yaw_rad, well in ((0.0, True), (-0.45, True), (-0.62, False)):  # half of the field of view is 0.69 rad
+        tracks = tracked()
+        for _ in range(3):
+            look(tracks, (0.0, 0.0, yaw_rad), narrow)
+        (table,) = of(tracks, "table")
+        assert tracks.evidence.near_sectors(table.number).any() == well
+
+
 def test_views_that_differ_count_and_those_that_contradict_cancel():
     one = seen((0.0, 2.0, 0.6), growth=0.3)
     three = seen((0.0, 2.0, 0.6), (1.5, 2.0, 0.6), (3.0, 2.0, 0.6), growth=0.3)
