@@ -122,8 +122,10 @@ def test_a_mirrored_segmenter_averages_the_image_and_its_mirror_image(
 ) -> None:
     turned = {name: np.ascontiguousarray(image[:, ::-1]) for name, image in frame.items()}
     plain, both = (NetworkSegmenter(model, block_px=1, mirrored=mirrored) for mirrored in (False, True))
-    one, other = (plain.logits(images["rgb"], images["depth"]) for images in (frame, turned))
-    mean = both.logits(frame["rgb"], frame["depth"])
-    torch.testing.assert_close(mean, 0.5 * (one + other.flip(-1)), atol=0.05 if both.bf16 else 1e-4, rtol=0.0)
-    assert float((mean - one).abs().max()) > 0.05
     assert not plain.bf16
+    one, other = (plain.logits(images["rgb"], images["depth"]) for images in (frame, turned))
+    expected = 0.5 * (one + other.flip(-1))
+    rounded = both.logits(frame["rgb"], frame["depth"])  # to bf16, where the processor has it
+    both.bf16 = False
+    torch.testing.assert_close(both.logits(frame["rgb"], frame["depth"]), expected, atol=1e-4, rtol=0.0)
+    assert float((rounded - expected).abs().mean()) < 0.02 * float((rounded - one).abs().mean())
