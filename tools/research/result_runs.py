@@ -29,6 +29,7 @@ from sim.analysis.comparison import read_run
 from sim.episodes.splits import load_split
 from sim.errors import ConfigError
 from sim.files import write_atomically
+from sim.reading import read_bytes
 from tools.research.result_archive import RUN_FILES, RunKey, key_of, read_archive
 from tools.research.result_definitions import comparisons, page_tables
 from tools.research.result_tables import TABLES
@@ -135,7 +136,7 @@ def pack(folders: Mapping[RunKey, Path]) -> bytes:
     with tarfile.open(fileobj=plain, mode="w") as archive:
         for folder in sorted(folders.values()):
             for name in RUN_FILES:
-                content = (folder / name).read_bytes()
+                content = read_bytes(folder / name, what="Run")
                 member = tarfile.TarInfo(f"{folder.name}/{name}")
                 member.size = len(content)
                 archive.addfile(member, io.BytesIO(content))
