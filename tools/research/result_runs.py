@@ -60,13 +60,13 @@ def main(args: Args) -> int:
     """Runs episodes and writes the archive; returns the exit status."""
     archive = args.tables / f"splits-{args.version}.tar.gz"
     if archive.is_file():
-        unpack(archive, args.out)
-    wanted = needed(args.splits, args.version)
+        unpack(archive, args.out, args.version)
+    wanted, folders = needed(args.splits, args.version), runs_in(args.out, args.version)
     end_s = time.monotonic() + (math.inf if args.minutes is None else 60.0 * args.minutes)
     for turn in range(math.ceil(max(wanted.values(), default=0) / CHUNK)):
         for key, most in wanted.items():
             if time.monotonic() < end_s:
-                run(key, min((turn + 1) * CHUNK, most), args)
+                run(key, folders.setdefault(key, args.out / name_of(key)), min((turn + 1) * CHUNK, most), args)
     folders = runs_in(args.out, args.version)
     write_atomically(archive, pack(folders))
     console = display.make_console()
@@ -94,15 +94,16 @@ def needed(splits: Sequence[str], version: str) -> dict[RunKey, int]:
     return found
 
 
-def run(key: RunKey, episodes: int, args: Args) -> None:
+def name_of(key: RunKey) -> str:
+    """Returns the name of the folder of a row that has none yet."""
+    return "_".join((key.agent, key.semantics, key.split, *(each.lstrip("-") for each in shlex.split(key.options))))
+
+
+def run(key: RunKey, folder: Path, episodes: int, args: Args) -> None:
     """Runs the first episodes of a row that its folder lacks; raises CalledProcessError if `stubborn run` fails."""
-    words = shlex.split(key.options)
-    folder = runs_in(args.out, key.version).get(key)
-    if folder is not None and len(read_run(folder).lines) >= episodes:
+    if (folder / RUN_FILES[1]).is_file() and len(read_run(folder).lines) >= episodes:
         return
-    if folder is None:
-        folder = args.out / "_".join((key.agent, key.semantics, key.split, *(each.lstrip("-") for each in words)))
-    words += ["--semantics", key.semantics, "--split", key.split, "--episodes", str(episodes)]
+    words = [*shlex.split(key.options), "--semantics", key.semantics, "--split", key.split, "--episodes", str(episodes)]
     words += ["--workers", str(args.workers), "--out", str(folder), "--keep-results"]
     subprocess.run([sys.executable, "-m", "sim.run", "--agent", key.agent, *words], check=True)
 
@@ -121,11 +122,12 @@ def runs_in(out: Path, version: str) -> dict[RunKey, Path]:
     return found
 
 
-def unpack(archive: Path, out: Path) -> None:
-    """Copies the runs of an archive to a folder, unless the folder has as many episodes of them."""
+def unpack(archive: Path, out: Path, version: str) -> None:
+    """Copies the runs of an archive, all of one version of the splits, to a folder that has fewer episodes of them."""
+    present = runs_in(out, version)
     with tempfile.TemporaryDirectory() as folder:
         for key, run in read_archive(archive, Path(folder), lambda text: None).items():
-            target = runs_in(out, key.version).get(key, out / run.folder)
+            target = present.get(key, out / run.folder)
             if not target.exists() or len(read_run(target).lines) < len(run.run.lines):
                 shutil.copytree(run.run.path, target, dirs_exist_ok=True)
 

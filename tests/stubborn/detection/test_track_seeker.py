@@ -266,16 +266,9 @@ def test_a_look_does_not_lead_around_the_house(monkeypatch: pytest.MonkeyPatch):
     agent, seeker, tracks, track = tracked()
     window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
     here = Pose(*tracks.track(track).middle_xy_m, 0.0)
-    lengths_m = {"around": 0.0, "straight": 0.0}
-
-    def approach(name: str, bearing_rad: float) -> Approach:
-        found = Approach(None, bearing_rad, (0, 0))
-        monkeypatch.setattr(Approach, "length_m", property(lambda each: lengths_m[names[each.bearing_rad]]))
-        names[bearing_rad] = name
-        return found
-
-    names: dict[float, str] = {}
-    around, straight = approach("around", 1.0), approach("straight", 2.0)
+    around, straight = Approach(None, 1.0, (0, 0)), Approach(None, 2.0, (0, 0))
+    lengths_m = {1.0: 0.0, 2.0: 0.0}  # by bearing
+    monkeypatch.setattr(Approach, "length_m", property(lambda each: lengths_m[each.bearing_rad]))
     monkeypatch.setattr(seeker, "_drive_in", lambda *given: straight if given[-1] is LastResort.VERIFY else None)
     monkeypatch.setattr(track_seeker, "look_at", lambda *_: around)
     seeker.verdicts.looks.clear()
@@ -286,11 +279,11 @@ def test_a_look_does_not_lead_around_the_house(monkeypatch: pytest.MonkeyPatch):
         found = seeker._look(agent.navmap, window, here, track)
         return None if found is None else found.bearing_rad
 
-    lengths_m["around"] = most_m
+    lengths_m[1.0] = most_m
     assert bearing_rad() == around.bearing_rad
-    lengths_m["around"] = most_m + 0.1
+    lengths_m[1.0] = most_m + 0.1
     assert bearing_rad() == straight.bearing_rad
-    lengths_m["straight"] = most_m + 0.1
+    lengths_m[2.0] = most_m + 0.1
     assert bearing_rad() is None
     assert not seeker._is_due(track)  # it is tried again later
 
