@@ -32,7 +32,7 @@ def log_after(split: Path, log: Path, episodes: int) -> list[dict]:
     args = train_tracks.Args(
         split=str(split), semantics="noisy", episodes=episodes, max_steps=30, log=log, out=log / "x.json"
     )
-    with pytest.raises(ConfigError, match="100 are needed"):
+    with pytest.raises(ConfigError, match="are needed.*run more episodes"):  # more samples, or another house
         train_tracks.main(args)
     return [json.loads(line) for line in (log / "results.jsonl").read_text().splitlines()]
 
@@ -74,7 +74,7 @@ def test_a_log_of_another_seed_and_a_broken_file_are_refused(split: Path, tmp_pa
     args = train_tracks.Args(
         split=str(split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
     )
-    with pytest.raises(ConfigError, match="100 are needed"):
+    with pytest.raises(ConfigError, match="are needed.*run more episodes"):  # more samples, or another house
         train_tracks.main(args)
     with pytest.raises(ConfigError, match="holds a run with seed"):
         train_tracks.main(replace(args, seed=4))
