@@ -19,7 +19,7 @@ import tyro
 from sim import cli
 from sim.analysis.tables import to_markdown
 from sim.commands.verify import verify
-from sim.errors import ConfigError
+from sim.errors import ConfigError, ObjectNavError
 from sim.files import write_atomically, write_together
 from sim.reading import printable, sha256_of
 from sim.submissions.contents import read_submission
@@ -48,7 +48,7 @@ def main(args: Args) -> int:
     for file in submission_files(args.folder):
         try:
             row = Row(file, read_submission(file), _report(args, file))
-        except ConfigError as error:
+        except ObjectNavError as error:  # the houses of a split can be broken too
             left_out.append(f"{file.name}: {error}")
             continue
         if row.refusal:

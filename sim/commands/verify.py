@@ -137,8 +137,11 @@ def _summary(checked: Checked, choices: Choices, found: list[Verdict], seconds: 
             f"NOT VERIFIED: {count['different']} episodes are different. A tolerance repairs neither success nor "
             "collisions; ask the authors to run these episodes again."
         )
+    elif count["error"] == len(found):
+        yield "Nothing was verified: all episodes ended with an error."
     else:
-        yield "Verified: these actions lead to these results."
+        rest = f" {count['error']} episodes ended with an error and have no actions." if count["error"] else ""
+        yield f"Verified: these actions lead to these results.{rest}"
     yield (
         f"Declared, and proved by no replay: agent '{inputs.agent}'"
         f"{' in a process of its own' if inputs.isolated else ', not in a process of its own'}; ground truth "

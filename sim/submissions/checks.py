@@ -8,10 +8,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Literal
 
+import msgspec
+
 from sim.episodes.replicates import find_episode, replicate_number, with_replicates
 from sim.episodes.splits import Episode, Split
 from sim.errors import ConfigError
 from sim.interface import TRUE_IMAGES, Action
+from sim.reading import convert
 from sim.robot.config import PHYSICS_VERSION
 from sim.submissions.contents import Entry, Inputs, Result, Submission
 from sim.submissions.setting import Setting
@@ -22,6 +25,25 @@ Truth = Literal["none", "noisy", "yes"]
 STOP = str(int(Action.STOP))
 ROUNDING = 1e-6
 """Largest error of a recorded SPL."""
+
+
+class _Tree(msgspec.Struct):
+    sensors: tuple[str, ...] = ()
+
+
+class _Segmentation(msgspec.Struct):
+    name: str | None = None
+    truth: tuple[str, ...] | None = None
+
+
+class _Recorded(msgspec.Struct):
+    """What a configuration says about the inputs of its agent."""
+
+    agent: str
+    semantics: str
+    seed: int
+    config: _Tree
+    segmentation: _Segmentation | None = None
 
 
 def require_consistent(
@@ -90,12 +112,12 @@ def _require_same_split(submission: Submission, split: Split, where: str) -> Non
 
 def _require_declared(submission: Submission, config: Mapping[str, Any], setting: Setting, where: str) -> None:
     """Raises ConfigError where the declared inputs are not those of the configuration or of the result lines."""
-    inputs, tree = submission.manifest.inputs, config.get("config") or {}
+    inputs, found = submission.manifest.inputs, convert(dict(config), _Recorded, where=f"{where}, field 'config'")
     recorded = {
-        "agent": config.get("agent"),
-        "semantics": config.get("semantics"),
+        "agent": found.agent,
+        "semantics": found.semantics,
         "noise": setting.noise_name,
-        "sensors": tuple(tree.get("sensors") or ()),
+        "sensors": found.config.sensors,
     }
     for name, value in recorded.items():
         declared = getattr(inputs, name)
@@ -103,18 +125,16 @@ def _require_declared(submission: Submission, config: Mapping[str, Any], setting
             raise ConfigError(f"{where} declares {name} {declared!r}, and its configuration has {value!r}.")
     if inputs.isolated != inputs.agent.startswith("process:"):
         raise ConfigError(f"{where} declares isolated {inputs.isolated} for the agent '{inputs.agent}'.")
-    segmentation = config.get("segmentation") or {}
-    true_images = TRUE_IMAGES & {*inputs.sensors, *(segmentation.get("truth") or ())}
-    if segmentation.get("name") == "ground truth":
+    segmentation = found.segmentation or _Segmentation()
+    true_images = TRUE_IMAGES & {*inputs.sensors, *(segmentation.truth or ())}
+    if segmentation.name == "ground truth":
         true_images |= {"semantic"}
     if true_images and truth_of(inputs) == "none":
         raise ConfigError(
             f"{where} declares no ground truth, and its configuration gives the agent '{min(true_images)}', which is."
         )
-    if config.get("seed") != submission.manifest.seed:
-        raise ConfigError(
-            f"{where}: the seed is {submission.manifest.seed}, in its configuration {config.get('seed')}."
-        )
+    if found.seed != submission.manifest.seed:
+        raise ConfigError(f"{where}: the seed is {submission.manifest.seed}, in its configuration {found.seed}.")
 
 
 def _require_entry(entry: Entry, known: Episode, submission: Submission, setting: Setting, where: str) -> None:
@@ -131,6 +151,8 @@ def _require_entry(entry: Entry, known: Episode, submission: Submission, setting
     if result.end_reason == "error":
         if result.success or result.spl or result.soft_spl:
             raise ConfigError(f"{where} ended with an error and cannot be a success.")
+        if actions:
+            raise ConfigError(f"{where} ended with an error and is not replayed; it cannot have actions.")
         return
     if result.num_steps != len(actions):
         raise ConfigError(f"{where} has {len(actions)} actions, and its result counts {result.num_steps}.")
@@ -152,7 +174,6 @@ def _require_coherent(result: Result, actions: str, where: str) -> None:
     if bool(result.success) != (result.failure is None):
         raise ConfigError(f"{where} has success {result.success:g} and the cause of failure '{result.failure}'.")
     wanted = metrics.spl(bool(result.success), result.shortest_path, result.path_length or 0.0)
-    if not abs((result.spl or 0.0) - wanted) <= ROUNDING:
-        raise ConfigError(
-            f"{where} has spl {result.spl:.6g}; its success, shortest_path and path_length give {wanted:.6g}."
-        )
+    spl = result.spl or 0.0
+    if not abs(spl - wanted) <= ROUNDING:
+        raise ConfigError(f"{where} has spl {spl:.6g}; its success, shortest_path and path_length give {wanted:.6g}.")

@@ -31,10 +31,10 @@ PLACE_EVERY = 10
 """The position of the robot is recorded after each so many actions, and after the last one."""
 
 _PLAIN = r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*\Z"
-Short = Annotated[
-    str, Meta(min_length=1, max_length=80, pattern=r"^[^\s=+@\-\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f\u2028\u2029]*\Z")
-]
-"""A name; a spreadsheet would read one that begins with "=" as a formula."""
+_NO_FORMULA = r"^[^\s=+@\-\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f\u2028\u2029]*\Z"
+"""A spreadsheet would read a text that begins with "=" as a formula."""
+Short = Annotated[str, Meta(min_length=1, max_length=80, pattern=_NO_FORMULA)]
+"""A name."""
 Text = Annotated[str, Meta(max_length=2000, pattern=_PLAIN)]
 Link = Annotated[str, Meta(max_length=300, pattern=r"^https://[A-Za-z0-9.-]+(/[A-Za-z0-9._~/?#&=%+:@-]*)?\Z")]
 Actions = Annotated[str, Meta(max_length=MAX_ACTIONS, pattern=r"^[0-3]*\Z")]
@@ -44,7 +44,7 @@ Version = Annotated[str, Meta(max_length=300, pattern=_PLAIN)]
 class Inputs(msgspec.Struct, forbid_unknown_fields=True):
     """What the agent got, as the authors declare it: a replay cannot prove it."""
 
-    agent: Name
+    agent: Annotated[str, Meta(min_length=1, max_length=1000, pattern=_NO_FORMULA)]
     semantics: Name
     sensors: Annotated[tuple[Short, ...], Meta(max_length=50)]
     noise: Name

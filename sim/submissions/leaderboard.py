@@ -107,8 +107,9 @@ def tables(rows: Sequence[Row]) -> list[ResultTable]:
 
 
 NOTES = (
-    "Verified: every row's actions were replayed, and lead to its success, SPL and collisions. Intervals of 95 % are "
-    "over houses. Authors, ground truth and own process are what the authors declare.",
+    "Verified: every row's actions were replayed, and lead to its success, SPL and collisions; an episode that ended "
+    "with an error counts as a failure, without collisions. Intervals of 95 % are over houses. Authors, ground truth "
+    "and own process are what the authors declare.",
 )
 
 
@@ -148,7 +149,9 @@ def _cells(row: Row) -> list[Any]:
 
 
 def _verified(row: Row) -> str:
-    return "equal" if not row.report.within_tolerance else f"to {100 * row.report.tolerance_m:g} cm"
+    exactly = "equal" if not row.report.within_tolerance else f"to {100 * row.report.tolerance_m:g} cm"
+    errors = row.report.errors
+    return f"{exactly}, {errors} of {row.report.episodes} ended with an error" if errors else exactly
 
 
 def _split(row: Row) -> tuple[str, str, str]:
@@ -170,4 +173,4 @@ def _rank(row: Row) -> tuple[int, str, float, str]:
 
 def plain(text: str) -> str:
     """Returns text of somebody else for a Markdown page, where it is shown as it is: no link, HTML or emphasis."""
-    return re.sub(r"([\\`*_\[\]()!#~|])", r"\\\1", html.escape(text, quote=False)).replace("\\|", "|")
+    return re.sub(r"([\\`*_\[\]()!#~])", r"\\\1", html.escape(text, quote=False))

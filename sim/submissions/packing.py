@@ -14,16 +14,14 @@ from numpy.typing import NDArray
 from sim.analysis.comparison import Line, Run
 from sim.analysis.report.facts import command_of
 from sim.errors import ConfigError
+from sim.evaluation.results import WITHOUT_EFFECT
 from sim.reading import convert
 from sim.robot.config import PHYSICS_VERSION
 from sim.submissions.contents import FORMAT, PLACE_EVERY, Entry, Manifest, Result, Submission
 from sim.submissions.setting import setting_of
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 
-LEFT_OUT = (
-    "out", "workers", "executor", "address", "shard", "video", "view", "rerun", "rerun_save", "record", "labels",
-    "root",
-)  # fmt: skip
+LEFT_OUT = (WITHOUT_EFFECT - {"seed_key"}) | {"labels", "root"}
 """Entries of `config.json` that change no result, or name folders of the user."""
 
 

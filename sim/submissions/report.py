@@ -25,6 +25,8 @@ class Report(msgspec.Struct):
     equal: Count
     within_tolerance: Count
     different: Count
+    errors: Count
+    """Episodes that ended with an error: they count as failures, and have no actions to replay."""
     frames: Count
     is_first: bool
     nonstandard: Annotated[tuple[str, ...], msgspec.Meta(max_length=1000)]

@@ -60,8 +60,11 @@ def setting_of(config: Mapping[str, Any], *, where: str) -> Setting:
     tree = config.get("config")
     if not isinstance(tree, Mapping):
         raise ConfigError(f"{where}: its configuration has no field 'config'.")
-    parts = {name: _part(getattr(Setting(), name), tree.get(name), name, where) for name in PARTS}
-    setting = Setting(**parts, noise_name=_noise_name(tree["noise"]))
+    try:
+        parts = {name: _part(getattr(Setting(), name), tree.get(name), name, where) for name in PARTS}
+        setting = Setting(**parts, noise_name=_noise_name(tree["noise"]))
+    except RecursionError:
+        raise ConfigError(f"{where}: its configuration is nested too deeply.") from None
     if setting.robot.physics.timestep_s < LEAST_TIMESTEP_S:
         raise ConfigError(f"{where}: robot.physics.timestep_s is below {LEAST_TIMESTEP_S} s.")
     return setting

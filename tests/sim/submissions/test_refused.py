@@ -53,6 +53,10 @@ REFUSED: dict[str, tuple[Edit, str]] = {
     "a link that ends a Markdown link": (in_manifest(links=["https://x.org/a)<b>"]), "links"),
     "a name with control characters": (in_manifest(name="a\x1b[2J"), "name"),
     "a name that is a formula": (in_manifest(name="=1+1"), "name"),
+    "an agent that is a formula": (
+        together(in_inputs(agent="=1+1"), in_all_results(agent="=1+1"), in_config(agent="=1+1")),
+        "agent",
+    ),
     "a long description": (in_manifest(description="a" * 3000), "description"),
     "truth in the lines only": (in_inputs(uses_ground_truth=False), "uses_ground_truth True, the manifest has False"),
     "an agent that knows the truth": (
@@ -98,6 +102,14 @@ REFUSED: dict[str, tuple[Edit, str]] = {
     "a configuration that is too large": (in_config(extra="x" * (2 << 20)), "at most 1048576"),
     "an infinite number": (in_first_result(path_length=float("inf")), "not JSON"),
     "a success of 2": (in_first_result(success=2.0), "success"),
+    "a success without SPL": (in_first_result(spl=None), "has spl 0; its success"),
+    "sensors that are a number": (in_tree("", sensors=5), "sensors"),
+    "a segmentation that is a text": (in_config(segmentation="a"), "segmentation"),
+    "true images in a list of lists": (in_config(segmentation={"name": "mine", "truth": [[1]]}), "truth"),
+    "an error with actions": (
+        in_first_result(end_reason="error", success=0.0, spl=0.0, soft_spl=0.0),
+        "it cannot have actions",
+    ),
     "an error that succeeds": (in_first_result(end_reason="error"), "ended with an error and cannot be a success"),
     "a place on the moon": (lambda c: c["episodes"][0].update(places_m=[[4e8, 0.0]]), "places_m"),
 }
@@ -122,6 +134,14 @@ def _deep(good: bytes) -> bytes:
     return gzip.compress(gzip.decompress(good).replace(b'"config":{', nested, 1))
 
 
+def _deep_robot(good: bytes) -> bytes:
+    """Nested less than msgspec refuses, and more than functions can call themselves."""
+    nested = b'"robot":{"deep":' + b'{"a":' * 980 + b"1" + b"}" * 980 + b","
+    found = gzip.decompress(good).replace(b'"robot": {', nested, 1)
+    assert nested in found
+    return gzip.compress(found)
+
+
 DAMAGED: dict[str, tuple[Callable[[bytes], bytes], str]] = {
     "truncated": (lambda good: good[: len(good) // 2], "cannot be read"),
     "empty": (lambda good: b"", "cannot be read|is empty"),
@@ -129,6 +149,7 @@ DAMAGED: dict[str, tuple[Callable[[bytes], bytes], str]] = {
     "a changed byte": (lambda good: good[:-6] + bytes([good[-6] ^ 1]) + good[-5:], "cannot be read"),
     "no JSON": (lambda good: gzip.compress(b"{'a': 1}"), "is not JSON"),
     "a deep configuration": (_deep, "is nested too deeply"),
+    "a deep robot": (_deep_robot, "is nested too deeply"),
     "a bomb": (_bomb, "expands to more than 64 MB"),
     "too large": (lambda good: bytes(MAX_FILE_BYTES + 1), "is too large"),
     "a list": (lambda good: gzip.compress(b"[]"), "expected object"),

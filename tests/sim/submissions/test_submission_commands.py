@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import csv
 import json
 import shutil
@@ -86,6 +87,10 @@ def test_the_leaderboard_has_the_rows_that_hold(
     content = content_of(folder / "random.json.gz")
     content["manifest"] |= {"name": "Our <b>agent</b> [x](y) | z", "authors": ["A. *Author*"]}
     written(tmp_path / "submissions" / "good.json.gz", content)
+    erred = copy.deepcopy(content)
+    erred["episodes"][0] |= {"actions": "", "places_m": []}
+    erred["episodes"][0]["result"] |= {"end_reason": "error", "success": 0.0, "spl": 0.0, "soft_spl": 0.0}
+    written(tmp_path / "submissions" / "erred.json.gz", erred)
     content["episodes"][0]["result"]["collisions"] = 99
     written(tmp_path / "submissions" / "forged.json.gz", content)
     content = content_of(folder / "oracle.json.gz")
@@ -104,8 +109,9 @@ def test_the_leaderboard_has_the_rows_that_hold(
     table = (tmp_path / "table.md").read_text()
     assert r"Our &lt;b&gt;agent&lt;/b&gt; \[x\]\(y\)" in table
     assert "| equal |" in table
-    assert len([line for line in table.splitlines() if line.startswith("| ")]) == 3
-    (row,) = csv.DictReader((tmp_path / "table.csv").open())
+    assert "| equal, 1 of 3 ended with an error |" in table
+    assert len([line for line in table.splitlines() if line.startswith("| ")]) == 4
+    _, row = csv.DictReader((tmp_path / "table.csv").open())
     assert (row["name"], row["authors"]) == ("Our <b>agent</b> [x](y) | z", "A. *Author*")
     assert (row["noise"], row["episodes"], row["verified"]) == ("harsh", "3", "equal")
     assert (row["ground_truth_declared"], row["own_process_declared"], row["success"]) == ("yes", "no", "0.0")
@@ -122,7 +128,7 @@ def test_replicates_are_no_further_episodes_of_a_row(folder: Path) -> None:
         for e in submission.episodes
         for i in range(1, 41)
     ]
-    report = Report("0" * 64, 1, 120, 120, 0, 0, 0, is_first=True, nonstandard=(), tolerance_m=0.01)
+    report = Report("0" * 64, 1, 120, 120, 0, 0, 0, 0, is_first=True, nonstandard=(), tolerance_m=0.01)
     fake = msgspec.structs.replace(submission, episodes=copies)
     assert Row(Path("x"), fake, report).episodes == 3
 
