@@ -11,7 +11,8 @@ same options and this --out runs the missing episodes.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+import urllib.parse
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -55,11 +56,12 @@ def main(args: Args) -> int:
     console = display.make_console()
     merged = RunDirectory(out, merged_config(runs))
     try:
-        existing = {line["episode_id"]: line for line in merged.lines}
+        existing, added = {line["episode_id"]: line for line in merged.lines}, set[str]()
         for episode_id, line in lines.items():
             before = existing.get(episode_id)
             if before is None or (before["end_reason"] == "error" and before != line):  # a shard has run it again
                 merged.append(line)
+                added.add(episode_id)
             elif line["end_reason"] != "error" and without_times(before) != without_times(line):
                 raise _conflict(episode_id, out, line)
         for code in merged.config["codes"]:
@@ -68,8 +70,8 @@ def main(args: Args) -> int:
         display.print_results(console, merged.lines, summary)
     finally:
         merged.close()
-    for folder in folders:
-        copy_files(folder, out)
+    for run in runs:
+        copy_files(run, lines, added, out)
     stored = read_record(out / "config.json")  # the folder may hold an earlier merge of other episodes
     missing = max(stored["episodes"] - len(merged.lines), 0)
     message = f"{len(merged.lines)} episodes of {len(runs)} runs, {missing} missing; results in {out}"
@@ -144,12 +146,22 @@ def merged_config(runs: Sequence[Run]) -> dict[str, Any]:
     return config | ({"only": only} if any(of_each) else {})
 
 
-def copy_files(folder: Path, out: Path) -> None:
-    """Copies the files of single episodes that do not exist in the merged run."""
+def copy_files(run: Run, lines: Mapping[str, Line], added: Set[str], out: Path) -> None:
+    """Copies the files of a run's episodes that the merged run lacks, or has of an earlier result.
+
+    Args:
+        run: one of the merged runs.
+        lines: the merged lines; an episode that ended otherwise in this run, with an error, is not copied.
+        added: episodes whose line is new in the merged run.
+        out: folder of the merged run.
+    """
     for name in COPIED:
-        for file in sorted((folder / name).glob("*")):
-            target = out / name / file.name
-            if file.is_file() and not target.exists():
+        for file in sorted((run.path / name).glob("*")):
+            episode_id = urllib.parse.unquote(file.stem)
+            line, target = run.lines.get(episode_id), out / name / file.name
+            if line is None or without_times(line) != without_times(lines[episode_id]):
+                continue
+            if file.is_file() and (episode_id in added or not target.exists()):
                 write_atomically(target, read_bytes(file, what="File of a run", most=MAX_FILE_BYTES))
 
 

@@ -215,14 +215,14 @@ def replicate_spread(values: Sequence[Value], episodes: Sequence[str]) -> float 
 def _of_episodes(
     values: Sequence[Value], houses: Sequence[str], episodes: Sequence[str] | None
 ) -> tuple[NDArray[np.float64], list[str]]:
-    """Returns the values (n,) of episodes that have one, sorted by house, and the house of each."""
+    """Returns the values (n,) of episodes that have one, and the house of each, in an order that no value changes."""
     found: dict[tuple[str, object], list[float]] = {}
     keys: Sequence[object] = range(len(values)) if episodes is None else episodes
     for value, house, key in zip(values, houses, keys, strict=True):
         if value is not None:
             found.setdefault((house, key), []).append(float(value))
-    of = sorted((house, sum(each) / len(each)) for (house, _), each in found.items())
-    return np.array([value for _, value in of]), [house for house, _ in of]
+    of = sorted(found.items(), key=lambda item: (item[0][0], str(item[0][1])))
+    return np.array([sum(each) / len(each) for _, each in of]), [house for (house, _), _ in of]
 
 
 def _clusters(houses: Sequence[str]) -> list[str]:

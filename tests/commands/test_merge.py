@@ -83,6 +83,21 @@ def test_an_episode_in_two_runs_counts_once_if_they_agree_but_for_the_times(tmp_
         main(Args(runs=(third,), out=tmp_path / "both"))
 
 
+def test_the_files_of_an_episode_are_those_of_its_line(tmp_path: Path) -> None:
+    def with_file(name: str, line: dict[str, Any]) -> Path:
+        folder = write(tmp_path / name, [line], episodes=1)
+        (folder / "trajectories").mkdir()
+        (folder / "trajectories" / "e0.npz").write_text(name)
+        return folder
+
+    failed = with_file("failed", line_of(0, success=0.0, end_reason="error", error="lost"))
+    again = with_file("again", line_of(0))
+    for name, runs in (("both", (failed, again)), ("later", (failed,)), ("later", (failed, again))):
+        main(Args(runs=runs, out=tmp_path / name))
+    for name in ("both", "later"):
+        assert (tmp_path / name / "trajectories" / "e0.npz").read_text() == "again"
+
+
 def test_runs_with_other_options_are_never_merged(tmp_path: Path) -> None:
     first, second = write(tmp_path / "a", [line_of(0)]), write(tmp_path / "b", [line_of(1)], seed=1)
     with pytest.raises(ConfigError, match=r"has seed = 0, .* has 1: runs with different options"):

@@ -201,6 +201,14 @@ def test_a_ratio_of_medians_is_significant_when_its_interval_excludes_one() -> N
     assert twice == same
 
 
+def test_pairs_of_one_house_are_drawn_together_as_those_of_many() -> None:
+    rng = np.random.default_rng(0)
+    first, second = rng.uniform(50.0, 150.0, (2, 40)).tolist()
+    one = ratio_of_medians(first, second, ["h"] * 40)
+    many = ratio_of_medians(first, second, [f"h{i:02d}" for i in range(40)])
+    assert (one.low, one.high) == pytest.approx((many.low, many.high), rel=0.1)
+
+
 @pytest.mark.slow
 def test_the_interval_of_a_ratio_of_medians_holds_the_true_one_in_about_95_of_100_samples() -> None:
     rng, held, names = np.random.default_rng(0), 0, houses_of(20, 5)
