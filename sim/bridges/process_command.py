@@ -82,10 +82,11 @@ def files_of(name: str) -> list[Path]:
     folders = [Path(each) for each in ("", *os.environ.get("PYTHONPATH", "").split(os.pathsep))]
     files = [f"{module.replace('.', '/')}{end}" for module in modules for end in (".py", "/__main__.py")]
     paths = [Path(word) for word in words] + [folder / file for file in files for folder in folders]
-    return list(dict.fromkeys(path for path in paths if _is_file(path)))
+    return list(dict.fromkeys(path for path in paths if is_file(path)))
 
 
-def _is_file(path: Path) -> bool:
+def is_file(path: Path) -> bool:
+    """Returns whether a path is a file; False for text that can be no path, such as a long sentence."""
     try:
         return path.is_file()
     except (OSError, ValueError):

@@ -58,7 +58,12 @@ def episodes_of(setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
     try:
         split = env.split
         if options.house is None:
-            split_of_agent = replace(split, episodes=tuple(e for e in split.episodes if e.goal in known_goals(setup)))
+            known = known_goals(setup)
+            split_of_agent = replace(split, episodes=tuple(e for e in split.episodes if e.goal in known))
+            if not split_of_agent.episodes:
+                raise ConfigError(
+                    f"Split '{split.name}' has no episode with a goal that the agent knows: {', '.join(known)}."
+                )
             choose = _named_episodes if options.only else _first_episodes
             episodes = choose(split_of_agent, options)
         else:
@@ -95,6 +100,8 @@ def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
         i += 1
         if episode.goal in known and key not in found:
             found[key], last = episode, i
+    if not found:
+        raise ConfigError(f"House '{house}' has no episode with a goal that the agent knows: {', '.join(known)}.")
     if len(found) < options.episodes:
         raise ConfigError(
             f"House '{house}' has {len(found)} different episode{'' if len(found) == 1 else 's'} with this start and "

@@ -8,7 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from sim.bridges.process_command import files_of, is_process
+from sim.bridges.process_command import files_of, is_file, is_process
 from sim.composition.isolation import own_modules
 from sim.composition.options import RunOptions
 from sim.composition.segmenters import NetworkConfig, file_sha256, precision_of
@@ -88,18 +88,23 @@ def _files_in(tree: Any, name: str) -> Iterator[tuple[str, Path]]:
     if is_dataclass(tree) and not isinstance(tree, type):
         for field in fields(tree):
             yield from _files_in(getattr(tree, field.name), f"{name}.{field.name}")
-    elif isinstance(tree, (str, Path)) and Path(tree).suffix and Path(tree).is_file():
+    elif isinstance(tree, (str, Path)) and Path(tree).suffix and is_file(Path(tree)):
         yield name, Path(tree)
+
+
+_UNKNOWN = (
+    "distance_to_goal", "trapped", "gt_explored", "first_seen_step", "steps_to_first_sight", "area_seen_m2",
+    "area_per_metre", "stop_confidence", "stop_target_xy_m", "stop_target_to_goal_m", "stop_target_category",
+)  # fmt: skip
+"""Entries that are null in the line of an episode that could not be run to its end."""
 
 
 def error_line(setup: Setup, episode: Episode, error: str) -> dict[str, Any]:
     """Returns the result line of an episode that could not be run to its end."""
-    nothing = {"distance_to_goal": None, "shortest_path": episode.shortest_path_m, "trapped": None, "failure": None}
-    counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "simulated_s": 0.0, "wall_time_s": 0.0}
-    nothing |= dict.fromkeys(
-        ("gt_explored", "first_seen_step", "steps_to_first_sight", "area_seen_m2", "area_per_metre")
-    )
-    return identity_of(setup, episode) | nothing | counts | {"steps_per_s": 0.0} | broken_metrics(error)
+    counts = dict.fromkeys(("num_steps", "collisions", "touches"), 0)
+    amounts = dict.fromkeys(("path_length", "simulated_s", "wall_time_s", "steps_per_s"), 0.0)
+    found = {**dict.fromkeys(_UNKNOWN), **counts, **amounts, "shortest_path": episode.shortest_path_m}
+    return identity_of(setup, episode) | found | broken_metrics(error)
 
 
 def identity_of(setup: Setup, episode: Episode) -> dict[str, Any]:

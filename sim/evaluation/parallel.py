@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import reprlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -76,7 +77,7 @@ def ordered_map(
         executor: replaces the processes of this machine.
 
     Raises:
-        WorkersError: a worker died twice on the same item.
+        WorkersError: the worker of an item died twice.
         Exception: any exception that `function` raised.
     """
     executor = executor or Processes(workers if len(items) > 1 else 1)
@@ -123,5 +124,4 @@ class FunctionRunner:
 
 
 def _give_up(numbered: _NumberedItem, reason: str) -> Any:
-    del reason
-    raise WorkersError(f"The worker died twice on {numbered.item}.")
+    raise WorkersError(f"Item {numbered.number + 1}, {reprlib.repr(numbered.item)}: {reason}")

@@ -19,6 +19,7 @@ SEEN: list[set[str]] = []
 class SpyConfig:
     """An option that only this agent has."""
 
+    prompt: str = ""
     forwards: int = 2
 
 

@@ -171,16 +171,18 @@ class Env:
     def _first_episodes(self, count: int | None) -> list[Episode]:
         """Returns the first episodes with a goal of the data set; in a house file, episodes are drawn."""
         env, goals = self._env, self._conversion.goals
+        if count is not None and count < 1:
+            raise ConfigError(f"episodes must be at least 1, got {count}.")
         if not env.split.episodes:
             rngs = (np.random.default_rng([self._seed, i]) for i in range(count or DRAWN_EPISODES))
             names = ",".join(env.split.houses)
             drawn = [env.draw_episode(rng, episode_id=f"{names}_{i:04d}") for i, rng in enumerate(rngs)]
             return [self._known(episode) for episode in drawn]
         known = [each for each in env.split.episodes if each.goal in goals and env.goal in (None, each.goal)]
-        if count is not None and not 1 <= count <= len(known):
-            raise ConfigError(f"episodes must be 1 to {len(known)}, got {count}.")
         if not known:
             raise ConfigError(f"Split '{env.split.name}' has no episode with a goal of {', '.join(goals)}.")
+        if count is not None and count > len(known):
+            raise ConfigError(f"episodes must be 1 to {len(known)}, got {count}.")
         return known[:count]
 
     def _known(self, episode: Episode) -> Episode:

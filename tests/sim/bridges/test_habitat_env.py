@@ -167,6 +167,9 @@ def test_episodes_have_habitats_fields_and_come_in_the_order_of_the_split(split:
         np.testing.assert_allclose(env.sim.get_agent_state().position, episode.start_position, atol=1e-3)
     with pytest.raises(ConfigError, match="episodes must be 1 to 3, got 4"):
         Env(split=split, episodes=4)
+    for options in ({"split": split, "episodes": 0}, {"house": split / "sofa_room.xml", "episodes": -1}):
+        with pytest.raises(ConfigError, match="episodes must be at least 1, got"):
+            Env(**options)
 
 
 def test_a_run_of_an_agent_with_six_categories_has_only_their_episodes(split: Path) -> None:

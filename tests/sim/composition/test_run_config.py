@@ -11,12 +11,15 @@ import pytest
 from sim import cli
 from sim.analysis.report.facts import command_of
 from sim.composition.options import RunOptions
-from sim.composition.record import record_of
+from sim.composition.record import error_line, record_of
 from sim.composition.setup import resolve
 from sim.configuration import as_json, field_paths, with_fields
+from sim.episodes.splits import Episode
+from sim.geometry.pose import Pose
 from sim.run import entry
 from stubborn import detection, exploration
 from stubborn.detection.verification import FittedVerifier
+from tests.helpers.worlds import sofa_room
 
 SPLIT = {"name": "val", "version": "1", "sha256": "0"}
 
@@ -141,3 +144,20 @@ def test_the_command_that_a_report_prints_names_the_chosen_episodes() -> None:
     command = command_of(record_of(resolve(options), SPLIT))
     assert cli.parse(RunOptions, shlex.split(command)[2:]).only == options.only
     assert "--episodes" not in command
+
+
+def test_the_line_of_an_episode_that_could_not_begin_has_the_entries_of_every_other(tmp_path: Path) -> None:
+    house, out = tmp_path / "sofa_room.xml", tmp_path / "run"
+    house.write_text(sofa_room().spec.to_xml())
+    options = ["--agent", "random", "--house", str(house), "--episodes", "1", "--config", "task.max_steps=3"]
+    assert entry([*options, "--out", str(out)]) == 0
+    line = json.loads((out / "results.jsonl").read_text())
+    episode = Episode("sofa_room_0000", "sofa_room", "sofa", Pose(0.0, 0.0, 0.0), 2.0)
+    broken = error_line(resolve(RunOptions(agent="random", house=house)), episode, "no floor")
+    assert set(broken) == {*line, "error"}
+
+
+def test_a_long_text_among_the_options_of_an_agent_is_no_file() -> None:
+    prompt = "Find the object, then stop. " * 20 + "Do not say where it is.txt"
+    options = RunOptions(agent="tests.helpers.agents:SPY", semantics="gt", config=(f"agent.prompt={prompt}",))
+    assert record_of(resolve(options), SPLIT)["config"]["agent"]["prompt"] == prompt
