@@ -242,8 +242,8 @@ class _Client:
 def _from_habitat(given: Any) -> Any:
     """Returns the number of an action in one of Habitat's forms: a number, a name, or a dict with the key `action`."""
     inner: Any = given
-    while isinstance(inner, dict) and "action" in inner:
-        inner = inner["action"]
+    for _ in range(3):  # a dict may hold itself
+        inner = inner["action"] if isinstance(inner, dict) and "action" in inner else inner
     if isinstance(inner, (list, tuple)) and len(inner) == 1:
         inner = inner[0]
     if isinstance(inner, (bool, np.bool_)):

@@ -167,7 +167,7 @@ class RunDirectory:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             raise ConfigError(f"Another process is writing to --out '{self.path}'.") from None
-        self._created = [self.path / ".lock", *([] if existed else [self.path])]
+        self._folder_existed, self._made_config = existed, False
         self.healed = ""
         """A sentence on an incomplete last line that was removed; "" if every line was complete."""
         try:
@@ -180,12 +180,12 @@ class RunDirectory:
             raise
 
     def discard_if_empty(self) -> None:
-        """Removes what this process created if no line was written, so that the next start may have other options."""
-        if self.lines or self.path / "config.json" not in self._created:
+        """Removes what this process made if no line was written, so that the next start may have other options."""
+        if self.lines or not self._made_config:
             return
         for file in ("config.json", "results.jsonl", "summary.json", ".lock"):
             (self.path / file).unlink(missing_ok=True)
-        for folder in (self.path / "videos", self.path):
+        for folder in (self.path / "videos", *(() if self._folder_existed else (self.path,))):
             with contextlib.suppress(OSError):  # it does not exist, or holds other files
                 folder.rmdir()
 
@@ -366,7 +366,7 @@ class RunDirectory:
         if not file.exists():
             if (self.path / "results.jsonl").exists():
                 raise ConfigError(f"--out '{self.path}' has results but no config.json; choose another folder.")
-            self._created.append(file)
+            self._made_config = True
             _write_json(file, config)  # it is on the disk before the first line
             return
         existing = read_record(file)

@@ -105,7 +105,7 @@ def main(args: Args) -> int:
     names = _table_names(args)
     needed = {name: table_named(name).setups(args.agents, args.semantics) for name in names}
     setups = list(dict.fromkeys(setup for of_table in needed.values() for setup in of_table))
-    splits = [_episodes_of(each) for each in _each_split(args)]
+    splits = [episodes_of(each) for each in _each_split(args)]
     if args.minutes != 0.0:
         run_episodes(args, setups, splits, console)
     status = 0
@@ -379,7 +379,7 @@ def _each_split(args: Args) -> list[Args]:
     return [replace(args, split=name, splits=()) for name in args.splits or (args.split,)]
 
 
-def _episodes_of(args: Args) -> SplitEpisodes:
+def episodes_of(args: Args) -> SplitEpisodes:
     """Returns the first episodes of the split of the options; raises ConfigError if it has too few."""
     split = load_split(args.split)
     if args.episodes > len(split.episodes):

@@ -1,0 +1,45 @@
+"""Makes docs/tables/paper.md from the archive of result lines: the tables of the paper, its figures beside ours."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.console import Console
+
+from sim.commands.reproduce.paper_tables import PAPER_TABLES, table_named
+from sim.commands.reproduce.reproduce import Args, episodes_of, make_table
+from sim.errors import ConfigError
+
+PAPER = "paper.md"
+VERSION = "3.0.0"
+"""Version of the splits of the page's runs."""
+EPISODES = 200
+"""The first episodes of val, as far as all runs of a table have them."""
+ABOUT = """\
+# The paper's tables
+
+Columns that begin with *paper* are of Luo et al. (2022), from MP3D houses in Habitat; all others are measured here, in generated
+houses with contacts. Compare orders and differences of agents, not the figures. `gt` is ground-truth segmentation, `rednet`
+the network. `stubborn reproduce all --workers 2` runs all of it again, and resumes; the page is made by
+`python -m tools.research.result_tables` from the [result lines](splits-3.0.0.tar.gz).
+
+"""
+
+
+def paper_page(folder: Path) -> str:
+    """Returns the page.
+
+    Args:
+        folder: the unpacked archive; it receives the tables too.
+
+    Raises:
+        ConfigError: a run is missing.
+    """
+    part = episodes_of(Args(table="all", episodes=EPISODES, minutes=0.0, out=folder))
+    pages: list[str] = []
+    for name in PAPER_TABLES:
+        page = make_table(part, name, table_named(name).setups(), Console(quiet=True))
+        if page is None:
+            raise ConfigError(f"The archive of splits {VERSION} lacks a run of the paper's table '{name}'.")
+        pages.append(page)
+    return ABOUT + "\n".join(pages)
