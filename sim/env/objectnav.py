@@ -81,7 +81,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         scan: the lidar of the sensor `scan`.
         robot: body and drive.
         cached_houses: number of houses that stay loaded, those that were used last. To load a house takes most of a
-            second; a loaded house takes about 70 MB (docs/performance.md).
+            second; a loaded house takes 40 to 90 MB.
 
     Raises:
         ConfigError: an unknown split, goal, sensor, profile, noise, or field of a configuration.

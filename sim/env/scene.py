@@ -44,7 +44,7 @@ class Scene:
 class SceneCache:
     """A cache of the scenes used last: to compile a house and compute its free space takes most of a second.
 
-    It holds one scene by default, because a run goes house by house and a scene takes 40 to 80 MB.
+    It holds one scene by default, because a run goes house by house and a scene takes 40 to 90 MB.
 
     Args:
         make: makes the scene of a house.

@@ -328,9 +328,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn gallery --houses examples/my_house.xml --out runs/my_gallery": (
         "stubborn gallery --houses examples/my_house.xml --out {tmp}/gallery",
     ),
-    "stubborn houses generate --houses 4 --area-m2 90 --rooms gym --hazards glass --out runs/mine/houses": (_HOUSES,),
-    "stubborn episodes --split runs/mine/houses --episodes 20": (_HOUSES, _EPISODES),
-    f"{_RUN} --split runs/mine/houses --episodes 4": (
+    "stubborn houses generate --houses 4 --area-m2 90 --rooms gym --hazards glass --out runs/houses": (_HOUSES,),
+    "stubborn episodes --split runs/houses --episodes 20": (_HOUSES, _EPISODES),
+    f"{_RUN} --split runs/houses --episodes 4": (
         _HOUSES,
         _EPISODES,
         f"{_RUN} --split {{tmp}}/houses --episodes 1 --agent oracle --out {{tmp}}/run",
@@ -367,7 +367,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn views --split train --views 100000 --out views --workers 2": (
         "stubborn views --split train --views 1 --out {tmp}/views --workers 1",
     ),
-    "stubborn train segmentation --furniture runs/models --out runs/rednet": Only(
+    "stubborn train segmentation --furniture runs/models --hours 1.5 --out runs/rednet": Only(
         "renders 800 views at least; tests/commands/test_views_mix.py and test_train_segmentation.py try its parts"
     ),
     "stubborn views --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
@@ -405,7 +405,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _VIEWS,
         "stubborn evaluate objects --views {tmp}/views --out {tmp}/worst.png",
     ),
-    "stubborn evaluate mistakes runs/looked --out runs/false.png": (
+    "stubborn evaluate mistakes runs/mine --out runs/false.png": (
         f"{_RUN} {_SMALL} --agent tests.helpers.runners:make_quitter --episodes 1 --record --out {{tmp}}/looked",
         "stubborn evaluate mistakes {tmp}/looked --out {tmp}/false.png",
     ),
@@ -499,7 +499,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     f"{_RUN} --episodes 1000 --shard 1/2 --out runs/big": (_SHARDS[0],),
     f"{_RUN} --episodes 1000 --shard 2/2 --out runs/big": (_SHARDS[1],),
-    "stubborn teleop --goal sofa --out runs/me": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
+    "stubborn teleop --goal sofa --out runs/driven": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
     f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0": (
         f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0 {_SMALL} --semantics gt"
         f" --episodes 1 --out {{tmp}}/run",
@@ -551,7 +551,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f" {_SMALL} --semantics gt --episodes 1 --out {{tmp}}/run",
     ),
     f"{PYTHON} -m tools.research.compare_explorers --plans runs/plans/train --episodes 120"
-    " --explorers corners tour poni"
+    " --houses held-back-poni --explorers corners tour poni"
     " informed-tour poni:goal=wrong semexp": (
         *_PLANS,
         f"{PYTHON} -m tools.research.compare_explorers --plans {{tmp}}/plans --houses all --episodes 1"
@@ -578,11 +578,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _FOREIGN.replace("foreign", "scanned") + 'write_hm3d(Path("{tmp}/source"), pictures=False)\'',
         "stubborn import habitat {tmp}/source --out {tmp}/houses --pictures 0",
     ),
-    "stubborn import mesh flat.glb --out runs/flat": (
+    "stubborn import mesh flat.glb --out runs/flat_mesh": (
         _FOREIGN.replace("foreign", "scanned") + 'write_glb(Path("{tmp}/source"))\'',
         "stubborn import mesh {tmp}/source/flat.glb --out {tmp}/houses --pictures 0",
     ),
-    "stubborn houses check --house runs/mine/houses/house_00000.xml": (
+    "stubborn houses check --house runs/houses/house_00000.xml": (
         _HOUSES,
         "stubborn houses check --house {tmp}/houses/house_00000.xml --views 2",
     ),
