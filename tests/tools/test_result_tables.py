@@ -16,6 +16,7 @@ from scipy.special import stdtrit
 
 from sim.errors import ConfigError
 from tools.research import result_tables
+from tools.research.paper_page import PAPER, VERSION, paper_page
 from tools.research.resolution import houses_needed, resolution_record, shown_difference, variance_components
 from tools.research.result_archive import ARCHIVES, ArchivedRun, RunKey, newest, read_archive, read_archives
 from tools.research.result_definitions import RESOLVED, comparisons, page_tables
@@ -68,6 +69,15 @@ def test_the_shipped_csv_files_are_those_of_the_archive(runs: Mapping[RunKey, Ar
     assert read_csv(TABLES / RESOLUTION) == resolved
 
 
+def test_the_page_of_the_paper_is_that_of_the_archive(tmp_path: Path) -> None:
+    (archive,) = (each for each in ARCHIVES if VERSION in each.name)
+    read_archive(archive, tmp_path, lambda text: None)
+    assert (TABLES / PAPER).read_text(encoding="utf-8") == paper_page(tmp_path)
+    shutil.rmtree(tmp_path / "poni_rednet_none_val")
+    with pytest.raises(ConfigError, match="lacks a run of the paper's table 'overall'"):
+        paper_page(tmp_path)
+
+
 def test_holm_multiplies_the_smallest_p_value_by_their_number_and_keeps_the_order() -> None:
     assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
     assert holm([0.9, 0.8]) == [1.0, 1.0]
@@ -95,6 +105,7 @@ def test_check_reports_a_page_and_a_csv_file_that_differ(
 ) -> None:
     few = sorted({key for table in page_tables() for key in table.needed()}, key=lambda key: (key.run, key.episodes))
     monkeypatch.setattr(result_tables, "read_archives", lambda *_: runs)
+    monkeypatch.setattr(result_tables, "paper_page", lambda _: "The tables.\n")
     monkeypatch.setattr(result_tables, "row_keys", lambda _: few)
     monkeypatch.setattr(result_tables, "comparisons", lambda: [each for each in comparisons() if each.primary][:1])
     page = tmp_path / "results.md"

@@ -4,7 +4,8 @@
     python -m tools.research.result_tables --check    # exit status 1 where a file differs from what it would write
 
 `results.csv` has one row for each agent with its options, split and segmentation, `comparisons.csv` the paired
-differences, and `resolution.csv` the episodes that show a difference (`tools.research.resolution`). Shares are between
+differences, and `resolution.csv` the episodes that show a difference (`tools.research.resolution`). `paper.md` has the
+tables of the paper (`tools.research.paper_page`). Shares are between
 0 and 1; `_low` and `_high` are the 95 % interval (`sim.evaluation.intervals`). In `comparisons.csv` the column `family`
 names the primary comparisons of a table: `success_p_holm` and `spl_p_holm` are their p-values, corrected by Holm's
 method for all primary comparisons of the table in both metrics. All others are exploratory, and nothing is corrected
@@ -37,6 +38,7 @@ from sim.files import write_together
 from sim.reading import read_bytes, read_text
 from sim.reading import read_csv as read_table
 from sim.task.failures import CAUSES
+from tools.research.paper_page import PAPER, VERSION, paper_page
 from tools.research.resolution import paired_lines, resolution_record
 from tools.research.result_archive import ARCHIVES, ROOT, ArchivedRun, RunKey, read_archives
 from tools.research.result_definitions import (
@@ -90,11 +92,13 @@ def main(args: Args) -> int:
         pairs = list(comparisons())
         compared = with_families(pairs, [comparison_record(each, runs) for each in pairs])
         resolved = [resolution_record(each, runs) for each in pairs if each.table in RESOLVED and each.primary]
+        paper = paper_page(Path(folder) / f"splits-{VERSION}")
     page = fill_page(read_text(args.page, what="--page"), results)
     wanted = {
         args.tables / RESULTS: to_csv(results),
         args.tables / COMPARISONS: to_csv(compared),
         args.tables / RESOLUTION: to_csv(resolved),
+        args.tables / PAPER: paper,
         args.page: page,
     }
     unknown = unknown_quantities(page, results, compared)
