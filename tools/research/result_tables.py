@@ -4,15 +4,14 @@
     python -m tools.research.result_tables --check    # exit status 1 where a file differs from what it would write
 
 `results.csv` has one row for each agent with its options, split and segmentation, `comparisons.csv` the paired
-differences, and `resolution.csv` the episodes that show a difference (`tools.research.resolution`). `paper.md` has the
-tables of the paper (`tools.research.paper_page`). Shares are between
-0 and 1; `_low` and `_high` are the 95 % interval (`sim.evaluation.intervals`). In `comparisons.csv` the column `family`
-names the primary comparisons of a table: `success_p_holm` and `spl_p_holm` are their p-values, corrected by Holm's
-method for all primary comparisons of the table in both metrics. All others are exploratory, and nothing is corrected
-for their number. `_replicates_sd` is the standard deviation that chance alone gives the mean over one replicate of each
-episode (`stubborn run --replicates`). No episode is run. The page's tables stand between `<!-- table: NAME -->` and
-`<!-- end -->`; its sentences may quote only quantities with an interval, such as `94.0 [89.1, 98.0]`, that are in the
-two files.
+differences, and `resolution.csv` the episodes that show a difference (`tools.research.resolution`). `paper.md` has
+the tables of the paper (`tools.research.paper_page`). Shares are between 0 and 1; `_low` and `_high` are the 95 %
+interval (`sim.evaluation.intervals`). In `comparisons.csv` the column `family` names the primary comparisons of a
+table: `success_p_holm` and `spl_p_holm` are their p-values, corrected by Holm's method for all primary comparisons of
+the table in both metrics. All others are exploratory, and nothing is corrected for their number. `_replicates_sd` is
+the standard deviation that chance alone gives the mean over one replicate of each episode (`stubborn run
+--replicates`). No episode is run. The page's tables stand between `<!-- table: NAME -->` and `<!-- end -->`; its
+sentences may quote only quantities with an interval, such as `94.0 [89.1, 98.0]`, that are in the two files.
 """
 
 from __future__ import annotations
