@@ -89,9 +89,10 @@ class AgentConfig:
             )
         if self.recentre_every_steps < 1:
             raise ConfigError(f"AgentConfig.recentre_every_steps must be >= 1, got {self.recentre_every_steps}.")
-        if self.planning.reach_cells(self.cell_m) > MAX_REACH:
+        unseen_cells = math.ceil(self.planning.unseen_gap_m / self.cell_m) + 2
+        if max(self.planning.reach_cells(self.cell_m), unseen_cells) > MAX_REACH:
             raise ConfigError(
-                "PlanningConfig.dilation_m, clearance_m and preferred_clearance_m must be at most "
+                "PlanningConfig.dilation_m, clearance_m, preferred_clearance_m and unseen_gap_m must be at most "
                 f"{(MAX_REACH - 2) * self.cell_m:g} m with AgentConfig.cell_m = {self.cell_m:g}."
             )
 
@@ -105,7 +106,7 @@ class AgentConfig:
 
 
 class StubbornAgent:
-    """Maps obstacles, collisions and scores, explores towards corners, and approaches candidates of the goal."""
+    """Maps obstacles, collisions and scores, explores with its explorer, and approaches candidates of the goal."""
 
     def __init__(
         self,
@@ -252,6 +253,8 @@ class StubbornAgent:
         if cell is not None and self.seeker.judge(self.navmap, cell):
             return Action.STOP
         escape = self.untrap.next_action()
+        if escape is Action.MOVE_FORWARD and self._drop_is_ahead(pose):
+            escape = self.untrap.next_action()  # the next turn, to the side of the mode
         if escape is not None:
             return escape
         window = self._local_window(pose)
@@ -272,11 +275,17 @@ class StubbornAgent:
         return next_action(self.route, pose, self.config.planning)
 
     def _kept_from_drops(self, action: Action, pose: Pose) -> Action:
-        """Returns the action, or a turn in place of a forward over a drop: actions without a route ignore drops."""
-        if action is not Action.MOVE_FORWARD:
-            return action
+        """Returns the action, or a turn to the left in place of a forward over a drop.
+
+        Routes keep away from drops, but a forward without a route may lead over one.
+        """
+        over_drop = action is Action.MOVE_FORWARD and self._drop_is_ahead(pose)
+        return Action.TURN_LEFT if over_drop else action
+
+    def _drop_is_ahead(self, pose: Pose) -> bool:
+        """Returns whether a forward would lead over a drop on the map."""
         index, ahead = cells_near_segment(self.navmap.frame, pose.xy_m, pose.ahead(FORWARD_M), _TREAD_M)
-        return Action.TURN_LEFT if self.navmap.seen_drop[index][ahead].any() else action
+        return bool(self.navmap.seen_drop[index][ahead].any())
 
     def _inspect(self, approach: Approach, pose: Pose) -> Action:
         """Turns to the candidate at a viewpoint, then asks the seeker for a decision on it."""

@@ -45,7 +45,9 @@ _ROW_WORDS: Mapping[str, str] = MappingProxyType(
         "stubborn-i": "no measure against collisions",
         "stubborn-ii": "untrap moves only",
         "stubborn-iii": "untrap moves, and collisions in the map",
-        "stubborn-iv": "all measures, but visited ground does not count as free",
+        "stubborn-iv": (
+            "all measures, but no optimistic map where there is no path, and visited ground does not count as free"
+        ),
         "stubborn-v": "all measures; the same as stubborn",
     }
 )

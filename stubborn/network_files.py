@@ -58,8 +58,6 @@ class Family(Generic[ConfigT, NetworkT]):
     build: Callable[[ConfigT], NetworkT]
     made_by: str
     """The tool that writes such files."""
-    half: bool = True
-    """True: numbers are stored with 16 bits."""
 
     @property
     def key(self) -> str:
@@ -69,7 +67,7 @@ class Family(Generic[ConfigT, NetworkT]):
     def save(self, file: Path, model: NetworkT, metadata: Mapping[str, Any] | None = None) -> None:
         """Writes a network with some JSON values for the header; see `write_weights`."""
         size: Any = model.config
-        write_weights(file, model, {self.key: asdict(size)} | dict(metadata or {}), half=self.half)
+        write_weights(file, model, {self.key: asdict(size)} | dict(metadata or {}))
 
     def load(self, file: Path) -> tuple[NetworkT, dict[str, Any]]:
         """Returns the network of a file, in evaluation mode, and the rest of the file's header.
@@ -87,20 +85,19 @@ class Family(Generic[ConfigT, NetworkT]):
         return with_weights(file, tensors, lambda: self.build(config)), header
 
 
-def write_weights(file: Path, model: nn.Module, header: Mapping[str, Any], *, half: bool = True) -> None:
-    """Writes the tensors of a network.
+def write_weights(file: Path, model: nn.Module, header: Mapping[str, Any]) -> None:
+    """Writes the tensors of a network, floating-point numbers with 16 bits.
 
     Args:
         file: it is replaced in one step.
         model: the network.
         header: values that JSON can hold.
-        half: True stores numbers with 16 bits.
 
     Raises:
         ConfigError: a number is not finite in the file, or the file cannot be written.
     """
     tensors = {
-        name: (tensor.half() if half and tensor.is_floating_point() else tensor).detach().contiguous().cpu()
+        name: (tensor.half() if tensor.is_floating_point() else tensor).detach().contiguous().cpu()
         for name, tensor in model.state_dict().items()
     }
     for name, tensor in tensors.items():

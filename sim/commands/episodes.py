@@ -98,8 +98,6 @@ def main(args: Args) -> int:
     """
     args = with_split(args)
     files, recipe = house_names(folder_of(args)), recipe_of(args)
-    if (args.episodes is not None and args.episodes < 1) or args.workers < 1:
-        raise ConfigError("--episodes and --workers must be at least 1.")
     began_s = time.perf_counter()
     goals_found = ordered_map(functools.partial(_find_asks, args), list(files), workers=args.workers)
     goals: dict[str, HouseAsks] = {}

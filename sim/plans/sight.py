@@ -23,14 +23,14 @@ class MapLayers(Protocol):
     """The layers that a look changes: those of `stubborn.mapping.navmap.NavMap` with these names, on `frame`."""
 
     frame: GridFrame
-    frames_in_view: NDArray[np.uint16]
+    frames_in_view: NDArray[np.uint32]
     obstacle_evidence: NDArray[np.int8]
     seen_obstacle: NDArray[np.bool_]
     seen_at_eye_level: NDArray[np.bool_]
     score_sum: NDArray[np.float32]
     score_max: NDArray[np.float32]
     other_max: NDArray[np.float32]
-    found_step: NDArray[np.int16]
+    found_step: NDArray[np.int32]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -26,10 +26,6 @@ from sim.robot.odometry import Odometry
 
 BLOCKED_M = 0.0025
 """The robot is blocked if it has moved by less than this, or if a turn on the spot is blocked as `DriveConfig` says."""
-PUSHING_M_S = 0.05
-"""A command of at least this speed pushes ..."""
-PUSHING_RAD_S = 0.15
-"""... and so does a turn on the spot of at least this rate."""
 
 
 @dataclass(frozen=True)
@@ -40,23 +36,6 @@ class Velocity:
     """Forward; negative: backward."""
     rate_rad_s: float
     """Turn rate, counter-clockwise."""
-
-    @property
-    def pushes_forward(self) -> bool:
-        """Whether the robot must move if nothing blocks it."""
-        return abs(self.speed_m_s) >= PUSHING_M_S
-
-    @property
-    def pushes(self) -> bool:
-        """Whether the robot must move or turn if nothing blocks it."""
-        return self.pushes_forward or abs(self.rate_rad_s) >= PUSHING_RAD_S
-
-    @property
-    def nearest_action(self) -> Action:
-        """The discrete action that is most like it, for records of episodes."""
-        if self.pushes_forward or self.rate_rad_s == 0.0:
-            return Action.MOVE_FORWARD
-        return Action.TURN_LEFT if self.rate_rad_s > 0.0 else Action.TURN_RIGHT
 
 
 class VelocityDrive:
@@ -103,12 +82,12 @@ class VelocityDrive:
         contacts = self._log.contacts(self._tick_s)
         if begins:
             self._log.sample(ticks, all_parts=True)
-            side = math.copysign(1.0, command.speed_m_s) if command.pushes_forward else 0.0
+            side = math.copysign(1.0, command.speed_m_s) if self._pushes_forward(command) else 0.0
             direction = side * math.cos(yaw), side * math.sin(yaw)
             contacts = self._log.contacts_of_aborted(self._tick_s, ticks - self._touch_ticks, direction)
             self._blocked = self._blocked and any(contact.stopped for contact in contacts)  # else wheels that spin
         return Motion(
-            action=command.nearest_action,
+            action=self._nearest_action(command),
             displacement_m=math.hypot(x - x0, y - y0),
             yaw_change_rad=wrap_angle(yaw - yaw0),
             duration_s=ticks * self._tick_s,
@@ -137,12 +116,23 @@ class VelocityDrive:
 
     def _is_blocked(self, command: Velocity) -> bool:
         """Returns whether the command has pushed for long enough without an effect."""
-        if not command.pushes:
+        pushes_forward = self._pushes_forward(command)
+        if not pushes_forward and abs(command.rate_rad_s) < self._drive.pushing_rad_s:
             self._moves.clear()
         if len(self._moves) < (self._moves.maxlen or 0):
             return False
         moved_m, turned_rad = (sum(each) for each in zip(*self._moves, strict=True))
-        return moved_m < BLOCKED_M if command.pushes_forward else turned_rad < self._drive.blocked_rad
+        return moved_m < BLOCKED_M if pushes_forward else turned_rad < self._drive.blocked_rad
+
+    def _pushes_forward(self, command: Velocity) -> bool:
+        """Returns whether a command must move the robot if nothing blocks it."""
+        return abs(command.speed_m_s) >= self._drive.pushing_m_s
+
+    def _nearest_action(self, command: Velocity) -> Action:
+        """Returns the discrete action that is most like a command, for records of episodes."""
+        if self._pushes_forward(command) or command.rate_rad_s == 0.0:
+            return Action.MOVE_FORWARD
+        return Action.TURN_LEFT if command.rate_rad_s > 0.0 else Action.TURN_RIGHT
 
 
 def _towards(value: float, goal: float, step: float) -> float:

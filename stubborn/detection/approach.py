@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Int
 
+from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
 from stubborn.detection.viewpoints import LastResort, ViewpointFinder, Viewpoints
 from stubborn.mapping.masks import nearest
@@ -93,6 +94,11 @@ def approach_to(
     end = here if route is None else route_end(route, pose)
     cell = int(nearest_row[end]), int(nearest_col[end])
     return Approach(route, _bearing_rad(view, cell, pose), cell, viewpoints.near_enough)
+
+
+def on_map(approach: Approach, part: Window) -> Approach:
+    """Returns an approach on a part of the map, with its cell relative to the whole map."""
+    return replace(approach, cell=(approach.cell[0] + part.rows.start, approach.cell[1] + part.cols.start))
 
 
 def _bearing_rad(view: NavMap, cell: tuple[int, int], pose: Pose) -> float:

@@ -6,14 +6,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from jaxtyping import Float64
-
-from sim.interface import ConfigError
 
 
 class Features(NamedTuple):
@@ -48,22 +46,11 @@ class NaiveBayes:
     """Per class and feature."""
 
     @classmethod
-    def from_dict(cls, content: Mapping[str, Any]) -> NaiveBayes:
-        """Returns the classifier with `prior` (2), `mean` and `variance` (2 lists of 4).
-
-        Raises:
-            ConfigError: a shape is wrong, or a prior or variance is not positive.
-        """
-        prior, mean, variance = (np.array(content[key], np.float64) for key in ("prior", "mean", "variance"))
-        wanted = (2, len(Features._fields))
-        if prior.shape != (2,) or mean.shape != wanted or variance.shape != wanted:
-            raise ConfigError(
-                f"A naive Bayes needs prior (2,), mean and variance {wanted}, "
-                f"got {prior.shape}, {mean.shape} and {variance.shape}."
-            )
-        if not (prior > 0).all() or not (variance > 0).all():
-            raise ConfigError("A naive Bayes needs priors and variances > 0.")
-        return cls(np.log(prior), mean, variance)
+    def of(
+        cls, prior: Sequence[float], mean: Sequence[Sequence[float]], variance: Sequence[Sequence[float]]
+    ) -> NaiveBayes:
+        """Returns the classifier with a prior per class, and a mean and a variance per class and feature."""
+        return cls(np.log(prior), np.array(mean, np.float64), np.array(variance, np.float64))
 
     def probability(self, features: Sequence[float]) -> float:
         """Returns the probability that the candidate is true, in [0, 1]."""

@@ -52,8 +52,8 @@ class LookConfig:
     apart_rad: float = math.radians(45.0)
     """Directions that differ by less than this count as one view."""
     step_back_steps: int = 100
-    """If at least this many steps are left, a track above the bar is looked at first when it was seen only from nearer
-    than 1.2 m, where the image does not show the whole object."""
+    """If at least this many steps are left, a track above the bar that is nearer than 1.2 m is looked at first when it
+    was never seen whole from 1.2 to 3 m: from nearer, the image does not show the whole object."""
     per_metre: float = 0.03
     """For each metre that a track is farther away, it must be this much more probable to come first."""
     steps_per_metre: float = 6.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -12,7 +12,7 @@ from jaxtyping import Bool
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
 from sim.interface import MAX_STEPS, CameraModel, Observation, RobotModel, Segmenter
-from stubborn.detection.approach import Approach, approach_on
+from stubborn.detection.approach import Approach, approach_on, on_map
 from stubborn.detection.candidates import CandidateParts
 from stubborn.detection.classifiers import Features
 from stubborn.detection.distances import StopDistances, TargetConfig
@@ -229,10 +229,10 @@ class TargetSeeker:
         for choice in self._choices(candidates, acceptable, window, whole, step):
             found = approach_on(navmap.view(choice.part), choice.candidates, pose, self._viewpoints, choice.last_resort)
             if found is not None:
-                row, col = found.cell[0] + choice.part.rows.start, found.cell[1] + choice.part.cols.start
+                found = on_map(found, choice.part)
                 self._far = choice.part is whole
-                self._pursued = (row, col) if choice.acceptable else None
-                return replace(found, cell=(row, col))
+                self._pursued = found.cell if choice.acceptable else None
+                return found
         self.postpone(navmap, step)
         return None
 

@@ -4,32 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Bool, Float32, Float64
 
 from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
-from sim.interface import (
-    FORWARD_M,
-    TURN_RAD,
-    ConfigError,
-    Observation,
-    wrap_angle,
-)
-from stubborn.detection.approach import Approach, approach_from_here, approach_on
+from sim.interface import FORWARD_M, ConfigError, Observation
+from stubborn.detection.approach import Approach, approach_from_here, approach_on, on_map
 from stubborn.detection.fusion import fusion_for
 from stubborn.detection.look import LookConfig, Verdicts, look_at
 from stubborn.detection.seeker import SeekerParts
 from stubborn.detection.tracks import TrackConfig, Tracks
 from stubborn.detection.viewpoints import LastResort, ViewpointFinder
+from stubborn.mapping.collision_marks import STAYED_M, pushed_without_moving
 from stubborn.mapping.mapper import Sighting
 from stubborn.mapping.masks import nearest
 from stubborn.mapping.navmap import NavMap
-
-_STAYED_M = 0.4 * FORWARD_M
-"""A robot that moved less than this in a forward was stopped by something."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -340,12 +332,6 @@ class TrackSeeker:
             result[index] |= near
         return result
 
-    def _drive_in(
-        self, navmap: NavMap, window: Window, pose: Pose, tracks: list[int], resort: LastResort
-    ) -> Approach | None:
-        """Returns the approach to some tracks; see `_approach`."""
-        return self._approach(navmap, window, pose, self.cells_of(navmap, tracks), resort)
-
     def _approach(
         self, navmap: NavMap, window: Window, pose: Pose, cells: Bool[np.ndarray, "rows cols"], resort: LastResort
     ) -> Approach | None:
@@ -354,7 +340,7 @@ class TrackSeeker:
             last = resort if part is not window else LastResort.NONE
             found = approach_on(navmap.view(part), cells[part.index], pose, self.finder, last)
             if found is not None:
-                return _on_map(found, part)
+                return on_map(found, part)
         return None
 
     def _stop_here(self, navmap: NavMap, window: Window, pose: Pose, tracks: list[int]) -> Approach | None:
@@ -365,7 +351,7 @@ class TrackSeeker:
         if not self._pushes_on():
             return None
         found = approach_from_here(navmap.view(window), self.cells_of(navmap, tracks)[window.index], pose, self.finder)
-        return None if found is None else _on_map(found, window)
+        return None if found is None else on_map(found, window)
 
     def _pushes_on(self) -> bool:
         """Returns True if something stops the robot here."""
@@ -374,9 +360,9 @@ class TrackSeeker:
     def _count_pushes(self, pose: Pose) -> None:
         """Counts the steps in which the robot drove but did not move; a move restarts the count."""
         before, self._approached_from = self._approached_from, pose
-        if before is None or pose.distance_to(before) >= _STAYED_M:
+        if before is None or pose.distance_to(before) >= STAYED_M:
             self._pushes = 0
-        elif self._drove and abs(wrap_angle(pose.yaw_rad - before.yaw_rad)) < TURN_RAD / 2:
+        elif self._drove and pushed_without_moving(before, pose):
             self._pushes += 1
 
     def _look(self, navmap: NavMap, window: Window, pose: Pose, track: int) -> Approach | None:
@@ -386,13 +372,13 @@ class TrackSeeker:
         """
         look, likely = self.config.look, self.probability[track] >= self.config.look.straight
         tracks, cells = self._of_episode(), self.cells_of(navmap, [track])
-        seen_from, middle_xy_m = tracks.evidence.near_sectors(track), tracks.track(track).middle_xy_m
+        seen_from, middle_xy_m = tracks.evidence.near_sectors(track), tracks.middle_xy_m(track)
         looked_from = seen_from | self._hidden.get(track, False)
         away_m = math.hypot(middle_xy_m[0] - pose.x_m, middle_xy_m[1] - pose.y_m)
         longest_m = away_m + look.detour_m
         looks = self.verdicts.looks.get(track, 0)
         if likely and looks == 0:
-            found = self._drive_in(navmap, window, pose, [track], LastResort.NONE)
+            found = self._approach(navmap, window, pose, cells, LastResort.NONE)
             if found is not None and found.length_m <= longest_m:
                 return found
         for part in (window, self._known(navmap)):
@@ -401,11 +387,11 @@ class TrackSeeker:
                 continue
             found = look_at(view, nearest(mask), middle_xy_m, looked_from, pose, self.finder, look)
             if found is not None and found.length_m <= longest_m:
-                return _on_map(found, part)
+                return on_map(found, part)
         if looks or (seen_from.any() and not likely):
             self.verdicts.give_up(track)
             return None
-        found = self._drive_in(navmap, window, pose, [track], LastResort.VERIFY)
+        found = self._approach(navmap, window, pose, cells, LastResort.VERIFY)
         if found is not None and found.length_m <= longest_m:
             return found
         if self.probability[track] >= self.verdicts.bar:
@@ -416,7 +402,7 @@ class TrackSeeker:
     def _note_hidden(self, track: int) -> None:
         """Remembers that something hides a track from here, if this look at it did not show it."""
         tracks = self._of_episode()
-        evidence, (x_m, y_m) = tracks.evidence, tracks.track(track).middle_xy_m
+        evidence, (x_m, y_m) = tracks.evidence, tracks.middle_xy_m(track)
         bearing_rad = math.atan2(self._pose.y_m - y_m, self._pose.x_m - x_m)
         sector = int(evidence.sector_of(np.array([bearing_rad]))[0])
         if not evidence.near_sectors(track)[sector]:
@@ -425,11 +411,11 @@ class TrackSeeker:
     def _leave_spot(self) -> None:
         """Lets the doubtful tracks around the pursued one wait too: an object may reappear as another track."""
         if self.pursued is not None:
-            place = self._of_episode().track(self.pursued).middle_xy_m
+            place = self._of_episode().middle_xy_m(self.pursued)
             self._left_spots.append((*place, self.step + self.target.retry_after_steps))
 
     def _is_at_left_spot(self, track: int) -> bool:
-        x_m, y_m = self._of_episode().track(track).middle_xy_m
+        x_m, y_m = self._of_episode().middle_xy_m(track)
         return any(
             self.step < until and math.hypot(x_m - spot_x_m, y_m - spot_y_m) <= self.config.look.patience_m
             for spot_x_m, spot_y_m, until in self._left_spots
@@ -451,8 +437,3 @@ class TrackSeeker:
     def _of_episode(self) -> Tracks:
         assert self.tracks is not None, "observe comes first"
         return self.tracks
-
-
-def _on_map(approach: Approach, part: Window) -> Approach:
-    """Returns an approach on a part of the map, with its cell relative to the whole map."""
-    return replace(approach, cell=(approach.cell[0] + part.rows.start, approach.cell[1] + part.cols.start))

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float32, Int, Int16
@@ -81,31 +80,6 @@ class TrackConfig:
             )
 
 
-class Track(NamedTuple):
-    """One tracked object."""
-
-    number: int
-    probability: Float32[np.ndarray, " classes"]
-    """Probability of each category of `MPCAT40[1:]`."""
-    bottom_m: float
-    """Height of its lowest voxel."""
-    top_m: float
-    """Height of its highest voxel's upper side."""
-    extent_m: tuple[float, float]
-    """Extent in x and y of the rectangle around it, seen from above."""
-    middle_xy_m: tuple[float, float]
-
-    @property
-    def category(self) -> str:
-        """The most probable category."""
-        return MPCAT40[1 + int(np.argmax(self.probability))]
-
-    @property
-    def off_the_floor(self) -> bool:
-        """True for an object that hangs on a wall or stands on another one."""
-        return self.bottom_m > 0.3
-
-
 class Tracks:
     """All objects seen in an episode."""
 
@@ -174,14 +148,10 @@ class Tracks:
         middle = 0.5 * (self._low[tracks] + self._high[tracks] + 1) * self._edge_m
         return self.frame.origin_xy_m[0] + middle[:, 1], self.frame.origin_xy_m[1] + middle[:, 0]
 
-    def track(self, number: int) -> Track:
-        """Returns a track by its number, 1 to `count`."""
+    def middle_xy_m(self, number: int) -> tuple[float, float]:
+        """Returns the middle of the rectangle of one track."""
         (x_m,), (y_m,) = self.middles(np.array([number]))
-        low, high = self._low[number], self._high[number] + 1
-        rows_m, cols_m, _ = (high - low) * self._edge_m
-        bottom_m, top_m = low[2] * self._edge_m, high[2] * self._edge_m
-        probability = self.evidence.probability[number]
-        return Track(number, probability, float(bottom_m), float(top_m), (float(cols_m), float(rows_m)), (x_m, y_m))
+        return float(x_m), float(y_m)
 
     def near(self, number: int, others: Int[np.ndarray, " n"], gap_voxels: int) -> Int[np.ndarray, " m"]:
         """Returns those of `others` whose box is at most `gap_voxels` voxels from the box of track `number`."""

@@ -7,10 +7,9 @@ and their quality on held-out houses. A category that is not in the file uses th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Annotated, Any, Protocol, runtime_checkable
 
 import msgspec
@@ -23,10 +22,8 @@ FOLDER = Path(__file__).parent / "verifiers"
 """Folder of the shipped parameters."""
 DEFAULT_KIND = "rednet"
 """The kind whose parameters are used for kinds without parameters of their own, because it is a network."""
-METHODS: Mapping[str, Callable[[Mapping[str, Any]], Classifier]] = MappingProxyType(
-    {"naive-bayes": NaiveBayes.from_dict}
-)
-"""Classifiers by name."""
+NAIVE_BAYES = "naive-bayes"
+"""The method of the paper."""
 ACCEPT_ALL = "none"
 """The method that accepts every candidate."""
 _Variance = Annotated[float, msgspec.Meta(gt=0.0, le=1e12)]
@@ -43,12 +40,16 @@ class _NaiveBayes(msgspec.Struct):
     mean: tuple[_Four, _Four]
     variance: tuple[_Variances, _Variances]
 
+    def classifier(self) -> NaiveBayes:
+        """Returns the classifier with these parameters."""
+        return NaiveBayes.of(self.prior, self.mean, self.variance)
+
 
 class _Method(msgspec.Struct):
     """Parameters of one method."""
 
-    pooled: dict[str, Any]
-    categories: dict[str, dict[str, Any]]
+    pooled: _NaiveBayes
+    categories: dict[str, _NaiveBayes]
 
 
 class _File(msgspec.Struct):
@@ -108,27 +109,21 @@ class FittedVerifier:
     may_refuse = True
 
     @classmethod
-    def read(cls, file: Path, method: str = "naive-bayes") -> FittedVerifier:
+    def read(cls, file: Path, method: str = NAIVE_BAYES) -> FittedVerifier:
         """Returns the verifier in a file that `stubborn train verifier` wrote.
 
         Raises:
             ConfigError: there is no such method, or the file is missing or holds something else.
         """
-        if method not in METHODS:
-            raise ConfigError(f"Unknown verification '{method}'. Available: {', '.join((*METHODS, ACCEPT_ALL))}.")
-        make, where = METHODS[method], f"Verifier file '{file}'"
+        if method != NAIVE_BAYES:
+            raise ConfigError(f"Unknown verification '{method}'. Available: {NAIVE_BAYES}, {ACCEPT_ALL}.")
+        where = f"Verifier file '{file}'"
         methods = read_json(file, _File, what="Verifier file").methods
         if method not in methods:
             raise ConfigError(f"{where} has no method '{method}'. It has: {', '.join(methods) or 'none'}.")
         content = convert(methods[method], _Method, where=f"{where}, method '{method}'")
-        checked = {"pooled": content.pooled, **content.categories}
-        for name, each in checked.items():
-            convert(each, _NaiveBayes, where=f"{where}, method '{method}', '{name}'")
-        try:
-            own = {name: make(each) for name, each in content.categories.items()}
-            return cls(own, make(content.pooled))
-        except ConfigError as error:
-            raise ConfigError(f"{where} is not what `stubborn train verifier` writes: {error}") from None
+        own = {name: each.classifier() for name, each in content.categories.items()}
+        return cls(own, content.pooled.classifier())
 
     def probability(self, goal: str, features: Features) -> float:
         """Returns the probability in [0, 1] that a candidate for this goal is true."""
@@ -150,13 +145,13 @@ def has_parameters(kind: str) -> bool:
     return (FOLDER / f"{kind}.json").is_file()
 
 
-def verifier_for(spec: SegmenterSpec, file: Path | None = None, method: str = "naive-bayes") -> Verifier:
+def verifier_for(spec: SegmenterSpec, file: Path | None = None, method: str = NAIVE_BAYES) -> Verifier:
     """Returns the verifier of a kind of segmentation: the shipped one, or `AcceptAll` where no verification is needed.
 
     Args:
         spec: specification of its segmenter; a kind without parameters gets those of `DEFAULT_KIND`.
         file: parameters in place of the shipped ones.
-        method: one of `METHODS`, or `ACCEPT_ALL`.
+        method: `NAIVE_BAYES` or `ACCEPT_ALL`.
 
     Raises:
         ConfigError: the file holds no parameters, or there is no such method.

@@ -12,13 +12,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float, Float64, Int, Shaped
+from jaxtyping import Bool, Float, Float64, Shaped
 from sklearn.model_selection import GroupKFold
 from sklearn.naive_bayes import GaussianNB
 
 from sim.interface import GOAL_CATEGORIES, ConfigError
-from stubborn.detection.classifiers import Features
-from stubborn.detection.verification import METHODS, FittedVerifier
+from stubborn.detection.classifiers import Features, NaiveBayes
+from stubborn.detection.verification import NAIVE_BAYES, FittedVerifier
 
 FOLDS = 5
 SAME_PLACE_M = 2.0
@@ -32,8 +32,6 @@ class Candidates(NamedTuple):
 
     goals: Shaped[np.ndarray, " n"]
     """Goal category."""
-    episodes: Int[np.ndarray, " n"]
-    """Number of the episode; its candidates are in the order in which the robot met them."""
     houses: Shaped[np.ndarray, " n"]
     """Name of the house."""
     features: Float64[np.ndarray, "n 4"]
@@ -43,7 +41,7 @@ class Candidates(NamedTuple):
 
 
 def fit(lines: Sequence[Mapping[str, Any]], least_of_either: int) -> dict[str, Any]:
-    """Returns the counts of candidates and, for each method, its parameters and its quality on held-out episodes.
+    """Returns the counts of candidates, the parameters of the naive Bayes, and its quality on held-out houses.
 
     Args:
         lines: lines of the log of `stubborn train verifier`; those of failed episodes (0 steps) are left out.
@@ -67,28 +65,25 @@ def fit(lines: Sequence[Mapping[str, Any]], least_of_either: int) -> dict[str, A
         "episodes": len(lines),
         "least_of_either": least_of_either,
         "candidates": {goal: {"false": pair[0], "true": pair[1]} for goal, pair in counts.items()},
-        "methods": {method: _fitted(method, table, separate, len(lines)) for method in METHODS},
+        "methods": {NAIVE_BAYES: _fitted(table, separate)},
     }
 
 
-def _fitted(method: str, table: Candidates, separate: Sequence[str], episodes: int) -> dict[str, Any]:
-    """Returns the quality and the parameters of one method, in a log of `episodes` episodes."""
-    probability = _left_out(method, table, separate)
-    quality = judge(probability, table.truth)
-    return {"left_out": quality} | _classifiers(method, table.goals, table.features, table.truth, separate)
+def _fitted(table: Candidates, separate: Sequence[str]) -> dict[str, Any]:
+    """Returns the quality of the classifiers and their parameters."""
+    quality = judge(_left_out(table, separate), table.truth)
+    return {"left_out": quality} | _classifiers(table.goals, table.features, table.truth, separate)
 
 
 def _classifiers(
-    method: str,
     goals: Shaped[np.ndarray, " n"],
     features: Float64[np.ndarray, "n 4"],
     truth: Bool[np.ndarray, " n"],
     separate: Sequence[str],
 ) -> dict[str, Any]:
-    """Returns the parameters of one method as `stubborn.detection.verification` reads them.
+    """Returns the parameters of the classifiers as `stubborn.detection.verification` reads them.
 
     Args:
-        method: one of `METHODS`.
         goals: goal of each candidate.
         features: features of each candidate.
         truth: True for each true candidate; both values must occur.
@@ -109,21 +104,21 @@ def _naive_bayes(features: Float64[np.ndarray, "n 4"], truth: Bool[np.ndarray, "
     }
 
 
-def _left_out(method: str, table: Candidates, separate: Sequence[str]) -> Float64[np.ndarray, " n"]:
+def _left_out(table: Candidates, separate: Sequence[str]) -> Float64[np.ndarray, " n"]:
     """Returns the probability of each candidate by a classifier that was fitted to other houses.
 
     It is NaN where the other houses hold only true or only false candidates.
     """
-    goals, _, houses, features, truth = table
-    make = METHODS[method]
+    goals, houses, features, truth = table
     probability = np.full(len(truth), np.nan)
     if len(np.unique(houses)) < 2:
         return probability
     for train, test in GroupKFold(n_splits=min(FOLDS, len(np.unique(houses)))).split(features, truth, houses):
         if not 0 < truth[train].sum() < len(train):
             continue
-        content = _classifiers(method, goals[train], features[train], truth[train], separate)
-        pooled, own = make(content["pooled"]), {goal: make(each) for goal, each in content["categories"].items()}
+        content = _classifiers(goals[train], features[train], truth[train], separate)
+        pooled = NaiveBayes.of(**content["pooled"])
+        own = {goal: NaiveBayes.of(**each) for goal, each in content["categories"].items()}
         for i in test:
             probability[i] = own.get(str(goals[i]), pooled).probability(Features(*features[i]))
     return probability
@@ -175,7 +170,7 @@ def judge_by_category(lines: Sequence[Mapping[str, Any]], verifier: FittedVerifi
 
     Candidates of failed episodes (0 steps) are left out.
     """
-    goals, _, _, features, truth = _candidates(_completed(lines))
+    goals, _, features, truth = _candidates(_completed(lines))
     rows = zip(goals.tolist(), features.tolist(), strict=True)
     probability = np.array([verifier.probability(goal, Features(*row)) for goal, row in rows], np.float64)
     bar = verifier.least_probability
@@ -190,12 +185,11 @@ def _completed(lines: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
 
 def _candidates(lines: Sequence[Mapping[str, Any]]) -> Candidates:
     """Returns the candidates of all lines, without repetitions."""
-    met = [(number, line, each) for number, line in enumerate(lines) for each in _without_repetitions(line)]
-    goals = np.array([line["goal"] for _, line, _ in met], np.str_)
-    episodes = np.array([number for number, _, _ in met], np.intp)
-    houses = np.array([line["house"] for _, line, _ in met], np.str_)
-    values = np.array([each for _, _, each in met], np.float64).reshape(-1, len(Features._fields) + 1)
-    return Candidates(goals, episodes, houses, values[:, :-1], values[:, -1] > 0.5)
+    met = [(line, each) for line in lines for each in _without_repetitions(line)]
+    goals = np.array([line["goal"] for line, _ in met], np.str_)
+    houses = np.array([line["house"] for line, _ in met], np.str_)
+    values = np.array([each for _, each in met], np.float64).reshape(-1, len(Features._fields) + 1)
+    return Candidates(goals, houses, values[:, :-1], values[:, -1] > 0.5)
 
 
 def _without_repetitions(line: Mapping[str, Any]) -> list[list[float]]:

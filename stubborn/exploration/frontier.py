@@ -13,7 +13,7 @@ import numpy as np
 from sim.geometry.pose import Pose
 from sim.interface import CameraModel, ConfigError
 from stubborn.exploration.explorer import Exploration, Ground, Search
-from stubborn.exploration.frontiers import Frontiers, spend_around
+from stubborn.exploration.frontiers import Frontiers, require_margin, spend_around
 from stubborn.exploration.places import LookAround, MapCells
 from stubborn.mapping.masks import large_parts
 from stubborn.planning.planner import Goal
@@ -40,10 +40,9 @@ class FrontierConfig:
     """Margin around the known part of the map within which paths may run."""
 
     def __post_init__(self) -> None:
-        if self.arrived_m <= 0 or self.spent_m < self.arrived_m:
-            raise ConfigError(
-                f"FrontierConfig needs 0 < arrived_m <= spent_m, got {self.arrived_m} and {self.spent_m} m."
-            )
+        require_margin("FrontierConfig", self.arrived_m, self.spent_m)
+        if self.look_around_turns < 0:
+            raise ConfigError(f"FrontierConfig.look_around_turns must be >= 0, got {self.look_around_turns}.")
 
     def make(self, camera: CameraModel) -> FrontierExplorer:
         """Returns a new explorer with these parameters."""

@@ -14,10 +14,16 @@ from jaxtyping import Bool
 
 from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
+from sim.interface import ConfigError
 from stubborn.exploration.explorer import Ground, Search
 from stubborn.mapping.masks import distance_to, farther_than
 from stubborn.mapping.navmap import CollisionLayer
 from stubborn.planning.planner import FreeSpace, Goal
+
+_MARGIN_M = 0.1
+"""The radius of the spent disc exceeds the path length of an arrival by at least this. Path lengths are measured from
+the middle of the robot's cell, but the disc lies around the robot's position. Without a margin a reached frontier could
+stay open, and the search would choose it again without end."""
 
 
 def frontier_cells(
@@ -71,6 +77,14 @@ class Frontiers:
         far_cells = np.where(self.free.reachable, distance_to(self.trail), -np.inf)
         route = yield Goal(self.free, far_cells == far_cells.max())
         return None if route is None or route.length_m <= arrived_m else route
+
+
+def require_margin(config: str, arrived_m: float, spent_m: float) -> None:
+    """Raises ConfigError unless `arrived_m` of a configuration is positive and `spent_m` exceeds it by a margin."""
+    if not (arrived_m > 0.0 and spent_m >= arrived_m + _MARGIN_M - 1e-9):
+        raise ConfigError(
+            f"{config} needs arrived_m > 0 and spent_m >= arrived_m + {_MARGIN_M}, got {arrived_m} and {spent_m} m."
+        )
 
 
 def spend_around(spent: Bool[np.ndarray, "rows cols"], window: Window, pose: Pose, radius_m: float) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Int
@@ -35,7 +35,7 @@ class MapCells:
         return mask
 
 
-@dataclass
+@dataclass(frozen=True)
 class Place:
     """A place to go to; it is enough to reach any of its cells."""
 
@@ -44,16 +44,13 @@ class Place:
     """Margin around the known part of the map within which the route may run."""
     arrived_m: float
     """The place counts as reached within this path length."""
-    reached: bool = field(default=False, init=False)
-    """True: the robot has been there."""
 
     def head_for(self, ground: Ground) -> Search:
         """Returns the route to the place; None when it has been reached, or can no longer be reached."""
         known = ground.navmap.known_window(self.margin_cells)
         free = ground.free_space(known, costly=ground.unseen(known))
         route = yield Goal(free, self.cells.within(known))
-        self.reached = route is not None and route.length_m <= self.arrived_m
-        return None if self.reached else route
+        return None if route is None or route.length_m <= self.arrived_m else route
 
 
 class LookAround:

@@ -23,7 +23,7 @@ from sim.geometry.grid import GridFrame, Window, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import CameraModel, ConfigError
 from stubborn.exploration.explorer import Exploration, Ground, Search
-from stubborn.exploration.frontiers import Frontiers, spend_around
+from stubborn.exploration.frontiers import Frontiers, require_margin, spend_around
 from stubborn.exploration.places import MapCells
 from stubborn.exploration.potentials import PotentialConfig, Potentials
 from stubborn.mapping.masks import connected, large_parts
@@ -69,8 +69,7 @@ class PoniConfig(PotentialConfig):
                 f"PoniConfig needs replan_steps and stalled_steps >= 1, got {self.replan_steps} and "
                 f"{self.stalled_steps}."
             )
-        if self.arrived_m <= 0 or self.spent_m < self.arrived_m:
-            raise ConfigError(f"PoniConfig needs 0 < arrived_m <= spent_m, got {self.arrived_m} and {self.spent_m} m.")
+        require_margin("PoniConfig", self.arrived_m, self.spent_m)
 
     def make(self, camera: CameraModel) -> PoniExplorer:
         """Returns a new explorer with these parameters.

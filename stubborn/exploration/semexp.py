@@ -20,6 +20,7 @@ from jaxtyping import Float
 from sim.geometry.grid import cells_near_segment
 from sim.interface import GOAL_CATEGORIES, CameraModel, ConfigError
 from stubborn.exploration.explorer import Exploration, Ground, Search
+from stubborn.exploration.potentials import GoalKind, SemanticsKind
 from stubborn.exploration.semexp_input import CELLS, PolicyInput, observe
 from stubborn.planning.planner import FreeSpace, Goal
 
@@ -44,10 +45,10 @@ class SemExpConfig:
     """A long-term goal counts as reached within this path length."""
     sampled: bool = True
     """True: goals are sampled from the policy, as its published evaluation does; False: its mean is taken."""
-    semantics: Literal["seen", "shuffled", "none"] = "seen"
+    semantics: SemanticsKind = "seen"
     """The goal categories on the map that the policy gets: all of them, all of them exchanged at random in each episode
     (the first control), or none."""
-    goal: Literal["true", "wrong"] = "true"
+    goal: GoalKind = "true"
     """The goal that the policy gets: the episode's, or another one, sampled in each episode (the second control)."""
 
     def __post_init__(self) -> None:
@@ -122,7 +123,7 @@ class SemExpExplorer:
         """The categories that have a channel."""
         return [name for name in self.channels if name]
 
-    def told_goal(self, goal: str) -> str:
+    def policy_goal(self, goal: str) -> str:
         """Returns the goal category that the policy gets.
 
         Raises:
@@ -137,7 +138,7 @@ class SemExpExplorer:
     def _chosen_xy_m(self, ground: Ground) -> tuple[float, float]:
         """Returns the next long-term goal of the policy."""
         shown = {"seen": self.channels, "shuffled": self.shuffled, "none": ()}[self.config.semantics]
-        goal = self.channels.index(self.told_goal(ground.goal))
+        goal = self.channels.index(self.policy_goal(ground.goal))
         given = observe(ground.navmap, ground.pose, goal, shown, cells=self.cells)
         mean, deviation = self.policy(given)
         action = self._rng.normal(mean, deviation) if self.config.sampled else mean

@@ -23,19 +23,18 @@ from jaxtyping import Bool, Float32, Float64, Int
 from sim.geometry.fast_marching import travel_times
 from sim.geometry.grid import cells_near_segment
 from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, TURN_RAD, CameraModel, ConfigError, wrap_angle
+from sim.interface import TURN_RAD, CameraModel, ConfigError, wrap_angle
 from stubborn.exploration.explorer import Exploration, Ground, Search
-from stubborn.exploration.frontiers import Frontiers, spend_around
+from stubborn.exploration.frontiers import Frontiers, require_margin, spend_around
 from stubborn.exploration.glance import GlanceConfig, Glancer
 from stubborn.exploration.patches import or_of_blocks
 from stubborn.exploration.places import MapCells
 from stubborn.exploration.potentials import PotentialConfig, Potentials
+from stubborn.mapping.collision_marks import pushed_without_moving
 from stubborn.mapping.masks import farther_than, numbered_parts
 from stubborn.mapping.navmap import CollisionLayer
 from stubborn.planning.planner import Goal
 
-_STAYED_M = 0.4 * FORWARD_M
-"""A forward that moves the robot less than this did not move it."""
 _INSPECTED_GAP_M = 0.2
 """Ground within this distance of inspected ground is inspected too: distant floor is seen with gaps."""
 
@@ -83,10 +82,10 @@ class TourConfig:
     spent_m: float = 0.60
     """Within this distance of a place where a stop was reached, nothing counts as left to see any more."""
     unmarked_steps: int = 40
-    """If collision marks close all paths to the areas that are left to see, the marks do not count for this many
-    steps."""
+    """If collision marks close all paths to the areas that are left to see, the robot takes routes over the marks. No
+    new route of this kind begins after this many steps on such routes."""
     regain_m2: float = 2.0
-    """When this much more ground has been seen, the marks may again be ignored for `unmarked_steps` steps."""
+    """When this much more ground has been seen, the steps and pushes on such routes are counted from 0 again."""
     most_pushes: int = 2
     """After this many forwards on such a route that did not move the robot, the marks count again."""
     margin_cells: int = 20
@@ -107,8 +106,7 @@ class TourConfig:
             raise ConfigError(f"TourConfig.unknown_speed must lie in (0, 1], got {self.unknown_speed}.")
         if not 1 <= self.most_stops <= 8:
             raise ConfigError(f"TourConfig.most_stops must be 1 to 8, got {self.most_stops}.")
-        if self.arrived_m <= 0 or self.spent_m < self.arrived_m:
-            raise ConfigError(f"TourConfig needs 0 < arrived_m <= spent_m, got {self.arrived_m} and {self.spent_m} m.")
+        require_margin("TourConfig", self.arrived_m, self.spent_m)
 
     def make(self, camera: CameraModel) -> TourExplorer:
         """Returns a new explorer with these parameters.
@@ -208,7 +206,7 @@ class TourExplorer:
         self._pushes = 0  # forwards on such routes that did not move the robot
         self._spent = np.zeros((0, 0), np.bool_)  # on the whole map, as the next two; made at an episode's first step
         self._inspected = self._spent
-        self._frames = np.zeros((0, 0), np.uint16)
+        self._frames = np.zeros((0, 0), np.uint32)
 
     def explore(self, ground: Ground) -> Exploration:
         """Returns the route to the pursued stop, else to the first of a new tour, else far from the trail.
@@ -246,7 +244,7 @@ class TourExplorer:
         navmap = ground.navmap
         if self._spent.size == 0:
             self._spent, self._inspected = (np.zeros(navmap.frame.shape, np.bool_) for _ in range(2))
-            self._frames = np.zeros(navmap.frame.shape, np.uint16)
+            self._frames = np.zeros(navmap.frame.shape, np.uint32)
         known, xy_m = navmap.known_window(0), ground.pose.xy_m
         frames, before = navmap.frames_in_view[known.index], self._frames[known.index]
         index, near = cells_near_segment(known.frame, xy_m, xy_m, max(self.config.near_m, navmap.frame.cell_m))
@@ -290,8 +288,7 @@ class TourExplorer:
         """Counts a step of a route over collision marks; returns True when the robot pushes without moving."""
         before, self._unmarked_pose = self._unmarked_pose, pose
         self._unmarked_steps += 1
-        if before is not None and pose.distance_to(before) < _STAYED_M:
-            self._pushes += abs(wrap_angle(pose.yaw_rad - before.yaw_rad)) < TURN_RAD / 2
+        self._pushes += before is not None and pushed_without_moving(before, pose)
         return self._pushes >= self.config.most_pushes
 
     def _to_first_stop(self, left: _Left, ground: Ground) -> Search:

@@ -16,8 +16,11 @@ from jaxtyping import Bool
 
 from sim.geometry.grid import GridFrame, cells_near_segment
 from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, Action, ConfigError
+from sim.interface import FORWARD_M, TURN_RAD, Action, ConfigError, wrap_angle
 from stubborn.mapping.navmap import CollisionLayer, NavMap
+
+STAYED_M = 0.4 * FORWARD_M
+"""A robot that moved less than this in a step stayed where it was."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,6 +50,12 @@ class CollisionConfig:
 def is_collision(action: Action | None, moved_m: float, failed_below_m: float) -> bool:
     """Returns whether the last action was a forward that was blocked."""
     return action is Action.MOVE_FORWARD and moved_m < failed_below_m
+
+
+def pushed_without_moving(before: Pose, now: Pose) -> bool:
+    """Returns whether a step between two poses neither moved nor turned the robot: something blocked a forward."""
+    turned_rad = abs(wrap_angle(now.yaw_rad - before.yaw_rad))
+    return now.distance_to(before) < STAYED_M and turned_rad < TURN_RAD / 2
 
 
 class GpsNoise:

@@ -9,7 +9,8 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
-from stubborn.kernels.grids import distance_within
+from sim.interface import ConfigError
+from stubborn.kernels.grids import MAX_REACH, distance_within
 
 Cells = tuple[Int[np.ndarray, " n"], Int[np.ndarray, " n"]]
 """Rows and columns."""
@@ -23,8 +24,17 @@ def distance_to(mask: Bool[np.ndarray, "rows cols"]) -> Float32[np.ndarray, "row
 def farther_than(
     mask: Bool[np.ndarray, "rows cols"], distance_m: float, cell_m: float
 ) -> Bool[np.ndarray, "rows cols"]:
-    """Returns the cells whose centre is farther than a distance (at most 178 cells) from that of any True cell."""
+    """Returns the cells whose centre is farther than a distance from that of any True cell.
+
+    Raises:
+        ConfigError: the distance is longer than 178 cells.
+    """
     reach = math.floor(distance_m / cell_m) + 2  # one for rounding
+    if reach > MAX_REACH:
+        raise ConfigError(
+            f"A distance on the map, such as own_known_m, must be at most {(MAX_REACH - 2) * cell_m:g} m "
+            f"with cells of {cell_m:g} m, got {distance_m:g} m."
+        )
     return distance_within(mask, reach) * np.float32(cell_m) > np.float32(distance_m)
 
 

@@ -8,15 +8,14 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from jaxtyping import Bool, Float32, Int8, Int16, UInt16, UInt32
+from jaxtyping import Bool, Float32, Int8, Int32, UInt32
 
 from sim.geometry.grid import GridFrame, Window
 
 _LAYERS: Mapping[str, type] = MappingProxyType(
     {  # the widest types first, so that each layer is aligned
         **dict.fromkeys(("score_sum", "score_max", "other_max", "shown_x", "shown_y"), np.float32),
-        "goals_seen": np.uint32,
-        **{"frames_in_view": np.uint16, "found_step": np.int16},
+        **{"goals_seen": np.uint32, "frames_in_view": np.uint32, "found_step": np.int32},
         **dict.fromkeys(("obstacle_evidence", "drop_evidence"), np.int8),
         **dict.fromkeys(("seen_obstacle", "seen_at_eye_level", "pessimistic_marks", "optimistic_marks"), np.bool_),
         **dict.fromkeys(("visited", "trail", "rejected", "set_aside", "seen_drop"), np.bool_),
@@ -53,14 +52,15 @@ class NavMap:
     seen_drop: Bool[np.ndarray, "rows cols"]
     """True: depth saw through the plane of the floor, so that the robot would fall."""
     pessimistic_marks: Bool[np.ndarray, "rows cols"]
-    """True: inside a 25 x 25 cm mark in front of a failed move; the pessimistic map [2]."""
+    """True: inside a 25 x 25 cm mark in front of a failed move, or on a surface that collisions suggest
+    (`stubborn.mapping.felt`); the pessimistic map [2]."""
     optimistic_marks: Bool[np.ndarray, "rows cols"]
-    """True: inside a 15 x 15 cm mark in front of a failed move; the optimistic map [3]."""
+    """True: inside a 15 x 15 cm mark in front of a failed move, or on such a surface; the optimistic map [3]."""
     visited: Bool[np.ndarray, "rows cols"]
     """True: the robot's disc swept over this cell."""
     trail: Bool[np.ndarray, "rows cols"]
     """True: the robot's centre passed here, to a cell."""
-    frames_in_view: UInt16[np.ndarray, "rows cols"]
+    frames_in_view: UInt32[np.ndarray, "rows cols"]
     """Number of frames with a depth point in this cell, floor included [4]."""
     score_sum: Float32[np.ndarray, "rows cols"]
     """Sum over frames of the target's score; each frame adds its highest score in the cell [5]."""
@@ -68,10 +68,11 @@ class NavMap:
     """Highest score of the target in any frame [6]."""
     other_max: Float32[np.ndarray, "rows cols"]
     """Highest score of any other category in any frame [7]."""
-    found_step: Int16[np.ndarray, "rows cols"]
+    found_step: Int32[np.ndarray, "rows cols"]
     """Step at which `score_max` made this cell a candidate; meaningful only for candidates."""
     shown_x: Float32[np.ndarray, "rows cols"]
-    """Sum over frames of the unit vector from a target point to the camera, x component: the side that was seen."""
+    """Sum over frames of the unit vector from a target point to the robot's centre, x component: the side that was
+    seen."""
     shown_y: Float32[np.ndarray, "rows cols"]
     """The y component of the same sum."""
     goals_seen: UInt32[np.ndarray, "rows cols"]

@@ -28,7 +28,8 @@ class CollisionAvoidance:
     averse_exploration: bool = True
     """Exploration plans on the pessimistic layer; without this measure it plans on the optimistic layer."""
     optimistic_fallback: bool = True
-    """Collision-averse exploration takes the optimistic layer where the pessimistic one has no path."""
+    """Collision-averse exploration takes the optimistic layer where the pessimistic one has no path. This is the rule
+    that the paper does not have."""
     visited_is_free: bool = True
     """Collision marks do not count where the body has been."""
 

@@ -41,17 +41,16 @@ class _Metadata(msgspec.Struct):
     calibration: _Calibration | None = None
 
 
-def save_network(file: Path, model: Network, metadata: Mapping[str, Any] | None = None, *, half: bool = True) -> None:
-    """Writes weights and the size of the network as safetensors. The file is replaced in one step.
+def save_network(file: Path, model: Network, metadata: Mapping[str, Any] | None = None) -> None:
+    """Writes weights, with 16 bits, and the size of the network as safetensors. The file is replaced in one step.
 
     Args:
         file: the file to write.
         model: the network.
         metadata: values that JSON can hold, for the file's header.
-        half: True stores numbers with 16 bits.
     """
     key = _CONFIG_KEY.format(family=family(model))
-    write_weights(file, model, {key: asdict(model.config)} | dict(metadata or {}), half=half)
+    write_weights(file, model, {key: asdict(model.config)} | dict(metadata or {}))
 
 
 def load_network(file: Path) -> tuple[Network, dict[str, Any]]:

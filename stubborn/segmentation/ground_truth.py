@@ -25,10 +25,10 @@ class GroundTruthSegmenter:
         """Returns scores at the resolution of the image; void pixels score 0 for every category.
 
         Raises:
-            ConfigError: the goal is not a category of mpcat40.
+            ConfigError: the goal is not a category of mpcat40, or is void.
         """
-        if goal not in MPCAT40_ID:
-            raise ConfigError(f"No category {goal!r} in mpcat40. Available: {', '.join(MPCAT40_ID)}.")
+        if goal not in MPCAT40_ID or goal == "void":
+            raise ConfigError(f"The ground truth has no category {goal!r}. Available: {', '.join(MPCAT40[1:])}.")
         return Scores(*scores_of_category(observation["semantic"], np.uint8(MPCAT40_ID[goal])))
 
     def categories(self, observation: Observation) -> NDArray[np.uint8]:

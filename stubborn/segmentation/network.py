@@ -37,7 +37,8 @@ class NetworkSegmenter:
         score_block_px: edge of the image block of one score; None: 4, or the network's own if it is larger.
         calibration: applied to the logits before the softmax; None changes nothing.
         threads: number of PyTorch's threads in this process; None does not change it.
-        mirrored: True averages the logits of the image and of its mirror image, which are computed as one batch.
+        mirrored: True averages the logits of the image and of its mirror image, which are computed as one batch, and
+            in bf16 where the processor has instructions for it.
 
     Raises:
         ConfigError: `score_block_px` is not a multiple of the block of one logit of the network.

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import torch
 
+from sim import cli
 from sim.commands.evaluate import segmentation as evaluate_rednet
 from sim.commands.evaluate.segmentation import Args
 from sim.interface import MPCAT40_ID, ConfigError
@@ -88,15 +89,18 @@ def test_another_resolution_is_evaluated_and_written_with_the_calibration(tmp_pa
     assert load_network(weights)[1]["block_px"] == 2
 
 
-def test_views_at_a_lower_resolution_than_the_network_needs_are_refused(tmp_path: Path, weights: Path) -> None:
+def test_views_at_a_lower_resolution_than_the_network_needs_are_refused(
+    tmp_path: Path, weights: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     write_views(tmp_path / "one", 2)
     views = [
         view for shard in evaluate_rednet.list_shards(tmp_path / "one") for view in evaluate_rednet.read_shard(shard)
     ]
     with pytest.raises(ConfigError, match="needs blocks of 1 pixels, but the views are stored in blocks of 2"):
         evaluate_rednet.loader(RedNet(TINY), views, 1, 2)
-    with pytest.raises(ConfigError, match="--threads must be at least 1"):
-        evaluate_rednet.main(Args(views=(tmp_path / "one",), weights=weights, threads=0))
+    words = ["--views", str(tmp_path / "one"), "--weights", str(weights), "--threads", "0"]
+    assert cli.run(Args, evaluate_rednet.main, words) == 2
+    assert "--threads must be at least 1" in capsys.readouterr().err
 
 
 def test_views_of_one_house_and_folders_without_a_training_are_refused(tmp_path: Path, weights: Path) -> None:

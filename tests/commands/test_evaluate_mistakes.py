@@ -132,3 +132,18 @@ def test_a_run_of_another_camera_or_network_is_not_drawn_with_this_one(
     run_of = read_run(recorded / "run")
     with pytest.raises(ConfigError, match=message):
         show_mistakes.network_of(replace(run_of, config={**run_of.config, **changes}))
+
+
+@pytest.mark.parametrize("mirrored", [True, False])
+def test_the_network_of_a_run_is_mirrored_as_in_the_run_and_another_precision_is_named(
+    recorded: Path, mirrored: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run_of = read_run(recorded / "run")
+    tree = {**run_of.config["config"], "detector": {"mirrored": mirrored}}
+    for precision in ("bf16", "fp32"):
+        config = {**run_of.config, "config": tree, "segmentation": {"precision": precision}}
+        network = show_mistakes.network_of(replace(run_of, config=config))
+        assert network.mirrored == mirrored
+        here = "bf16" if network.bf16 else "fp32"
+        sentence = f"The network computed in {precision} in the run and computes in {here} here; "
+        assert capsys.readouterr().out.startswith(sentence) == (precision != here)

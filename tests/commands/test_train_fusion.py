@@ -32,7 +32,7 @@ def log_after(split: Path, log: Path, episodes: int) -> list[dict]:
     args = train_tracks.Args(
         split=str(split), semantics="noisy", episodes=episodes, max_steps=30, log=log, out=log / "x.json"
     )
-    with pytest.raises(ConfigError, match="are needed.*run more episodes"):  # more samples, or another house
+    with pytest.raises(ConfigError, match=r"are needed.*run more episodes"):  # more samples, or another house
         train_tracks.main(args)
     return [json.loads(line) for line in (log / "results.jsonl").read_text().splitlines()]
 
@@ -70,11 +70,30 @@ def test_a_file_holds_the_tracks_only(split: Path, tmp_path: Path, monkeypatch: 
     assert given == [{"counts", "track", "measures", "sample", "view", "mean", "weight"}]
 
 
+def test_an_episode_without_tracks_is_logged_and_adds_no_samples(
+    split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr(train_tracks, "LEAST_VOXELS", 10**9)
+    args = train_tracks.Args(
+        split=str(split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
+    )
+    with pytest.raises(ConfigError, match="The log has no tracks: run episodes"):
+        train_tracks.main(args)
+    line = json.loads((tmp_path / "results.jsonl").read_text())
+    assert (line["steps"], line["tracks"]) == (3, 0)
+    content = train_tracks.read_tracks(tmp_path / "tracks" / "tiny_0.npz")
+    shapes = {name: values.shape for name, values in content.items()}
+    assert shapes == {
+        "counts": (0, len(MPCAT40)), "track": (0,), "measures": (0, 6),
+        "sample": (0,), "view": (0,), "mean": (0, len(MPCAT40) - 1), "weight": (0,),
+    }  # fmt: skip
+
+
 def test_a_log_of_another_seed_and_a_broken_file_are_refused(split: Path, tmp_path: Path):
     args = train_tracks.Args(
         split=str(split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
     )
-    with pytest.raises(ConfigError, match="are needed.*run more episodes"):  # more samples, or another house
+    with pytest.raises(ConfigError, match=r"are needed.*run more episodes"):  # more samples, or another house
         train_tracks.main(args)
     with pytest.raises(ConfigError, match="holds a run with seed"):
         train_tracks.main(replace(args, seed=4))

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from torch.utils.data import Subset
 
 from sim.commands.evaluate.network_card import training_commands, training_stages, training_text
 from sim.commands.train import segmentation_trainer
@@ -125,6 +126,25 @@ def test_views_that_were_added_are_used_by_the_continued_run(
     assert main(options(tmp_path, views=(tmp_path / "train", tmp_path / "more"))) == 0
     assert "5 views; objects" in capsys.readouterr().out
     assert [row["views"] for row in rows(tmp_path / "out/val.csv")] == ["3", "5"]
+
+
+def test_a_continued_run_evaluates_on_the_same_views(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_views(tmp_path / "train", 3)
+    write_views(tmp_path / "val", 20)
+    monkeypatch.setattr(segmentation_trainer, "EVALUATION_SHARE", 1e-6)
+    first = Trainer(options(tmp_path, hours=0.1))
+    first._evaluate_start()
+    assert len(first.val) == 7  # one in three
+    first._save_state()
+    again = Trainer(options(tmp_path, hours=0.1))
+    assert isinstance(first.val, Subset)
+    assert isinstance(again.val, Subset)
+    assert [*again.val.indices] == [*first.val.indices]
+    assert again._left_s() == first._left_s() < 360.0
+    state = torch.load(tmp_path / "out/state.pt")
+    del state["progress"]["val_stride"], state["progress"]["evaluation_s"]  # as older versions wrote it
+    torch.save(state, tmp_path / "out/state.pt")
+    assert len(Trainer(options(tmp_path, hours=0.1)).val) == 20
 
 
 @pytest.mark.costly

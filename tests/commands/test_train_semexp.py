@@ -12,6 +12,7 @@ import pytest
 
 from sim.commands.train import semexp as train_semexp
 from sim.commands.train.plan_split import split_plans
+from sim.commands.train.semexp_trainer import Run
 from sim.interface import ConfigError
 from sim.plans.export import export_plans
 from sim.plans.plan import write_plan
@@ -172,13 +173,13 @@ def test_plans_that_are_all_held_back_are_refused(plans: Path, tmp_path: Path):
 def test_a_state_counts_goals_only_after_the_update_with_them(
     plans: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    saved, save = [], train_semexp.Run.save
+    saved, save = [], Run.save
 
-    def watched(run: train_semexp.Run) -> None:
+    def watched(run: Run) -> None:
         saved.append((run.goals, len(run.policy.optimizer.state)))
         save(run)
 
-    monkeypatch.setattr(train_semexp.Run, "save", watched)
+    monkeypatch.setattr(Run, "save", watched)
     train_semexp.main(options(plans, tmp_path / "run", save_s=0.0))
     trained = dict(reversed(saved))  # the first state with this number of goals
     assert trained[0] == 0

@@ -18,6 +18,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, load_split, write_split
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError
+from sim.paths import assets_dir
 from stubborn.detection.classifiers import Features
 from stubborn.detection.seeker import TargetSeeker
 from stubborn.detection.verification import FOLDER, FittedVerifier
@@ -80,7 +81,7 @@ def test_an_episode_ends_when_the_robot_has_fallen(split: Path, tmp_path: Path, 
 
 def test_the_recorded_command_names_all_options_that_change_the_fit_and_the_episodes():
     args = train_verifier.Args(split="runs/my houses", semantics="rednet", weights=Path("a b.safetensors"), minutes=3.0)
-    assert train_verifier.command(replace(args, least_of_either=7, seed=2), 71) == (
+    assert replace(args, seed=2).command("verifier", 71, "--least-of-either", "7") == (
         "stubborn train verifier --semantics rednet --weights 'a b.safetensors' --split 'runs/my houses' "
         "--episodes 71 --max-steps 200 --least-of-either 7 --seed 2 --shipped"
     )
@@ -180,6 +181,8 @@ def test_val_and_test_are_only_judged():
     for split in ("val", "test"):
         with pytest.raises(ConfigError, match=f"fitted on '{split}'; use --judge"):
             train_verifier.main(train_verifier.Args(split=split))
+        with pytest.raises(ConfigError, match=f"fitted on '{split}'; use --judge"):
+            train_verifier.main(train_verifier.Args(split=str(assets_dir() / split)))
 
 
 def test_segmentation_that_needs_no_verification_is_refused():

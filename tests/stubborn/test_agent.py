@@ -176,5 +176,26 @@ def test_a_segmenters_outline_counts_only_where_it_says_that_it_is_exact(exact: 
 
 def test_a_clearance_beyond_the_computed_distances_is_refused():
     AgentConfig(planning=PlanningConfig(clearance_m=8.9))
-    with pytest.raises(ConfigError, match=r"clearance_m and preferred_clearance_m must be at most 8\.9 m"):
-        AgentConfig(planning=PlanningConfig(clearance_m=9.0))
+    for name in ("clearance_m", "unseen_gap_m"):
+        AgentConfig(planning=PlanningConfig(**{name: 8.9}))
+        with pytest.raises(ConfigError, match=rf"{name}.* must be at most 8\.9 m"):
+            AgentConfig(planning=PlanningConfig(**{name: 9.0}))
+
+
+@pytest.mark.parametrize("side", [Action.TURN_LEFT, Action.TURN_RIGHT])
+def test_the_untrap_mode_turns_to_one_side_until_no_drop_is_ahead(side: Action):
+    agent = agents.make("stubborn", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter())
+    assert isinstance(agent, StubbornAgent)
+    world = GridWorld([Box((4.0, 4.2), (-4.0, 4.0))], (0.0, 0.0, 0.0), camera=SMALL_CAMERA)
+    agent.reset("chair", 0)
+    for _ in range(2):  # blocked turns begin the mode with a turn to the other side
+        agent.untrap.observe(Action.TURN_LEFT if side is Action.TURN_RIGHT else Action.TURN_RIGHT, failed=True)
+    row, col = agent.navmap.frame.cell(0.0, 0.0)
+    agent.navmap.seen_drop[row - 10 : row + 11, col - 10 : col + 11] = True
+    actions = []
+    for step in range(6):
+        if step == 5:
+            agent.navmap.seen_drop[:] = False
+        actions.append(agent.act(world.observe("chair")))
+        world.step(actions[-1])
+    assert actions == [side] * 5 + [Action.MOVE_FORWARD]

@@ -254,11 +254,13 @@ def test_the_ablation_rows_switch_on_one_measure_after_the_other():
         agent = build(name)
         assert isinstance(agent, StubbornAgent)
         avoidance = agent.config.avoidance
+        assert avoidance.optimistic_fallback == avoidance.visited_is_free
         return avoidance.untrap, avoidance.collision_layers, avoidance.averse_exploration, avoidance.visited_is_free
 
     rows = [switches(f"stubborn-{row}") for row in ("i", "ii", "iii", "iv", "v")]
     assert rows == [tuple(i < n for i in range(4)) for n in range(5)]
     assert switches("stubborn") == rows[-1]
+    assert "no optimistic map where there is no path" in agents.SPECS["stubborn-iv"].description
 
 
 def test_options_are_fields_of_the_config():

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sim.geometry.grid import GridFrame, Window
 from sim.geometry.pose import Pose
-from sim.interface import MPCAT40_ID, CameraModel
+from sim.interface import MPCAT40_ID, CameraModel, ConfigError
 from stubborn.kernels.frames import enter_bits, shows_no_noise
 from stubborn.kernels.grids import bilinear, distance_within, speeds
 from stubborn.mapping.masks import connected, distance_to, farther_than
@@ -213,6 +213,9 @@ def test_the_ground_truth_scores_the_goal_and_all_other_categories_but_void() ->
     assert target.dtype == other.dtype == np.float32
     assert np.array_equal(target, is_chair)
     assert np.array_equal(other, (semantic != 0) & ~is_chair)
+    for goal in ("void", "unicorn"):
+        with pytest.raises(ConfigError, match=f"no category '{goal}'. Available: wall, floor, "):
+            GroundTruthSegmenter().scores({"semantic": semantic}, goal)
 
 
 @pytest.mark.parametrize("hits", [0.0, 0.2])
@@ -248,6 +251,13 @@ def test_distances_within_a_reach_are_exact_and_others_are_the_reach(share: floa
 def test_cells_farther_than_a_distance_are_those_of_the_exact_distances(share: float, distance_m: float) -> None:
     mask = np.random.default_rng(3).random((60, 70)) < share
     assert np.array_equal(farther_than(mask, distance_m, 0.05), distance_to(mask) * 0.05 > distance_m)
+
+
+def test_a_distance_beyond_the_computed_ones_is_refused_with_the_limit() -> None:
+    mask = np.ones((2, 2), np.bool_)
+    assert not farther_than(mask, 8.9, 0.05).any()
+    with pytest.raises(ConfigError, match=r"own_known_m, must be at most 8\.9 m with cells of 0\.05 m, got 9 m"):
+        farther_than(mask, 9.0, 0.05)
 
 
 def test_exact_posteriors_are_one_for_the_category_and_zero_for_void() -> None:

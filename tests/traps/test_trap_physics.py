@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import itertools
+import json
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +19,8 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.recipes import START_TURNS_RAD
 from sim.geometry.pose import Pose
 from sim.housegen.traps.catalogue import TRAPS
-from sim.interface import FORWARD_M, Action
+from sim.interface import FORWARD_M, Action, ConfigError
+from sim.robot.config import PHYSICS_VERSION
 from stubborn.agent import StubbornAgent
 from stubborn.agents import ABLATION
 from stubborn.mapping.navmap import NavMap
@@ -70,6 +73,27 @@ def test_the_report_takes_an_agent_of_the_user(tmp_path: Path) -> None:
     args = Args(out=tmp_path, agents=(agent,), traps=("glass_pane",), headings=1, pictures=False)
     assert main(args) == 0
     assert f"glass_pane,glass_pane_0,{agent},False" in (tmp_path / "traps.csv").read_text()
+
+
+def test_a_report_has_results_of_one_split_and_physics_and_of_the_wanted_episodes_only(tmp_path: Path) -> None:
+    args = Args(
+        out=tmp_path, agents=("tests.helpers.runners:make_quitter",), traps=("glass_pane",), headings=1, pictures=False
+    )
+    assert main(args) == 0
+    assert main(replace(args, traps=("scan_artifact",))) == 0
+    assert len((tmp_path / "results.jsonl").read_text().splitlines()) == 2
+    assert "glass_pane" not in (tmp_path / "traps.csv").read_text() + (tmp_path / "traps.md").read_text()
+    with pytest.raises(ConfigError, match="holds results with max_steps = 500, this command has 9; choose another"):
+        main(replace(args, max_steps=9))
+    with pytest.raises(ConfigError, match=r'split_identity\.name = "traps", this command has "contact-val"; choose'):
+        main(replace(args, split="contact-val", traps=()))
+    file = tmp_path / "config.json"
+    file.write_text(json.dumps(json.loads(file.read_text()) | {"physics": 1}))
+    with pytest.raises(ConfigError, match=f"holds results with physics = 1, this command has {PHYSICS_VERSION}"):
+        main(args)
+    file.unlink()
+    with pytest.raises(ConfigError, match=r"holds results with max_steps = \(absent\)"):
+        main(args)
 
 
 @pytest.mark.parametrize(("trap", "heading"), sample(CASES, 3))

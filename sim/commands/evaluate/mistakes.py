@@ -94,7 +94,7 @@ def main(args: Args) -> int:
 
 
 def network_of(run: Run) -> NetworkSegmenter:
-    """Returns the network of a run, with its calibration.
+    """Returns the network of a run, with its calibration; prints a sentence if it computes in another precision here.
 
     Raises:
         ConfigError: the run had another robot or camera than ours, or its weights have been deleted or replaced.
@@ -111,7 +111,14 @@ def network_of(run: Run) -> NetworkSegmenter:
     checksum = run.config.get("files_sha256", {}).get("weights")
     if checksum is not None and checksum != file_sha256(file):
         raise ConfigError(f"'{run.path}' was run with other weights than '{file}' holds now.")
-    return NetworkSegmenter.from_file(file, temperature=detector.get("temperature"))
+    network = NetworkSegmenter.from_file(
+        file, temperature=detector.get("temperature"), mirrored=detector.get("mirrored", False)
+    )
+    before = (run.config.get("segmentation") or {}).get("precision")
+    here = "bf16" if network.bf16 else "fp32"
+    if before not in (None, here):
+        print(f"The network computed in {before} in the run and computes in {here} here; its scores differ slightly.")
+    return network
 
 
 def _others(recorded: Sequence[Mapping[str, Any]], cause: str) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Int64
@@ -13,9 +12,6 @@ from sim.analysis.figures import empty_figure
 from sim.commands.train.training_files import read_columns
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, ConfigError
 from stubborn.segmentation.evaluation import GOAL_CHANNELS
-
-if TYPE_CHECKING:
-    pass
 
 BACKGROUND = ("wall", "floor", "ceiling", "door", "window", "mirror", "shelving", "appliances", "lighting")
 """Categories with columns of their own, in addition to the goals: objects are often confused with them."""

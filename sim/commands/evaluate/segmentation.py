@@ -102,10 +102,6 @@ class Predictions:
 
 def main(args: Args) -> int:
     """Evaluates the network, prints and writes the results; returns the exit status."""
-    for name in ("threads", "block_px"):
-        value = getattr(args, name)
-        if value is not None and value < 1:
-            raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {value}.")
     torch.set_num_threads(args.threads)
     if args.semantics is not None:
         return _evaluate_own(args, args.semantics)

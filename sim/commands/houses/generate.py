@@ -107,8 +107,6 @@ class Made:
 
 def main(args: Args) -> int:
     """Writes the houses; returns 1 if a requested seed gave no house."""
-    if args.workers < 1 or (args.houses is not None and args.houses < 1):
-        raise ConfigError("--workers and --houses must be at least 1.")
     if args.split is not None and (args.furniture is not None or args.transfer_test):
         raise ConfigError("A shipped split has no imported furniture: leave out --split, or --furniture.")
     for option, given in (("--transfer-test", args.transfer_test), ("--only-imported", args.only_imported)):

@@ -23,6 +23,8 @@ from torch import Tensor
 from torch.nn import functional
 
 from sim import cli
+from sim.analysis.figures import empty_figure
+from sim.commands.train.packages import require_packages
 from sim.commands.train.timed_training import PRINT_EVERY_S, TimedTraining, stride
 from sim.commands.train.training_files import print_next_commands, read_columns
 from sim.datasets.demonstrations import Demonstration, list_demonstrations, read_demonstration
@@ -64,6 +66,7 @@ class Args:
 
 def main(args: Args) -> int:
     """Trains; returns the exit status."""
+    require_packages("matplotlib")
     torch.set_num_threads(args.threads)
     files = list_demonstrations(args.demonstrations)
     train, val = read_all(files)
@@ -210,13 +213,9 @@ def agreement(
 
 def draw_curve(out: Path) -> None:
     """Draws the columns of `train.csv` and `val.csv` as `curve.png`."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
     train, val = (read_columns(out / name) for name in ("train.csv", "val.csv"))
-    figure, axes = pyplot.subplots(1, 2, figsize=(9, 3.2))
+    figure = empty_figure(9.0, 3.2, what="The curves of a training")
+    axes = figure.subplots(1, 2)
     if train:
         axes[0].plot(train["minutes"], train["cross_entropy"], color="0.6", label="training, changes count more")
     axes[0].plot(val["minutes"], val["cross_entropy"], color="C0", label="held-back houses")
@@ -228,6 +227,4 @@ def draw_curve(out: Path) -> None:
     for axis in axes:
         axis.set_xlabel("minutes")
         axis.legend(fontsize=8)
-    figure.tight_layout()
     figure.savefig(out / "curve.png", dpi=80)
-    pyplot.close(figure)

@@ -6,6 +6,7 @@ split, code and detector are the same.
 
 from __future__ import annotations
 
+import functools
 import shlex
 import time
 from collections.abc import Mapping
@@ -14,15 +15,16 @@ from pathlib import Path
 from typing import Any
 
 from sim import cli
+from sim.commands.train.packages import require_packages
 from sim.composition.segmenters import KINDS, detector_config, detector_record, find_segmentation
-from sim.episodes.splits import Episode, Split
+from sim.episodes.splits import Episode, Split, load_split
 from sim.evaluation.config_fields import differing_fields, field_text
 from sim.evaluation.executors import make_executor
 from sim.evaluation.own_code import hash_of_own
 from sim.evaluation.results import RunDirectory, read_result_lines
 from sim.evaluation.workers import RunnerSpec
 from sim.interface import ConfigError
-from sim.paths import code_hash
+from sim.paths import assets_dir, code_hash
 from sim.reading import read_json
 
 BATCH = 100
@@ -58,37 +60,64 @@ class LogOptions:
     """In place of --out: write the parameters that ship for this kind of segmentation, or judge them."""
     log: cli.OutFolder | None = None
     """Folder of the log; None: a folder in runs, named after the command, --semantics and the split."""
+    out: cli.OutFile | None = None
+    """File of the parameters (JSON)."""
+
+    def command(self, name: str, episodes: int, *more: str) -> str:
+        """Returns the command that gives the same parameters, for the file that holds them.
+
+        It runs the same episodes if the log holds the first ones of the split; --minutes may have left some out.
+
+        Args:
+            name: the last word of the command.
+            episodes: number of episodes in the log, in place of --episodes.
+            more: words of further options.
+        """
+        words = ["--semantics", self.semantics]
+        words += [] if self.weights is None else ["--weights", str(self.weights)]
+        words += ["--split", self.split, "--episodes", str(episodes), "--max-steps", str(self.max_steps), *more]
+        words += ["--seed", str(self.seed), *(["--shipped"] if self.out is None else ["--out", str(self.out)])]
+        return f"stubborn train {name} {shlex.join(words)}"
 
 
-def check(args: LogOptions) -> None:
-    """Raises ConfigError for an exact kind of segmentation, and for a fit on val or test."""
+def checked_split(args: LogOptions) -> Split:
+    """Returns the split of the options.
+
+    Raises:
+        ConfigError: the segmentation is exact, the fit is on val or test or a copy of them, there is no such split, or
+            scikit-learn, which fits and judges, is not installed.
+    """
+    require_packages("sklearn")
     if not find_segmentation(args.semantics, args.weights).spec.needs_verification:
         kinds = [name for name, kind in KINDS.items() if kind.spec.needs_verification]
         raise ConfigError(f"--semantics '{args.semantics}' makes no errors to learn. Available: {', '.join(kinds)}.")
-    if args.split in ("val", "test") and not args.judge:
-        raise ConfigError(f"Nothing is fitted on '{args.split}'; use --judge there.")
+    split = load_split(args.split)
+    if not args.judge and (name := _shipped_for_judging().get(split.sha256)) is not None:
+        raise ConfigError(f"Nothing is fitted on '{name}'; use --judge there.")
+    return split
 
 
-def parameters_file(args: LogOptions, out: Path | None, folder: Path) -> Path:
+@functools.cache
+def _shipped_for_judging() -> dict[str, str]:
+    """Returns the names of the shipped splits on which nothing is fitted, by checksum."""
+    return {load_split(assets_dir() / name).sha256: name for name in ("val", "test")}
+
+
+def parameters_file(args: LogOptions, folder: Path) -> Path:
     """Returns the file of the parameters: --out, or with --shipped the shipped file of this kind of segmentation.
 
     Raises:
         ConfigError: neither option is given, or nothing ships for this segmentation.
     """
-    if out is not None and args.shipped:
+    if args.out is not None and args.shipped:
         raise ConfigError("--out and --shipped exclude each other.")
-    if out is not None:
-        return out
+    if args.out is not None:
+        return args.out
     if args.semantics not in KINDS:
         raise ConfigError(f"--semantics '{args.semantics}' is your own: give --out FILE.")
     if not args.shipped and not args.judge:
         raise ConfigError("Give --out FILE for the parameters, or --shipped to replace those that ship.")
     return folder / f"{args.semantics}.json"
-
-
-def where_to(args: LogOptions, out: Path | None) -> str:
-    """Returns the option that names the file of parameters, for the command that this file records."""
-    return "--shipped" if out is None else f"--out {shlex.quote(str(out))}"
 
 
 def default_log(command: str, args: LogOptions, split: Split) -> Path:

@@ -20,7 +20,6 @@ from __future__ import annotations
 
 import io
 import json
-import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -30,11 +29,10 @@ import msgspec
 import numpy as np
 from jaxtyping import Int
 
-from sim import cli
-from sim.commands.train.episode_logs import LogOptions, check, default_log, line_of, lines_of, parameters_file, where_to
+from sim.commands.train.episode_logs import LogOptions, checked_split, default_log, line_of, lines_of, parameters_file
 from sim.composition.segmenters import find_segmentation, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
-from sim.episodes.splits import Episode, Split, load_split
+from sim.episodes.splits import Episode, Split
 from sim.errors import EpisodeError, PhysicsError
 from sim.evaluation.rollout import episode_seed
 from sim.evaluation.workers import RunnerSpec
@@ -67,9 +65,6 @@ _ARRAYS = ("counts", "track", "measures", "sample", "view", "mean", "weight")
 class Args(LogOptions):
     """Log the tracks of episodes, then fit the fusion of views to them."""
 
-    out: cli.OutFile | None = None
-    """File of the parameters (JSON)."""
-
 
 class TrackLine(msgspec.Struct):
     """A line of the log."""
@@ -83,9 +78,8 @@ class TrackLine(msgspec.Struct):
 
 def main(args: Args) -> int:
     """Runs the episodes, then fits and writes, or judges; returns the exit status."""
-    check(args)
-    file = parameters_file(args, args.out, FOLDER)
-    split = load_split(args.split)
+    split = checked_split(args)
+    file = parameters_file(args, FOLDER)
     episodes = tracks_of(args, split)
     samples = samples_of(episodes)
     if not samples:
@@ -99,7 +93,7 @@ def main(args: Args) -> int:
     fusion = fit(samples)
     content = {
         "semantics": args.semantics,
-        "command": command(replace(args, episodes=len(episodes))),
+        "command": args.command("fusion", len(episodes)),
         "split": {"name": split.name, "version": split.version},
         **about,
         "fusion": msgspec.to_builtins(fusion),
@@ -226,9 +220,7 @@ class TrackSamples:
         self.take(tracks, numbers[np.array(grown, np.bool_)])
 
     def take(self, tracks: Tracks, numbers: Int[np.ndarray, " n"]) -> None:
-        """Adds these tracks as they are now."""
-        if numbers.size == 0:
-            return
+        """Adds these tracks as they are now; without any, `arrays` still has the shapes of the arrays."""
         mean, weight = tracks.evidence.views(numbers)
         sample, view = np.nonzero(weight > 0.0)
         added = {
@@ -278,13 +270,6 @@ def read_tracks(file: Path) -> dict[str, np.ndarray]:
         ConfigError: the file is missing or broken.
     """
     return read_npz(file, _ARRAYS, what="file of `stubborn train fusion`", most_bytes=MAX_FILE_BYTES)
-
-
-def command(args: Args) -> str:
-    """Returns the command that gives the same parameters."""
-    weights = "" if args.weights is None else f" --weights {shlex.quote(str(args.weights))}"
-    options = f"--split {shlex.quote(args.split)} --semantics {args.semantics}{weights} --episodes {args.episodes}"
-    return f"stubborn train fusion {options} --max-steps {args.max_steps} --seed {args.seed} {where_to(args, args.out)}"
 
 
 def _print(quality: Mapping[str, Any]) -> None:

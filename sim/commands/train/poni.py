@@ -23,6 +23,8 @@ from torch import Tensor
 from torch.nn import functional
 
 from sim import cli
+from sim.analysis.figures import empty_figure
+from sim.commands.train.packages import require_packages
 from sim.commands.train.timed_training import PRINT_EVERY_S, TimedTraining, stride
 from sim.commands.train.training_files import print_next_commands, read_columns
 from sim.interface import ConfigError
@@ -73,6 +75,7 @@ class Args:
 
 def main(args: Args) -> int:
     """Makes the samples and trains; returns the exit status."""
+    require_packages("matplotlib")
     torch.set_num_threads(args.threads)
     config = SampleConfig(walks=args.walks, maps=args.maps, most_steps=args.most_steps)
     files = make_samples(args, config)
@@ -184,13 +187,9 @@ class Trainer(TimedTraining):
 
 def draw_curve(out: Path) -> None:
     """Draws the losses of `train.csv` and `val.csv`, and the share of best choices, as `curve.png`."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
     train, val = (read_columns(out / name) for name in ("train.csv", "val.csv"))
-    figure, axes = pyplot.subplots(1, 3, figsize=(11, 3.2))
+    figure = empty_figure(11.0, 3.2, what="The curves of a training")
+    axes = figure.subplots(1, 3)
     for axis, name in zip(axes, ("area", "objects"), strict=False):
         if train:
             kernel = np.ones(min(SMOOTHED_ROWS, len(train[name])))
@@ -208,9 +207,7 @@ def draw_curve(out: Path) -> None:
     axes[2].set_xlabel("minutes")
     axes[2].set_ylim(0.0, 1.0)
     axes[2].legend(fontsize=7, ncol=2)
-    figure.tight_layout()
     figure.savefig(out / "curve.png", dpi=80)
-    pyplot.close(figure)
 
 
 def _targets(batch: Batch) -> tuple[Tensor, Tensor]:

@@ -16,6 +16,7 @@ from torch import Tensor
 from torch.optim.swa_utils import AveragedModel
 from torch.utils.data import DataLoader, Subset
 
+from sim import cli
 from sim.commands.train.averaged_checkpoints import AveragedCheckpoints
 from sim.commands.train.segmentation_network import device_of, parameter_groups, precision_of, start_network
 from sim.commands.train.segmentation_options import MAY_CHANGE, Args, check
@@ -68,6 +69,10 @@ class _Progress(msgspec.Struct):
     """See `options_of`."""
     hours: float | None = None
     """The time limit, --hours."""
+    val_stride: cli.Count = 1
+    """One of this many views is evaluated."""
+    evaluation_s: Number = 0.0
+    """Duration of the last evaluation."""
 
 
 class Trainer:
@@ -97,8 +102,8 @@ class Trainer:
         self._make_data(shards, val_shards)
         self.start_miou: float | None = None
         """Calibrated mIoU over the goal categories before the first step; None: not measured by this process."""
-        self._evaluation_s = 0.0
-        """Duration of the last evaluation."""
+        self._val_stride, self._evaluation_s = 1, 0.0
+        """See `_Progress`."""
         self.step, self.spent_s, self.best = 0, 0.0, -math.inf
         self.evaluated_step = 0
         self.loading_s = 0.0
@@ -180,13 +185,18 @@ class Trainer:
             most = int(EVALUATION_SHARE * 3600 * self.args.hours * len(few) / (time.perf_counter() - began_s))
             if most < len(self.val):
                 count = len(self.val)
-                self.val = Subset(self.val, range(0, count, -(-count // max(most, 8))))
+                self._evaluate_every_nth_view(-(-count // max(most, 8)))
                 print(f"evaluations use {len(self.val)} of {count} views, to meet the time limit", flush=True)
         began_s = time.perf_counter()
         iou, _, calibrated = evaluate(self.model, DataLoader(self.val, batch_size=8), device=self.device)
         self._evaluation_s, self.start_miou = time.perf_counter() - began_s, calibrated.goals
         name = "random weights" if self.args.init is None else f"weights of {self.args.init}"
         print(f"start, {name}: mIoU of goals {iou.goals:.3f}, calibrated {calibrated.goals:.3f}", flush=True)
+
+    def _evaluate_every_nth_view(self, n: int) -> None:
+        """Leaves out views of the evaluations, so that one in `n` stays."""
+        self.val = Subset(self.val, range(0, len(self.val), n))
+        self._val_stride *= n
 
     def _batches(self) -> Iterator[Sequence[Tensor]]:
         """Yields the batch of each step until the steps are done or the time is up; measures how long each takes."""
@@ -239,8 +249,8 @@ class Trainer:
         if calibrated.goals > self.best:
             self.best = calibrated.goals
             save_network(self.args.out / "rednet.safetensors", averaged, self._card(iou, calibrated))
-        self._save_state()
         self._evaluation_s = time.perf_counter() - began_s
+        self._save_state()
 
     def _usable(self) -> Network:
         """Returns the mean of the averaged weights at this and the last evaluations, normalised for whole views."""
@@ -291,6 +301,7 @@ class Trainer:
         progress = {"size": self.size, "step": self.step, "spent_s": self.spent_s, "best": self.best}
         progress |= {"total": self.total, "evaluated_step": self.evaluated_step}
         progress |= {"hours": self.args.hours, "options": self.options}
+        progress |= {"val_stride": self._val_stride, "evaluation_s": self._evaluation_s}
         save_state(self.args.out / "state.pt", self._parts(), progress)
 
     def _resume(self) -> None:
@@ -304,7 +315,8 @@ class Trainer:
         )
         if done is not None:
             self.step, self.spent_s, self.best = done.step, done.spent_s, done.best
-            self.evaluated_step = done.evaluated_step
+            self.evaluated_step, self._evaluation_s = done.evaluated_step, done.evaluation_s
+            self._evaluate_every_nth_view(done.val_stride)
             if self.args.hours is not None:
                 longer = self.spent_s > 0 and done.hours is not None and self.args.hours > done.hours
                 total = int(self.step * 3600 * self.args.hours / self.spent_s) if longer else done.total

@@ -6,17 +6,13 @@ from typing import Any
 
 import torch
 from gymnasium import spaces
+from stable_baselines3.common.distributions import DiagGaussianDistribution, Distribution
+from stable_baselines3.common.policies import ActorCriticPolicy
+from stable_baselines3.common.type_aliases import PyTorchObs, Schedule
 from torch import Tensor, nn
 from torch.optim import Adam
 
 from stubborn.exploration.semexp_net import NetConfig, SemExpNet
-
-try:
-    from stable_baselines3.common.distributions import DiagGaussianDistribution, Distribution
-    from stable_baselines3.common.policies import ActorCriticPolicy
-    from stable_baselines3.common.type_aliases import PyTorchObs, Schedule
-except ImportError as error:
-    raise SystemExit(f"error: {error}. Install it: pip install --constraint constraints.txt -e '.[train]'") from None
 
 
 class SemExpPolicy(ActorCriticPolicy):

@@ -20,7 +20,6 @@ Houses of val and test are for --judge only.
 from __future__ import annotations
 
 import json
-import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,10 +28,10 @@ from typing import Any
 import msgspec
 
 from sim import cli
-from sim.commands.train.episode_logs import LogOptions, check, default_log, line_of, lines_of, parameters_file, where_to
+from sim.commands.train.episode_logs import LogOptions, checked_split, default_log, line_of, lines_of, parameters_file
 from sim.composition.segmenters import find_segmentation, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
-from sim.episodes.splits import Episode, Split, load_split
+from sim.episodes.splits import Episode, Split
 from sim.errors import EpisodeError, PhysicsError
 from sim.evaluation.rollout import episode_seed
 from sim.evaluation.workers import RunnerSpec
@@ -43,8 +42,7 @@ from sim.reading import Name, Number
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.detection.classifiers import Features
 from stubborn.detection.distances import TargetConfig
-from stubborn.detection.verification import FOLDER, METHODS, FittedVerifier
-from stubborn.detection.verifier_fit import fit, judge_by_category
+from stubborn.detection.verification import FOLDER, NAIVE_BAYES, FittedVerifier
 
 NEVER = 1_000_000
 """A step that no episode reaches."""
@@ -64,8 +62,6 @@ class Args(LogOptions):
     """Steps of an episode; an agent never verifies what it first finds after step 200."""
     least_of_either: cli.Count = 20
     """A category with fewer true or fewer false candidates uses the pooled naive Bayes."""
-    out: cli.OutFile | None = None
-    """File of the parameters (JSON)."""
 
 
 class CandidateLine(msgspec.Struct):
@@ -112,15 +108,19 @@ class RecordingVerifier:
 
 def main(args: Args) -> int:
     """Runs the episodes, then fits and writes, or judges; returns the exit status."""
-    _check(args)
-    split = load_split(args.split)
-    file = parameters_file(args, args.out, FOLDER)
+    if args.least_of_either < 2:
+        raise ConfigError(f"--least-of-either must be at least 2, got {args.least_of_either}.")
+    split = checked_split(args)
+    from stubborn.detection.verifier_fit import fit  # it imports scikit-learn
+
+    file = parameters_file(args, FOLDER)
     lines = candidates_of(args, split)
     if args.judge:
         print(judgement(lines, file))
         return 0
     about = {"name": split.name, "version": split.version}
-    given = {"semantics": args.semantics, "command": command(args, len(lines)), "split": about}
+    command = args.command("verifier", len(lines), "--least-of-either", str(args.least_of_either))
+    given = {"semantics": args.semantics, "command": command, "split": about}
     content = given | fit(lines, args.least_of_either)
     write_atomically(file, json.dumps(content, indent=1, allow_nan=False) + "\n")
     report(content)
@@ -178,21 +178,6 @@ class CandidateRunner:
         self._env.close()
 
 
-def command(args: Args, episodes: int) -> str:
-    """Returns the command that runs as many episodes and fits to them.
-
-    They are the same episodes where the log holds the first ones of the split; --minutes may have left some out.
-
-    Args:
-        args: the options.
-        episodes: number of lines of the log, failed episodes too, in place of --episodes.
-    """
-    weights = "" if args.weights is None else f" --weights {shlex.quote(str(args.weights))}"
-    options = f"--semantics {args.semantics}{weights} --split {shlex.quote(args.split)} --episodes {episodes}"
-    options += f" --max-steps {args.max_steps} --least-of-either {args.least_of_either} --seed {args.seed}"
-    return f"stubborn train verifier {options} {where_to(args, args.out)}"
-
-
 def report(content: Mapping[str, Any]) -> None:
     """Prints the counts, and the quality of each method on houses left out."""
     print(f"{content['episodes']} episodes")
@@ -210,21 +195,22 @@ def report(content: Mapping[str, Any]) -> None:
 
 def judgement(lines: Sequence[Mapping[str, Any]], file: Path) -> str:
     """Returns Markdown tables: the candidates of each category, before and after verification, and the calibration."""
+    from stubborn.detection.verifier_fit import judge_by_category
+
     header = (
         "method", "goal", "true", "false", "mean P", "Brier score",
         "precision before", "precision after", "true accepted", "false rejected",
     )  # fmt: skip
     rows = _table_head(header)
     bins = _table_head(("method", "P from", "to", "candidates", "mean P", "true"))
-    for method in METHODS:
-        for goal, found in judge_by_category(lines, FittedVerifier.read(file, method)).items():
-            true = round(found["precision_before"] * found["candidates"])
-            mean = sum(each["candidates"] * each["mean_probability"] for each in found["by_probability"])
-            keys = ("brier", "precision_before", "precision", "true_accepted", "false_rejected")
-            shares = (mean / found["candidates"], *(found[key] for key in keys))
-            cells = " | ".join("-" if share is None else f"{share:.2f}" for share in shares)
-            rows.append(f"| {method} | {goal} | {true} | {found['candidates'] - true} | {cells} |")
-            bins += [_bin_row(method, each) for each in found["by_probability"] if goal == "all"]
+    for goal, found in judge_by_category(lines, FittedVerifier.read(file)).items():
+        true = round(found["precision_before"] * found["candidates"])
+        mean = sum(each["candidates"] * each["mean_probability"] for each in found["by_probability"])
+        keys = ("brier", "precision_before", "precision", "true_accepted", "false_rejected")
+        shares = (mean / found["candidates"], *(found[key] for key in keys))
+        cells = " | ".join("-" if share is None else f"{share:.2f}" for share in shares)
+        rows.append(f"| {NAIVE_BAYES} | {goal} | {true} | {found['candidates'] - true} | {cells} |")
+        bins += [_bin_row(NAIVE_BAYES, each) for each in found["by_probability"] if goal == "all"]
     return "\n".join([*rows, "", *bins])
 
 
@@ -237,10 +223,3 @@ def _bin_row(method: str, one: Mapping[str, Any]) -> str:
         f"| {method} | {one['from']} | {one['to']} | {one['candidates']} | {one['mean_probability']:.2f} | "
         f"{one['true_share']:.2f} |"
     )
-
-
-def _check(args: Args) -> None:
-    """Raises ConfigError for arguments that are not allowed."""
-    check(args)
-    if args.least_of_either < 2:
-        raise ConfigError(f"--least-of-either must be at least 2, got {args.least_of_either}.")

@@ -4,8 +4,9 @@
 
     stubborn traps report --split contact-val --agents oracle stubborn --out runs/contact
 
-Each agent runs every trap from the start headings of the split. An interrupted run is resumed. A picture shows the trap
-from above with the robot's true path (blue) and the contacts that stopped it (red), and the agent's map at the end.
+Each agent runs every trap from the start headings of the split. The same command continues an interrupted run, with the
+same split and --max-steps only (`config.json`). A picture shows the trap from above with the robot's true path (blue)
+and the contacts that stopped it (red), and the agent's map at the end.
 Traps of families also get curves with intervals and a picture of each family (`sim.commands.traps.family_report`).
 """
 
@@ -31,12 +32,14 @@ from sim.commands.traps.picture import draw_trial
 from sim.commands.traps.trial import Trial, run_trial
 from sim.composition.agents import build_agent, find_agent
 from sim.env.objectnav import ObjectNavEnv
-from sim.episodes.splits import Episode, load_split
-from sim.files import open_to_grow, write_together
+from sim.episodes.splits import Episode, Split, load_split
+from sim.evaluation.config_fields import differing_fields, field_text
+from sim.files import open_to_grow, write_atomically, write_together
 from sim.files import write_picture as save_picture
 from sim.interface import Agent, ConfigError
 from sim.reading import Count as ReadCount
-from sim.reading import Name, Number, read_lines
+from sim.reading import Name, Number, read_json, read_lines
+from sim.robot.config import PHYSICS_VERSION
 from stubborn.agent import StubbornAgent
 from stubborn.detection.verification import AcceptAll
 from stubborn.drawing import map_painter
@@ -55,7 +58,8 @@ class Args:
     """Report which agent escapes from which trap: a table, and pictures of the paths."""
 
     out: cli.OutFolder
-    """Folder for results.jsonl, traps.csv, traps.md and pictures/; for traps of families also tables and curves."""
+    """Folder for config.json, results.jsonl, traps.csv, traps.md and pictures/; for traps of families also tables and
+    curves."""
     split: str = "traps"
     """The traps: a shipped split, or a folder of yours with episodes (`stubborn episodes --recipe traps`)."""
     agents: tuple[str, ...] = DEFAULT_AGENTS
@@ -74,20 +78,24 @@ class Args:
 def main(args: Args) -> int:
     """Runs the missing episodes, then writes the table."""
     console = display.make_console()
-    facts = facts_of(load_split(args.split))
+    split = load_split(args.split)
+    episodes, facts = wanted(split, args), facts_of(split)
     if facts:
         require_matplotlib()
+    for name in args.agents:
+        find_agent(name)  # a wrong name is refused before anything is written
+    write_or_compare_config(args, split)
     results = args.out / "results.jsonl"
     found = read_lines(results, Row, what="Results")
     if found.torn:
         console.print(found.torn, markup=False)
         os.truncate(results, found.whole_bytes)
-    rows = found.values
+    ids = {episode.episode_id for episode in episodes}
+    rows = [row for row in found.values if row["episode_id"] in ids]
     for name in args.agents:
         done = {row["episode_id"] for row in rows if row["agent"] == name}
-        for trial in run_trials(args, name, done):
+        for trial in run_trials(args, name, episodes, done):
             rows.append(row_of(trial))
-            results.parent.mkdir(parents=True, exist_ok=True)
             with open_to_grow(results, "a") as file:
                 file.write(json.dumps(rows[-1]) + "\n")
             outcome = "escaped" if trial.escaped else "stuck"
@@ -100,6 +108,29 @@ def main(args: Args) -> int:
     else:
         console.print(table_of("successes (steps in the trap, collisions: medians)", *grid(rows)))
     return 0
+
+
+def write_or_compare_config(args: Args, split: Split) -> None:
+    """Writes `config.json`, or compares it where there are results.
+
+    Raises:
+        ConfigError: the results are of another split, version of the physics or --max-steps.
+    """
+    config = {
+        "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
+        "physics": PHYSICS_VERSION,
+        "max_steps": args.max_steps,
+    }
+    file = args.out / "config.json"
+    if not (args.out / "results.jsonl").exists():
+        write_atomically(file, json.dumps(config, indent=2) + "\n")
+        return
+    before = read_json(file, dict[str, Any], what="Config") if file.exists() else {}
+    for path, was, now in differing_fields(before, config):
+        raise ConfigError(
+            f"--out '{args.out}' holds results with {path} = {field_text(was)}, this command has {field_text(now)}; "
+            "choose another folder."
+        )
 
 
 class Row(msgspec.Struct):
@@ -119,7 +150,7 @@ class Row(msgspec.Struct):
     fell: bool = False
 
 
-def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:
+def run_trials(args: Args, name: str, episodes: Sequence[Episode], done: Set[str]) -> Iterator[Trial]:
     """Runs an agent in the episodes that are not done, and draws the pictures."""
     spec = find_agent(name)
     truth = ("semantic",) if spec.uses_segmentation else ()
@@ -127,7 +158,6 @@ def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:
     env = ObjectNavEnv(split=args.split, sensors=sensors, max_steps=args.max_steps)
     try:
         agent = make_agent(name, env)
-        episodes = wanted(env, args)
         others = {
             each.house: each.episode_id for each in reversed(episodes) if env.split.sidecar(each.house).trap is None
         }
@@ -160,17 +190,17 @@ def make_agent(name: str, env: ObjectNavEnv) -> Agent:
     return build_agent(name, spec, env, segmenter=GroundTruthSegmenter(), verifier=AcceptAll(), config=spec.config)
 
 
-def wanted(env: ObjectNavEnv, args: Args) -> list[Episode]:
+def wanted(split: Split, args: Args) -> list[Episode]:
     """Returns the episodes to run, trap by trap.
 
     Raises:
         ConfigError: a name of a trap is unknown.
     """
-    unknown = sorted(set(args.traps) - set(env.split.houses))
+    unknown = sorted(set(args.traps) - set(split.houses))
     if unknown:
-        raise ConfigError(f"No trap '{unknown[0]}'. Available: {', '.join(env.split.houses)}.")
+        raise ConfigError(f"No trap '{unknown[0]}'. Available: {', '.join(split.houses)}.")
     of_trap: dict[str, list[Episode]] = {}
-    for episode in env.split.episodes:
+    for episode in split.episodes:
         if not args.traps or episode.house in args.traps:
             of_trap.setdefault(episode.house, []).append(episode)
     return [episode for episodes in of_trap.values() for episode in episodes[: args.headings]]

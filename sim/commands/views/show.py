@@ -20,7 +20,6 @@ from sim import cli
 from sim.datasets.coco import decode_mask
 from sim.datasets.normals import encode_normals
 from sim.files import write_picture
-from sim.interface import ConfigError
 from sim.viewers.palette import with_legend
 from sim.viewers.text import write
 from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard, tile
@@ -47,8 +46,6 @@ class Args:
 
 def main(args: Args) -> int:
     """Draws the sheet and prints its path."""
-    if args.count < 1:
-        raise ConfigError(f"--count must be at least 1, got {args.count}.")
     rng = np.random.default_rng(args.seed)
     shards = list_shards(args.views)
     picked = [shards[i] for i in rng.permutation(len(shards))[: args.count]]

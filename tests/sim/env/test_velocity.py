@@ -20,8 +20,11 @@ from sim.env.velocity import ObjectNavVelocityEnv
 from sim.geometry.pose import Pose
 from sim.houses.house import House
 from sim.interface import Action, CameraModel, ConfigError
+from sim.robot.config import DriveConfig, RobotConfig
+from sim.robot.velocity import Velocity
 from sim.task.metrics import TRAPPED_WINDOW_STEPS, stayed_near
 from sim.task.trajectory import by_action
+from sim.world.world import World
 from stubborn import GroundTruthSegmenter
 from tests.helpers.worlds import sofa_room, with_box, with_movable
 
@@ -106,6 +109,18 @@ def test_a_collision_is_counted_once_when_a_contact_begins_to_block(tmp_path: Pa
     assert not drive(env, BACK, 5)[-1]["blocked"]
     assert drive(env, AHEAD, 20)[-1]["collisions"] == 2
     env.close()
+
+
+@pytest.mark.parametrize("command", [Velocity(0.5, 0.0), Velocity(-0.5, 0.0)])
+def test_only_commands_that_push_by_the_robots_configuration_are_blocked(command: Velocity) -> None:
+    house = with_box(sofa_room(), "cabinet_00", centre_m=(-1.0, 1.0, 0.5), half_m=(0.1, 0.5, 0.5))
+    house = with_box(house, "cabinet_01", centre_m=(-2.0, 1.0, 0.5), half_m=(0.1, 0.5, 0.5))
+    ended = {}
+    for pushing_m_s in (DriveConfig.pushing_m_s, 0.6):
+        world = World(house, robot=RobotConfig(drive=DriveConfig(pushing_m_s=pushing_m_s)))
+        world.reset(START)
+        ended[pushing_m_s] = [world.hold(command, 0.1).ended for _ in range(15)][-1]
+    assert ended == {DriveConfig.pushing_m_s: "blocked", 0.6: "reached"}
 
 
 def test_a_light_chair_that_is_pushed_is_no_collision(tmp_path: Path) -> None:

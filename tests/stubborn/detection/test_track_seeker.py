@@ -215,7 +215,7 @@ def test_a_track_above_the_bar_that_cannot_be_looked_at_counts_as_looked_at(monk
     never = np.zeros(tracks.evidence.config.sectors, np.bool_)
     monkeypatch.setattr(tracks.evidence, "near_sectors", lambda _: never)
     monkeypatch.setattr(track_seeker, "look_at", lambda *_: None)
-    monkeypatch.setattr(seeker, "_drive_in", lambda *_: None)
+    monkeypatch.setattr(seeker, "_approach", lambda *_: None)
     seeker.verdicts.looks.clear()
     seeker.probability[track] = 0.5 * seeker.verdicts.bar
     assert seeker._look(agent.navmap, window, Pose(0.0, 0.0, 0.0), track) is None
@@ -227,7 +227,7 @@ def test_a_track_above_the_bar_that_cannot_be_looked_at_counts_as_looked_at(monk
 
 def test_a_look_that_was_blocked_is_not_repeated_from_the_same_side(monkeypatch: pytest.MonkeyPatch):
     agent, seeker, tracks, track = tracked()
-    x_m, y_m = tracks.track(track).middle_xy_m
+    x_m, y_m = tracks.middle_xy_m(track)
     seen = tracks.evidence.near_sectors(track)
     behind = int(np.flatnonzero(~seen)[0])
     bearing_rad = behind * math.tau / seen.size
@@ -246,7 +246,7 @@ def test_a_probable_track_is_first_looked_at_on_the_path_to_it(monkeypatch: pyte
     agent, seeker, _, track = tracked()
     window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
     straight, around = Approach(None, 0.0, (0, 0)), Approach(None, 1.0, (0, 0))
-    monkeypatch.setattr(seeker, "_drive_in", lambda *_: straight)
+    monkeypatch.setattr(seeker, "_approach", lambda *_: straight)
     monkeypatch.setattr(track_seeker, "look_at", lambda *_: around)
     seeker.verdicts.looks.clear()
 
@@ -265,11 +265,11 @@ def test_a_probable_track_is_first_looked_at_on_the_path_to_it(monkeypatch: pyte
 def test_a_look_does_not_lead_around_the_house(monkeypatch: pytest.MonkeyPatch):
     agent, seeker, tracks, track = tracked()
     window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
-    here = Pose(*tracks.track(track).middle_xy_m, 0.0)
+    here = Pose(*tracks.middle_xy_m(track), 0.0)
     around, straight = Approach(None, 1.0, (0, 0)), Approach(None, 2.0, (0, 0))
     lengths_m = {1.0: 0.0, 2.0: 0.0}  # by bearing
     monkeypatch.setattr(Approach, "length_m", property(lambda each: lengths_m[each.bearing_rad]))
-    monkeypatch.setattr(seeker, "_drive_in", lambda *given: straight if given[-1] is LastResort.VERIFY else None)
+    monkeypatch.setattr(seeker, "_approach", lambda *given: straight if given[-1] is LastResort.VERIFY else None)
     monkeypatch.setattr(track_seeker, "look_at", lambda *_: around)
     seeker.verdicts.looks.clear()
     seeker.probability[track] = seeker.config.look.straight

@@ -9,7 +9,7 @@ from sklearn.naive_bayes import GaussianNB
 
 from sim.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
 from stubborn.detection.classifiers import Features, NaiveBayes
-from stubborn.detection.verification import METHODS, AcceptAll, FittedVerifier, verifier_for
+from stubborn.detection.verification import AcceptAll, FittedVerifier, verifier_for
 from stubborn.detection.verifier_fit import fit, judge_by_category
 
 IMPERFECT = SegmenterSpec()
@@ -54,15 +54,14 @@ def test_probabilities_are_those_of_scikit_learn(tmp_path: Path):
     np.testing.assert_array_equal(np.array(accepted)[sure], (expected > 0.5)[sure])
 
 
-def test_methods_are_judged_on_candidates_of_houses_left_out():
+def test_the_classifiers_are_judged_on_candidates_of_houses_left_out():
     features, truth = examples(300, 0.5, seed=7)
     methods = fit(log_of({"bed": (features, truth)}), 20)["methods"]
-    assert set(methods) == set(METHODS)
-    for fitted in methods.values():
-        left_out = fitted["left_out"]
-        assert left_out["candidates"] == 300
-        assert left_out["precision_before"] == pytest.approx(truth.mean(), abs=1e-3)
-        assert left_out["precision"] > left_out["precision_before"]
+    assert set(methods) == {"naive-bayes"}
+    left_out = methods["naive-bayes"]["left_out"]
+    assert left_out["candidates"] == 300
+    assert left_out["precision_before"] == pytest.approx(truth.mean(), abs=1e-3)
+    assert left_out["precision"] > left_out["precision_before"]
 
 
 def test_a_verifier_is_judged_by_category(tmp_path: Path):
@@ -78,14 +77,14 @@ def test_a_verifier_is_judged_by_category(tmp_path: Path):
 
 def test_the_method_none_accepts_all_and_unknown_methods_are_refused(tmp_path: Path):
     assert isinstance(verifier_for(IMPERFECT, method="none"), AcceptAll)
-    with pytest.raises(ConfigError, match="Unknown verification 'hunch'"):
+    with pytest.raises(ConfigError, match=r"Unknown verification 'hunch'\. Available: naive-bayes, none"):
         verifier_for(IMPERFECT, method="hunch")
     with pytest.raises(ConfigError, match="cannot be read"):
         verifier_for(IMPERFECT, tmp_path / "none.json")
 
 
 def test_extreme_features_give_a_probability_and_no_overflow():
-    bayes = NaiveBayes.from_dict({"prior": [0.5, 0.5], "mean": [[0.0] * 4, [1.0] * 4], "variance": [[1e-6] * 4] * 2})
+    bayes = NaiveBayes.of([0.5, 0.5], [[0.0] * 4, [1.0] * 4], [[1e-6] * 4] * 2)
     with np.errstate(all="raise"):
         assert bayes.probability((500, 500.0, 1.0, 0.0)) == pytest.approx(1.0)
         assert bayes.probability((-500, -500.0, 0.0, 0.0)) == pytest.approx(0.0)
@@ -156,9 +155,8 @@ def test_segmentation_that_needs_no_verification_gets_a_verifier_that_accepts_al
     assert verifier.accepts("chair", Features(0, 0.0, 0.0, 1.0))
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_the_shipped_parameters_judge_clear_cases_for_every_category(method: str):
-    verifier = verifier_for(SegmenterSpec(kind="noisy"), method=method)
+def test_the_shipped_parameters_judge_clear_cases_for_every_category():
+    verifier = verifier_for(SegmenterSpec(kind="noisy"))
     assert isinstance(verifier, FittedVerifier)
     for goal in GOAL_CATEGORIES:
         seldom = verifier.probability(goal, Features(20, 3.0, 0.62, 0.88))
@@ -186,3 +184,22 @@ def test_an_unknown_goal_and_a_broken_file_are_refused(tmp_path: Path):
         broken.write_text(content)
         with pytest.raises(ConfigError, match=r"broken\.json"):
             FittedVerifier.read(broken)
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"prior": [0.5]}, "prior"),
+        ({"prior": [1.0, 0.0]}, r"prior\[1\]"),
+        ({"mean": [[0.0] * 4, [0.0] * 3]}, r"mean\[1\]"),
+        ({"variance": [[1.0] * 4, [1.0, 1.0, -1.0, 1.0]]}, r"variance\[1\]\[2\]"),
+    ],
+)
+@pytest.mark.parametrize("part", ["pooled", "categories"])
+def test_a_file_with_a_wrong_parameter_is_refused_with_its_place(change: dict, field: str, part: str, tmp_path: Path):
+    good = {"prior": [0.5, 0.5], "mean": [[0.0] * 4] * 2, "variance": [[1.0] * 4] * 2}
+    method = {"pooled": good, "categories": {"bed": good}}
+    written({"methods": {"naive-bayes": method}}, tmp_path)
+    method |= {part: good | change if part == "pooled" else {"bed": good | change}}
+    with pytest.raises(ConfigError, match=rf"kind\.json', method 'naive-bayes', field '{part}.*{field}"):
+        written({"methods": {"naive-bayes": method}}, tmp_path)

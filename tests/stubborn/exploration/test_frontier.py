@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pytest
 
@@ -186,5 +188,13 @@ def test_options_reach_the_explorer_and_sweeps_are_counted():
     world = GridWorld(APARTMENT, START, camera=SMALL_CAMERA)
     trace = run_episode(world, agent, "sofa", max_steps=3)
     assert trace.actions == [Action.TURN_LEFT] * 3
-    with pytest.raises(ConfigError, match=r"0 < arrived_m <= spent_m, got 0\.5 and 0\.1"):
-        FrontierConfig(arrived_m=0.5, spent_m=0.1)
+
+
+def test_settings_with_which_the_search_would_not_end_are_refused():
+    FrontierConfig(arrived_m=0.2, spent_m=0.3)
+    for arrived_m, spent_m in ((0.5, 0.1), (0.5, 0.55), (0.0, 0.6)):
+        message = f"FrontierConfig needs arrived_m > 0 and spent_m >= arrived_m + 0.1, got {arrived_m} and {spent_m} m"
+        with pytest.raises(ConfigError, match=re.escape(message)):
+            FrontierConfig(arrived_m=arrived_m, spent_m=spent_m)
+    with pytest.raises(ConfigError, match="look_around_turns must be >= 0, got -1"):
+        FrontierConfig(look_around_turns=-1)

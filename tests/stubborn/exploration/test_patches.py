@@ -25,7 +25,7 @@ def marked() -> NavMap:
     navmap = NavMap.empty(FRAME)
     row, col = FRAME.cell(1.02, -0.51)
     navmap.seen_obstacle[row, col] = True
-    navmap.frames_in_view[row, col] = 256  # its lowest byte is 0
+    navmap.frames_in_view[row, col] = 1 << 16  # its two lowest bytes are 0
     navmap.goals_seen[row, col] = 1 << BED | 1 << CHAIR
     navmap.trail[FRAME.cell(0.0, 0.0)] = True
     return navmap

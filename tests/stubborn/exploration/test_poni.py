@@ -145,7 +145,7 @@ def test_the_controls_of_an_episode_come_from_its_seed():
 
 
 @pytest.mark.parametrize(
-    "options", [{"alpha": 1.1}, {"path_weight_per_m": -0.1}, {"replan_steps": 0}, {"arrived_m": 0.7}]
+    "options", [{"alpha": 1.1}, {"path_weight_per_m": -0.1}, {"replan_steps": 0}, {"arrived_m": 0.55}]
 )
 def test_settings_that_make_no_sense_are_refused(options: dict[str, float]):
     with pytest.raises(ConfigError, match=next(iter(options))):

@@ -29,7 +29,7 @@ def open_map() -> NavMap:
     """Returns ground in view from x = -6 to 6 m, a bed ahead of the start and a wall left of it."""
     navmap = NavMap.empty(GridFrame.around_start(400, 0.05))
     for name, x_m, y_m, value in (
-        ("frames_in_view", (-6.0, 6.0), (-6.0, 6.0), 256),  # its lowest byte is 0
+        ("frames_in_view", (-6.0, 6.0), (-6.0, 6.0), 1 << 16),  # its two lowest bytes are 0
         ("seen_obstacle", (-6.0, 6.0), (4.0, 4.1), True),
         ("goals_seen", (2.0, 3.9), (-0.5, 0.5), 1 << BED),
     ):
@@ -227,7 +227,7 @@ def test_a_published_checkpoint_is_read_and_gets_its_own_categories(tmp_path: Pa
     route_of(explore, ground(open_map(), goal="bed"))
     assert explore.place_xy_m is not None
     with pytest.raises(ConfigError, match="semexp has no category 'cushion', only chair, sofa, plant, bed"):
-        explore.told_goal("cushion")
+        explore.policy_goal("cushion")
 
 
 EMBEDDING, LINEAR = (f"network.{name}.weight" for name in ("goal_emb", "linear1"))

@@ -14,6 +14,7 @@ from stubborn.mapping.collision_marks import (
     is_collision,
     mark_collision,
     mark_visited,
+    pushed_without_moving,
     square_ahead,
 )
 from stubborn.mapping.navmap import CollisionLayer, NavMap
@@ -52,6 +53,13 @@ def test_a_mark_has_no_holes_and_one_piece(yaw: float, edge_m: float):
         layer = square(Pose(offset, 0.7 * offset, yaw), edge_m)
         assert cv2.connectedComponents(layer.astype(np.uint8), connectivity=4)[0] == 2
         assert cv2.connectedComponents((~layer).astype(np.uint8), connectivity=4)[0] == 2
+
+
+def test_a_step_that_neither_moves_nor_turns_is_a_push():
+    before = Pose(1.0, 0.0, math.pi)
+    for x_m, yaw_rad, pushed in ((1.0, math.pi, True), (0.91, 0.2 - math.pi, True), (0.89, math.pi, False)):
+        assert pushed_without_moving(before, Pose(x_m, 0.0, yaw_rad)) == pushed
+    assert not pushed_without_moving(before, Pose(1.0, 0.0, 0.3 - math.pi))
 
 
 def test_the_pessimistic_mark_holds_the_optimistic_one():

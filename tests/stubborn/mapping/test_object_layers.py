@@ -123,6 +123,17 @@ def test_one_frames_score_takes_the_place_of_the_layers_where_it_looks():
     assert navmap.found_step[left] == 3
 
 
+def test_frames_are_counted_and_candidates_found_in_episodes_of_a_million_steps():
+    depth = frame_at(POSES[0], 2.0)
+    yes, no = np.full(depth.shape, 0.8, np.float32), np.full(depth.shape, 0.1, np.float32)
+    navmap, cell = NavMap.empty(FRAME), FRAME.cell(2.0, 0.3)
+    navmap.frames_in_view[cell] = (1 << 16) - 1
+    mapper = Mapper(CAMERA, RobotModel(), MappingConfig())
+    mapper.add_scores(mapper.frame(navmap, POSES[0]), depth, Scores(yes, no), 40_000)
+    assert navmap.found_step[cell] == 40_000
+    assert navmap.frames_in_view[cell] == 1 << 16
+
+
 def test_a_frame_without_the_target_clears_the_cells_in_view():
     pose = POSES[0]
     depth = frame_at(pose, 2.0)
