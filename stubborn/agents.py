@@ -46,7 +46,7 @@ _ROW_WORDS: Mapping[str, str] = MappingProxyType(
         "stubborn-ii": "untrap moves only",
         "stubborn-iii": "untrap moves, and collisions in the map",
         "stubborn-iv": (
-            "all measures, but no optimistic map where there is no path, and visited ground does not count as free"
+            "as v, without the optimistic map and free visited ground"
         ),
         "stubborn-v": "all measures; the same as stubborn",
     }

@@ -85,7 +85,7 @@ def test_ground_truth_cannot_be_asked_for_without_declaring_it() -> None:
 def test_an_agents_own_option_is_set_from_the_command_line(house: Path, tmp_path: Path) -> None:
     line, _ = run_episode(house, tmp_path, "tests.helpers.agents:SPY", "gt", "agent.forwards=4")
     assert line["num_steps"] == 5
-    assert json.loads((tmp_path / "config.json").read_text())["config"]["agent"] == {"forwards": 4}
+    assert json.loads((tmp_path / "config.json").read_text())["config"]["agent"] == {"prompt": "", "forwards": 4}
 
 
 @pytest.mark.parametrize(
