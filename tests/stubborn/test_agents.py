@@ -260,7 +260,7 @@ def test_the_ablation_rows_switch_on_one_measure_after_the_other():
     rows = [switches(f"stubborn-{row}") for row in ("i", "ii", "iii", "iv", "v")]
     assert rows == [tuple(i < n for i in range(4)) for n in range(5)]
     assert switches("stubborn") == rows[-1]
-    assert "no optimistic map where there is no path" in agents.SPECS["stubborn-iv"].description
+    assert "without the optimistic map" in agents.SPECS["stubborn-iv"].description
 
 
 def test_options_are_fields_of_the_config():
