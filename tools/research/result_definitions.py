@@ -115,7 +115,7 @@ SEMEXP = {
     "semexp --config agent.explorer.semantics=shuffled": "`semexp`, shuffled semantics",
 }
 """The last two are controls: they show whether `semexp` uses the goal and the semantics, and are compared with it."""
-SEMEXP_VERSION, SEMEXP_EPISODES = "3.0.0", 60
+SEMEXP_VERSION, SEMEXP_EPISODES = "3.0.0", 200
 REPLACED = (("semexp", EARLIER),)
 """Agents and versions of the splits whose runs are those of another agent, which had this name before."""
 NETWORK = (
