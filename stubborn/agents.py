@@ -45,9 +45,7 @@ _ROW_WORDS: Mapping[str, str] = MappingProxyType(
         "stubborn-i": "no measure against collisions",
         "stubborn-ii": "untrap moves only",
         "stubborn-iii": "untrap moves, and collisions in the map",
-        "stubborn-iv": (
-            "as v, without the optimistic map and free visited ground"
-        ),
+        "stubborn-iv": ("as v, without the optimistic map and free visited ground"),
         "stubborn-v": "all measures; the same as stubborn",
     }
 )
