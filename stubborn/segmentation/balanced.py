@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 import torch
 from torch import Tensor
-from torch.utils.data import Dataset
+from torch.utils.data import DataLoader, Dataset
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, ConfigError
 from sim.reading import Count, open_plain
@@ -77,24 +77,19 @@ class ViewIndex:
     """Objects by category, then by style; "" if the style is not known."""
 
     @classmethod
-    def of(cls, shards: Sequence[Path]) -> ViewIndex:
-        """Returns the index of some shards.
+    def of(cls, shards: Sequence[Path], *, workers: int = 0) -> ViewIndex:
+        """Returns the index of some shards, which `workers` processes read.
 
         Raises:
             ConfigError: a shard is broken or has no objects (`stubborn views --extras instances`).
         """
         views: list[StoredView] = []
         objects: dict[str, dict[str, list[ShownObject]]] = {}
-        decoder = msgspec.json.Decoder(list[_Annotation])
-        for shard in shards:
-            with open_plain(shard, what="Shard") as stream:
-                for key, members in read_members(shard):
-                    for each in _annotations(decoder, shard, key, members, stream):
-                        category = MPCAT40[each.category_id]
-                        if category in GOAL_CATEGORIES and each.area >= SMALLEST_PX:
-                            shown = ShownObject(len(views), each.id)
-                            objects.setdefault(category, {}).setdefault(each.style, []).append(shown)
-                    views.append(StoredView(shard, key, tuple((name, *place) for name, place in members.items())))
+        for own, shown in DataLoader(_ShardIndex(shards), batch_size=None, num_workers=workers):
+            for category, style, view, number in shown:
+                of_style = objects.setdefault(category, {}).setdefault(style, [])
+                of_style.append(ShownObject(len(views) + view, number))
+            views += own
         return cls(tuple(views), objects)
 
     def counts(self) -> dict[str, tuple[int, int]]:
@@ -105,6 +100,29 @@ class ViewIndex:
         """Returns a random object: first the category, then the style, then the object is sampled uniformly."""
         styles = self.objects[_one_of(list(self.objects), rng)]
         return _one_of(styles[_one_of(list(styles), rng)], rng)
+
+
+class _ShardIndex(Dataset):
+    """The views of each shard, and their goal objects: category, style, index of the view in the shard, number."""
+
+    def __init__(self, shards: Sequence[Path]) -> None:
+        self._shards = shards
+
+    def __len__(self) -> int:
+        return len(self._shards)
+
+    def __getitem__(self, i: int) -> tuple[list[StoredView], list[tuple[str, str, int, int]]]:
+        shard, decoder = self._shards[i], msgspec.json.Decoder(list[_Annotation])
+        views: list[StoredView] = []
+        objects: list[tuple[str, str, int, int]] = []
+        with open_plain(shard, what="Shard") as stream:
+            for key, members in read_members(shard):
+                for each in _annotations(decoder, shard, key, members, stream):
+                    category = MPCAT40[each.category_id]
+                    if category in GOAL_CATEGORIES and each.area >= SMALLEST_PX:
+                        objects.append((category, each.style, len(views), each.id))
+                views.append(StoredView(shard, key, tuple((name, *place) for name, place in members.items())))
+        return views, objects
 
 
 class Batches(Dataset):

@@ -42,6 +42,8 @@ class Recipe:
     """Decay per step of the exponential average of the weights; less in the first steps."""
     checkpoints: int = 3
     """Number of evaluations whose averaged weights are averaged once more: the network that is evaluated and saved."""
+    checkpoint_share: float = 0.1
+    """The evaluations that are averaged are in this last share of the steps so far."""
     object_share: float = 0.8
     """Share of the samples that are drawn by an object: category, then style, then object; windows show it."""
 

@@ -71,10 +71,12 @@ def exponential_average(decay: float) -> Callable[[Sequence[Tensor], Sequence[Te
     def update(averaged: Sequence[Tensor], current: Sequence[Tensor], count: Tensor | int) -> None:
         n = int(count)
         step = 1.0 - min(decay, (1 + n) / (10 + n))
-        for old, new in zip(averaged, current, strict=True):
-            if torch.is_floating_point(old):
-                old.lerp_(new.to(old.dtype), step)
-            else:
+        pairs = [(old, new.to(old.dtype)) for old, new in zip(averaged, current, strict=True)]
+        floats = [pair for pair in pairs if torch.is_floating_point(pair[0])]
+        if floats:
+            torch._foreach_lerp_([old for old, _ in floats], [new for _, new in floats], step)  # on a GPU one call
+        for old, new in pairs:
+            if not torch.is_floating_point(old):
                 old.copy_(new)
 
     return update

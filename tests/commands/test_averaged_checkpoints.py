@@ -28,3 +28,13 @@ def test_the_last_networks_are_kept_and_averaged_and_later_ones_removed(tmp_path
     assert [file.stem for file in sorted(tmp_path.iterdir())] == ["step-0002000", "step-0003000", "step-0006000"]
     checkpoints.cut(3000)
     assert [file.stem for file in sorted(tmp_path.iterdir())] == ["step-0002000", "step-0003000"]
+
+
+def test_only_networks_of_the_last_share_of_the_steps_are_averaged(tmp_path: Path) -> None:
+    checkpoints = AveragedCheckpoints(tmp_path, 3, share=0.1)
+    for step, expected in ((500, 1.0), (950, 2.0), (1000, 2.5)):
+        network = build_network(TINY)
+        for parameter in network.parameters():
+            torch.nn.init.constant_(parameter, {500: 1.0, 950: 2.0, 1000: 3.0}[step])
+        mean = checkpoints.add(network, step)
+        assert {float(value) for parameter in mean.parameters() for value in parameter.detach().aminmax()} == {expected}

@@ -16,10 +16,11 @@ class AveragedCheckpoints:
     Args:
         folder: folder of the run.
         most: number of networks that are kept.
+        share: only networks of this last share of the steps are averaged: earlier ones had a higher learning rate.
     """
 
-    def __init__(self, folder: Path, most: int) -> None:
-        self._folder, self._most = folder, most
+    def __init__(self, folder: Path, most: int, share: float = 1.0) -> None:
+        self._folder, self._most, self._share = folder, most, share
 
     def add(self, network: Network, step: int) -> Network:
         """Stores the network of a step and returns a new one with the mean weights of the last networks."""
@@ -27,14 +28,19 @@ class AveragedCheckpoints:
         files = self._files()
         for file in files[: -self._most]:
             file.unlink()
-        return mean_of([load_network(file)[0] for file in files[-self._most :]])
+        late = [file for file in files[-self._most :] if _step(file) >= (1.0 - self._share) * step]
+        return mean_of([load_network(file)[0] for file in late])
 
     def cut(self, step: int) -> None:
         """Removes the networks of later steps, which a killed process stored after its last state."""
         for file in self._files():
-            if int(file.stem.removeprefix(PREFIX)) > step:
+            if _step(file) > step:
                 file.unlink()
 
     def _files(self) -> list[Path]:
         """Returns the files, that of the earliest step first."""
         return sorted(self._folder.glob(f"{PREFIX}*.safetensors"))
+
+
+def _step(file: Path) -> int:
+    return int(file.stem.removeprefix(PREFIX))

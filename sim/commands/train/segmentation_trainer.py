@@ -34,6 +34,7 @@ from sim.reading import Count, Number
 from stubborn.segmentation.balanced import Batches, ViewIndex
 from stubborn.segmentation.checkpoints import save_network
 from stubborn.segmentation.dataset import list_shards, pixel_counts, spread_views, stored_block_px, stored_views
+from stubborn.segmentation.device_batches import DeviceBatches
 from stubborn.segmentation.evaluation import Iou, evaluate
 from stubborn.segmentation.networks import Network
 from stubborn.segmentation.recipe import PROGRESSIVE
@@ -111,7 +112,7 @@ class Trainer:
         self.first_step = 0
         self._printed_s = 0.0
         self.total = args.steps
-        self.checkpoints = AveragedCheckpoints(args.out, RECIPE.checkpoints)
+        self.checkpoints = AveragedCheckpoints(args.out, RECIPE.checkpoints, RECIPE.checkpoint_share)
         args.out.mkdir(parents=True, exist_ok=True)
         self._resume()
 
@@ -121,21 +122,31 @@ class Trainer:
         if self.args.block_px % stored_px:
             raise ConfigError(f"--block-px {self.args.block_px} is not a multiple of {stored_px}, that of the views.")
         camera, second, used = CameraModel(), self.model.config.second, self.args.block_px // stored_px
-        index = ViewIndex.of(shards)
+        index = ViewIndex.of(shards, workers=self.args.workers)
         counts = ", ".join(f"{name} {n} of {styles}" for name, (n, styles) in index.counts().items())
         print(f"{len(index.views)} views; objects and styles: {counts}", flush=True)
         sampler = Sampler(camera, 1, Augmentation(), second=second, used_block_px=used, area_weights=True)
-        self.data = Batches(index, sampler, RECIPE, batch=self.args.batch, seed=self.args.seed)
+        self.data = self._make_batches(index, sampler)
         self.val: Samples | Subset = Samples(
             spread_views(val_shards, self.args.val_count), Sampler(camera, used, second=second)
         )
         augmented = Sampler(camera, used, Augmentation(), second=second)
         self.whole = Samples(spread_views(shards, NORMALISATION_VIEWS), augmented)
 
+    def _make_batches(self, index: ViewIndex, sampler: Sampler) -> Batches | DeviceBatches:
+        """Returns the batches, on a GPU computed there."""
+        made = {"batch": self.args.batch, "seed": self.args.seed}
+        if self.device.type != "cuda":
+            return Batches(index, sampler, RECIPE, **made)
+        began_s = time.perf_counter()
+        batches = DeviceBatches(index, sampler, RECIPE, **made, device=self.device, workers=self.args.workers)
+        print(f"{len(index.views)} views on the GPU after {time.perf_counter() - began_s:.0f} s", flush=True)
+        return batches
+
     def run(self) -> None:
         """Trains until the steps are done or the time is up."""
         start_s, last_saved_s = self._began_s - self.spent_s, time.perf_counter()
-        losses: list[float] = []
+        losses: list[Tensor] = []
         self.first_step = self.step
         if self.step == 0:
             self._evaluate_start()
@@ -149,9 +160,9 @@ class Trainer:
                 per_step_s = (time.perf_counter() - train_s) / made
                 self.total = self.step + max(0, int(self._left_s() / per_step_s))
             if time.perf_counter() - self._printed_s >= PRINT_EVERY_S:
-                self._print_loss(float(np.mean(losses)))
+                self._print_loss(_mean(losses))
             if self.step % LOG_EVERY_STEPS == 0:
-                self._log(float(np.mean(losses)))
+                self._log(_mean(losses))
                 losses.clear()
             if self.step % self.args.evaluate_every == 0:
                 self._evaluate()
@@ -160,8 +171,8 @@ class Trainer:
                 self._save_state()
                 last_saved_s = time.perf_counter()
         if losses:  # of the last steps, or of a training shorter than one row
-            self._log(float(np.mean(losses)))
-            self._print_loss(float(np.mean(losses)))
+            self._log(_mean(losses))
+            self._print_loss(_mean(losses))
         if self.step > self.evaluated_step:
             self._evaluate()
         self._save_state()
@@ -200,7 +211,8 @@ class Trainer:
 
     def _batches(self) -> Iterator[Sequence[Tensor]]:
         """Yields the batch of each step until the steps are done or the time is up; measures how long each takes."""
-        loader = DataLoader(self.data, batch_size=None, sampler=_Steps(self), num_workers=self.args.workers)
+        workers = self.args.workers if isinstance(self.data, Batches) else 0  # the GPU makes the batches of the others
+        loader = DataLoader(self.data, batch_size=None, sampler=_Steps(self), num_workers=workers)
         batches = iter(loader)
         while self.step < self.total and not self._time_is_up():
             start_s = time.perf_counter()
@@ -208,8 +220,8 @@ class Trainer:
             self.loading_s += time.perf_counter() - start_s
             yield batch
 
-    def _train_on(self, rgb: Tensor, second: Tensor, target: Tensor, pixels: Tensor) -> float:
-        """Makes one step of the optimiser and returns the loss."""
+    def _train_on(self, rgb: Tensor, second: Tensor, target: Tensor, pixels: Tensor) -> Tensor:
+        """Makes one step of the optimiser and returns the loss; a GPU may still be computing it."""
         rate = self.args.rate * RECIPE.relative_rate(self.step, self.total)
         for group in self.optimiser.param_groups:
             group["lr"] = rate * group["relative_rate"]
@@ -223,7 +235,7 @@ class Trainer:
         torch.nn.utils.clip_grad_norm_(self.model.parameters(), MAX_GRADIENT_NORM)
         self.optimiser.step()
         self.average.update_parameters(self.model)
-        return float(loss.detach())
+        return loss.detach()
 
     def _loss(self, rgb: Tensor, second: Tensor, target: Tensor, pixels: Tensor) -> Tensor:
         """Returns the loss; the finest output of a RedNet is trained on one random pixel of each 2 x 2 block."""
@@ -343,6 +355,10 @@ class _Steps:
         while True:
             yield step, step / max(1, self._trainer.total)
             step += 1
+
+
+def _mean(losses: Sequence[Tensor]) -> float:
+    return float(torch.stack(list(losses)).mean())
 
 
 def _all_shards(folders: Sequence[Path]) -> list[Path]:
