@@ -75,11 +75,11 @@ def _own() -> frozenset[tuple[str, str]]:
 
 @functools.lru_cache(maxsize=1)
 def _withheld_own() -> frozenset[tuple[str, str]]:
-    """Returns category and name of our own withheld styles: each use keeps a style of `train`, and a free one."""
+    """Returns category and name of our own withheld styles: each use keeps a style of its pool."""
     chosen = []
     for category in GOAL_CATEGORIES:
         left = [style for style in CATALOGUE.styles(category) if style.pool != "heldout"]
-        wanted = max(1, sum(_drawn(style.category, style.name) % WITHHELD_PART == 0 for style in left))
+        wanted = max(1, len(left) // WITHHELD_PART)
         for style in sorted(left, key=lambda style: _drawn(style.category, style.name) % WITHHELD_PART):
             rest = [other for other in left if other is not style]
             if wanted and _covers(rest, style):
@@ -89,6 +89,6 @@ def _withheld_own() -> frozenset[tuple[str, str]]:
 
 
 def _covers(rest: Iterable[Style], style: Style) -> bool:
-    """Returns whether other styles are left, of `train` and free ones where the style is, for each use of a style."""
-    alike = [o for o in rest if (o.pool == "train" or style.pool != "train") and (o.free or not style.free)]
+    """Returns whether other styles of its pool are left for each use of a style."""
+    alike = [other for other in rest if other.pool == style.pool]
     return all(any(use is None or use in other.uses for other in alike) for use in style.uses or (None,))

@@ -178,7 +178,7 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
     _, last = load_network(tmp_path / "finest/rednet.safetensors")
     stages = list(training_stages({**last, "averaged": True}))
     text = training_text(stages[-1])
-    assert text == f"1 steps, {last['hours']} h, code {code_hash()}, then the mean with the weights before it"
+    assert text == f"1 steps, {last['hours']} h, code {code_hash()}, then averaged with the weights before it"
     folders = [stage["options"]["out"] for stage in stages]
     assert folders == [str(tmp_path / name) for name in ("out", "finer", "finest")]
     with pytest.raises(ConfigError, match="is not of size 'lite0'"):

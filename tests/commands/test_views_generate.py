@@ -155,18 +155,6 @@ def test_a_new_house_without_views_is_replaced_by_that_of_another_fixed_seed(mon
     assert tried == [None]
 
 
-@pytest.mark.parametrize(("pool", "free"), [("free", True), ("drawn", False)])
-def test_a_part_of_the_wide_pool_has_the_styles_of_train_and_its_own(pool: str, free: bool) -> None:
-    made = generate_views._catalogue(pool)
-    for category in CATALOGUE.categories:
-        assert made.styles(category, "train") == CATALOGUE.styles(category, "train")
-        more = {style.free for style in made.styles(category, "wide") if style.pool == "wide"}
-        assert more <= {free}
-    both = (generate_views._catalogue(name) for name in ("free", "drawn"))
-    count = sum(style.pool == "wide" for part in both for name in part.categories for style in part.styles(name))
-    assert count == sum(style.pool == "wide" for name in CATALOGUE.categories for style in CATALOGUE.styles(name))
-
-
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
@@ -177,7 +165,6 @@ def test_a_part_of_the_wide_pool_has_the_styles_of_train_and_its_own(pool: str, 
         ({"shard": "0/2"}, '--shard must be "i/n" with 1 <= i <= n'),
         ({"pool": "wide"}, "--pool must be .* or wide, and needs --split train, got 'wide' with"),
         ({"pool": "heldout", "split": "train"}, "--pool must be .*, and needs --split train, got 'heldout' with"),
-        ({"pool": "free", "split": "train", "furniture": Path("x")}, "--furniture takes --pool train or wide, got"),
         ({"profile": "best"}, "Unknown rendering profile 'best'"),
     ],
 )

@@ -132,7 +132,7 @@ def training_text(stage: dict[str, Any]) -> str:
     """Returns length, code and end of a training; `averaged` is written where its weights were averaged by hand."""
     phrases = [f"{stage.get('step', '?')} steps", f"{stage.get('hours', '?')} h"]
     phrases += [str(stage["code"])] if "code" in stage else []
-    phrases += ["then the mean with the weights before it"] if stage.get("averaged") else []
+    phrases += ["then averaged with the weights before it"] if stage.get("averaged") else []
     return ", ".join(phrases)
 
 

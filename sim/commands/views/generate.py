@@ -42,7 +42,6 @@ from sim.errors import HouseError
 from sim.evaluation.executors import make_executor
 from sim.evaluation.parallel import Shard, ordered_map
 from sim.housegen.furniture import CATALOGUE
-from sim.housegen.furniture.catalogue import Catalogue
 from sim.housegen.generator import GeneratedHouse, generate_house
 from sim.housegen.imported.catalogue import ImportedFurniture
 from sim.housegen.imported.library import sha256_of_models
@@ -63,8 +62,8 @@ FEWEST_HOUSES = 20
 
 WIDE = "wide"
 """The pool with styles of furniture that no split has."""
-POOLS = ("train", "free", "drawn", WIDE)
-"""Furniture of new houses: the styles of the split train; with the free styles of `wide`; with its others; with all."""
+POOLS = ("train", WIDE)
+"""Furniture of new houses: the styles of the split train, or those of `wide` as well."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,8 +79,7 @@ class Args:
     root: Path | None = None
     """With --house: a folder whose files the house may use in addition to its own folder."""
     pool: str | None = None
-    """New houses only, with the styles of train, or more: train, free (styles that combine parts at random), drawn
-    (designs drawn by hand), or wide (all of them)."""
+    """New houses only, with the styles of train, or of wide: these and styles that combine parts at random."""
     furniture: Path | None = None
     """Folder of imported models (`stubborn import furniture`): new houses only, with models of the split train."""
     withheld: str | None = None
@@ -241,16 +239,8 @@ def _house(args: Args, task: ShardTask, fresh_seed: int | None) -> tuple[House, 
 def _made(args: Args, seed: int) -> GeneratedHouse:
     config, withheld = _recipe(args, seed).config(), cast("Withheld | None", args.withheld)
     if args.furniture is None:
-        return generate_house(seed, config, restricted(_catalogue(args.pool), withheld))
+        return generate_house(seed, config, restricted(CATALOGUE, withheld))
     return ImportedFurniture(args.furniture).make_house(seed, config, withheld=withheld)
-
-
-def _catalogue(pool: str | None) -> Catalogue:
-    """Returns the shipped catalogue, for the pools `free` and `drawn` without the other styles of `wide`."""
-    if pool not in ("free", "drawn"):
-        return CATALOGUE
-    styles = (style for category in CATALOGUE.categories for style in CATALOGUE.styles(category))
-    return Catalogue(style for style in styles if style.pool != WIDE or style.free == (pool == "free"))
 
 
 def _recipe(args: Args, seed: int) -> Recipe:
@@ -325,8 +315,6 @@ def _check_options(args: Args) -> None:
     if args.pool not in (None, *POOLS) or (args.pool and args.split != "train"):
         known = " or ".join(POOLS)
         raise ConfigError(f"--pool must be {known}, and needs --split train, got '{args.pool}' with '{args.split}'.")
-    if args.pool in ("free", "drawn") and args.furniture is not None:
-        raise ConfigError(f"--furniture takes --pool train or wide, got '{args.pool}'.")
     if args.furniture is not None and args.split != "train":
         raise ConfigError(f"--furniture needs --split train, got '{args.split}': other houses are files.")
     if args.withheld not in (None, *get_args(Withheld)) or (args.withheld and not (args.pool or args.furniture)):

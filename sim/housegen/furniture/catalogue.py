@@ -22,11 +22,11 @@ HINTS: frozenset[str] = frozenset(
     {"use", "width_m", "depth_m", "height_m", "looks", "with_sink", "with_hob", "cushions"}
 )
 """All hints that `Catalogue.make_item` accepts."""
-FREE_SHARE = 0.35
-"""Probability that an item of a `wide` house has a free style, where there is one for its use."""
+WIDE_SHARE = 0.35
+"""Probability that an item of a `wide` house has a style of this pool, where there is one for its use."""
 RESHAPED_SHARE = 0.25
 """Probability that an item of a `wide` house in another style gets other proportions; twice as much where there is no
-free style for its use. About half of all items thus have a shape of their own."""
+style of `wide` for its use. About half of all items thus have a shape of their own."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,8 @@ class Style:
     name: str
     """Unique within the category."""
     pool: Pool
-    """The pool whose houses show the style. Houses of `wide` also show the styles of `train`."""
+    """The pool whose houses show the style. Houses of `wide` also show the styles of `train`; its own combine parts at
+    random, so that hardly two items have the same shape."""
     build: Callable[[Workbench], None]
     """Puts the geoms of one item on the workbench."""
     uses: tuple[str, ...] = ()
@@ -46,8 +47,6 @@ class Style:
     mount: Mount = "floor"
     walk_over: bool = False
     """True: items lie flat on the floor, and other objects may stand on them."""
-    free: bool = False
-    """True: a generator that combines parts at random, so that hardly two items have the same shape."""
 
     def shown_in(self, pool: Pool) -> bool:
         """Returns True if houses of this pool may show the style."""
@@ -101,7 +100,7 @@ class Catalogue:
         return tuple(style for style in shown if use is None or use in style.uses)
 
     def offered(self, category: str, pool: Pool, use: str | None, rng: np.random.Generator) -> tuple[Style, ...]:
-        """Returns the styles from which one item is chosen: for `wide`, sometimes the free ones only.
+        """Returns the styles from which one item is chosen: for `wide`, sometimes its own ones only.
 
         Other pools draw nothing from `rng`.
 
@@ -109,10 +108,10 @@ class Catalogue:
             ConfigError: the catalogue has no such category.
         """
         fitting = self.styles(category, pool, use)
-        free = tuple(style for style in fitting if style.free)
-        if not free:
+        own = tuple(style for style in fitting if style.pool == "wide")
+        if not own:
             return fitting
-        return free if rng.random() < FREE_SHARE else tuple(style for style in fitting if not style.free) or free
+        return own if rng.random() < WIDE_SHARE else tuple(style for style in fitting if style.pool != "wide") or own
 
     def with_styles(self, *styles: Style) -> Catalogue:
         """Returns a new catalogue that has these styles as well, after the others of their categories.
@@ -217,13 +216,14 @@ class Catalogue:
         bench = Workbench(rng, pool, hints, functools.partial(self.make_item, reshape=reshape))
         chosen.build(bench)
         item = bench.finish(category, chosen.name, chosen.mount, walk_over=chosen.walk_over)
-        if reshape and not chosen.free and rng.random() < self._reshaped_share(category, use) and may_reshape(item):
-            return reshaped(item, rng, hints)
+        if reshape and chosen.pool != "wide":
+            again = rng.random() < self._reshaped_share(category, use) and may_reshape(item)
+            return reshaped(item, rng, hints) if again else item
         return item
 
     def _reshaped_share(self, category: str, use: str | None) -> float:
-        free = any(style.free for style in self.styles(category, "wide", use))
-        return RESHAPED_SHARE if free else 2 * RESHAPED_SHARE
+        own = any(style.pool == "wide" for style in self.styles(category, "wide", use))
+        return RESHAPED_SHARE if own else 2 * RESHAPED_SHARE
 
     def _named(self, category: str, pool: Pool, name: str) -> Style:
         of_pool = self.styles(category, pool)

@@ -36,7 +36,7 @@ def shape_of(item: Item) -> tuple:
 
 
 def free_styles(category: str) -> list[str]:
-    return [style.name for style in CATALOGUE.styles(category, "wide") if style.free]
+    return [style.name for style in CATALOGUE.styles(category, "wide") if style.pool == "wide"]
 
 
 @pytest.mark.parametrize("category", GOAL_CATEGORIES)
@@ -71,7 +71,7 @@ def test_other_pools_have_no_free_shapes_and_the_same_draws(category, pool):
     before = rng.bit_generator.state
     assert CATALOGUE.offered(category, pool, None, rng) == CATALOGUE.styles(category, pool)
     assert rng.bit_generator.state == before
-    assert not any(style.free for style in CATALOGUE.styles(category, pool))
+    assert not any(style.pool == "wide" for style in CATALOGUE.styles(category, pool))
 
 
 def test_about_half_of_the_items_have_a_free_shape():
@@ -81,7 +81,7 @@ def test_about_half_of_the_items_have_a_free_shape():
             rng = np.random.default_rng(seed)
             style = CATALOGUE.offered(category, "wide", None, rng)[0]
             plain = CATALOGUE.make_item(category, np.random.default_rng(seed), pool="wide", style=style.name)
-            free = style.free or shape_of(plain) != shape_of(make(category, seed, style=style.name))
+            free = style.pool == "wide" or shape_of(plain) != shape_of(make(category, seed, style=style.name))
             counts[int(free)] += 1
     assert 0.4 < counts[1] / counts.sum() < 0.65
 

@@ -11,7 +11,7 @@ from sim.housegen.furniture.parts.cases import (
     worktop,
     worktop_fittings,
 )
-from sim.housegen.furniture.parts.frames import arched_pipe, cage_seat, curved_board, tube_along, tube_frame
+from sim.housegen.furniture.parts.frames import arched_pipe, curved_board, tube_along, tube_frame
 from sim.housegen.furniture.parts.fronts import (
     FRONT_M,
     GAP_M,
@@ -59,7 +59,6 @@ __all__ = [
     "any_tap",
     "arched_pipe",
     "basin",
-    "cage_seat",
     "case",
     "centred",
     "crumpled_cloth",

@@ -13,9 +13,9 @@ from typing import Literal
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.free.bases import LIGHT, LOW, add_base, frame_look
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import FrontKind, HandleKind
-from sim.housegen.furniture.perception.freeform.bases import LIGHT, LOW, add_base, frame_look
 from sim.housegen.furniture.workbench import Range, Workbench
 
 FieldKind = Literal["doors", "drawers", "open", "glass"]
@@ -245,11 +245,11 @@ def _hollow_body(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: t
 
 
 STYLES: tuple[Style, ...] = (
-    Style("cabinet", "free_wardrobe", "wide", free_wardrobe, ("wardrobe",), free=True),
-    Style("cabinet", "free_sideboard", "wide", free_sideboard, ("sideboard",), free=True),
-    Style("cabinet", "free_display", "wide", free_display, ("display",), free=True),
-    Style("cabinet", "free_media", "wide", free_media, ("media",), free=True),
-    Style("chest_of_drawers", "free_dresser", "wide", free_dresser, ("dresser",), free=True),
-    Style("chest_of_drawers", "free_bedside", "wide", free_bedside, ("nightstand",), free=True),
-    Style("counter", "free_run", "wide", free_run, ("run",), free=True),
+    Style("cabinet", "free_wardrobe", "wide", free_wardrobe, ("wardrobe",)),
+    Style("cabinet", "free_sideboard", "wide", free_sideboard, ("sideboard",)),
+    Style("cabinet", "free_display", "wide", free_display, ("display",)),
+    Style("cabinet", "free_media", "wide", free_media, ("media",)),
+    Style("chest_of_drawers", "free_dresser", "wide", free_dresser, ("dresser",)),
+    Style("chest_of_drawers", "free_bedside", "wide", free_bedside, ("nightstand",)),
+    Style("counter", "free_run", "wide", free_run, ("run",)),
 )

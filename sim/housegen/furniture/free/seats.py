@@ -7,11 +7,11 @@ import math
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.chairs import DINING_KG
+from sim.housegen.furniture.free.backs import Seat, add_arms, add_back, add_seat
+from sim.housegen.furniture.free.bases import LIGHT, LOW, add_base, frame_look, pedestal
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.office_chairs import OFFICE_KG
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.perception.freeform.backs import Seat, add_arms, add_back, add_seat
-from sim.housegen.furniture.perception.freeform.bases import LIGHT, LOW, add_base, frame_look, pedestal
 from sim.housegen.furniture.shapes import Ring, loft, pillow
 from sim.housegen.furniture.workbench import Workbench
 
@@ -235,13 +235,13 @@ def _sofa_back(
 
 
 STYLES: tuple[Style, ...] = (
-    Style("chair", "free_dining", "wide", free_chair, ("dining",), free=True),
-    Style("chair", "free_easy", "wide", free_armchair, ("arm",), free=True),
-    Style("chair", "free_office", "wide", free_office_chair, ("office",), free=True),
-    Style("stool", "free_bar", "wide", free_bar_stool, ("bar",), free=True),
-    Style("stool", "free_low", "wide", free_low_stool, ("low",), free=True),
-    Style("seating", "free_plain_bench", "wide", free_bench, ("bench", "plain"), free=True),
-    Style("seating", "free_backed_bench", "wide", free_backed_bench, ("bench",), free=True),
-    Style("seating", "free_ottoman", "wide", free_ottoman, ("ottoman",), free=True),
-    Style("sofa", "free_sofa", "wide", free_sofa, free=True),
+    Style("chair", "free_dining", "wide", free_chair, ("dining",)),
+    Style("chair", "free_easy", "wide", free_armchair, ("arm",)),
+    Style("chair", "free_office", "wide", free_office_chair, ("office",)),
+    Style("stool", "free_bar", "wide", free_bar_stool, ("bar",)),
+    Style("stool", "free_low", "wide", free_low_stool, ("low",)),
+    Style("seating", "free_plain_bench", "wide", free_bench, ("bench", "plain")),
+    Style("seating", "free_backed_bench", "wide", free_backed_bench, ("bench",)),
+    Style("seating", "free_ottoman", "wide", free_ottoman, ("ottoman",)),
+    Style("sofa", "free_sofa", "wide", free_sofa),
 )

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.free.bases import LOW, add_base, frame_look
+from sim.housegen.furniture.free.details import shower_fittings
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.perception.freeform.bases import LOW, add_base, frame_look
-from sim.housegen.furniture.perception.showers import shower_fittings
 from sim.housegen.furniture.shapes import Ring, chamfered_box, drape, loft
 from sim.housegen.furniture.toilets import water_look
 from sim.housegen.furniture.workbench import Workbench
@@ -243,9 +243,9 @@ def _screens(
 
 
 STYLES: tuple[Style, ...] = (
-    Style("toilet", "free_toilet", "wide", free_toilet, free=True),
-    Style("sink", "free_vessel", "wide", free_vessel, ("vessel",), "top", free=True),
-    Style("sink", "free_basin", "wide", free_basin, ("standing",), free=True),
-    Style("bathtub", "free_bathtub", "wide", free_bathtub, free=True),
-    Style("shower", "free_shower", "wide", free_shower, free=True),
+    Style("toilet", "free_toilet", "wide", free_toilet),
+    Style("sink", "free_vessel", "wide", free_vessel, ("vessel",), "top"),
+    Style("sink", "free_basin", "wide", free_basin, ("standing",)),
+    Style("bathtub", "free_bathtub", "wide", free_bathtub),
+    Style("shower", "free_shower", "wide", free_shower),
 )

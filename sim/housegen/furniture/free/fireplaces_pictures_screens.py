@@ -6,11 +6,10 @@ import math
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.free.bases import LIGHT, add_base
+from sim.housegen.furniture.free.details import logs, painting, wall_above_arch
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.perception.freeform.bases import LIGHT, add_base
-from sim.housegen.furniture.perception.hearths import logs, wall_above_arch
-from sim.housegen.furniture.perception.pictures import painting
 from sim.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft
 from sim.housegen.furniture.workbench import Range, Workbench
 
@@ -246,10 +245,10 @@ def free_stand_tv(w: Workbench) -> None:
 
 
 STYLES: tuple[Style, ...] = (
-    Style("fireplace", "free_fireplace", "wide", free_fireplace, free=True),
-    Style("picture", "free_picture", "wide", free_picture, (), "wall", free=True),
-    Style("tv_monitor", "free_tv", "wide", free_tv, ("tv",), "top", free=True),
-    Style("tv_monitor", "free_wall", "wide", free_wall_tv, ("tv_wall",), "wall", free=True),
-    Style("tv_monitor", "free_monitor", "wide", free_monitor, ("monitor",), "top", free=True),
-    Style("tv_monitor", "free_stand", "wide", free_stand_tv, ("tv_floor",), free=True),
+    Style("fireplace", "free_fireplace", "wide", free_fireplace),
+    Style("picture", "free_picture", "wide", free_picture, (), "wall"),
+    Style("tv_monitor", "free_tv", "wide", free_tv, ("tv",), "top"),
+    Style("tv_monitor", "free_wall", "wide", free_wall_tv, ("tv_wall",), "wall"),
+    Style("tv_monitor", "free_monitor", "wide", free_monitor, ("monitor",), "top"),
+    Style("tv_monitor", "free_stand", "wide", free_stand_tv, ("tv_floor",)),
 )

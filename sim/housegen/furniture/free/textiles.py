@@ -6,14 +6,13 @@ import math
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.free import garments
+from sim.housegen.furniture.free.backs import add_back
+from sim.housegen.furniture.free.bases import LOW, add_base, frame_look
+from sim.housegen.furniture.free.bedding import bedding, mattress_size
+from sim.housegen.furniture.free.garments import hanging_row, towel_look
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.perception import garments
-from sim.housegen.furniture.perception.beds import bedding, mattress_size
-from sim.housegen.furniture.perception.clothes import hanging_row
-from sim.housegen.furniture.perception.freeform.backs import add_back
-from sim.housegen.furniture.perception.freeform.bases import LOW, add_base, frame_look
-from sim.housegen.furniture.perception.towels import towel_look
 from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
 from sim.housegen.furniture.workbench import Workbench
 
@@ -240,13 +239,13 @@ def free_hooks(w: Workbench) -> None:
 
 
 STYLES: tuple[Style, ...] = (
-    Style("bed", "free_bed", "wide", free_bed, free=True),
-    Style("cushion", "free_throw", "wide", free_throw, ("throw",), "top", free=True),
-    Style("cushion", "free_floor", "wide", free_floor_cushion, ("floor",), free=True),
-    Style("towel", "free_rail", "wide", free_towel_rail, ("rail",), "wall", free=True),
-    Style("towel", "free_stack", "wide", free_towel_stack, ("top",), "top", free=True),
-    Style("clothes", "free_rack", "wide", free_rack, ("rack",), free=True),
-    Style("clothes", "free_heap", "wide", free_heap, ("floor",), free=True),
-    Style("clothes", "free_folded", "wide", free_folded, ("top",), "top", free=True),
-    Style("clothes", "free_hooks", "wide", free_hooks, ("hooks",), "wall", free=True),
+    Style("bed", "free_bed", "wide", free_bed),
+    Style("cushion", "free_throw", "wide", free_throw, ("throw",), "top"),
+    Style("cushion", "free_floor", "wide", free_floor_cushion, ("floor",)),
+    Style("towel", "free_rail", "wide", free_towel_rail, ("rail",), "wall"),
+    Style("towel", "free_stack", "wide", free_towel_stack, ("top",), "top"),
+    Style("clothes", "free_rack", "wide", free_rack, ("rack",)),
+    Style("clothes", "free_heap", "wide", free_heap, ("floor",)),
+    Style("clothes", "free_folded", "wide", free_folded, ("top",), "top"),
+    Style("clothes", "free_hooks", "wide", free_hooks, ("hooks",), "wall"),
 )

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.free.bases import LIGHT, add_base, frame_look, pedestal
 from sim.housegen.furniture.item import Look
-from sim.housegen.furniture.perception.freeform.bases import LIGHT, add_base, frame_look, pedestal
 from sim.housegen.furniture.shapes import Ring, loft
 from sim.housegen.furniture.workbench import Workbench
 
@@ -98,10 +98,10 @@ def free_desk(w: Workbench) -> None:
 
 
 STYLES: tuple[Style, ...] = (
-    Style("table", "free_dining", "wide", free_dining_table, ("dining",), free=True),
-    Style("table", "free_coffee", "wide", free_coffee_table, ("coffee",), free=True),
-    Style("table", "free_side", "wide", free_side_table, ("side",), free=True),
-    Style("table", "free_console", "wide", free_console, ("console",), free=True),
-    Style("table", "free_bedside", "wide", free_bedside_table, ("nightstand",), free=True),
-    Style("table", "free_desk", "wide", free_desk, ("desk",), free=True),
+    Style("table", "free_dining", "wide", free_dining_table, ("dining",)),
+    Style("table", "free_coffee", "wide", free_coffee_table, ("coffee",)),
+    Style("table", "free_side", "wide", free_side_table, ("side",)),
+    Style("table", "free_console", "wide", free_console, ("console",)),
+    Style("table", "free_bedside", "wide", free_bedside_table, ("nightstand",)),
+    Style("table", "free_desk", "wide", free_desk, ("desk",)),
 )

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.free import greenery
+from sim.housegen.furniture.free.bases import add_base, frame_look
 from sim.housegen.furniture.item import Look
-from sim.housegen.furniture.perception import greenery
-from sim.housegen.furniture.perception.freeform.bases import add_base, frame_look
 from sim.housegen.furniture.shapes import Leaf, Ring, loft
 from sim.housegen.furniture.workbench import Point, Workbench
 
@@ -121,6 +121,6 @@ def _flowers(w: Workbench, z: float, tall: float) -> None:
 
 
 STYLES: tuple[Style, ...] = (
-    Style("plant", "free_floor", "wide", free_floor_plant, ("floor",), free=True),
-    Style("plant", "free_top", "wide", free_table_plant, ("top",), "top", free=True),
+    Style("plant", "free_floor", "wide", free_floor_plant, ("floor",)),
+    Style("plant", "free_top", "wide", free_table_plant, ("top",), "top"),
 )

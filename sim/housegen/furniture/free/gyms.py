@@ -6,9 +6,9 @@ import math
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.free.details import weight_discs
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.perception.gym_weights import weight_discs
 from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
 from sim.housegen.furniture.workbench import Workbench
 
@@ -193,7 +193,7 @@ def _small(w: Workbench, kind: str, y: float, s: float, look: Look) -> None:
 
 
 STYLES: tuple[Style, ...] = (
-    Style("gym_equipment", "free_cardio", "wide", free_cardio, ("machine",), free=True),
-    Style("gym_equipment", "free_weights", "wide", free_weights, ("weights",), free=True),
-    Style("gym_equipment", "free_small", "wide", free_small_gym, ("small",), free=True),
+    Style("gym_equipment", "free_cardio", "wide", free_cardio, ("machine",)),
+    Style("gym_equipment", "free_weights", "wide", free_weights, ("weights",)),
+    Style("gym_equipment", "free_small", "wide", free_small_gym, ("small",)),
 )
