@@ -32,6 +32,14 @@ VIEWS_PER_READ = 32
 """Views that a loading process passes on at a time."""
 BYTES_PER_PIXEL = 3 + 2 + 1 + 2 + 1
 """Memory of a pixel of a view: colour, depth, category, instance and weight."""
+TRAINING_BYTES = 4 << 30
+"""Memory of a GPU that is left for the training."""
+
+
+def room_for(views: Sequence[StoredView], device: torch.device) -> int:
+    """Returns how many views of this size fit in the free memory of a GPU beside a training."""
+    pixels = views[0].read().semantic.size
+    return max(0, torch.cuda.mem_get_info(device)[0] - TRAINING_BYTES) // (pixels * BYTES_PER_PIXEL)
 
 
 class DeviceViews(NamedTuple):
@@ -49,10 +57,9 @@ class DeviceViews(NamedTuple):
         """Returns decoded views on a device; `workers` processes decode them.
 
         Raises:
-            ConfigError: a view is broken or has no instances, or the device has too little memory.
+            ConfigError: a view is broken or has no instances.
         """
         height, width = views[0].read().semantic.shape
-        _require_memory(len(views) * height * width * BYTES_PER_PIXEL, len(views), device)
         shapes = ((3,), (), (), (), ())
         kinds = (torch.uint8, torch.int16, torch.uint8, torch.int16, torch.uint8)
         held = cls(
@@ -83,7 +90,7 @@ class DeviceBatches(Dataset):
         workers: number of processes that decode the views.
 
     Raises:
-        ConfigError: no view shows an object of a goal category, or the device has too little memory.
+        ConfigError: no view shows an object of a goal category.
     """
 
     def __init__(
@@ -358,17 +365,4 @@ class _Decoded(Dataset):
                 np.stack([view.instances for view in read if view.instances is not None]).astype(np.int16)
             ),
             torch.from_numpy(np.stack(weights)),
-        )
-
-
-def _require_memory(needed: int, views: int, device: torch.device) -> None:
-    """Raises ConfigError if views do not fit in the free memory of a GPU, with 4 GB for the training."""
-    if device.type != "cuda":
-        return
-    free = torch.cuda.mem_get_info(device)[0] - (4 << 30)
-    if needed > free:
-        most = max(0, free * views // needed)
-        raise ConfigError(
-            f"{views} views need {needed / 1e9:.1f} GB of the GPU's memory, which has room for {most}: give fewer "
-            "--views."
         )

@@ -34,7 +34,7 @@ from sim.reading import Count, Number
 from stubborn.segmentation.balanced import Batches, ViewIndex
 from stubborn.segmentation.checkpoints import save_network
 from stubborn.segmentation.dataset import list_shards, pixel_counts, spread_views, stored_block_px, stored_views
-from stubborn.segmentation.device_batches import DeviceBatches
+from stubborn.segmentation.device_batches import DeviceBatches, room_for
 from stubborn.segmentation.evaluation import Iou, evaluate
 from stubborn.segmentation.networks import Network
 from stubborn.segmentation.recipe import PROGRESSIVE
@@ -134,13 +134,16 @@ class Trainer:
         self.whole = Samples(spread_views(shards, NORMALISATION_VIEWS), augmented)
 
     def _make_batches(self, index: ViewIndex, sampler: Sampler) -> Batches | DeviceBatches:
-        """Returns the batches, on a GPU computed there."""
-        made = {"batch": self.args.batch, "seed": self.args.seed}
+        """Returns the batches, on a GPU computed there if its memory has room for the views."""
+        made, count = {"batch": self.args.batch, "seed": self.args.seed}, len(index.views)
         if self.device.type != "cuda":
+            return Batches(index, sampler, RECIPE, **made)
+        if (most := room_for(index.views, self.device)) < count:
+            print(f"The GPU's memory has room for {most} of {count} views: --workers processes make the samples.")
             return Batches(index, sampler, RECIPE, **made)
         began_s = time.perf_counter()
         batches = DeviceBatches(index, sampler, RECIPE, **made, device=self.device, workers=self.args.workers)
-        print(f"{len(index.views)} views on the GPU after {time.perf_counter() - began_s:.0f} s", flush=True)
+        print(f"{count} views on the GPU after {time.perf_counter() - began_s:.0f} s", flush=True)
         return batches
 
     def run(self) -> None:

@@ -17,7 +17,7 @@ from sim.interface import MPCAT40_ID, CameraModel, ConfigError
 from stubborn.segmentation import samples
 from stubborn.segmentation.balanced import Batches, ViewIndex
 from stubborn.segmentation.dataset import list_shards
-from stubborn.segmentation.device_batches import DeviceBatches, Windows, jitter_colour, jitter_depth
+from stubborn.segmentation.device_batches import DeviceBatches, Windows, jitter_colour, jitter_depth, room_for
 from stubborn.segmentation.inputs import InputKind
 from stubborn.segmentation.recipe import PROGRESSIVE, Phase, Recipe
 from stubborn.segmentation.samples import IGNORED, NONE, Augmentation, Sampler, Window
@@ -136,3 +136,12 @@ def test_a_tenth_of_the_samples_is_grey() -> None:
 def test_an_index_without_goals_ends_with_a_sentence() -> None:
     with pytest.raises(ConfigError, match="No view shows an object"):
         batches_of(ViewIndex((), {}), NONE)
+
+
+def test_room_for_views_is_the_free_memory_without_that_of_the_training(
+    index: ViewIndex, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    of_a_view = 48 * 64 * 9
+    for free, expected in (((4 << 30) + 10 * of_a_view, 10), ((4 << 30) + of_a_view - 1, 0), (1 << 30, 0)):
+        monkeypatch.setattr(torch.cuda, "mem_get_info", lambda _, free=free: (free, 80 << 30))
+        assert room_for(index.views, torch.device("cuda")) == expected
