@@ -216,7 +216,8 @@ def random_windows(
         first = torch.where(known, torch.maximum(first, at - length + 1), first)
         last = torch.where(known, torch.minimum(last, at), last)
         starts.append((first + (place[axis] * (last - first + 1)).long()).minimum(last))
-    return Windows(*starts, torch.from_numpy(rows).to(device), torch.from_numpy(cols).to(device), (height, width))
+    top, left = starts
+    return Windows(top, left, torch.from_numpy(rows).to(device), torch.from_numpy(cols).to(device), (height, width))
 
 
 def jitter_depth(

@@ -8,6 +8,7 @@ import numpy as np
 import torch
 from jaxtyping import Float, Float32, Float64, Int64
 from torch import Tensor, nn
+from torch.optim.swa_utils import get_ema_multi_avg_fn
 
 from stubborn.segmentation.samples import IGNORED
 
@@ -70,11 +71,11 @@ def exponential_average(decay: float) -> Callable[[Sequence[Tensor], Sequence[Te
 
     def update(averaged: Sequence[Tensor], current: Sequence[Tensor], count: Tensor | int) -> None:
         n = int(count)
-        step = 1.0 - min(decay, (1 + n) / (10 + n))
+        ema = get_ema_multi_avg_fn(min(decay, (1 + n) / (10 + n)))
         pairs = [(old, new.to(old.dtype)) for old, new in zip(averaged, current, strict=True)]
         floats = [pair for pair in pairs if torch.is_floating_point(pair[0])]
         if floats:
-            torch._foreach_lerp_([old for old, _ in floats], [new for _, new in floats], step)  # on a GPU one call
+            ema([old for old, _ in floats], [new for _, new in floats], n)
         for old, new in pairs:
             if not torch.is_floating_point(old):
                 old.copy_(new)

@@ -91,7 +91,7 @@ def test_a_killed_run_continues_to_the_same_weights_and_has_no_row_twice(
     assert main(options(tmp_path, out=tmp_path / "whole")) == 0
     train_on, out = Trainer._train_on, tmp_path / "out"
 
-    def killed_at_4(trainer: Trainer, *batch: torch.Tensor) -> float:
+    def killed_at_4(trainer: Trainer, *batch: torch.Tensor) -> torch.Tensor:
         if trainer.step == 3:
             raise KeyboardInterrupt
         return train_on(trainer, *batch)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import replace
 from pathlib import Path
 
@@ -50,6 +51,12 @@ def index(tmp_path: Path) -> ViewIndex:
     return ViewIndex.of(list_shards(tmp_path))
 
 
+def windows_of(count: int, top: int, left: int, rows: int, cols: int) -> Windows:
+    """The same window of `count` views."""
+    full = functools.partial(torch.full, (count,))
+    return Windows(full(top), full(left), full(rows), full(cols), (48, 64))
+
+
 def batches_of(
     index: ViewIndex, augmentation: Augmentation, *, second: InputKind = "depth-geometry", recipe: Recipe = PROGRESSIVE
 ) -> DeviceBatches:
@@ -64,8 +71,8 @@ def test_without_augmentation_a_window_is_that_of_the_sampler(
 ) -> None:
     batches, rows, size_px = batches_of(index, NONE, second=second), cols * 3 // 4, (24, 32)
     top, left = 48 - rows, (64 - cols) // 2
-    fixed = [torch.full((12,), value) for value in (top, left, rows, cols)]
-    computed = batches.samples(torch.arange(12), Windows(*fixed, (48, 64)), size_px, torch.Generator())
+    windows = windows_of(12, top, left, rows, cols)
+    computed = batches.samples(torch.arange(12), windows, size_px, torch.Generator())
     window = Window((slice(top, top + rows), slice(left, left + cols)), 32, 24)
     monkeypatch.setattr(samples, "random_window", lambda *_, **__: window)
     sampler = replace(batches.sampler, window_px=32)
@@ -103,8 +110,7 @@ def test_statistics_of_augmented_samples_are_those_of_the_sampler(index: ViewInd
 def test_a_mirrored_sample_mirrors_colour_labels_weights_and_turns_the_normal(index: ViewIndex) -> None:
     batches, mirrored = batches_of(index, NONE), batches_of(index, replace(NONE, mirror=True))
     views = torch.zeros(40, dtype=torch.int64)
-    whole = [torch.full((40,), value) for value in (0, 0, 48, 64)]
-    windows = Windows(*whole, (48, 64))
+    windows = windows_of(40, 0, 0, 48, 64)
     plain = batches.samples(views, windows, (24, 32), torch.Generator().manual_seed(0))
     other = mirrored.samples(views, windows, (24, 32), torch.Generator().manual_seed(0))
     flipped = ~(plain[2] == other[2]).flatten(1).all(dim=1)
