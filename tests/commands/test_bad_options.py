@@ -140,7 +140,6 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--out OUT --executor cloud", "cloud"),
         ("--out OUT --aim common", "--aim must be rare"),
         ("--out OUT --withheld only", "--withheld must be without or only, and needs --pool"),
-        ("--out OUT --pool free --furniture nowhere", "--furniture takes --pool train or wide"),
     ],
     "sim.commands.views.mix": [("--out OUT --furniture nowhere", "is not a folder")],
     "sim.commands.importing.furniture": [("--source nowhere --out OUT", "nowhere")],
