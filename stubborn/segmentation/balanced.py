@@ -96,8 +96,13 @@ class ViewIndex:
         """Returns the number of objects and of styles of each category."""
         return {name: (sum(map(len, styles.values())), len(styles)) for name, styles in sorted(self.objects.items())}
 
-    def draw(self, rng: np.random.Generator) -> ShownObject:
-        """Returns a random object: first the category, then the style, then the object is sampled uniformly."""
+    def draw(self, rng: np.random.Generator, *, object_share: float = 1.0) -> ShownObject:
+        """Returns a random object: first the category, then the style, then the object is sampled uniformly.
+
+        With probability 1 - `object_share` it returns any view, and the number 0.
+        """
+        if rng.random() >= object_share:
+            return ShownObject(int(rng.integers(len(self.views))), 0)
         styles = self.objects[_one_of(list(self.objects), rng)]
         return _one_of(styles[_one_of(list(styles), rng)], rng)
 
@@ -159,10 +164,8 @@ class Batches(Dataset):
         return tuple(torch.stack(parts) for parts in zip(*samples, strict=True))
 
     def _sample(self, sampler: Sampler, rng: np.random.Generator) -> Sample | WeightedSample:
-        if rng.random() < self.recipe.object_share:
-            drawn = self.index.draw(rng)
-            return sampler(self.index.views[drawn.view].read(), rng, instance=drawn.number)
-        return sampler(_one_of(self.index.views, rng).read(), rng)
+        drawn = self.index.draw(rng, object_share=self.recipe.object_share)
+        return sampler(self.index.views[drawn.view].read(), rng, instance=drawn.number or None)
 
 
 def _annotations(

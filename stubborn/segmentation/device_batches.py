@@ -1,8 +1,8 @@
 """Training batches made on a GPU: views are decoded once into its memory, and windows and augmentation computed there.
 
-A processor makes about 150 samples a second and core (`stubborn.segmentation.samples`), a GPU trains on thousands. The
-samples are those of `Sampler`: the same windows, augmentation and weights, with other random numbers. Colour in a
-window is interpolated linearly between pixels; `Sampler` averages areas.
+A core makes about 110 samples a second (`stubborn.segmentation.samples`); an H100 trained on 1,800. The samples are
+those of `Sampler`: the same windows, augmentation and weights, with other random numbers. Colour in a window is
+interpolated linearly between pixels; `Sampler` averages areas.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from torch.utils.data import DataLoader, Dataset
 
 from sim.interface import CameraModel, ConfigError
 from stubborn.segmentation import geometry
-from stubborn.segmentation.balanced import ShownObject, StoredView, ViewIndex
+from stubborn.segmentation.balanced import StoredView, ViewIndex
 from stubborn.segmentation.preprocess import DEPTH_MEAN, DEPTH_STD, RGB_MEAN, RGB_STD, padding
 from stubborn.segmentation.recipe import Recipe
 from stubborn.segmentation.samples import IGNORED, MOST_WEIGHT, Augmentation, Sampler, pixel_weights
@@ -110,7 +110,8 @@ class DeviceBatches(Dataset):
         height_px, stored_px = self._views.semantic.shape[1:]
         used_px = stored_px // (self.sampler.used_block_px or 1)
         width_px = self.recipe.width_px(phase, used_px, stored_px, rng)
-        drawn = [self._draw(rng) for _ in range(phase.batches * self.batch)]
+        share, count = self.recipe.object_share, phase.batches * self.batch
+        drawn = [self.index.draw(rng, object_share=share) for _ in range(count)]
         views = torch.tensor([each.view for each in drawn], device=self._device)
         shown = torch.tensor([each.number for each in drawn], device=self._device)
         random = torch.Generator(self._device).manual_seed(int(rng.integers(2**62)))
@@ -153,12 +154,6 @@ class DeviceBatches(Dataset):
             functional.pad(target, around, value=IGNORED),
             functional.pad(weights[:, None], around, mode="replicate")[:, 0],
         )
-
-    def _draw(self, rng: np.random.Generator) -> ShownObject:
-        """Returns an object to show, or a random view and the number 0."""
-        if rng.random() < self.recipe.object_share:
-            return self.index.draw(rng)
-        return ShownObject(int(rng.integers(len(self.index.views))), 0)
 
 
 @dataclass(frozen=True)

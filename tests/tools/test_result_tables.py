@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import re
@@ -15,10 +16,20 @@ import pytest
 from scipy.special import stdtrit
 
 from sim.errors import ConfigError
+from stubborn.segmentation.shipped import SHIPPED_REDNET
 from tools.research import result_tables
 from tools.research.paper_page import PAPER, VERSION, paper_page
 from tools.research.resolution import houses_needed, resolution_record, shown_difference, variance_components
-from tools.research.result_archive import ARCHIVES, ArchivedRun, RunKey, newest, read_archive, read_archives
+from tools.research.result_archive import (
+    ARCHIVES,
+    CHECKSUM_DIGITS,
+    EARLIER_NETWORK,
+    ArchivedRun,
+    RunKey,
+    newest,
+    read_archive,
+    read_archives,
+)
 from tools.research.result_definitions import RESOLVED, comparisons, page_tables
 from tools.research.result_tables import (
     COMPARISONS,
@@ -58,6 +69,16 @@ def test_the_tables_of_the_page_are_rows_of_the_shipped_csv_file() -> None:
     page = PAGE.read_text(encoding="utf-8")
     assert fill_page(page, results) == page
     assert unknown_quantities(page, results, compared) == []
+
+
+def test_the_page_shows_the_network_that_ships(runs: Mapping[RunKey, ArchivedRun]) -> None:
+    shipped = hashlib.sha256(SHIPPED_REDNET.read_bytes()).hexdigest()[:CHECKSUM_DIGITS]
+    keys = [key.run for table in page_tables() for key in table.needed() if key.run.semantics == "rednet"]
+    assert {runs[key].network for key in keys if key.version == VERSION} == {shipped}
+    results, page = read_csv(TABLES / RESULTS), PAGE.read_text(encoding="utf-8")
+    earlier = [record for record in results if record["network"] == EARLIER_NETWORK]
+    assert earlier
+    assert fill_page(page, [*results, *earlier]) == page
 
 
 def test_the_shipped_csv_files_are_those_of_the_archive(runs: Mapping[RunKey, ArchivedRun]) -> None:

@@ -194,6 +194,7 @@ class Trainer:
         """Prints the quality of the network before the first step; with --hours chooses how many views are used."""
         if self.args.hours is not None:
             few = Subset(self.val, range(min(8, len(self.val))))
+            evaluate(self.model, DataLoader(few, batch_size=8), device=self.device)  # the first one starts a GPU
             began_s = time.perf_counter()
             evaluate(self.model, DataLoader(few, batch_size=8), device=self.device)
             most = int(EVALUATION_SHARE * 3600 * self.args.hours * len(few) / (time.perf_counter() - began_s))
