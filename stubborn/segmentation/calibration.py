@@ -62,7 +62,7 @@ class Calibration:
             "offset": [round(float(v), 4) for v in self.offset],
         }
 
-    def applied(self, logits: Float[Tensor, "classes rows cols"]) -> Float[Tensor, "classes rows cols"]:
+    def applied(self, logits: Float[Tensor, "*batch classes rows cols"]) -> Float[Tensor, "*batch classes rows cols"]:
         """Returns the calibrated logits."""
         return logits * self.scale[:, None, None] + self.offset[:, None, None]
 

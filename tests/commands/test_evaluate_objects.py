@@ -11,6 +11,7 @@ import torch
 
 from sim.commands.evaluate.objects import Args, main, missed_objects
 from sim.interface import MPCAT40_ID
+from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import save_network
 from stubborn.segmentation.dataset import list_shards
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
@@ -32,12 +33,21 @@ def always_wall() -> RedNet:
 
 def test_every_pixel_of_a_missed_sofa_is_counted_and_named(tmp_path: Path, always_wall: RedNet) -> None:
     write_views(tmp_path / "views", 3)
-    found = list(missed_objects(list_shards(tmp_path / "views"), always_wall, 1))
+    found = list(missed_objects(list_shards(tmp_path / "views"), always_wall, 1, Calibration.of_temperature(1.0)))
     assert [(missed.category, missed.taken_for) for missed in found] == [("sofa", "wall")] * 3
     for missed in found:
         left, top, width, height = missed.box
         assert (top, height, left + width) == (0, 48, 64)
         assert missed.missed_px == 48 * width == np.count_nonzero(missed.truth == MPCAT40_ID["sofa"])
+
+
+def test_objects_are_predicted_with_the_calibration_of_the_weights(tmp_path: Path, always_wall: RedNet) -> None:
+    write_views(tmp_path / "views", 2)
+    calibration = Calibration.of_temperature(1.0)
+    calibration.offset[MPCAT40_ID["wall"] - 1] = -10.0
+    calibration.offset[MPCAT40_ID["floor"] - 1] = 10.0
+    found = list(missed_objects(list_shards(tmp_path / "views"), always_wall, 1, calibration))
+    assert [missed.taken_for for missed in found] == ["floor"] * 2
 
 
 def test_the_sheet_has_the_worst_object_of_each_house(

@@ -25,6 +25,7 @@ from sim.composition.segmenters import weights_file
 from sim.files import write_picture
 from sim.interface import GOAL_CATEGORIES, MPCAT40
 from sim.viewers.palette import with_legend
+from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.dataset import GOAL_IDS, LabelledView, list_shards, read_shard, stored_block_px, tile
 from stubborn.segmentation.networks import Network
@@ -73,7 +74,12 @@ def main(args: Args) -> int:
     torch.set_num_threads(args.threads)
     model, metadata = load_network(weights_file(args.weights))
     worst: dict[tuple[str, str], Missed] = {}
-    for missed in missed_objects(list_shards(args.views), model, int(metadata.get("block_px", 1))):
+    shards, block_px, calibration = (
+        list_shards(args.views),
+        int(metadata.get("block_px", 1)),
+        Calibration.from_metadata(metadata),
+    )
+    for missed in missed_objects(shards, model, block_px, calibration):
         key = missed.house, missed.category
         if key not in worst or missed.missed_px > worst[key].missed_px:
             worst[key] = missed
@@ -85,8 +91,8 @@ def main(args: Args) -> int:
     return 0
 
 
-def missed_objects(shards: Sequence[Path], model: Network, block_px: int) -> Iterator[Missed]:
-    """Yields the objects of goal categories of which a network misses pixels.
+def missed_objects(shards: Sequence[Path], model: Network, block_px: int, calibration: Calibration) -> Iterator[Missed]:
+    """Yields the objects of goal categories of which a network, calibrated as agents use it, misses pixels.
 
     Raises:
         ConfigError: the views are stored at a lower resolution than the network needs.
@@ -97,7 +103,7 @@ def missed_objects(shards: Sequence[Path], model: Network, block_px: int) -> Ite
         views = list(read_shard(shard))
         with torch.inference_mode():
             for number, (rgb, second, _) in enumerate(loader(model, views, block_px, stored_px)):
-                channels = model(rgb, second).argmax(dim=1).numpy()
+                channels = calibration.applied(model(rgb, second)).argmax(dim=1).numpy()
                 for view, of_view in zip(views[number * BATCH :], channels, strict=False):
                     truth = shrink(view.semantic, block_px // stored_px)
                     rows, cols = padding(*truth.shape).inner
