@@ -29,7 +29,7 @@ __all__ = [
     "CLIMB_M", "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS",
     "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation",
     "Perceived", "RobotModel", "Scores", "SegmentationSpec", "Segmenter", "SegmenterFactory", "SegmenterSpec",
-    "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule", "wrap_angle",
+    "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule", "category_id", "wrap_angle",
 ]  # fmt: skip
 
 
@@ -72,6 +72,17 @@ GOAL_CATEGORIES: tuple[str, ...] = (
 
 MPCAT40_ID: Mapping[str, int] = MappingProxyType({name: i for i, name in enumerate(MPCAT40)})
 """mpcat40 id of each category name."""
+
+
+def category_id(name: str) -> int:
+    """Returns the mpcat40 id of a category of things.
+
+    Raises:
+        ConfigError: mpcat40 has no such category, or it is void.
+    """
+    if name not in MPCAT40[1:]:
+        raise ConfigError(f"mpcat40 has no category {name!r}. Available: {', '.join(MPCAT40[1:])}.")
+    return MPCAT40_ID[name]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from sim.detectors.confusions import CONFUSIONS
 from sim.env.scene import Scene
 from sim.gl import mujoco
-from sim.interface import MPCAT40, MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec
+from sim.interface import MPCAT40, MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec, category_id
 from sim.world.world import World
 
 
@@ -131,10 +131,9 @@ class NoisySegmenter:
         Raises:
             ConfigError: there is no such category.
         """
-        if goal not in MPCAT40_ID:
-            raise ConfigError(f"No category {goal!r} in mpcat40. Available: {', '.join(MPCAT40_ID)}.")
+        category = category_id(goal)
         shown, classified, rng = self._classified()
-        return self._score(shown, classified, MPCAT40_ID[goal], rng)
+        return self._score(shown, classified, category, rng)
 
     def posteriors(self, observation: Observation) -> NDArray[np.float32]:
         """Returns the probabilities of the categories in the frame that the environment rendered last, (40, h, w).

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import MPCAT40, MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec
+from sim.interface import MPCAT40, Observation, Scores, SegmenterSpec, category_id
 from stubborn.kernels.frames import scores_of_category
 
 STRIDE_PX = 4
@@ -27,9 +27,7 @@ class GroundTruthSegmenter:
         Raises:
             ConfigError: the goal is not a category of mpcat40, or is void.
         """
-        if goal not in MPCAT40_ID or goal == "void":
-            raise ConfigError(f"The ground truth has no category {goal!r}. Available: {', '.join(MPCAT40[1:])}.")
-        return Scores(*scores_of_category(observation["semantic"], np.uint8(MPCAT40_ID[goal])))
+        return Scores(*scores_of_category(observation["semantic"], np.uint8(category_id(goal))))
 
     def categories(self, observation: Observation) -> NDArray[np.uint8]:
         """Returns the category of each pixel, mpcat40 ids (h, w)."""

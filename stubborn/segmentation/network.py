@@ -10,7 +10,7 @@ import torch
 from jaxtyping import Float, Float32, UInt8
 from torch import Tensor
 
-from sim.interface import MPCAT40_ID, CameraModel, ConfigError, Observation, Scores, SegmenterSpec
+from sim.interface import CameraModel, ConfigError, Observation, Scores, SegmenterSpec, category_id
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.inputs import INPUTS
@@ -127,9 +127,8 @@ class NetworkSegmenter:
         Raises:
             ConfigError: the goal is not a category of the network.
         """
-        if goal not in MPCAT40_ID or goal == "void":
-            raise ConfigError(f"A network has no category {goal!r}. Available: {', '.join(MPCAT40_ID)}.")
-        posteriors, channel = self.posteriors(observation), MPCAT40_ID[goal] - 1
+        channel = category_id(goal) - 1
+        posteriors = self.posteriors(observation)
         others = np.maximum(
             posteriors[:channel].max(axis=0, initial=0.0), posteriors[channel + 1 :].max(axis=0, initial=0.0)
         )

@@ -260,6 +260,7 @@ def test_rates_outside_their_range_are_refused():
     assert {"lookalike_share", "miss_share"} <= set(asdict(NoisyConfig()))
 
 
-def test_an_unknown_goal_is_refused(env: ObjectNavEnv):
-    with pytest.raises(ConfigError, match="No category 'unicorn'"):
-        NoisySegmenter(env).scores({}, "unicorn")
+@pytest.mark.parametrize("goal", ["unicorn", "void"])
+def test_an_unknown_goal_is_refused(env: ObjectNavEnv, goal: str):
+    with pytest.raises(ConfigError, match=f"no category '{goal}'"):
+        NoisySegmenter(env).scores({}, goal)

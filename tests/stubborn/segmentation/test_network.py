@@ -102,8 +102,9 @@ def test_shrinking_takes_the_middle_label_of_a_block() -> None:
 
 
 def test_unknown_goals_and_wrong_block_sizes_are_refused(model: RedNet, frame: dict[str, np.ndarray]) -> None:
-    with pytest.raises(ConfigError, match="no category 'unicorn'"):
-        NetworkSegmenter(model).scores(frame, "unicorn")
+    for goal in ("unicorn", "void"):
+        with pytest.raises(ConfigError, match=f"no category '{goal}'"):
+            NetworkSegmenter(model).scores(frame, goal)
     with pytest.raises(ConfigError, match="multiple of the block of one logit, 3 pixels"):
         NetworkSegmenter(model, block_px=3, score_block_px=4)
     with pytest.raises(ConfigError, match="temperature must be > 0"):
