@@ -17,7 +17,7 @@ from sim.analysis.report import distributions
 from sim.analysis.report.drawings import Drawings, Trajectories, draw_episodes, read_trajectories
 from sim.analysis.report.episodes import Row, by_number, columns_of, facts_of_line, outcome_choices, row_of
 from sim.analysis.report.facts import facts_of
-from sim.analysis.report.figures import Group, Runs, causes, grouped, groups, interval_note, means, verdict
+from sim.analysis.report.figures import Group, Runs, causes, grouped, groups, interval_note, means
 from sim.analysis.report.media import link_to, picture_of, thumbnail, video_of
 from sim.analysis.report.trend import trend
 from sim.errors import ConfigError
@@ -100,7 +100,7 @@ def _template() -> Any:
     """Returns the template; it escapes all values and writes JSON without spaces."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     environment.filters["plain"] = lambda name: str(name).replace("_", " ")
-    environment.globals |= {"verdict": verdict, "css": Markup(_part("report.css")), "js": Markup(_part("report.js"))}
+    environment.globals |= {"css": Markup(_part("report.css")), "js": Markup(_part("report.js"))}
     environment.policies["json.dumps_kwargs"] = {
         "separators": (",", ":"),
         "ensure_ascii": False,

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import bisect
 import math
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from sim.analysis.comparison import Line
-from sim.analysis.report.figures import Proportion, Runs, wilson
+from sim.analysis.report.figures import Proportion, Runs, proportion_of
 
 NEVER = "never"
 SPL_LABELS = ("failed", *(f"{low / 10:g}-{(low + 1) / 10:g}" for low in range(10)))
@@ -53,32 +52,22 @@ FIRST_SIGHT_LABELS = ("0", "1-9", "10-24", "25-49", "50-99", "100-199", "200 on"
 
 @dataclass(frozen=True)
 class Histogram:
-    """Counts of episodes in bins, for each run."""
+    """Shares of bins in the episodes of each run that have the number."""
 
     labels: Sequence[str]
-    counts: Sequence[Sequence[int]]
-    """Counts of each run, one for each label."""
-
-    @property
-    def totals(self) -> list[int]:
-        """Number of episodes of each run that have the number."""
-        return [sum(counts) for counts in self.counts]
-
-    def shares(self, run: int) -> list[Proportion]:
-        """Returns the share of each bin in a run's episodes."""
-        return [wilson(count, self.totals[run]) for count in self.counts[run]]
+    shares: Sequence[Sequence[Proportion]]
+    """Shares of each run, one for each label."""
 
     @property
     def top_percent(self) -> int:
         """Returns the upper end of the axis of all pictures, a multiple of 20 above the intervals of all bars."""
-        shares = [share for run in range(len(self.counts)) for share in self.shares(run) if share.count]
-        highest = max((100.0 * share.interval[1] for share in shares), default=100.0)
+        highest = max((100.0 * s.interval[1] for shares in self.shares for s in shares if s.count), default=100.0)
         return min(100, 20 * math.ceil(highest / 20.0))
 
 
 def spl_histogram(runs: Runs) -> Histogram:
     """Returns the distribution of SPL: failures in a bin of their own, then tenths."""
-    return _histogram(runs, SPL_LABELS, [[_spl_bin(line) for line in lines] for lines in runs])
+    return _histogram(runs, SPL_LABELS, _spl_bin)
 
 
 def first_sight_histogram(runs: Runs) -> Histogram:
@@ -86,12 +75,16 @@ def first_sight_histogram(runs: Runs) -> Histogram:
 
     Lines of older versions, and of episodes that could not begin, do not count.
     """
-    return _histogram(runs, FIRST_SIGHT_LABELS, [[_sight_bin(line) for line in lines] for lines in runs])
+    return _histogram(runs, FIRST_SIGHT_LABELS, _sight_bin)
 
 
-def _histogram(runs: Runs, labels: Sequence[str], bins: Sequence[Sequence[int | None]]) -> Histogram:
-    counted = [Counter(of_run) for of_run in bins]
-    return Histogram(labels, [[counts[i] for i in range(len(labels))] for counts in counted])
+def _histogram(runs: Runs, labels: Sequence[str], bin_of: Callable[[Line], int | None]) -> Histogram:
+    shares = []
+    for lines in runs:
+        counted = [line for line in lines if bin_of(line) is not None]
+        bins = [bin_of(line) for line in counted]
+        shares.append([proportion_of([each == i for each in bins], counted) for i in range(len(labels))])
+    return Histogram(labels, shares)
 
 
 def _spl_bin(line: Line) -> int | None:
@@ -143,10 +136,10 @@ class Calibration:
 def calibration(lines: Sequence[Line]) -> Calibration:
     """Returns the calibration of a run's stops; a stop is correct if the episode is a success."""
     stops = [line for line in lines if line["end_reason"] == "stop"]
-    rated = [(float(line["stop_confidence"]), bool(line["success"])) for line in stops if _is_rated(line)]
+    rated = [line for line in stops if _is_rated(line)]
     bins = []
     for i in range(CONFIDENCE_BINS):
-        some = [each for each in rated if min(CONFIDENCE_BINS - 1, int(each[0] * CONFIDENCE_BINS)) == i]
+        some = [line for line in rated if min(CONFIDENCE_BINS - 1, int(line["stop_confidence"] * CONFIDENCE_BINS)) == i]
         if some:
             low, high = i / CONFIDENCE_BINS, (i + 1) / CONFIDENCE_BINS
             bins.append(StopBin(low, high, _mean_confidence(some), _correct(some)))
@@ -158,9 +151,9 @@ def _is_rated(line: Line) -> bool:
     return confidence is not None and 0.0 <= confidence <= 1.0
 
 
-def _mean_confidence(rated: Sequence[tuple[float, bool]]) -> float:
-    return sum(confidence for confidence, _ in rated) / len(rated) if rated else 0.0
+def _mean_confidence(rated: Sequence[Line]) -> float:
+    return sum(float(line["stop_confidence"]) for line in rated) / len(rated) if rated else 0.0
 
 
-def _correct(rated: Sequence[tuple[float, bool]]) -> Proportion:
-    return wilson(sum(success for _, success in rated), len(rated))
+def _correct(rated: Sequence[Line]) -> Proportion:
+    return proportion_of([bool(line["success"]) for line in rated], rated)

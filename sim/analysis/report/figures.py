@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -23,7 +22,7 @@ from sim.analysis.metrics import (
     houses_of,
 )
 from sim.analysis.tables import Cell
-from sim.evaluation.intervals import MIN_PAIRS, Estimate, estimate, paired_difference
+from sim.evaluation.intervals import estimate, paired_difference
 from sim.interface import GOAL_CATEGORIES
 from sim.task.explanations import MEANING, outcome
 from sim.task.failures import CAUSES
@@ -44,7 +43,6 @@ METRICS = (
     Metric("path, m", "path_length", digits=2),
 )
 """Metrics by which runs are judged and compared."""
-Z95 = 1.959964
 
 
 @dataclass(frozen=True)
@@ -61,13 +59,16 @@ class Proportion:
         return 100.0 * self.count / self.of if self.of else 0.0
 
 
-def wilson(count: int, of: int) -> Proportion:
-    """Returns a proportion of independent episodes with its Wilson (1927) interval."""
-    if of == 0:
-        return Proportion(0, 0, (0.0, 1.0))
-    p, n, zz = count / of, of, Z95**2
-    middle, half = p + zz / (2 * n), Z95 * math.sqrt(p * (1 - p) / n + zz / (4 * n * n))
-    return Proportion(count, of, (max(0.0, (middle - half) / (1 + zz / n)), min(1.0, (middle + half) / (1 + zz / n))))
+def proportion(values: Sequence[bool], houses: Sequence[str], episodes: Sequence[str] | None = None) -> Proportion:
+    """Returns the proportion of values that are true, with its interval over houses; see `estimate`."""
+    share = estimate(values, houses, episodes=episodes, most=1.0)
+    low, high = (limit if end is None else end for end, limit in ((share.low, 0.0), (share.high, 1.0)))
+    return Proportion(sum(values), len(values), (low, high))
+
+
+def proportion_of(values: Sequence[bool], lines: Sequence[Line]) -> Proportion:
+    """Returns the proportion of some lines with a property; replicates of an episode count once."""
+    return proportion(values, houses_of(lines), episodes_of(lines))
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,7 @@ def grouped(runs: Runs, names: Sequence[str], order: Sequence[str]) -> list[Grou
     found = []
     for name in (name for name in order if name in names):
         some = [[line for line, of in zip(lines, names, strict=True) if of == name] for lines in runs]
-        shares = [_proportion([bool(line["success"]) for line in lines], lines) for lines in some]
+        shares = [proportion_of([bool(line["success"]) for line in lines], lines) for lines in some]
         found.append(Group(name, shares, differences(SUCCESS, some)))
     return found
 
@@ -117,18 +118,11 @@ def causes(runs: Runs) -> list[Group]:
     found = []
     for cause in [*(cause for cause in CAUSES if cause in known), *sorted(known.difference(CAUSES))]:
         failed = [[name == cause for name in names] for names in outcomes]
-        shares = [_proportion(values, runs[0]) for values in failed]
+        shares = [proportion_of(values, runs[0]) for values in failed]
         compared = [paired_difference(failed[0], values, houses, episodes=episodes, most=1.0) for values in failed[1:]]
         against = [Cell(each, percent=True, difference=True) for each in compared]
         found.append(Group(cause, shares, against, MEANING.get(cause, _OTHER.get(cause, ""))))
     return sorted(found, key=lambda group: -sum(share.count for share in group.shares))
-
-
-def _proportion(values: Sequence[bool], lines: Sequence[Line]) -> Proportion:
-    """Returns the proportion of the lines with a property, with its interval over houses."""
-    share = estimate(values, houses_of(lines), episodes=episodes_of(lines), most=1.0)
-    low, high = (limit if end is None else end for end, limit in ((share.low, 0.0), (share.high, 1.0)))
-    return Proportion(sum(values), len(values), (low, high))
 
 
 _OTHER = {"error": "The episode ended with an error.", "failed": "No cause was recorded."}
@@ -142,17 +136,6 @@ def means(runs: Runs) -> list[tuple[Metric, list[Cell], list[Cell]]]:
 def differences(metric: Metric, runs: Runs) -> list[Cell]:
     """Returns the paired difference of each run after the first: that run minus the first."""
     return [metric.difference(runs[0], lines) for lines in runs[1:]]
-
-
-def verdict(difference: Estimate) -> str:
-    """Returns the verdict on a difference in words."""
-    if difference.mean is None:
-        return "no pairs"
-    if difference.count < MIN_PAIRS:
-        return f"fewer than {MIN_PAIRS} pairs"
-    if not difference.significant:
-        return "not significant"
-    return "higher" if difference.mean > 0.0 else "lower"
 
 
 def interval_note(runs: Runs) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.analysis.report.figures import wilson
+from sim.analysis.report.figures import proportion
 from sim.evaluation.intervals import estimate
 from sim.housegen.traps.families.catalogue import FAMILIES
 from sim.houses.sidecar import TrapFacts
@@ -96,8 +96,9 @@ def bin_edges(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _point(agent: str, quantity: str, rows: Rows, values: Sequence[float]) -> Point:
-    share = wilson(sum(bool(row["escaped"]) for row in rows), len(rows))
-    collisions = estimate([float(row["collisions"]) for row in rows], [str(row["trap"]) for row in rows])
+    traps = [str(row["trap"]) for row in rows]
+    share = proportion([bool(row["escaped"]) for row in rows], traps)
+    collisions = estimate([float(row["collisions"]) for row in rows], traps)
     assert collisions.mean is not None
     return Point(
         agent, quantity, min(values), max(values), float(np.mean(values)), len(rows),

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sim.analysis.figures import empty_figure
-from sim.analysis.report.figures import wilson
+from sim.analysis.report.figures import proportion
 from sim.commands.traps.curves import QUANTITIES, Point, Rows, curve
 from sim.commands.traps.family_picture import draw_family
 from sim.commands.traps.grid import markdown_of
@@ -178,7 +178,7 @@ def _cell(rows: Rows) -> str:
     """Returns successes out of episodes, with the interval of the rate, the mean number of collisions, and falls."""
     if not rows:
         return "-"
-    share = wilson(sum(bool(row["escaped"]) for row in rows), len(rows))
+    share = proportion([bool(row["escaped"]) for row in rows], [str(row["trap"]) for row in rows])
     low, high = (round(100 * value) for value in share.interval)
     fell = sum(bool(row.get("fell")) for row in rows)
     falls = f", {fell} fell" if fell else ""
@@ -190,8 +190,9 @@ def _family_point(rows: Rows, agent: str, family: str) -> Point | None:
     """Returns success and collisions of an agent in a family; None without episodes."""
     if not rows:
         return None
-    share = wilson(sum(bool(row["escaped"]) for row in rows), len(rows))
-    found = estimate([float(row["collisions"]) for row in rows], [str(row["trap"]) for row in rows])
+    traps = [str(row["trap"]) for row in rows]
+    share = proportion([bool(row["escaped"]) for row in rows], traps)
+    found = estimate([float(row["collisions"]) for row in rows], traps)
     numbers = [found.mean or 0.0, *found.ends]
     return Point(agent, family, 0.0, 0.0, 0.0, len(rows), share.count / share.of, *share.interval, *numbers)
 

@@ -14,6 +14,7 @@ from sim.analysis.report.distributions import (
     HOUSE_SIZES,
     SPL_LABELS,
     Bins,
+    Histogram,
     calibration,
     first_sight_histogram,
     spl_histogram,
@@ -53,17 +54,30 @@ def test_groups_hold_each_episode_once_and_differences_are_from_the_first_run() 
     ]  # fmt: skip
 
 
+def counts_of(labels: Sequence[str], histogram: Histogram) -> dict[str, int]:
+    """Returns the counts of the first run's bins that are not empty."""
+    return {name: share.count for name, share in zip(labels, histogram.shares[0], strict=True) if share.count}
+
+
+def test_replicates_of_an_episode_do_not_make_the_interval_narrower() -> None:
+    once = [line(episode_id=f"e{i}", house=f"h{i}", spl=i / 10, stop_confidence=0.5) for i in range(8)]
+    often = [each | {"episode_id": f"{each['episode_id']}~{k}"} for each in once for k in range(1, 6)]
+    for few, many in zip(spl_histogram([once]).shares[0], spl_histogram([often]).shares[0], strict=True):
+        assert many.count == 5 * few.count
+        assert many.interval == pytest.approx(few.interval)
+    assert calibration(often).correct.interval == pytest.approx(calibration(once).correct.interval)
+
+
 def test_spl_counts_failures_apart_and_each_tenth_from_its_lower_edge() -> None:
     lines = [line(spl=value) for value in (0.0999, 0.1, 0.95, 1.0)]
     lines += [line(spl=0.0, success=0.0), line(spl=None)]
+    lines = [each | {"episode_id": f"e{i}", "house": f"h{i}"} for i, each in enumerate(lines)]
     histogram = spl_histogram([lines, []])
-    counts = dict(zip(SPL_LABELS, histogram.counts[0], strict=True))
-    assert {name: count for name, count in counts.items() if count} == {
-        "failed": 1, "0-0.1": 1, "0.1-0.2": 1, "0.9-1": 2
-    }  # fmt: skip
-    assert histogram.totals == [5, 0]
-    assert [share.percent for share in histogram.shares(0) if share.count] == pytest.approx([20.0, 20.0, 20.0, 40.0])
-    assert histogram.top_percent == 80  # the Wilson interval of 2 of 5 ends at 77 %
+    assert counts_of(SPL_LABELS, histogram) == {"failed": 1, "0-0.1": 1, "0.1-0.2": 1, "0.9-1": 2}
+    assert [{share.of for share in shares} for shares in histogram.shares] == [{5}, {0}]
+    assert [share.percent for share in histogram.shares[0] if share.count] == pytest.approx([20.0, 20.0, 20.0, 40.0])
+    assert histogram.shares[0][-1].interval[1] == pytest.approx(0.869, abs=0.001)  # 2 of 5, with Student's t of 4
+    assert histogram.top_percent == 100
     assert spl_histogram([[], []]).top_percent == 100
 
 
@@ -80,8 +94,7 @@ def test_five_equal_episodes_do_not_look_certain() -> None:
 def test_an_episode_that_never_showed_the_goal_is_the_last_bin_of_first_sights() -> None:
     lines = [line(first_seen_step=step) for step in (0, 1, 9, 10, 499)]
     lines += [line(first_seen_step=None, gt_explored=False), line(first_seen_step=None, gt_explored=None)]
-    counts = dict(zip(FIRST_SIGHT_LABELS, first_sight_histogram([lines]).counts[0], strict=True))
-    assert {name: count for name, count in counts.items() if count} == {
+    assert counts_of(FIRST_SIGHT_LABELS, first_sight_histogram([lines])) == {
         "0": 1, "1-9": 2, "10-24": 1, "200 on": 1, "never": 1
     }  # fmt: skip
 

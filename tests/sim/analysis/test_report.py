@@ -20,7 +20,6 @@ from sim import run
 from sim.analysis.comparison import Run, read_run
 from sim.analysis.report.drawings import ground_truth_of, path_on, split_of
 from sim.analysis.report.facts import command_of
-from sim.analysis.report.figures import wilson
 from sim.analysis.report.plans import PX_M, Sheet, draw_plan, sheet_around, shortest_path
 from sim.evaluation.last_view import picture_file
 from sim.interface import ConfigError
@@ -408,13 +407,6 @@ def test_each_table_with_marked_differences_explains_the_mark(pair: tuple[Path, 
         table, note = section.split("</table>")
         assert "]*" in table
         assert "(*)" in note
-
-
-def test_an_interval_has_a_width_where_all_episodes_ended_alike() -> None:
-    low, high = wilson(10, 10).interval
-    assert low == pytest.approx(0.7225, abs=1e-4)  # Wilson: n / (n + z^2)
-    assert high == pytest.approx(1.0)
-    assert wilson(3, 12).interval == pytest.approx(tuple(1 - v for v in reversed(wilson(9, 12).interval)))
 
 
 def test_the_command_of_a_run_makes_the_same_run(recorded_run: Path) -> None:
