@@ -40,7 +40,6 @@ _DEFAULT = ("", "enable", "enabled", "on", "true", "1")
 _BACKENDS = {
     "linux": {"egl": "egl", "osmesa": "osmesa", "glfw": "glfw", "glx": "glfw"},
     "darwin": {"cgl": "cgl", "glfw": "glfw"},
-    "win32": {"wgl": "glfw", "glfw": "glfw"},
 }
 """The backends of each operating system, and the package of `mujoco` that makes their contexts."""
 

@@ -50,7 +50,7 @@ def make_skins(surfaces: Sequence[Surface], triangles: int, texture_px: int) -> 
     Args:
         surfaces: of the object, at least one.
         triangles: about the largest number of triangles.
-        texture_px: largest side of a baked picture.
+        texture_px: side of a baked picture at most, rounded up to a power of two.
     """
     total = sum(len(each.faces) for each in surfaces)
     painted = [each for each in surfaces if each.paint.picture is not None or each.paint.vertex_rgb is not None]

@@ -19,7 +19,6 @@ from sim.interface import GOAL_CATEGORIES, MPCAT40_ID
 from sim.plans.gap_kernels import lower_to_gap
 from sim.plans.plan import CELL_M, Plan, storey_name
 from sim.plans.surfaces import TOP_M, occupied_spans
-from sim.robot.body import PREFIX
 from sim.task.ground_truth import GroundTruth
 from sim.world.freespace import FreeSpace
 from sim.world.obstacles import obstacle_polygons
@@ -108,7 +107,7 @@ def _slack_m(
     At obstacles it is exact; at edges of the floor and at ground that cannot be reached it comes from the cells.
     """
     gap_m = np.full(frame.shape, _FAR_M)
-    for polygon in obstacle_polygons(world.model, at_rest, world.labels, world.robot, floor_z_m, robot_prefix=PREFIX):
+    for polygon in obstacle_polygons(world.model, at_rest, world.labels, world.robot, floor_z_m):
         window = frame.index_of(polygon.bounds_m, _FAR_M)
         x_m, y_m = frame.axes(window)
         lower_to_gap(gap_m[window], x_m, y_m, polygon.vertices_m, polygon.normals, polygon.offsets_m)

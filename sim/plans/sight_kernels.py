@@ -120,8 +120,8 @@ def cast_rays(
                             if between > 2.0 * (up_0 - high_m * near_1m) * per_row + 0.5 or not 0 <= at < image_rows:
                                 continue
                             if (_bits(at, at) & open_0) | (_bits(at - 64, at - 64) & open_1):
-                                map_row = int(map_pose[0] + middle_m * map_y_step)
-                                map_col = int(map_pose[1] + middle_m * map_x_step)
+                                map_row = math.floor(map_pose[0] + middle_m * map_y_step)
+                                map_col = math.floor(map_pose[1] + middle_m * map_x_step)
                                 if 0 <= map_row < map_rows and 0 <= map_col < map_cols:
                                     if flags[map_row, map_col] == 0:
                                         touched[count] = map_row * map_cols + map_col
@@ -134,8 +134,8 @@ def cast_rays(
                             pixels[category] += _ones(new_0) + _ones(new_1)  # type: ignore[call-arg]
                         if not near_m <= middle_m < far_m:
                             continue
-                        map_row = int(map_pose[0] + middle_m * map_y_step)
-                        map_col = int(map_pose[1] + middle_m * map_x_step)
+                        map_row = math.floor(map_pose[0] + middle_m * map_y_step)
+                        map_col = math.floor(map_pose[1] + middle_m * map_x_step)
                         if not (0 <= map_row < map_rows and 0 <= map_col < map_cols):
                             continue
                         flag, rows_per_m = 0, per_row / middle_m
@@ -171,8 +171,8 @@ def cast_rays(
                     if here_0 | here_1:
                         open_0, open_1 = open_0 & ~here_0, open_1 & ~here_1
                         if floor[row, col] and near_m <= floor_depth_m < far_m:
-                            map_row = int(map_pose[0] + floor_depth_m * map_y_step)
-                            map_col = int(map_pose[1] + floor_depth_m * map_x_step)
+                            map_row = math.floor(map_pose[0] + floor_depth_m * map_y_step)
+                            map_col = math.floor(map_pose[1] + floor_depth_m * map_x_step)
                             if 0 <= map_row < map_rows and 0 <= map_col < map_cols:
                                 if flags[map_row, map_col] == 0:
                                     touched[count] = map_row * map_cols + map_col

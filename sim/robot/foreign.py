@@ -19,8 +19,8 @@ A geom without a name is called `<body>.<number>`, with its number in the body, 
 
 The file shows the robot at rest: +x ahead (or `heading_deg`), wheels on the ground. Masses, inertias and collision
 shapes are those of the file. The rest is replaced: the base is held upright, each wheel collides as a sphere of its
-radius, two motors with the same force per kilogram as those of the default robot drive the wheels, and all other
-joints are fixed.
+radius, and all other joints are fixed. Two motors drive the wheels, with the force of the default robot or, for a
+heavier robot, with the same force per kilogram.
 """
 
 from __future__ import annotations
@@ -32,8 +32,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from sim.houses.references import files_of
 from sim.interface import CLIMB_M, CameraModel, ConfigError
-from sim.reading import read_bytes, read_json
+from sim.reading import read_bytes, read_json, sha256_of
 from sim.robot.config import BodyConfig, DriveConfig, RobotConfig, RobotFile, WheelConfig
 from sim.robot.measurement import RobotMeasurements, measure
 from sim.robot.menagerie import is_menagerie, menagerie_files
@@ -76,9 +77,13 @@ def load_robot(robot: Path | str) -> tuple[RobotConfig, CameraModel]:
 
 
 def robot_sha256(robot: Path | str) -> str:
-    """Returns the checksum of the robot's file and its sidecar, which identifies the robot in results."""
-    files = zip(_files_of(robot), ("robot", "sidecar of the robot"), strict=True)
-    return hashlib.sha256(b"".join(read_bytes(file, what=f"--robot: the {what}") for file, what in files)).hexdigest()
+    """Returns the checksum of a robot's file, its sidecar and the files that it uses; it identifies it in results."""
+    path, sidecar = _files_of(robot)
+    digest = hashlib.sha256(read_bytes(path, what="--robot: the robot"))
+    digest.update(read_bytes(sidecar, what="--robot: the sidecar of the robot"))
+    for file in files_of(path):  # a robot in a single file keeps its checksum
+        digest.update(bytes.fromhex(sha256_of(file, what="--robot: a file of the robot")))
+    return digest.hexdigest()
 
 
 def absolute_robot(robot: Path | str) -> str:
@@ -91,7 +96,7 @@ def _files_of(robot: Path | str) -> tuple[Path, Path]:
     if is_menagerie(robot):
         return menagerie_files(robot)
     path = Path(robot).resolve()
-    return path, path.with_suffix(".json")
+    return path, path.parent / f"{path.stem}.json"
 
 
 def _robot_config(path: Path, sidecar: dict[str, Any]) -> RobotConfig:
@@ -120,7 +125,7 @@ def _robot_config(path: Path, sidecar: dict[str, Any]) -> RobotConfig:
 
 
 def _wheels(measured: RobotMeasurements, radius_m: float, body: BodyConfig) -> WheelConfig:
-    """Returns wheels whose motors have the same force per kilogram and the same lag as those of the default robot."""
+    """Returns wheels whose motors have the lag of the default robot's and at least their force, more by weight."""
     default = RobotConfig()
     weight = max(1.0, measured.mass_kg / default.body.mass_kg)
     inertia = weight * (radius_m / default.wheels.radius_m) ** 2

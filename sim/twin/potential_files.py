@@ -69,6 +69,12 @@ def held_back(file: Path) -> bool:
     return zlib.crc32(house_of(file.stem.rsplit("-", 1)[-1]).encode()) % HELD_BACK == 0
 
 
+def plan_of(file: Path) -> str | None:
+    """Returns the checksum of the plan that a file of samples was made from; None if the file does not have it."""
+    arrays = read_npz(file, what=_WHAT, most_bytes=MAX_FILE_BYTES)
+    return _header(file, arrays).about.get("plan_sha256")
+
+
 def write_samples(file: Path, samples: Iterable[Sample], config: SampleConfig, about: dict[str, object]) -> int:
     """Writes the samples of a plan, atomically, and returns their number.
 
@@ -194,6 +200,9 @@ class SampleSet:
         )
 
 
+_WHAT = "file of samples (`stubborn train poni` writes them)"
+
+
 class _Header(msgspec.Struct):
     """The JSON in `header`."""
 
@@ -203,17 +212,24 @@ class _Header(msgspec.Struct):
 
 def _read(file: Path) -> tuple[SampleConfig, dict[str, NDArray]]:
     """Returns the configuration and the arrays of a file; without samples it has no `masks`."""
-    what = "file of samples (`stubborn train poni` writes them)"
-    arrays = read_npz(file, what=what, most_bytes=MAX_FILE_BYTES)
+    arrays = read_npz(file, what=_WHAT, most_bytes=MAX_FILE_BYTES)
+    config = _header(file, arrays).config
     try:
-        if "header" not in arrays:
-            raise ValueError("it has no 'header'")
-        config = parse_json(str(arrays.pop("header")), _Header, where="its header").config
         if set(arrays) - _WITHOUT_SAMPLES:
             _check(arrays, config.cells)
     except ValueError as error:
-        raise ConfigError(f"'{file}' is not a {what}: {reason_of(error)}.") from None
+        raise ConfigError(f"'{file}' is not a {_WHAT}: {reason_of(error)}.") from None
     return config, arrays
+
+
+def _header(file: Path, arrays: dict[str, NDArray]) -> _Header:
+    """Takes the header out of the arrays of a file."""
+    try:
+        if "header" not in arrays:
+            raise ValueError("it has no 'header'")
+        return parse_json(str(arrays.pop("header")), _Header, where="its header")
+    except ValueError as error:
+        raise ConfigError(f"'{file}' is not a {_WHAT}: {reason_of(error)}.") from None
 
 
 def _check(arrays: Mapping[str, NDArray], cells: int) -> None:

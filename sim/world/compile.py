@@ -95,9 +95,6 @@ def _set_options(spec: mujoco.MjSpec, config: RobotConfig) -> None:
     option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     option.solver = mujoco.mjtSolver.mjSOL_NEWTON
     option.iterations, option.ls_iterations = 20, 20
-    option.impratio, option.noslip_iterations = 1.0, 0
-    option.gravity, option.wind = (0.0, 0.0, -9.81), (0.0, 0.0, 0.0)
-    option.density, option.viscosity = 0.0, 0.0
     option.enableflags = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
     # MULTICCD gives wrong normals for a cylinder on a box's corner; an automatic reset would hide a NaN.
     option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_MULTICCD) | int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)

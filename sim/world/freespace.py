@@ -22,7 +22,7 @@ from sim.geometry.fast_marching import distances
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.houses.house import Room
-from sim.houses.labels import ROBOT_PREFIX, Labels
+from sim.houses.labels import Labels
 from sim.interface import RobotModel, SuccessRule
 from sim.world.obstacles import obstacle_polygons
 from sim.world.plan import floor_polygons, house_extent, room_rectangles
@@ -58,7 +58,6 @@ class FreeSpace:
         robot: RobotModel | None = None,
         rule: SuccessRule | None = None,
         floor_z_m: float = 0.0,
-        robot_prefix: str = ROBOT_PREFIX,
     ) -> None:
         """Computes the free space of the storey whose floor is at `floor_z_m`.
 
@@ -70,12 +69,11 @@ class FreeSpace:
             robot: its radius, height and clearance count; the default robot when None.
             rule: says how far apart storeys are; the default rule when None.
             floor_z_m: height of the storey's floor.
-            robot_prefix: geoms with this prefix are not obstacles.
         """
         robot, rule = robot or RobotModel(), rule or SuccessRule()
         self.radius_m = robot.radius_m
         self.floor_z_m = floor_z_m
-        self._obstacles = obstacle_polygons(model, data, labels, robot, floor_z_m, robot_prefix=robot_prefix)
+        self._obstacles = obstacle_polygons(model, data, labels, robot, floor_z_m)
         self._floors = floor_polygons(model, data, labels, floor_z_m)
         rooms = tuple(room for room in rooms if abs(room.floor_z_m - floor_z_m) < rule.same_storey_m)
         self._extent = house_extent(model, data, labels, rooms, self._floors, self._obstacles)

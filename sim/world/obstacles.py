@@ -29,10 +29,8 @@ def obstacle_polygons(
     labels: Labels,
     robot: RobotModel,
     floor_z_m: float,
-    *,
-    robot_prefix: str = ROBOT_PREFIX,
 ) -> list[ConvexPolygon]:
-    """Returns the plan projections of what is an obstacle on a storey.
+    """Returns the plan projections of what is an obstacle on a storey; the robot is none.
 
     Args:
         model: a compiled house or world.
@@ -40,9 +38,8 @@ def obstacle_polygons(
         labels: of `model`.
         robot: its height and the height that it climbs count.
         floor_z_m: height of the storey's floor.
-        robot_prefix: geoms with this prefix are not obstacles.
     """
-    candidates = collidable_geoms(model) & ~geoms_of(model, robot_prefix)
+    candidates = collidable_geoms(model) & ~geoms_of(model, ROBOT_PREFIX)
     is_floor = labels.geom_category == MPCAT40_ID["floor"]
     objects, floors = (np.flatnonzero(candidates & kind) for kind in (~is_floor, is_floor))
     climb_m = robot.climb_m + TOLERANCE_M

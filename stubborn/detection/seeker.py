@@ -185,18 +185,15 @@ class TargetSeeker:
         """Returns the cells of the whole map with candidates that are not set aside."""
         return self._candidates(navmap, self.parts(navmap))
 
-    def acceptable(self, navmap: NavMap) -> Bool[np.ndarray, "rows cols"]:
+    def _candidates(self, navmap: NavMap, parts: CandidateParts) -> Bool[np.ndarray, "rows cols"]:
+        return self._on_whole_map(navmap, parts.mask) & ~navmap.set_aside
+
+    def _acceptable(self, navmap: NavMap, parts: CandidateParts) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map with candidates that the verifier would accept now.
 
         A candidate that is pursued as acceptable stays acceptable: otherwise the goal could change with every frame.
         The rule that late candidates are not verified does not apply here.
         """
-        return self._acceptable(navmap, self.parts(navmap))
-
-    def _candidates(self, navmap: NavMap, parts: CandidateParts) -> Bool[np.ndarray, "rows cols"]:
-        return self._on_whole_map(navmap, parts.mask) & ~navmap.set_aside
-
-    def _acceptable(self, navmap: NavMap, parts: CandidateParts) -> Bool[np.ndarray, "rows cols"]:
         whole = self._known(navmap)
         view = navmap.view(whole)
         best = _seen_best_of_each(view, parts)
@@ -250,8 +247,8 @@ class TargetSeeker:
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
         """Verifies the candidate at a map cell; a rejected one never counts again in this episode.
 
-        Returns False if there is no candidate. A candidate that is connected to a rejected object never counts as
-        new.
+        Returns False if there is no candidate. A late candidate is accepted without verification, unless it touches a
+        rejected object.
         """
         whole = self._known(navmap)
         view, parts = navmap.view(whole), self.parts(navmap)

@@ -19,7 +19,7 @@ from stubborn.segmentation.evaluation import Iou, confusion
 from stubborn.segmentation.rednet import CLASSES
 
 DISTANCES_M = (1.0, 2.0, 3.0, 4.0, 5.0)
-"""Edges of the bins of depth. Pixels without a depth in the camera's range belong to no bin."""
+"""Edges of the bins of depth. Pixels that are nearer, at the largest depth or without one belong to no bin."""
 EDGES_PX = (0, 16, 32, 64, 128, 640)
 """Edges of the bins of size: the square root of an object's area, in pixels of the 640 x 480 image."""
 FEWEST_PIXELS = 4

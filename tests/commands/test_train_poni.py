@@ -14,7 +14,7 @@ import torch
 from sim.commands.train.poni import Args, loss_of, main
 from sim.interface import ConfigError
 from sim.plans.export import export_plans
-from sim.plans.plan import write_plan
+from sim.plans.plan import read_plan, write_plan
 from sim.twin.potential_files import held_back
 from stubborn.exploration.poni_net import CHANNELS, FILES, Predictor
 from tests.helpers.worlds import room, with_box
@@ -71,6 +71,12 @@ def test_training_makes_samples_curves_and_weights_and_continues_a_run(
     assert f"continues from step {first[-1]['step']}," in printed
     assert int(rows(out / "val.csv")[-1]["step"]) > int(first[-1]["step"])
     assert {file.name: file.stat().st_mtime_ns for file in (out / "samples").iterdir()} == samples
+
+    plan = next(plans.iterdir())
+    write_plan(plan, replace(read_plan(plan), name="another"))
+    with pytest.raises(ConfigError, match=f"plans-{plan.name}' is not of plan '.*{plan.name}' as it is now"):
+        main(Args(**options, minutes=0.05))  # type: ignore[arg-type]
+    write_plan(plan, replace(read_plan(plan), name=plan.stem))
 
     with pytest.raises(ConfigError, match=r"holds a run with --seed = 0, this command has 1"):
         main(Args(**options, seed=1))  # type: ignore[arg-type]

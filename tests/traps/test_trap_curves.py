@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from sim.commands.traps.curves import MOST_BINS, QUANTITIES, bin_edges, curve
 from sim.commands.traps.family_report import as_csv, draw_curves, draw_families, family_grid
 from sim.commands.traps.report import Args, main
 from sim.houses.sidecar import TrapFacts
+from sim.interface import ConfigError
 
 GAP, PANES, OBJECTS = QUANTITIES
 
@@ -86,3 +88,11 @@ def test_the_report_of_a_split_of_families_has_curves_and_tables(tmp_path: Path)
     assert main(args) == 0
     assert "| pane_gap | 0/1" in (tmp_path / "families.md").read_text()
     assert {"curves.png", "curves.csv", "families.png"} <= {file.name for file in tmp_path.iterdir()}
+
+    assert main(args) == 0  # nothing is missing
+    config = json.loads((tmp_path / "config.json").read_text())
+    (name,) = config["own_code"]
+    config["own_code"][name] = "0123456789ab"  # the agent was changed
+    (tmp_path / "config.json").write_text(json.dumps(config))
+    with pytest.raises(ConfigError, match=r"holds results with own_code.*0123456789ab.*choose another folder"):
+        main(args)

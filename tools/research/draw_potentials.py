@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim import cli
+from sim.analysis.figures import empty_figure
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from sim.twin.potential_files import Batch, SampleSet, held_back
 from stubborn.exploration.patches import LAYERS
@@ -80,12 +81,10 @@ def draw(maps: Sequence[tuple[Batch, int]], predictor: Predictor, out: Path) -> 
         predictor: of the potentials.
         out: the file.
     """
-    import matplotlib
+    figure = empty_figure(1.75 * len(maps), 7.4, what="Maps of potentials")
+    from matplotlib import colors
 
-    matplotlib.use("Agg")
-    from matplotlib import colors, pyplot
-
-    figure, axes = pyplot.subplots(4, len(maps), figsize=(1.75 * len(maps), 7.4), squeeze=False)
+    axes = figure.subplots(4, len(maps), squeeze=False)
     dots, norm = None, colors.PowerNorm(0.5, 0.0, 1.0)  # most potentials are small
     for column, (batch, goal) in zip(axes.T, maps, strict=True):
         cells = batch.channels.shape[-1]
@@ -108,7 +107,6 @@ def draw(maps: Sequence[tuple[Batch, int]], predictor: Predictor, out: Path) -> 
         bar.ax.tick_params(labelsize=7)
     out.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(out, dpi=72, format="png", bbox_inches="tight", pad_inches=0.05)
-    pyplot.close(figure)
 
 
 def _image(channels: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -145,7 +145,7 @@ def to_action(given: Any) -> Action:
 
 def _whole_number(value: Any) -> int | None:
     """Returns the value of an integer of Python or NumPy, or of an array of one element; None for anything else."""
-    if isinstance(value, (bool, np.bool_)):
+    if isinstance(value, bool) or "bool" in str(getattr(value, "dtype", "")):
         return None
     if getattr(value, "shape", ()) != () and hasattr(value, "reshape"):  # an array or tensor
         try:

@@ -54,7 +54,7 @@ from sim.task.trajectory import read_trajectory, trajectory_file
 MAX_NAME = 120
 """Largest number of characters of the agents in the name of a table's file, and of options in that of a run's folder;
 longer ones get a checksum."""
-SAME_IN_ALL = ("profile", "noise_config", "robot", "robot_sha256")
+SAME_IN_ALL = ("profile", "robot")
 """Entries of config.json in which the runs of a table must be equal, if both have them."""
 SAME_IN_TREE = ("robot", "camera", "profile", "noise", "task")
 """Parts of the configuration tree in which the runs of a table must be equal, if both have them."""

@@ -30,8 +30,9 @@ from sim.commands.train.training_files import print_next_commands, read_columns
 from sim.interface import ConfigError
 from sim.invocation import command
 from sim.plans.plan import read_plan
+from sim.reading import sha256_of
 from sim.twin.potential_choices import Choices, add_choices
-from sim.twin.potential_files import HELD_BACK, SYMMETRIES, Batch, SampleSet, held_back, write_samples
+from sim.twin.potential_files import HELD_BACK, SYMMETRIES, Batch, SampleSet, held_back, plan_of, write_samples
 from sim.twin.potentials import SampleConfig, samples_of
 from stubborn.exploration.poni_net import FILES, MAPS, PoniNet, PoniNetConfig
 
@@ -105,13 +106,19 @@ def make_samples(args: Args, config: SampleConfig) -> list[Path]:
             f"{HELD_BACK} is held back; export more."
         )
     printed_s = start_s = time.monotonic()
+    sums = {plan: sha256_of(plan, what="Plan") for plan in plans}
+    for plan, file in zip(plans, files, strict=True):
+        if file.exists() and plan_of(file) != sums[plan]:
+            raise ConfigError(
+                f"'{file}' has samples of another plan than '{plan}'; delete it, or give another --samples."
+            )
     todo = [(plan, file) for plan, file in zip(plans, files, strict=True) if not file.exists()]
     for done, (plan, file) in enumerate(todo):
         if time.monotonic() - printed_s >= PRINT_EVERY_S:
             printed_s = time.monotonic()
             print(f"samples of {done} of {len(todo)} plans, {(printed_s - start_s) / 60:.1f} min", flush=True)
         house = read_plan(plan)
-        write_samples(file, samples_of(house, config, seed=0), config, {"plan": house.name})
+        write_samples(file, samples_of(house, config, seed=0), config, {"plan": house.name, "plan_sha256": sums[plan]})
     print(f"samples of {len(files)} plans, {len(todo)} made in {(time.monotonic() - start_s) / 60:.1f} min", flush=True)
     return files
 

@@ -31,6 +31,8 @@ from sim.commands.traps.grid import grid, markdown_of, table_of
 from sim.commands.traps.picture import draw_trial
 from sim.commands.traps.trial import Trial, run_trial
 from sim.composition.agents import build_agent, find_agent
+from sim.composition.options import RunOptions
+from sim.composition.record import code_of
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, Split, load_split
 from sim.evaluation.config_fields import differing_fields, field_text
@@ -114,23 +116,29 @@ def write_or_compare_config(args: Args, split: Split) -> None:
     """Writes `config.json`, or compares it where there are results.
 
     Raises:
-        ConfigError: the results are of another split, version of the physics or --max-steps.
+        ConfigError: the results are of another split, version of the physics, --max-steps or code of a user's agent.
     """
-    config = {
+    file, own = (
+        args.out / "config.json",
+        {name: code_of(RunOptions(agent=name)).partition("+")[2] for name in args.agents},
+    )
+    config: dict[str, Any] = {
         "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
         "physics": PHYSICS_VERSION,
         "max_steps": args.max_steps,
+        "own_code": {name: code for name, code in own.items() if code},
     }
-    file = args.out / "config.json"
-    if not (args.out / "results.jsonl").exists():
-        write_atomically(file, json.dumps(config, indent=2) + "\n")
-        return
-    before = read_json(file, dict[str, Any], what="Config") if file.exists() else {}
-    for path, was, now in differing_fields(before, config):
-        raise ConfigError(
-            f"--out '{args.out}' holds results with {path} = {field_text(was)}, this command has {field_text(now)}; "
-            "choose another folder."
-        )
+    if (args.out / "results.jsonl").exists():
+        before = read_json(file, dict[str, Any], what="Config") if file.exists() else {}
+        known = before.get("own_code", {})
+        of_known = {name: config["own_code"].get(name, code) for name, code in known.items()}
+        for path, was, now in differing_fields(before | {"own_code": known}, config | {"own_code": of_known}):
+            raise ConfigError(
+                f"--out '{args.out}' holds results with {path} = {field_text(was)}, this command has "
+                f"{field_text(now)}; choose another folder."
+            )
+        config["own_code"] = known | config["own_code"]
+    write_atomically(file, json.dumps(config, indent=2) + "\n")
 
 
 class Row(msgspec.Struct):

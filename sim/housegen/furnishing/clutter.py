@@ -88,17 +88,18 @@ def _equip_bathroom(layout: RoomLayout, source: FurnitureSource) -> None:
             hang_on_wall(layout, source.rng, rack)
 
 
-def _put_on_floor(layout: RoomLayout, source: FurnitureSource, use: str) -> Placement | None:
+def _put_on_floor(layout: RoomLayout, source: FurnitureSource, use: str) -> None:
     """Puts a small object on the floor: flat ones next to furniture, the others at a wall."""
     item = source.make("objects", use)
     if item is None or item.mount != "floor":
-        return None
+        return
     if item.walk_over:
-        return _lay_beside(layout, source, item)
-    return put_against_wall(layout, source.rng, item, along="any", front_m=0.0, gap_m=source.uniform(0.01, 0.06))
+        _lay_beside(layout, source, item)
+    else:
+        put_against_wall(layout, source.rng, item, along="any", front_m=0.0, gap_m=source.uniform(0.01, 0.06))
 
 
-def _lay_beside(layout: RoomLayout, source: FurnitureSource, item: Item) -> Placement | None:
+def _lay_beside(layout: RoomLayout, source: FurnitureSource, item: Item) -> None:
     """Lays a flat object on free floor next to a piece of furniture."""
     hosts = [
         p for p in layout.placements if p.item.mount == "floor" and not p.item.walk_over and p.item.size_m[2] > 0.3
@@ -111,5 +112,4 @@ def _lay_beside(layout: RoomLayout, source: FurnitureSource, item: Item) -> Plac
         y = min(max(cy + 9.0 * math.sin(angle), rect.y0 - gap_m), rect.y1 + gap_m)
         free = Rect(x - reach_m, y - reach_m, x + reach_m, y + reach_m)
         if layout.is_clear(free, 0.0, 0.05) and lay_flat(layout, item, x, y, source.uniform(-math.pi, math.pi)):
-            return layout.placements[-1]
-    return None
+            return

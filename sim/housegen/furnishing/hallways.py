@@ -24,7 +24,7 @@ KINDS = (
     ("lighting", "floor"),
 )  # fmt: skip
 """Category and use of the furniture of hallways."""
-DECORATION = frozenset(("plant", "lighting", "picture", "floor"))
+DECORATION = frozenset(("plant", "lighting"))
 """Categories that are of no use in a hallway; one that has nothing else gets a mirror."""
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import torch
 
 from sim.bridges.habitat import HabitatSimActions, stand_in
 from sim.bridges.habitat.agents import HabitatAgent, spec_of
@@ -122,7 +123,8 @@ def test_an_action_is_understood_in_all_of_habitats_forms(given: Any) -> None:
 @pytest.mark.parametrize(
     "given",
     [
-        None, True, 1.0, math.nan, 6, -1, "forward", "", [], [1, 2], {}, {"act": 1}, {"action": None},
+        None, True, np.array([True]), torch.tensor(True), 1.0, math.nan, 6, -1, "forward", "", [], [1, 2], {},
+        {"act": 1}, {"action": None},
         {"action": {"action": {"action": {"action": 1}}}}, np.array([1, 2]), np.array([0.5]), object(),
         {"action": ("velocity_control", "velocity_stop"), "action_args": {}}, b"\x01",
     ],

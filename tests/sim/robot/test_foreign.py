@@ -14,7 +14,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.geometry.pose import Pose
 from sim.interface import Action, ConfigError
 from sim.robot.config import RobotConfig
-from sim.robot.foreign import load_robot
+from sim.robot.foreign import load_robot, robot_sha256
 from sim.task.ground_truth import GroundTruth
 from sim.world.world import World
 from tests.helpers.foreign import HOLLOW, ROBOT, TWO_BODIES, write_robot
@@ -50,6 +50,19 @@ def test_a_robot_keeps_its_own_masses_and_shapes(carrier: Path, capfd: pytest.Ca
         np.testing.assert_array_equal(getattr(hull, field), getattr(ours, field))
     assert hull.margin[0] == world.config.body.skin_m == 0.005
     assert capfd.readouterr().err == ""  # MuJoCo gave no warning
+
+
+def test_the_checksum_of_a_robot_covers_its_meshes(tmp_path: Path) -> None:
+    robot = write_robot(tmp_path / "r")
+    before = robot_sha256(robot)
+    mesh = robot.parent / "parts" / "cube.obj"
+    mesh.write_text(mesh.read_text() + "# changed\n")
+    assert robot_sha256(robot) != before
+
+
+def test_a_folder_is_no_robot() -> None:
+    with pytest.raises(ConfigError, match="--robot: the robot '/' does not exist"):
+        load_robot("/")
 
 
 def test_the_pose_of_the_robot_in_its_file_does_not_matter(carrier: Path, tmp_path: Path) -> None:

@@ -230,7 +230,8 @@ def test_a_part_is_acceptable_as_its_cell_seen_best():
     navmap.score_max[30, 61] = navmap.score_max[30, 35] = 0.6
     navmap.frames_in_view[:] = 10
     navmap.score_sum[30, 60], navmap.score_sum[30, 61], navmap.score_sum[30, 35] = 9.0, 2.0, 3.0
-    assert np.argwhere(seeker(Doubtful()).acceptable(navmap)).tolist() == [[30, 60], [30, 61]]
+    doubtful = seeker(Doubtful())
+    assert np.argwhere(doubtful._acceptable(navmap, doubtful.parts(navmap))).tolist() == [[30, 60], [30, 61]]
 
 
 def test_the_approached_cell_is_the_candidate_that_the_route_leads_to():
