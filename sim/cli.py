@@ -151,12 +151,38 @@ def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:
         with contextlib.redirect_stderr(messages):
             options = (tyro.conf.FlagCreatePairsOff,)
             shown = _without_empty_defaults(args_type)
-            args = tyro.cli(shown, prog=invocation.program(), args=argv, description=description, config=options)
+            joined = _joined(args_type, words)
+            args = tyro.cli(shown, prog=invocation.program(), args=joined, description=description, config=options)
             return args_type(**vars(args))
     except SystemExit as stop:
         if stop.code in (0, None):
             raise
         raise ConfigError(_message_in_box(messages.getvalue())) from None
+
+
+def _joined(args_type: type, words: Sequence[str]) -> list[str]:
+    """Returns the words of a command line in which the values of a repeated option follow its first name.
+
+    This is done for options that take several values, of which only the last ones would count otherwise.
+    """
+    hints = typing.get_type_hints(args_type)
+    several = {f"--{name.replace('_', '-')}" for name, hint in hints.items() if ... in typing.get_args(_bare(hint))}
+    current: list[str] = []
+    parts, of_option = [current], dict[str, list[str]]()
+    for word in words:
+        name, is_pair, value = word.partition("=")
+        name = name.replace("_", "-")
+        if name in of_option:
+            current = of_option[name]
+            current.extend([value] if is_pair else [])
+        elif word.startswith("--"):
+            current = [name, value] if name in several and is_pair else [word]
+            parts.append(current)
+            if name in several:
+                of_option[name] = current
+        else:
+            current.append(word)
+    return [word for part in parts for word in part]
 
 
 _POSITIONAL = typing.get_args(tyro.conf.Positional[Any])[1]

@@ -60,6 +60,17 @@ def test_the_help_of_an_option_shows_no_empty_default(capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize(
+    "words",
+    [
+        ["--only", "a", "--only", "b", "c"], ["--only=a", "--seed", "3", "--only=b", "c"],
+        ["--only", "a", "b", "--seed=3", "--only", "c"],
+    ],
+)  # fmt: skip
+def test_a_repeated_option_of_several_values_has_all_of_them(words: list[str]) -> None:
+    assert cli.parse(Optional, ["here", *words]) == Optional(runs=(Path("here"),), only=("a", "b", "c"))
+
+
+@pytest.mark.parametrize(
     ("argv", "named"),
     [(["--episodes", "many"], "many"), (["--epsodes", "3"], "--epsodes"), (["--episodes"], "--episodes")],
 )
