@@ -70,8 +70,8 @@ def run_missing(
         )
         for note in notes_on(options.agent):
             console.print(note, highlight=False, soft_wrap=True)
-        if setup.borrowed_parameters:
-            console.print(setup.borrowed_parameters, highlight=False, markup=False, soft_wrap=True)
+        for note in filter(None, (setup.borrowed_parameters, setup.missing_calibration)):
+            console.print(note, highlight=False, markup=False, soft_wrap=True)
         _report_resumed(run, len(episodes), len(todo), code, console)
         if todo and must_compile():
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from safetensors import SafetensorError, safe_open
 
 from sim.composition.own_segmentation import load_specification, make_own
 from sim.configuration import as_json
@@ -181,6 +182,15 @@ def find_segmentation(semantics: str, weights: Path | None) -> SegmentationKind:
     if isinstance(kind.config, NetworkConfig):
         weights_file(weights)
     return kind
+
+
+def is_calibrated(weights: Path) -> bool:
+    """Returns whether weights have a calibration or a temperature; those of other formats than ours have none."""
+    try:
+        with safe_open(weights, framework="np") as stream:
+            return not {"calibration", "temperature"}.isdisjoint(stream.metadata() or {})
+    except (SafetensorError, OSError):
+        return False
 
 
 def detector_config(kind: SegmentationKind, weights: Path | None) -> Any:

@@ -14,7 +14,13 @@ from sim.bridges.process_command import BridgeConfig
 from sim.composition.agents import find_agent, find_explorer, takes_explorer
 from sim.composition.checks import check_options
 from sim.composition.options import RunOptions, start_pose
-from sim.composition.segmenters import SegmentationKind, detector_config, find_segmentation
+from sim.composition.segmenters import (
+    NetworkConfig,
+    SegmentationKind,
+    detector_config,
+    find_segmentation,
+    is_calibrated,
+)
 from sim.configuration import parse_assignments, read_settings, with_fields
 from sim.episodes.splits import Split
 from sim.errors import ConfigError
@@ -155,6 +161,19 @@ class Setup:
         return (
             f"No parameters are fitted to segmentation of kind '{spec.kind}': verification and fusion use those of "
             f"'{DEFAULT_KIND}' (`{command('train', 'verifier')}` and `{command('train', 'fusion')}` fit your own)."
+        )
+
+    @property
+    def missing_calibration(self) -> str:
+        """A sentence if the network's weights have no calibration; else ""."""
+        detector = self.config.detector
+        if not (self.spec.uses_segmentation and isinstance(detector, NetworkConfig)):
+            return ""
+        if detector.temperature is not None or is_calibrated(detector.weights):
+            return ""
+        return (
+            f"The scores of '{detector.weights}' are not calibrated; verification and fusion misjudge them: "
+            f"`{command('evaluate')} --calibrate` fits and stores a calibration."
         )
 
 

@@ -15,6 +15,7 @@ from torch.utils.data import Subset
 from sim.commands.evaluate.network_card import training_commands, training_stages, training_text
 from sim.commands.train import segmentation_trainer
 from sim.commands.train.segmentation import Args, Trainer, main
+from sim.commands.train.segmentation_network import start_network
 from sim.datasets.coco import annotate
 from sim.datasets.shards import write_shard
 from sim.datasets.views import View
@@ -183,6 +184,12 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
     assert folders == [str(tmp_path / name) for name in ("out", "finer", "finest")]
     with pytest.raises(ConfigError, match="is not of size 'lite0'"):
         main(options(tmp_path, out=tmp_path / "other", init=first, size="lite0"))
+
+
+def test_the_shipped_weights_have_a_name() -> None:
+    size, model, metadata = start_network(None, Path("shipped"), imagenet=False)
+    assert (size, model.config) == ("compact-both", NETWORKS["compact-both"])
+    assert metadata["step"] > 0
 
 
 @pytest.mark.slow

@@ -370,6 +370,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn train segmentation --furniture runs/models --hours 1.5 --out runs/rednet": Only(
         "renders 800 views at least; tests/commands/test_views_mix.py and test_train_segmentation.py try its parts"
     ),
+    "stubborn train segmentation --init shipped --views views --val-views views_val --rate 0.0003 --hours 1"
+    " --out runs/finer": (
+        _VIEWS.replace("shard 4", "shard 2") + " --extras instances",
+        "stubborn train segmentation --init shipped --views {tmp}/views --val-views {tmp}/views --rate 0.0003 --steps 1"
+        " --batch 1 --out {tmp}/finer",
+    ),
     "stubborn views --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
     "stubborn views show --views views_objects --out views.png": (
         _VIEWS,

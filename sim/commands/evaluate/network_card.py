@@ -22,10 +22,8 @@ from stubborn.segmentation.networks import Network
 from stubborn.segmentation.unet import UNet
 
 ABOUT = """A {kind} ({parameters:,} parameters, {size_mb:.1f} MB) for images of {width} x {height} pixels and
-the categories of mpcat40; MIT licence.
-It was trained on views of generated houses only; the commands below name the views. It was evaluated on houses whose
-furniture styles and textures are in no train house, and its calibration on the half of them to which it was not
-fitted. The checkpoint was chosen by mIoU on views of these houses as well, so that the mIoU is slightly optimistic."""
+the categories of mpcat40. Its calibration was evaluated on the half of the houses to which it was not fitted. If the
+checkpoint was chosen by views of these houses as well, the mIoU is optimistic."""
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet, with_geometry
 from stubborn.segmentation.processor import computes_bf16
 from stubborn.segmentation.rednet import RedNet
+from stubborn.segmentation.shipped import SHIPPED_REDNET
 from stubborn.segmentation.unet import MobileEncoder, UNet
 
 DEFAULT_SIZE = "compact-both"
@@ -26,7 +27,7 @@ def start_network(size: str | None, init: Path | None, *, imagenet: bool) -> tup
 
     Args:
         size: name in `NETWORKS`; None: that of `init`, else `DEFAULT_SIZE`.
-        init: file of initial weights; None: random ones.
+        init: file of initial weights, or `shipped`; None: random ones.
         imagenet: ImageNet weights for the colour encoder of lite0.
 
     Raises:
@@ -38,7 +39,7 @@ def start_network(size: str | None, init: Path | None, *, imagenet: bool) -> tup
         if imagenet:
             load_imagenet(network)
         return size, network, {}
-    model, metadata = load_network(init)
+    model, metadata = load_network(SHIPPED_REDNET if init == Path("shipped") else init)
     if size == "compact-both" and isinstance(model, RedNet) and model.config == NETWORKS["compact"]:
         model = with_geometry(model)
     known = next((name for name, config in NETWORKS.items() if config == model.config), None)

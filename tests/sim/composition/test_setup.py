@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pickle
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
@@ -17,7 +17,9 @@ from sim.run import entry
 from stubborn import agents
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.detection.seeker import Seeker, SeekerParts, TargetSeekerConfig
+from stubborn.segmentation.checkpoints import save_network
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from stubborn.segmentation.networks import NETWORKS, build_network
 
 SMALL = ("camera.width_px=160", "camera.height_px=120", "task.max_steps=3")
 
@@ -80,3 +82,19 @@ def test_a_shard_takes_the_key_that_another_one_has_written_since_it_opened_the_
     monkeypatch.setattr("fcntl.flock", lambda *_: (tmp_path / KEY_FILE).write_text("of another shard"))
     options = RunOptions(out=tmp_path / "shard_1_of_2", shard="1/2")
     assert seed_key_of(options) == "of another shard"
+
+
+def test_weights_without_a_calibration_are_named(tmp_path: Path) -> None:
+    network = build_network(NETWORKS["compact"])
+    for name, header in (("raw", {}), ("fitted", {"temperature": 1.3})):
+        save_network(tmp_path / f"{name}.safetensors", network, header)
+    raw = RunOptions(weights=tmp_path / "raw.safetensors")
+    assert "raw.safetensors' are not calibrated" in resolve(raw).missing_calibration
+    for options in (
+        RunOptions(weights=tmp_path / "fitted.safetensors"),
+        replace(raw, config=("detector.temperature=1.5",)),
+        RunOptions(),
+        RunOptions(semantics="gt"),
+        RunOptions(agent="random"),
+    ):
+        assert resolve(options).missing_calibration == ""
