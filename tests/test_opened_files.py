@@ -58,6 +58,7 @@ EXCEPTIONS = {
     ("sim/web/server.py", "hub.open"): "no file",
     ("stubborn/segmentation/processor.py", "_PROCESSOR.read_text"): "a fixed file of the system, /proc/cpuinfo",
     ("stubborn/segmentation/lite0.py", "torch.load"): "weights of an installed package",
+    ("sim/composition/segmenters.py", "safe_open"): "as in stubborn/network_files.py",
     ("stubborn/network_files.py", "safe_open"): "takes a name only; open_plain is called just before",
     ("tools/maintenance/site_hooks.py", "file.read_text"): "pages that the maintainer's build has just written",
     ("tools/maintenance/readme_picture.py", "av.open"): "writes to memory",

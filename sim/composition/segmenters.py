@@ -23,7 +23,7 @@ from sim.detectors.noisy import NoisyConfig, NoisySegmenter
 from sim.errors import ConfigError
 from sim.interface import CameraModel, Observation, Scores, SegmentationSpec, Segmenter, SegmenterSpec
 from sim.invocation import command
-from sim.reading import reason_of, sha256_of
+from sim.reading import open_plain, reason_of, sha256_of
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.segmentation.processor import computes_bf16
 from stubborn.segmentation.shipped import SHIPPED_REDNET
@@ -187,9 +187,10 @@ def find_segmentation(semantics: str, weights: Path | None) -> SegmentationKind:
 def is_calibrated(weights: Path) -> bool:
     """Returns whether weights have a calibration or a temperature; those of other formats than ours have none."""
     try:
+        open_plain(weights, what="Weights").close()  # safetensors would wait for the writer of a named pipe
         with safe_open(weights, framework="np") as stream:
             return not {"calibration", "temperature"}.isdisjoint(stream.metadata() or {})
-    except (SafetensorError, OSError):
+    except (SafetensorError, OSError, ConfigError):
         return False
 
 
