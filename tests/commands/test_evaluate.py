@@ -12,6 +12,7 @@ import pytest
 import torch
 
 from sim import cli
+from sim.commands.evaluate import own
 from sim.commands.evaluate import segmentation as evaluate_rednet
 from sim.commands.evaluate.segmentation import Args
 from sim.interface import MPCAT40_ID, ConfigError
@@ -162,6 +163,15 @@ def test_a_segmentation_of_ones_own_is_evaluated(
     assert "| sofa | 1.000 | 4 | 100 % |" in printed
     assert "| number of views | 4 |" in printed
     assert accuracy is None or f"| pixel accuracy | {accuracy} |" in printed
+
+
+def test_it_is_evaluated_on_the_grid_of_the_shipped_network(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_views(tmp_path / "views", 2)  # of 64 x 48 pixels
+    counted = []
+    for stored_px in (2, 4):
+        monkeypatch.setattr(own, "stored_block_px", lambda shards, stored_px=stored_px: stored_px)
+        counted.append(own.measure_own(f"{OWN}:BRIGHT", [tmp_path / "views"], count=0, config=()).matrix.sum())
+    assert counted == [2 * 24 * 32, 2 * 48 * 64]
 
 
 def test_the_configuration_of_a_segmentation_of_ones_own_counts(

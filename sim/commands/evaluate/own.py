@@ -18,10 +18,15 @@ from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError,
 from stubborn.segmentation.breakdown import Breakdown
 from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard, spread_views, stored_block_px
 from stubborn.segmentation.evaluation import Iou, confusion
+from stubborn.segmentation.preprocess import shrink
 from stubborn.segmentation.rednet import CLASSES
 
 NO_GOAL = MPCAT40_ID["misc"] - 1
 """Channel of the pixels in which a segmenter that has only `scores` finds no goal category."""
+
+GRID_PX = 4
+"""Edge of the square of pixels of the 640 x 480 image that counts as one, as for the shipped network: the results can
+be compared."""
 
 
 @dataclass(frozen=True)
@@ -93,9 +98,11 @@ def _add_view(measured: OwnMeasured, segmenter: OwnSegmenter, view: LabelledView
     channels = _channels(segmenter, observation)
     measured.frames_ms.append(1000.0 * (time.perf_counter() - began_s))
     fraction = view.semantic.shape[0] // channels.shape[0]
-    predicted = channels.repeat(fraction, axis=0).repeat(fraction, axis=1)
-    measured.matrix += confusion(predicted, view.semantic.astype(np.int64) - 1)
-    measured.breakdown.add(predicted, view.semantic, view.depth_m, block_px)
+    whole = channels.repeat(fraction, axis=0).repeat(fraction, axis=1).astype(np.uint8)
+    coarser = max(1, GRID_PX // block_px)
+    predicted, truth, depth_m = (shrink(image, coarser) for image in (whole, view.semantic, view.depth_m))
+    measured.matrix += confusion(predicted.astype(np.int64), truth.astype(np.int64) - 1)
+    measured.breakdown.add(predicted.astype(np.int64), truth, depth_m, block_px * coarser)
 
 
 def _channels(segmenter: OwnSegmenter, observation: Observation) -> Int64[np.ndarray, "h w"]:
