@@ -75,7 +75,7 @@ MPCAT40_ID: Mapping[str, int] = MappingProxyType({name: i for i, name in enumera
 
 
 def category_id(name: str) -> int:
-    """Returns the mpcat40 id of a category of things.
+    """Returns the mpcat40 id of a category.
 
     Raises:
         ConfigError: mpcat40 has no such category, or it is void.

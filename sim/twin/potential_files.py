@@ -32,6 +32,7 @@ SYMMETRIES = 8
 HELD_BACK = 8
 """One of this number of houses is held back from training, selected by its name."""
 MAX_FILE_BYTES = 256 << 20
+_WHAT = "file of samples (`stubborn train poni` writes them)"
 _OF_SAMPLES = ("masks", "robot", "seen_goals")
 _OF_GOAL_CELLS = ("goal_cell", "goal_bits")
 _OF_FRONTIERS = ("cell", "area", "objects", "part", "path_m")
@@ -198,9 +199,6 @@ class SampleSet:
             a["part"][at].astype(np.int64),
             a["path_m"][at].astype(np.float32),
         )
-
-
-_WHAT = "file of samples (`stubborn train poni` writes them)"
 
 
 class _Header(msgspec.Struct):

@@ -73,13 +73,9 @@ def main(args: Args) -> int:
     """Draws the sheet and prints one line for each object."""
     torch.set_num_threads(args.threads)
     model, metadata = load_network(weights_file(args.weights))
+    block_px, calibration = int(metadata.get("block_px", 1)), Calibration.from_metadata(metadata)
     worst: dict[tuple[str, str], Missed] = {}
-    shards, block_px, calibration = (
-        list_shards(args.views),
-        int(metadata.get("block_px", 1)),
-        Calibration.from_metadata(metadata),
-    )
-    for missed in missed_objects(shards, model, block_px, calibration):
+    for missed in missed_objects(list_shards(args.views), model, block_px, calibration):
         key = missed.house, missed.category
         if key not in worst or missed.missed_px > worst[key].missed_px:
             worst[key] = missed

@@ -118,10 +118,8 @@ def write_or_compare_config(args: Args, split: Split) -> None:
     Raises:
         ConfigError: the results are of another split, version of the physics, --max-steps or code of a user's agent.
     """
-    file, own = (
-        args.out / "config.json",
-        {name: code_of(RunOptions(agent=name)).partition("+")[2] for name in args.agents},
-    )
+    file = args.out / "config.json"
+    own = {name: code_of(RunOptions(agent=name)).partition("+")[2] for name in args.agents}
     config: dict[str, Any] = {
         "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
         "physics": PHYSICS_VERSION,
