@@ -74,7 +74,7 @@ def test_training_makes_samples_curves_and_weights_and_continues_a_run(
 
     plan = next(plans.iterdir())
     write_plan(plan, replace(read_plan(plan), name="another"))
-    with pytest.raises(ConfigError, match=f"plans-{plan.name}' is not of plan '.*{plan.name}' as it is now"):
+    with pytest.raises(ConfigError, match=f"plans-{plan.name}' has samples of another plan than '.*{plan.name}'"):
         main(Args(**options, minutes=0.05))  # type: ignore[arg-type]
     write_plan(plan, replace(read_plan(plan), name=plan.stem))
 

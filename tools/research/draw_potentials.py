@@ -101,7 +101,6 @@ def draw(maps: Sequence[tuple[Batch, int]], predictor: Predictor, out: Path) -> 
             axis.plot(robot[1], robot[0], marker="*", color="tab:green", markersize=8)
             axis.set_title(title, fontsize=8)
             axis.set(xlim=limits[1], ylim=limits[0], xticks=[], yticks=[])
-    figure.tight_layout(pad=0.3)
     if dots is not None:
         bar = figure.colorbar(dots, ax=axes, fraction=0.012, pad=0.01, ticks=[0.0, 0.1, 0.25, 0.5, 1.0])
         bar.ax.tick_params(labelsize=7)
