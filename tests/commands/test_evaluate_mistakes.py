@@ -112,7 +112,7 @@ def test_runs_of_other_segmentation_and_without_such_failures_are_reported(
     config = json.loads((recorded / "run" / "config.json").read_text())
     (other / "config.json").write_text(json.dumps(config | {"semantics": "gt"}))
     (other / "results.jsonl").write_text((recorded / "run" / "results.jsonl").read_text())
-    with pytest.raises(ConfigError, match="--semantics gt, not with rednet"):
+    with pytest.raises(ConfigError, match="--semantics gt, which is no network"):
         show_mistakes.main(Args(run=other, out=tmp_path / "a.png"))
 
 
@@ -131,7 +131,20 @@ def test_a_run_of_another_camera_or_network_is_not_drawn_with_this_one(
 ) -> None:
     run_of = read_run(recorded / "run")
     with pytest.raises(ConfigError, match=message):
-        show_mistakes.network_of(replace(run_of, config={**run_of.config, **changes}))
+        show_mistakes.segmenter_of(replace(run_of, config={**run_of.config, **changes}))
+
+
+def test_a_run_with_a_segmentation_of_ones_own_is_drawn_with_it(
+    recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(recorded / "run", tmp_path / "run")
+    config = json.loads((tmp_path / "run" / "config.json").read_text())
+    config |= {"semantics": "tests.helpers.segmentations:FLAT", "settings": {"detector.level": 0.625}}
+    (tmp_path / "run" / "config.json").write_text(json.dumps(config))
+    assert show_mistakes.main(Args(run=tmp_path / "run", out=tmp_path / "a.png", count=1)) == 0
+    assert "sofa, step 1: taken for it: wall 45%, floor 34%" in capsys.readouterr().out
+    score = np.asarray(cv2.imread(str(tmp_path / "a.png")))[-100:, -100:, ::-1]
+    assert (score == [255, 95, 95]).all()  # 0.625 of red
 
 
 @pytest.mark.parametrize("mirrored", [True, False])
@@ -142,7 +155,7 @@ def test_the_network_of_a_run_is_mirrored_as_in_the_run_and_another_precision_is
     tree = {**run_of.config["config"], "detector": {"mirrored": mirrored}}
     for precision in ("bf16", "fp32"):
         config = {**run_of.config, "config": tree, "segmentation": {"precision": precision}}
-        network = show_mistakes.network_of(replace(run_of, config=config))
+        network = show_mistakes.segmenter_of(replace(run_of, config=config))
         assert network.mirrored == mirrored
         here = "bf16" if network.bf16 else "fp32"
         sentence = f"The network computed in {precision} in the run and computes in {here} here; "

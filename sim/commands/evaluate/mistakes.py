@@ -4,9 +4,10 @@
     stubborn evaluate mistakes runs/mine --out runs/false.png
     stubborn evaluate mistakes runs/mine --cause missed_detection --out runs/missed.png
 
-One row per episode: the camera image, the true categories, those of the network, and its score of the goal (white 0,
-red 1). No episode is run again: the house is rendered from the recorded pose, without sensor noise and with movable
-objects at their start positions. One cause of failure is drawn; the last line of the output names the others.
+One row per episode: the camera image, the true categories, those of the segmentation (a network of this project or
+your own), and its score of the goal (white 0, red 1). No episode is run again: the house is rendered from the recorded
+pose, without sensor noise and with movable objects at their start positions. One cause of failure is drawn; the last
+line of the output names the others.
 """
 
 from __future__ import annotations
@@ -26,11 +27,13 @@ from sim import cli
 from sim.analysis.comparison import Run, read_run
 from sim.analysis.display import counted
 from sim.analysis.report.drawings import split_of
+from sim.commands.evaluate.own import segmenter_for
+from sim.composition.own_segmentation import OwnSegmenter
 from sim.composition.segmenters import file_sha256, weights_file
 from sim.configuration import with_fields
 from sim.files import write_picture
 from sim.geometry.pose import Pose
-from sim.interface import MPCAT40, CameraModel, ConfigError
+from sim.interface import MPCAT40, CameraModel, ConfigError, Segmenter
 from sim.robot.config import RobotConfig
 from sim.sensors.camera import Camera
 from sim.task.failures import CAUSES
@@ -43,13 +46,13 @@ from stubborn.segmentation.network import NetworkSegmenter
 Picture = NDArray[np.uint8]
 PANEL_PX = 320
 CAPTION_PX = 22
-HEADINGS = ("camera", "true categories", "categories of the network", "score of the goal")
+HEADINGS = ("camera", "true categories", "predicted categories", "score of the goal")
 """Titles of the panels, above the first row."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Draw failures of a run with `--semantics rednet --record`."""
+    """Draw failures of a run with a network or a segmentation of your own, and --record."""
 
     run: tyro.conf.Positional[Path]
     """Folder of the run."""
@@ -66,9 +69,7 @@ def main(args: Args) -> int:
     if args.cause not in CAUSES:
         raise ConfigError(f"--cause must be one of {', '.join(CAUSES)}, got '{args.cause}'.")
     run = read_run(args.run)
-    if run.config.get("semantics") != "rednet":
-        raise ConfigError(f"'{args.run}' was run with --semantics {run.config.get('semantics')}, not with rednet.")
-    network = network_of(run)
+    segmenter = segmenter_of(run)
     split = split_of(run)
     failed = [line for line in run.lines.values() if line["failure"] is not None and line["end_reason"] != "error"]
     recorded = [line for line in failed if trajectory_file(run.path, line["episode_id"]).is_file()]
@@ -82,7 +83,7 @@ def main(args: Args) -> int:
         trajectory = read_trajectory(trajectory_file(run.path, line["episode_id"]))
         step = decisive_step(trajectory)
         images = render_at(World(split.load_house(line["house"])), trajectory.poses[step])
-        row, words = draw(images, network, line["goal"])
+        row, words = draw(images, segmenter, line["goal"])
         about = f"{line['episode_id']} {line['goal']}, step {step}: {words}"
         print(about)
         rows.append(_captioned(row, about))
@@ -93,18 +94,25 @@ def main(args: Args) -> int:
     return 0
 
 
-def network_of(run: Run) -> NetworkSegmenter:
-    """Returns the network of a run, with its calibration; prints a sentence if it computes in another precision here.
+def segmenter_of(run: Run) -> NetworkSegmenter | OwnSegmenter:
+    """Returns the segmenter of a run; prints a sentence if its network computes in another precision here.
 
     Raises:
-        ConfigError: the run had another robot or camera than ours, or its weights have been deleted or replaced.
+        ConfigError: the run had another robot or camera than ours, neither a network nor a segmentation of the user,
+            or its weights have been deleted or replaced.
     """
-    tree = run.config.get("config", {})
+    tree, semantics = run.config.get("config", {}), str(run.config.get("semantics"))
     if run.config.get("robot"):
         raise ConfigError(f"'{run.path}' was run with another robot; views are rendered for the default one.")
     for part, ours in (("camera", CameraModel()), ("robot", RobotConfig())):
         if with_fields(ours, tree.get(part, {})) != ours:
             raise ConfigError(f"'{run.path}' had another {part} than ours; views are drawn with ours.")
+    if ":" in semantics:
+        settings = run.config.get("settings", {})
+        of_detector = {name: value for name, value in settings.items() if name.startswith("detector.")}
+        return segmenter_for(semantics, CameraModel(), of_detector)
+    if semantics != "rednet":
+        raise ConfigError(f"'{run.path}' was run with --semantics {semantics}, which is no network.")
     detector = tree.get("detector") or {}
     named = run.config.get("weights") or run.config.get("settings", {}).get("detector.weights")
     file = weights_file(Path(named) if named else None)
@@ -146,11 +154,12 @@ def render_at(world: World, pose: Sequence[float] | NDArray[np.floating]) -> dic
     return images
 
 
-def draw(images: dict[str, NDArray], network: NetworkSegmenter, goal: str) -> tuple[Picture, str]:
-    """Returns one row of panels, and a text with the true categories where the network sees the goal."""
+def draw(images: dict[str, NDArray], segmenter: Segmenter, goal: str) -> tuple[Picture, str]:
+    """Returns one row of panels, and a text with the true categories where the segmenter sees the goal."""
     size = (PANEL_PX, PANEL_PX * images["rgb"].shape[0] // images["rgb"].shape[1])
-    guess = (network.logits(images["rgb"], images["depth"]).argmax(dim=0).numpy() + 1).astype(np.uint8)
-    score = network.scores(images, goal).target  # pyright: ignore[reportArgumentType] - it reads only these images
+    observation: Any = images
+    guess, score = segmenter.categories(observation), segmenter.scores(observation, goal).target
+    guess = np.zeros_like(score, np.uint8) if guess is None else guess  # a segmenter of scores alone
     labels = [
         with_legend(np.asarray(cv2.resize(of, size, interpolation=cv2.INTER_NEAREST), np.uint8))
         for of in (images["semantic"], guess)

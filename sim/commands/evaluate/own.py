@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -74,22 +74,30 @@ def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Seque
         for view in views:
             if segmenter is None or view.semantic.shape != shape:
                 shape = view.semantic.shape
-                segmenter = _segmenter_for(name, shape, config)
+                camera = CameraModel(width_px=shape[1], height_px=shape[0])
+                segmenter = segmenter_for(name, camera, parse_assignments(config))
             _add_view(measured, segmenter, view, block_px)
         measured.by_folder[folder.name] = Iou.of(measured.matrix - before).goals
     return measured
 
 
-def _segmenter_for(name: str, shape: tuple[int, ...], config: Sequence[str]) -> OwnSegmenter:
-    """Returns the segmenter for images of a shape (h, w)."""
+def segmenter_for(name: str, camera: CameraModel, settings: Mapping[str, Any]) -> OwnSegmenter:
+    """Returns a user's segmenter for images without an environment.
+
+    Args:
+        name: `package.module:NAME`.
+        camera: of the images.
+        settings: values of `detector.FIELD`.
+
+    Raises:
+        ConfigError: it reads other sensors than rgb and depth, cannot be built, or has no such field.
+    """
     own = load_specification(name)
     sensors = [each if isinstance(each, str) else each.name for each in own.spec.sensors]
     missing = [*own.spec.truth, *(each for each in sensors if each not in ("rgb", "depth"))]
     if missing:
         raise ConfigError(f"--semantics '{name}' reads '{missing[0]}', and stored views have rgb and depth only.")
-    settings = with_fields(_Settings(own.config), parse_assignments(config))
-    camera = CameraModel(width_px=shape[1], height_px=shape[0])
-    return built(name, own, {"camera": camera, "config": settings.detector})
+    return built(name, own, {"camera": camera, "config": with_fields(_Settings(own.config), settings).detector})
 
 
 def _add_view(measured: OwnMeasured, segmenter: OwnSegmenter, view: LabelledView, block_px: int) -> None:
