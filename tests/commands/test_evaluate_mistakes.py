@@ -18,6 +18,7 @@ from sim.commands.evaluate.mistakes import Args
 from sim.interface import MPCAT40_ID, ConfigError
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 from sim.viewers.palette import PALETTE
+from stubborn.segmentation.network import NetworkSegmenter
 from tests.helpers.worlds import room, with_box
 
 
@@ -156,6 +157,7 @@ def test_the_network_of_a_run_is_mirrored_as_in_the_run_and_another_precision_is
     for precision in ("bf16", "fp32"):
         config = {**run_of.config, "config": tree, "segmentation": {"precision": precision}}
         network = show_mistakes.segmenter_of(replace(run_of, config=config))
+        assert isinstance(network, NetworkSegmenter)
         assert network.mirrored == mirrored
         here = "bf16" if network.bf16 else "fp32"
         sentence = f"The network computed in {precision} in the run and computes in {here} here; "

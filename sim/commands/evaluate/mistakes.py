@@ -33,7 +33,7 @@ from sim.composition.segmenters import file_sha256, weights_file
 from sim.configuration import with_fields
 from sim.files import write_picture
 from sim.geometry.pose import Pose
-from sim.interface import MPCAT40, CameraModel, ConfigError, Segmenter
+from sim.interface import MPCAT40, CameraModel, ConfigError
 from sim.robot.config import RobotConfig
 from sim.sensors.camera import Camera
 from sim.task.failures import CAUSES
@@ -154,7 +154,7 @@ def render_at(world: World, pose: Sequence[float] | NDArray[np.floating]) -> dic
     return images
 
 
-def draw(images: dict[str, NDArray], segmenter: Segmenter, goal: str) -> tuple[Picture, str]:
+def draw(images: dict[str, NDArray], segmenter: NetworkSegmenter | OwnSegmenter, goal: str) -> tuple[Picture, str]:
     """Returns one row of panels, and a text with the true categories where the segmenter sees the goal."""
     size = (PANEL_PX, PANEL_PX * images["rgb"].shape[0] // images["rgb"].shape[1])
     observation: Any = images
