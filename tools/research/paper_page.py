@@ -20,8 +20,8 @@ ABOUT = """\
 
 Columns that begin with *paper* are of Luo et al. (2022), from MP3D houses in Habitat; all others are measured here, in
 generated houses with contacts. Compare orders and differences of agents, not the figures. `gt` is ground-truth
-segmentation, `rednet` the network that shipped before (mIoU 0.513 on `val`). `cloned`, a small end-to-end agent, stands
-beside the paper's EEAux and is not that agent.
+segmentation, `rednet` the network that ships. `cloned`, a small end-to-end agent, stands beside the paper's EEAux
+and is not that agent.
 
 `stubborn reproduce all --episodes 200 --workers 2` runs all of it again, and resumes; each table states its hours. This
 page is made from the [result lines](splits-3.0.0.tar.gz) by `python -m tools.research.result_tables`.

@@ -32,8 +32,6 @@ MAX_FILE_BYTES = 50_000_000
 GROUND_TRUTH_KINDS = ("gt", "noisy")
 """Kinds of segmentation that are made from ground truth."""
 CHECKSUM_DIGITS = 8
-EARLIER_NETWORK = "08332c44"
-"""Checksum of the network that shipped before. Its runs of splits 3.0.0 are rows of their own."""
 Say = Callable[[str], None]
 
 
@@ -59,8 +57,6 @@ class RunKey:
     semantics: str
     version: str
     """Version of the splits: results of different ones are of different houses or physics."""
-    network: str = ""
-    """`EARLIER_NETWORK` in runs of that network."""
 
     @property
     def name(self) -> str:
@@ -110,7 +106,7 @@ class ArchivedRun:
     @property
     def network(self) -> str:
         """The first digits of the SHA-256 of the network's weights; "" without a network."""
-        return network_of(self.run)
+        return str(self.run.config.get("files_sha256", {}).get("weights", ""))[:CHECKSUM_DIGITS]
 
     def command(self, episodes: int) -> str:
         """Returns the command that runs the same episodes."""
@@ -188,13 +184,7 @@ def key_of(run: Run) -> RunKey:
     agent, semantics = str(run.recorded("agent")), str(run.recorded("semantics"))
     find_agent(agent)
     split = run.recorded("split_identity")
-    network = EARLIER_NETWORK if network_of(run) == EARLIER_NETWORK else ""
-    return RunKey(str(split["name"]), agent, shlex.join(_options(run)), semantics, str(split["version"]), network)
-
-
-def network_of(run: Run) -> str:
-    """Returns the first digits of the SHA-256 of the network's weights; "" without a network."""
-    return str(run.config.get("files_sha256", {}).get("weights", ""))[:CHECKSUM_DIGITS]
+    return RunKey(str(split["name"]), agent, shlex.join(_options(run)), semantics, str(split["version"]))
 
 
 def _options(run: Run) -> Iterator[str]:

@@ -39,7 +39,7 @@ from sim.reading import read_csv as read_table
 from sim.task.failures import CAUSES
 from tools.research.paper_page import PAPER, VERSION, paper_page
 from tools.research.resolution import paired_lines, resolution_record
-from tools.research.result_archive import ARCHIVES, EARLIER_NETWORK, ROOT, ArchivedRun, RunKey, read_archives
+from tools.research.result_archive import ARCHIVES, ROOT, ArchivedRun, RunKey, read_archives
 from tools.research.result_definitions import (
     COMPARED,
     FAILED,
@@ -210,8 +210,7 @@ def fill_page(text: str, results: Sequence[Record]) -> str:
     Raises:
         ConfigError: the page lacks the marks of a table.
     """
-    shipped = (record for record in results if record["network"] != EARLIER_NETWORK)
-    rows = {(*(record[name] for name in _identity_names()), record["episodes"]): record for record in shipped}
+    rows = {(*(record[name] for name in _identity_names()), record["episodes"]): record for record in results}
 
     def record_of(key: RowKey) -> Record:
         return rows[(*_identity(key.run).values(), str(key.episodes))]
