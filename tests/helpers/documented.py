@@ -373,8 +373,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn train segmentation --init shipped --views views --val-views views_val --rate 0.0003 --hours 1"
     " --out runs/finer": (
         _VIEWS.replace("shard 4", "shard 2") + " --extras instances",
-        "stubborn train segmentation --init shipped --views {tmp}/views --val-views {tmp}/views --rate 0.0003 --steps 1"
-        " --batch 1 --out {tmp}/finer",
+        "stubborn train segmentation --init shipped --views {tmp}/views --val-views {tmp}/views --rate 0.0003"
+        " --hours 0.003 --batch 1 --out {tmp}/finer",
     ),
     "stubborn views --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
     "stubborn views show --views views_objects --out views.png": (
@@ -625,6 +625,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
 
 STAND_INS = (
     "leaderboard",
+    "shipped",
     "secret.txt",
     "my_traps",
     "my_models",
