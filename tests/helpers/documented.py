@@ -374,7 +374,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     " --out runs/finer": (
         _VIEWS.replace("shard 4", "shard 2") + " --extras instances",
         "stubborn train segmentation --init shipped --views {tmp}/views --val-views {tmp}/views --rate 0.0003"
-        " --hours 0.003 --batch 1 --out {tmp}/finer",
+        " --hours 0.003 --batch 2 --out {tmp}/finer",
     ),
     "stubborn views --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
     "stubborn views show --views views_objects --out views.png": (
