@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
+import numpy as np
 import pytest
 import torch
 
 from sim.interface import MPCAT40_ID, ConfigError
-from stubborn.segmentation.checkpoints import save_network
+from stubborn.segmentation.checkpoints import load_network, save_network
+from stubborn.segmentation.dataset import list_shards
 from stubborn.segmentation.rednet import RedNet
 from tests.commands.test_evaluate_objects import TINY
 from tests.commands.test_train_segmentation import write_views
-from tools.training.name_crops import FRAME, Args, main
+from tools.training.name_crops import FRAME, Args, choose, main, predict
 
 
 @pytest.fixture
@@ -39,7 +42,7 @@ def test_sheets_show_framed_objects_and_answers_are_compared(
     assert (sheet[:, :, ::-1] == FRAME).all(axis=2).sum() > 4 * 100
     answers = tmp_path / "answers.txt"
     answers.write_text("sofa bed\nsofa sofa")
-    assert main(Args(views=args.views, out=args.out, weights=args.weights, each=4, answers=answers)) == 0
+    assert main(replace(args, answers=answers)) == 0
     assert capsys.readouterr().out.splitlines() == [
         "1: sofa, answer bed, network sofa", "answers: 3 of 4 right (75 %)", "network: 4 of 4 right (100 %)"
     ]  # fmt: skip
@@ -52,4 +55,14 @@ def test_answers_that_do_not_fit_are_refused(args: Args, tmp_path: Path, text: s
     answers = tmp_path / "answers.txt"
     answers.write_text(text)
     with pytest.raises(ConfigError, match=message):
-        main(Args(views=args.views, out=args.out, weights=args.weights, each=4, answers=answers))
+        main(replace(args, answers=answers))
+
+
+def test_an_object_that_the_networks_grid_does_not_show_is_void_to_it(args: Args, tmp_path: Path) -> None:
+    network, _ = load_network(tmp_path / "sofa.safetensors")
+    save_network(tmp_path / "coarse.safetensors", network, {"block_px": 20})  # the views are stored at 10
+    crop = choose(list_shards(args.views), each=1, seed=0)[0]
+    thin = np.zeros_like(crop.inside)
+    thin[:, 0] = True
+    coarse = replace(args, weights=tmp_path / "coarse.safetensors")
+    assert predict([crop, replace(crop, inside=thin)], coarse) == ["sofa", "void"]

@@ -148,7 +148,10 @@ def read_answers(file: Path, count: int) -> list[str]:
 
 
 def predict(crops: Sequence[Crop], args: Args) -> list[str]:
-    """Returns the most frequent category that a network, calibrated as agents use it, sees in each object's pixels."""
+    """Returns the most frequent category that a network, calibrated as agents use it, sees in each object's pixels.
+
+    It is void for an object so thin that no pixel of the network's grid shows it.
+    """
     torch.set_num_threads(1)
     model, metadata = load_network(weights_file(args.weights))
     calibration, block_px = Calibration.from_metadata(metadata), int(metadata.get("block_px", 1))
@@ -160,7 +163,9 @@ def predict(crops: Sequence[Crop], args: Args) -> list[str]:
             for channels in calibration.applied(model(rgb, second)).argmax(dim=1).numpy():
                 inside = shrink(crops[len(categories)].inside.astype(np.uint8), block_px // stored_px).astype(bool)
                 rows, cols = padding(*inside.shape).inner
-                categories.append(MPCAT40[int(np.bincount(channels[rows, cols][inside] + 1).argmax())])
+                categories.append(
+                    MPCAT40[int(np.bincount(channels[rows, cols][inside] + 1, minlength=len(MPCAT40)).argmax())]
+                )
     return categories
 
 
