@@ -141,7 +141,7 @@ def require_same_episodes(first: Run, *others: Run) -> list[str]:
 
 def _shared_episodes(first: Run, second: Run) -> list[str]:
     """Returns the episodes of two runs; see `require_same_episodes`."""
-    identities = [run.config.get("split_identity", {}) for run in (first, second)]
+    identities = [run.config.get("split_identity") or {} for run in (first, second)]
     if identities[0] != identities[1]:
         named = " and ".join(f"{i.get('name')} {i.get('version')} ({str(i.get('sha256'))[:8]})" for i in identities)
         raise ConfigError(f"'{first.path}' and '{second.path}' were not run on the same episodes: {named}.")

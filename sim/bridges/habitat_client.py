@@ -5,6 +5,7 @@ The first half, the names of Habitat without the classes that need a simulator, 
 Python 3.6 or newer, and PyYAML if the code reads a configuration file.
 """
 
+import ast
 import contextlib
 import copy
 import importlib
@@ -131,18 +132,21 @@ def override(config: Config, overrides: Any) -> None:
         path, separator, text = str(left.pop(0)).partition("=")
         if not separator and not left:
             raise ValueError(f"An override has the form path=value, got '{path}'.")
-        value = parsed(text) if separator else left.pop(0)
+        value = text if separator else left.pop(0)
+        value = parsed(value) if isinstance(value, str) else value
         for name in reversed(path.lstrip("+").split(".")):
             value = {name: value}
         merge(config, value)
 
 
 def parsed(text: str) -> Any:
-    """Returns the value of a JSON text; the text itself if it is not JSON."""
-    try:
-        return json.loads(text)
-    except ValueError:
-        return text
+    """Returns the value of a text in JSON or Python, such as `false` and `False`; the text itself if it is neither."""
+    for read in (json.loads, ast.literal_eval):
+        try:
+            return read(text)
+        except (ValueError, SyntaxError, MemoryError, RecursionError):
+            pass
+    return text
 
 
 def remove_other_actions(config: Config) -> "set[str]":
@@ -376,6 +380,9 @@ def _provide_habitat():
 
 def _maker_of(name, words):
     """Returns a function that makes the agent `package.module:CLASS` with the arguments NAME=VALUE."""
+    other = next((word for word in words if "=" not in word), None)
+    if other is not None:
+        sys.exit(f"The arguments of '{name}' have the form NAME=VALUE, got '{other}'.")
 
     def make(_):
         module, _, attribute = name.partition(":")
@@ -383,13 +390,18 @@ def _maker_of(name, words):
         given = dict(word.split("=", 1) for word in words)
         given = {key: called(parsed(text)) for key, text in given.items()}
         for argument in inspect.signature(found).parameters.values():
-            if argument.name in OF_THE_RUN and argument.default is argument.empty and argument.annotation is not str:
+            if argument.name in OF_THE_RUN and argument.default is argument.empty and takes_config(argument):
                 file = given.get(argument.name)
                 if file is None or isinstance(file, str):
                     given[argument.name] = _get_config(file)
         return found(**given)
 
     return make
+
+
+def takes_config(argument: Any) -> bool:
+    """Returns whether an argument of an agent's constructor can be a configuration, not the name of a file."""
+    return argument.annotation not in (str, "str")
 
 
 def called(value: Any) -> Any:

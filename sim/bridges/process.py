@@ -138,6 +138,7 @@ class ProcessAgent:
             self._setup |= {"interface": config.interface, "goals": goals, "config": of_the_run}
         self._process: AgentProcess | None = None
         self._chosen = _Chosen(action=0)
+        self._shares_memory = True
         self.draws_map = False
         """Whether the agent draws a map."""
         try:
@@ -183,6 +184,7 @@ class ProcessAgent:
 
     def share_no_memory(self) -> None:
         """Sends observations through the pipe from now on, as to an agent on another machine or in a container."""
+        self._shares_memory = False
         if self._process is not None:
             self._process.share_no_memory()
 
@@ -202,7 +204,7 @@ class ProcessAgent:
                 f"its stubborn_client.py does not know agent.interface={self._config.interface}: copy the file anew"
             )
             raise self._failure(AgentError(reason))
-        if not ready.shares_memory:
+        if not (ready.shares_memory and self._shares_memory):
             process.share_no_memory()
         self.draws_map = ready.draws_map
         return process

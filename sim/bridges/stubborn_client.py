@@ -47,6 +47,7 @@ import sys
 import threading
 import time
 import traceback
+from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any
 
@@ -227,7 +228,7 @@ class _Client:
     def act(self, observation):
         given = self.agent.act(observation)
         try:
-            action = operator.index(_from_habitat(given) if self.interface == "habitat" else given)
+            action = operator.index(from_habitat(given) if self.interface == "habitat" else given)
         except TypeError:
             raise TypeError(f"act() returned {given!r:.100}; an action is one of {ACTIONS}") from None
         answer = {"type": "action", "action": action}
@@ -239,14 +240,20 @@ class _Client:
         return answer
 
 
-def _from_habitat(given: Any) -> Any:
-    """Returns the number of an action in one of Habitat's forms: a number, a name, or a dict with the key `action`."""
+def from_habitat(given: Any) -> Any:
+    """Returns the number of an action in one of Habitat's forms: a number, a name, or a dict with the key `action`.
+
+    A number may be a tensor or array of one element. What is none of these is returned unchanged.
+
+    Raises:
+        TypeError: it is a truth value.
+    """
     inner: Any = given
     for _ in range(3):  # a dict may hold itself
-        inner = inner["action"] if isinstance(inner, dict) and "action" in inner else inner
+        inner = inner["action"] if isinstance(inner, Mapping) and "action" in inner else inner
     if isinstance(inner, (list, tuple)) and len(inner) == 1:
         inner = inner[0]
-    if isinstance(inner, (bool, np.bool_)):
+    if isinstance(inner, bool) or "bool" in str(getattr(inner, "dtype", "")):
         raise TypeError("a truth value is no action")
     if isinstance(inner, str):
         return HABITAT_ACTIONS.get(inner.lower(), inner)

@@ -446,9 +446,12 @@ def _replicates(lines: Sequence[Mapping[str, Any]], episodes: Sequence[str]) -> 
         return {}
     found = {}
     for metric in ("success", "spl"):
-        values = [float(line[metric]) for line in lines]
-        each = [[v for v, of in zip(values, numbers, strict=True) if of == number] for number in sorted(set(numbers))]
-        means = [sum(of_number) / len(of_number) for of_number in each]
+        values = [metric_value(line, metric) for line in lines]
+        each = [
+            [v for v, of in zip(values, numbers, strict=True) if of == number and v is not None]
+            for number in sorted(set(numbers))
+        ]
+        means = [sum(of_number) / len(of_number) if of_number else None for of_number in each]
         found[metric] = {"means": means, "std": replicate_spread(values, episodes)}
     return {"replicates": found}
 

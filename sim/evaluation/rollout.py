@@ -232,7 +232,7 @@ def target_of(agent: Agent, where: str) -> tuple[float, float] | None:
         return None
     try:
         place = np.asarray(given, np.float64)
-    except (TypeError, ValueError):
+    except Exception:  # a tensor with a gradient raises its own
         place = np.zeros(0)
     if place.shape != (2,) or not (np.abs(place) <= FARTHEST_M).all():
         raise AgentError(

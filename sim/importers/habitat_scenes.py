@@ -125,8 +125,9 @@ class _Reader:
         shape = self._shape(template, scale)
         turn, quaternion = _rotation(instance.rotation, self._where)
         position = Y_UP @ np.asarray(instance.translation, dtype=np.float64)
-        origin = (instance.translation_origin or self._scene.translation_origin).lower()
-        if origin == "com" and kind == "objects":
+        own = instance.translation_origin
+        origin = self._scene.translation_origin if own in (None, "default", "unknown") else own
+        if origin.lower() == "com" and kind == "objects":
             position = position - turn @ _centre(template.attributes, shape, scale)
         name = self._name(template)
         if kind == "objects":

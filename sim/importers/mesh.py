@@ -8,6 +8,7 @@ the others wall. What is left becomes objects. All that was found is returned as
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -22,8 +23,8 @@ from sim.houses.proposals import Proposal, category_by_size, category_of_name, r
 from sim.importers.floors import LEVEL_M, find_levels, level_triangles
 from sim.importers.losses import Losses
 from sim.importers.mesh_house import MeshConfig, MeshHouse, MeshObject, Shape, build_house
-from sim.importers.obj import read_obj
-from sim.importers.surfaces import FORMATS, Y_UP, Surface, Up, read_surfaces
+from sim.importers.obj import read_obj, used_files
+from sim.importers.surfaces import FORMATS, Y_UP, Surface, Up, parts_of, read_surfaces
 
 Axis = Literal["auto", "y", "z"]
 MAX_HOUSES = 10_000
@@ -58,14 +59,24 @@ def find_files(path: Path) -> list[Path]:
     """Returns the meshes of a folder, or the one file that is given, sorted.
 
     Raises:
-        ConfigError: there are none.
+        ConfigError: there are none, or two of them have one name.
     """
     if not path.is_dir():
         return [path]
     found = sorted(file for file in path.iterdir() if file.suffix.lower().lstrip(".") in FORMATS)[:MAX_HOUSES]
     if not found:
         raise ConfigError(f"'{path}' has no file of a home: {', '.join(f'.{kind}' for kind in FORMATS)}.")
+    twice = next((b.name for a, b in itertools.pairwise(found) if a.stem == b.stem), None)
+    if twice is not None:
+        raise ConfigError(f"'{path}' has two homes of the name '{Path(twice).stem}', one of them '{twice}'.")
     return found
+
+
+def files_of(file: Path) -> list[Path]:
+    """Returns the files that a mesh uses: materials and pictures of OBJ, buffers and pictures of glTF."""
+    if file.suffix.lower() == ".obj":
+        return list(used_files(file))
+    return list(parts_of(file)) if file.suffix.lower() == ".gltf" else []
 
 
 def import_mesh(file: Path, *, rules: Mapping[str, str], up: Axis, config: MeshConfig) -> MeshScene:

@@ -36,6 +36,8 @@ STRUCTURE = frozenset(("wall", "floor", "ceiling", "door", "window", "stairs", "
 """Categories whose closed outlines are not filled: a room inside of walls is free."""
 FLAT_M = 0.02
 """Objects that are lower than this above the floor are part of it: rugs do not collide."""
+LEAST_VERTICES = 4
+"""MuJoCo refuses meshes with fewer; a single triangle gets its last corner again."""
 LEAST_TRIANGLES = 24
 TEXTURE_BYTES = 192 << 20
 """Pictures of a house are reduced until they fit."""
@@ -141,7 +143,7 @@ def build_house(
         builder.set_ambient(ambient)
     builder.add_floors(storeys)
     builder.add_objects(objects)
-    top_m = max(float(each.shape.corners_m[..., 2].max()) + each.position_m[2] for each in objects) - levels[-1]
+    top_m = max(float(each.corners_m[..., 2].max()) for each in objects) - levels[-1]
     areas_m2 = builder.add_rooms(rooms or _whole_storeys(storeys, top_m), storeys)
     report = {
         "house": name, "source": source, "rooms": len(areas_m2), "area_m2": round(sum(areas_m2), 2),
@@ -193,7 +195,7 @@ class _Builder:
         self._materials: dict[tuple[object, ...], str] = {}
         self._textures: dict[int, str] = {}
         self._kept: list[NDArray[np.uint8] | None] = []  # so that no other picture gets the same identity
-        self._parts: dict[tuple[int, str], tuple[Shape, _Parts]] = {}
+        self._parts: dict[tuple[int, str, bool], tuple[Shape, _Parts]] = {}
         self._texture_px = config.texture_px
         self.triangles = self.collision_geoms = self.texture_bytes = 0
         self.spec = mujoco.MjSpec()
@@ -318,18 +320,19 @@ class _Builder:
             geom.mass = (mass or 0.0) / len(made)
 
     def _parts_of(self, each: MeshObject, budget: int) -> _Parts:
-        """Returns what the shape of an object became; computed once for objects of one shape and category."""
-        key = (id(each.shape), each.category)
+        """Returns what the shape of an object became; computed once for objects of one shape that collide alike."""
+        collides = each.is_solid and each.category not in ("floor", "ceiling") and not self._is_flat(each)
+        key = (id(each.shape), each.category, collides)
         if key not in self._parts:
-            self._parts[key] = (each.shape, self._made_parts(each, budget))
+            self._parts[key] = (each.shape, self._made_parts(each, budget, collides=collides))
         return self._parts[key][1]
 
-    def _made_parts(self, each: MeshObject, budget: int) -> _Parts:
+    def _made_parts(self, each: MeshObject, budget: int, *, collides: bool) -> _Parts:
         skins = [skin for skin in make_skins(each.shape.surfaces, budget, self._texture_px) if len(skin.faces)]
         names = tuple((self._add_mesh(skin), self._material(skin)) for skin in skins)
         triangles = sum(len(skin.faces) for skin in skins)
         boxes, hulls = np.zeros((0, 6)), ()
-        if skins and each.is_solid and each.category not in ("floor", "ceiling") and not self._is_flat(each):
+        if skins and collides:
             if self._config.collision == "convex":
                 hulls = tuple(self._add_hull(points) for points in convex_parts(each.shape.surfaces))
             else:
@@ -346,8 +349,10 @@ class _Builder:
         normals = np.zeros((0, 3)) if skin.normals is None else skin.normals
         # MuJoCo's texture coordinates point down; its own reader of OBJ files turns them too.
         uv = np.zeros((0, 2)) if skin.uv is None else np.stack([skin.uv[:, 0], 1.0 - skin.uv[:, 1]], axis=1)
-        content = struct.pack("<4i", count, len(normals), len(uv), len(skin.faces))
-        content += b"".join(each.astype("<f4").tobytes() for each in (skin.vertices_m, normals, uv))
+        more = max(0, LEAST_VERTICES - count)
+        rows = [np.concatenate([each, each[-1:].repeat(more, axis=0)]) for each in (skin.vertices_m, normals, uv)]
+        content = struct.pack("<4i", *map(len, rows), len(skin.faces))
+        content += b"".join(each.astype("<f4").tobytes() for each in rows)
         return self._put_mesh(content + skin.faces.astype("<i4").tobytes())
 
     def _add_hull(self, points: NDArray[np.float64]) -> str:

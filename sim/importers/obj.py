@@ -1,12 +1,15 @@
 """Reads OBJ files by object and material.
 
 trimesh joins all objects of one material, and their names are lost; here each `o` or `g` begins a node of its own.
-Materials may have a colour (`Kd`, `d`) and a picture (`map_Kd`) from files of the OBJ file's folder.
+Materials may have a colour (`Kd`), an opacity (`d`) and a picture (`map_Kd`), in whose place the colour does not count,
+from files of the OBJ file's folder.
 """
 
 from __future__ import annotations
 
+import math
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -19,6 +22,11 @@ from sim.importers.surfaces import FARTHEST_M, GREY, MAX_FILE_BYTES, MAX_TRIANGL
 from sim.reading import printable, read_bytes, require_small_image
 
 MAX_MATERIALS = 10_000
+PICTURE_OPTIONS = {
+    "-blendu": 1, "-blendv": 1, "-bm": 1, "-boost": 1, "-cc": 1, "-clamp": 1, "-mm": 2, "-o": 3, "-s": 3, "-t": 3,
+    "-texres": 1,
+}  # fmt: skip
+"""Options of `map_Kd`, with the largest number of their values."""
 Corner = tuple[int, int]
 """Numbers of a vertex and of a texture coordinate, from 0; -1: none."""
 
@@ -130,13 +138,61 @@ def _read_materials(folder: Path, name: str, texture_px: int, paints: dict[str, 
         if words[:1] == ["newmtl"] and len(paints) < MAX_MATERIALS:
             current = " ".join(words[1:])
             paints[current] = Paint(GREY)
-        elif words[:1] == ["Kd"] and current in paints:
-            r, g, b = (min(max(float(word), 0.0), 1.0) for word in words[1:4])
-            paints[current] = replace(paints[current], rgba=(r, g, b, 1.0))
+        elif words[:1] == ["Kd"] and current in paints and paints[current].picture is None:
+            r, g, b = map(_share, words[1:4])
+            paints[current] = replace(paints[current], rgba=(r, g, b, paints[current].rgba[3]))
+        elif words[:1] == ["d"] and current in paints:
+            paints[current] = replace(paints[current], rgba=(*paints[current].rgba[:3], _share(words[-1])))
         elif words[:1] == ["map_Kd"] and current in paints and len(words) > 1:
-            picture = _file_inside(folder, words[-1], losses)
+            named = _picture_name(words[1:])
+            picture = _file_inside(folder, named, losses)
             if picture is not None:
-                paints[current] = Paint(WHITE, picture=_pixels(picture, words[-1], texture_px))
+                rgba = (*WHITE[:3], paints[current].rgba[3])
+                paints[current] = Paint(rgba, picture=_pixels(picture, named, texture_px))
+
+
+def _share(word: str) -> float:
+    """Returns a number as one in [0, 1]; raises ValueError if it is none."""
+    value = float(word)
+    if math.isnan(value):
+        raise ValueError("a colour or opacity is a number")
+    return min(max(value, 0.0), 1.0)
+
+
+def _picture_name(words: list[str]) -> str:
+    """Returns the name of a picture, which may have spaces, without the options in front of it and their values."""
+    first = 0
+    while first < len(words) - 1 and words[first] in PICTURE_OPTIONS:
+        first += 1
+        most = first + PICTURE_OPTIONS[words[first - 1]]
+        while first < min(most, len(words) - 1) and _is_value(words[first]):
+            first += 1
+    return " ".join(words[first:])
+
+
+def _is_value(word: str) -> bool:
+    return word in ("on", "off") or word.lstrip("+-").replace(".", "", 1).isdigit()
+
+
+def used_files(file: Path) -> Iterator[Path]:
+    """Yields the files that an OBJ file names, and those that its materials name, whether they exist or not."""
+    for named in _words_after("mtllib", file):
+        materials = file.parent / " ".join(named)
+        yield materials
+        for words in _words_after("map_Kd", materials):
+            yield file.parent / _picture_name(words)
+
+
+def _words_after(key: str, file: Path) -> Iterator[list[str]]:
+    """Yields the words after each `key` at the beginning of a line of a file; nothing if it cannot be read."""
+    try:
+        text = read_bytes(file, what="File", most=MAX_FILE_BYTES).decode("utf-8", errors="replace")
+    except ConfigError:
+        return
+    for line in text.splitlines():
+        words = line.split()
+        if words[:1] == [key] and len(words) > 1:
+            yield words[1:]
 
 
 def _file_inside(folder: Path, name: str, losses: Counter[str]) -> bytes | None:

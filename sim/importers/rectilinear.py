@@ -16,7 +16,7 @@ Point = tuple[float, float]
 TOLERANCE_M = 0.02
 """Coordinates nearer to each other than this become equal."""
 MOST_TRIANGLES, MOST_LINES = 20_000, 200
-"""A floor of more triangles is cut off, and one of more different coordinates along an axis has no rectangles."""
+"""Only so many triangles of a floor are read, and one of more different coordinates along an axis has no rectangles."""
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
+from urllib.parse import unquote
 
 import numpy as np
 from msgspec import Meta, Struct
@@ -250,6 +251,27 @@ class _Gltf(Struct):
     nodes: Annotated[list[_Node], Meta(max_length=MAX_NODES)] = []
     extensionsRequired: list[str] = []
     extensionsUsed: list[str] = []
+
+
+class _Part(Struct):
+    uri: str = ""
+
+
+class _Parts(Struct):
+    buffers: list[_Part] = []
+    images: list[_Part] = []
+
+
+def parts_of(file: Path) -> Iterator[Path]:
+    """Yields the files of buffers and pictures that a .gltf file names; nothing if it cannot be read."""
+    try:
+        content = read_bytes(file, what="Mesh", most=MAX_FILE_BYTES)
+        found = parse_json(content, _Parts, where=f"Mesh '{file}'")
+    except ConfigError:
+        return
+    for part in (*found.buffers, *found.images):
+        if part.uri and not part.uri.startswith("data:"):
+            yield file.parent / unquote(part.uri)
 
 
 def _require_sane_gltf(content: bytes, kind: str, where: str, losses: Counter[str]) -> None:

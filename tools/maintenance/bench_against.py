@@ -122,11 +122,12 @@ class Worker:
 
     def __init__(self, folder: Path, parts: Sequence[str]) -> None:
         command = [sys.executable, str(WORKER), str(folder), ",".join(parts)]
+        self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115 - closed in close()
         self._process = subprocess.Popen(
             command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            stderr=self._errors,  # a file: a pipe that nobody reads would block the process once it is full
             cwd=folder,
             env={**os.environ, "PYTHONPATH": str(folder)},  # in place of the version that is installed
             text=True,
@@ -143,13 +144,15 @@ class Worker:
 
     def last_words(self) -> str:
         """Returns the last line that the ended process wrote to stderr."""
-        assert self._process.stderr is not None
-        return (self._process.stderr.read().strip().splitlines() or ["no message"])[-1]
+        self._process.wait()
+        self._errors.seek(0)
+        return (self._errors.read().strip().splitlines() or ["no message"])[-1]
 
     def close(self) -> None:
         """Ends the process."""
         self._process.kill()
         self._process.communicate()
+        self._errors.close()
 
 
 @contextlib.contextmanager

@@ -115,7 +115,7 @@ def _part(name: str) -> str:
 
 def _title(runs: Sequence[Run]) -> str:
     names = list(dict.fromkeys(str(run.config.get("agent", "an agent")) for run in runs))
-    split = runs[0].config.get("split_identity", {}).get("name", "unknown houses")
+    split = (runs[0].config.get("split_identity") or {}).get("name", "unknown houses")
     if len(runs) == 2:
         return f"{' against '.join(str(run.config.get('agent', 'an agent')) for run in runs)} on {split}"
     return f"{', '.join(names)} on {split}" + (f", {len(runs)} runs" if len(runs) > 1 else "")

@@ -129,7 +129,7 @@ class Calibration:
     @property
     def error(self) -> float:
         """Expected calibration error: mean distance of confidence and share over the bins, weighted by their stops."""
-        distances = (abs(b.confidence - b.correct.count / b.correct.of) * b.correct.of for b in self.bins)
+        distances = (abs(b.confidence - b.correct.mean) * b.correct.of for b in self.bins)
         return sum(distances) / self.correct.of if self.correct.of else 0.0
 
 

@@ -40,9 +40,11 @@ def split_of(run: Run) -> Split:
     config = run.config
     house = config.get("house")
     split = (
-        one_house(house, labels=config.get("labels"), root=config.get("root")) if house else load_split(config["split"])
+        one_house(house, labels=config.get("labels"), root=config.get("root"))
+        if house
+        else load_split(run.recorded("split"))
     )
-    if split.sha256 != config["split_identity"]["sha256"]:
+    if split.sha256 != run.recorded("split_identity")["sha256"]:
         raise ConfigError(f"'{run.path}' was run in another version of '{split.name}' than the present one.")
     return split
 
@@ -125,7 +127,7 @@ def draw_episodes(runs: Sequence[Run], trajectories: Trajectories) -> tuple[Draw
     split, robot = None, None
     try:
         split, robot = split_of(runs[0]), robot_of(runs[0])
-    except (ConfigError, HouseError, KeyError) as error:
+    except (ConfigError, HouseError) as error:
         problems.append(f"The houses are not shown, and their sizes are unknown: {error}")
     for house, episode_ids in _by_house(runs[0], trajectories).items():
         recorded = [i for i in episode_ids if any(trajectory is not None for trajectory in trajectories[i])]

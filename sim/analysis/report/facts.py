@@ -11,6 +11,7 @@ from typing import Any
 from sim.analysis.comparison import Run
 from sim.analysis.report.drawings import Trajectories
 from sim.analysis.report.media import picture_of, video_of
+from sim.evaluation.parallel import Shard
 
 NO_DEFAULT = (
     "agent", "explorer", "semantics", "weights", "verifier", "split", "house", "labels", "root", "robot", "goal",
@@ -18,9 +19,11 @@ NO_DEFAULT = (
 )  # fmt: skip
 """Options of `stubborn run` that the command of a run names if they have a value."""
 DEFAULTS: Mapping[str, Any] = {
-    "verification": "naive-bayes", "seed": 0, "profile": "fast", "noise": "none", "workers": 1,
+    "verification": "naive-bayes", "seed": 0, "profile": "fast", "noise": "none", "workers": 1, "replicates": 1,
 }  # fmt: skip
 """Options of `stubborn run` that the command of a run names if their value differs from this one."""
+FILES = ("record", "video", "mcap", "rerun_save")
+"""Options that write files of each episode."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,7 @@ class RunFacts:
 def facts_of(run: Run, label: str, trajectories: Trajectories, index: int) -> RunFacts:
     """Returns the facts about a run, which is number `index` of the runs of the trajectories."""
     config = run.config
-    split, versions = config.get("split_identity", {}), config.get("versions", {})
+    split, versions = config.get("split_identity") or {}, config.get("versions", {})
     codes = config.get("codes") or [versions.get("code", "unknown")]
     facts = [
         ("folder", run.path),
@@ -74,12 +77,14 @@ def command_of(config: Mapping[str, Any]) -> str:
             continue
         if key == "episodes" and only:
             continue
+        if key == "episodes":  # config.json counts each replicate
+            value //= config.get("replicates") or 1
         words += [f"--{key.replace('_', '-')}", str(value)]
     if only:
         words += ["--only", *map(str, only)]
     if config.get("settings"):
         words += ["--config", *(f"{path}={_setting(value)}" for path, value in config["settings"].items())]
-    return shlex.join([*words, *(f"--{name}" for name in ("record", "video") if config.get(name))])
+    return shlex.join([*words, *(f"--{name.replace('_', '-')}" for name in FILES if config.get(name))])
 
 
 def _setting(value: Any) -> str:
@@ -88,12 +93,12 @@ def _setting(value: Any) -> str:
 
 def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:
     """Yields sentences about what is missing in a run."""
-    wanted, count = run.config.get("episodes"), len(run.lines)
-    if isinstance(wanted, int) and count < wanted:
-        yield (
-            f"Not finished: {count} of {wanted} episodes have ended. The same command with --out {run.path} runs the "
-            "rest."
-        )
+    wanted, count, out = run.config.get("episodes"), len(run.lines), run.path
+    if isinstance(wanted, int):
+        if shard := run.config.get("shard"):
+            wanted, out = len(Shard.parse(str(shard)).select(range(wanted))), run.path.parent
+        if count < wanted:
+            yield f"Not finished: {count} of {wanted} episodes have ended. The command with --out {out} runs the rest."
     errors = sum(line.get("end_reason") == "error" for line in run.lines.values())
     if errors:
         yield f"{errors} of {count} episodes ended with an error; they count as failures and are listed below."

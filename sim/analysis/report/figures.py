@@ -47,23 +47,27 @@ METRICS = (
 
 @dataclass(frozen=True)
 class Proportion:
-    """The number of episodes with a property, among some episodes, and the 95 % interval of their proportion."""
+    """The proportion of episodes with a property, with its 95 % interval; each replicate of an episode is a line."""
 
     count: int
+    """Lines with the property."""
     of: int
+    """Lines."""
+    mean: float
+    """The proportion over episodes; 0 without episodes."""
     interval: tuple[float, float]
 
     @property
     def percent(self) -> float:
-        """The proportion in percent; 0 without episodes."""
-        return 100.0 * self.count / self.of if self.of else 0.0
+        """The proportion in percent."""
+        return 100.0 * self.mean
 
 
 def proportion(values: Sequence[bool], houses: Sequence[str], episodes: Sequence[str] | None = None) -> Proportion:
     """Returns the proportion of values that are true, with its interval over houses; see `estimate`."""
     share = estimate(values, houses, episodes=episodes, most=1.0)
     low, high = (limit if end is None else end for end, limit in ((share.low, 0.0), (share.high, 1.0)))
-    return Proportion(sum(values), len(values), (low, high))
+    return Proportion(sum(values), len(values), share.mean or 0.0, (low, high))
 
 
 def proportion_of(values: Sequence[bool], lines: Sequence[Line]) -> Proportion:

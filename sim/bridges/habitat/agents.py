@@ -22,7 +22,7 @@ import numpy as np
 
 from sim.bridges.habitat.config import make_config, with_entries_of
 from sim.bridges.habitat.conversions import Conversion, to_action
-from sim.bridges.habitat_client import OF_THE_RUN, called
+from sim.bridges.habitat_client import OF_THE_RUN, called, takes_config
 from sim.bridges.process_command import BridgeConfig
 from sim.errors import ConfigError
 from sim.interface import Action, AgentSpec, CameraModel, Observation, RobotModel, SuccessRule
@@ -242,7 +242,7 @@ def _values(
 
 def _names_file(argument: inspect.Parameter, value: str) -> bool:
     """Returns whether the value of an argument that takes a configuration names a YAML file."""
-    return argument.annotation not in (str, "str") and value.endswith((".yaml", ".yml"))
+    return takes_config(argument) and value.endswith((".yaml", ".yml"))
 
 
 def _result(value: Any) -> Any:

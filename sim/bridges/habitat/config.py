@@ -142,19 +142,28 @@ def with_entries_of(config: Config, file: Path) -> Config:
 def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the entries of `SETTINGS` whose values differ from those of this project's task.
 
+    The tree under `habitat`, which scripts of the new layout also give, will do.
+
     Raises:
-        ConfigError: two paths of one setting have different values, such as the widths of RGB and depth.
+        ConfigError: two paths of one setting have different values, such as the widths of RGB and depth, or the
+            configuration has no section of either layout.
     """
     default, found = make_config(), dict[str, Any]()
+    if config and not any(section in config for section in default):
+        if not any(section in config for section in default["habitat"]):
+            raise ConfigError(
+                f"The configuration needs one of the sections {', '.join(default)}, or those of `habitat` "
+                f"({', '.join(default['habitat'])}); it has {', '.join(map(str, config))}."
+            )
+        config = {"habitat": config}
     for name, paths in SETTINGS.items():
         values = {path: _at(config, path) for path in paths}
         changed = {path: value for path, value in values.items() if value not in (None, _at(default, path))}
         for path, value in changed.items():
             if found.setdefault(name, value) != value:
                 first = next(iter(changed))
-                raise ConfigError(
-                    f"The configuration has {first}={found[name]!r} and {path}={value!r}; all images have one camera."
-                )
+                why = "all images have one camera" if "sensor" in path.lower() else "both layouts must agree"
+                raise ConfigError(f"The configuration has {first}={found[name]!r} and {path}={value!r}; {why}.")
     return found
 
 

@@ -27,6 +27,7 @@ import numpy as np
 from gymnasium import spaces
 
 from sim.bridges.habitat_client import ACTION_IDS, HabitatActions
+from sim.bridges.stubborn_client import from_habitat
 from sim.errors import AgentError, ConfigError
 from sim.interface import GOAL_CATEGORIES, MPCAT40, Action, CameraModel, Observation
 
@@ -35,10 +36,8 @@ HM3D_GOALS = ("chair", "bed", "plant", "toilet", "tv_monitor", "sofa")
 CATEGORIES: Mapping[str, tuple[str, ...]] = MappingProxyType({"mp3d": GOAL_CATEGORIES, "hm3d": HM3D_GOALS})
 """Goal categories by the name of the data set that numbers them."""
 COMPASS_STEP_RAD = math.radians(0.2)
-"""Habitat's turns are exact, and agents turn towards what is more than half a turn aside. The turns of this robot end
-0.05 degrees farther: such an agent would swing between two headings for ever."""
-_DEEPEST = 3
-"""Largest number of nested dicts around an action."""
+"""The compass is rounded to it. Agents turn until a place is at most half a turning step aside. The turns of this robot
+end 0.05 degrees too far, so that without rounding such an agent oscillates between two headings."""
 
 
 class Observations(dict[str, Any]):
@@ -124,15 +123,11 @@ def to_action(given: Any) -> Action:
     Raises:
         AgentError: it is not one of the four actions.
     """
-    inner = given
-    for _ in range(_DEEPEST):
-        if isinstance(inner, Mapping):
-            if "action" not in inner:
-                break
-            inner = inner["action"]
-    if isinstance(inner, (list, tuple)) and len(inner) == 1:
-        inner = inner[0]
-    number = ACTION_IDS.get(inner.lower()) if isinstance(inner, str) else _whole_number(inner)
+    try:
+        inner = from_habitat(given)
+        number = ACTION_IDS.get(inner.lower()) if isinstance(inner, str) else operator.index(inner)
+    except Exception:  # that of the user's class too
+        number = None
     if number in (ACTION_IDS["look_up"], ACTION_IDS["look_down"]):
         raise AgentError(f"Action {reprlib.repr(given)}: the camera of this robot does not tilt.")
     if number is None or number not in tuple(Action):
@@ -141,18 +136,3 @@ def to_action(given: Any) -> Action:
             f'{reprlib.repr(given)} is no action. An action is one of {names}, or a dict {{"action": one of these}}.'
         )
     return Action(number)
-
-
-def _whole_number(value: Any) -> int | None:
-    """Returns the value of an integer of Python or NumPy, or of an array of one element; None for anything else."""
-    if isinstance(value, bool) or "bool" in str(getattr(value, "dtype", "")):
-        return None
-    if getattr(value, "shape", ()) != () and hasattr(value, "reshape"):  # an array or tensor
-        try:
-            value = value.reshape(-1)[0] if np.prod(value.shape) == 1 else None
-        except Exception:  # the user's class raised it
-            return None
-    try:
-        return operator.index(value)
-    except Exception:
-        return None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import numbers
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -67,6 +68,7 @@ class Env:
         if dataset is not None:
             raise ConfigError("Env takes no dataset: split= names a split, house= an MJCF file.")
         given = settings_of(config or {}) | _defaults | {k: v for k, v in options.items() if v is not None}
+        _check_types(given)
         if "house" in given:
             given.pop("split", None)
         self._seed = int(given.pop("seed", 0))
@@ -254,6 +256,23 @@ def _lacks(thing: object, what: str, name: str) -> AttributeError:
     """Returns the error for an attribute that Habitat's class has and ours does not."""
     names = sorted({n for n in (*dir(type(thing)), *vars(thing)) if not n.startswith("_")})
     return AttributeError(f"{what} of this project has no '{name}'. It has: {', '.join(names)}.")
+
+
+_TYPES: Mapping[str, tuple[Any, str]] = {
+    **dict.fromkeys(("episodes", "seed", "max_steps", "width_px", "height_px"), (numbers.Integral, "an integer")),
+    **dict.fromkeys(("hfov_deg", "min_depth_m", "max_depth_m"), (numbers.Real, "a number")),
+    "normalize_depth": (bool, "True or False"),
+    "camera": ((Mapping, CameraModel), "a CameraModel or a dict of its fields"),
+}
+"""Types of options, and their names in messages."""
+
+
+def _check_types(given: Mapping[str, Any]) -> None:
+    """Raises ConfigError for an option of another type than `_TYPES` says."""
+    for name, (kind, words) in _TYPES.items():
+        value = given.get(name)
+        if value is not None and (not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool)):
+            raise ConfigError(f"{name} must be {words}, got {value!r:.100}.")
 
 
 def _camera(given: dict[str, Any]) -> CameraModel:

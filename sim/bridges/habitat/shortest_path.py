@@ -44,6 +44,11 @@ class ShortestPaths:
         return task.truth, task.start
 
     @property
+    def steps(self) -> int:
+        """The number of actions of the running episode so far."""
+        return self._env.scene.task.num_steps
+
+    @property
     def space(self) -> FreeSpace:
         """The free space of the storey."""
         truth, floor_z_m = self.storey
@@ -105,6 +110,7 @@ class ShortestPathFollower:
         self._stop_on_error = stop_on_error
         self._follower: Follower | None = None
         self._heading_for: tuple[tuple[GroundTruth, Pose], Places] | None = None
+        self._steps = 0
 
     def get_next_action(self, goal_pos: ArrayLike) -> int | NDArray[np.float32]:
         """Returns the next action on the shortest path to a place of Habitat's frame (3,); stop where it is reached.
@@ -112,8 +118,10 @@ class ShortestPathFollower:
         Raises:
             EpisodeError: no path leads there, and `stop_on_error` is False.
         """
-        heading_for = (self._sim.paths.episode, places_of(goal_pos))
-        if self._follower is None or self._heading_for != heading_for:
+        heading_for, steps = (self._sim.paths.episode, places_of(goal_pos)), self._sim.paths.steps
+        begins_again = steps == 0 or steps < self._steps
+        self._steps = steps
+        if self._follower is None or self._heading_for != heading_for or begins_again:
             self._follower, self._heading_for = self._towards(goal_pos), heading_for
         action = self._follower.next_action()
         if action is None and not self._stop_on_error:

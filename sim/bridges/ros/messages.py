@@ -28,6 +28,10 @@ OCCUPIED, FREE, UNKNOWN = 100, 0, -1
 """Values of an occupancy grid."""
 
 
+DEEPEST_M = 65.535
+"""The largest distance of `16UC1`."""
+
+
 def stamp(time_s: float) -> Message:
     """Returns a time as seconds and nanoseconds."""
     nanoseconds = round(time_s * 1e9)
@@ -47,9 +51,9 @@ def colour_image(time_s: float, image: NDArray[np.uint8]) -> Message:
 def depth_image(time_s: float, depth_m: NDArray[np.float32], camera: CameraModel) -> Message:
     """Returns `sensor_msgs/Image` of a depth image (h, w), in whole millimetres (`16UC1`).
 
-    Pixels without a distance, and those at the limit of the camera's range or farther, are 0.
+    Pixels without a distance, and those at the limit of the camera's range or of the encoding or farther, are 0.
     """
-    seen_m = np.where(depth_m < camera.max_depth_m, depth_m, np.float32(0.0))
+    seen_m = np.where(depth_m < min(camera.max_depth_m, DEEPEST_M), depth_m, np.float32(0.0))
     return _image(time_s, np.rint(seen_m * np.float32(1000.0)).astype("<u2"), "16UC1")
 
 

@@ -23,7 +23,6 @@ from sim.errors import ConfigError, ObjectNavError
 from sim.evaluation.parallel import ordered_map
 from sim.files import inside, write_atomically, write_picture
 from sim.houses.load import load_house
-from sim.houses.references import files_of
 from sim.importers.losses import added
 from sim.importers.mesh_house import Collision, MeshConfig
 from sim.reading import printable, read_json, sha256_of
@@ -183,17 +182,10 @@ def _run(
             yield work, key, _again(before[work.name]) if done else next(results)
 
 
-def scene_works(files: Iterable[Path], root: Path | None, *more: Callable[[Path], Path]) -> Iterator[Work[Path]]:
-    """Yields the houses of MJCF files, which depend on all files that they use.
-
-    Args:
-        files: the MJCF files.
-        root: another folder whose files they may use.
-        more: each returns another file on which the house of a file depends.
-    """
+def file_works(files: Iterable[Path], used_by: Callable[[Path], Iterable[Path]]) -> Iterator[Work[Path]]:
+    """Yields the houses of files, each of which depends on its file and on those that `used_by` returns."""
     for file in files:
-        others = [each(file) for each in more]
-        used = [file, *others, *files_of(file, root)] if file.is_file() else []
+        used = [file, *used_by(file)] if file.is_file() else []
         sums = [sha256_of(each, what="File") for each in used if each.is_file()]
         yield Work(file.stem, " ".join(sums).encode(), file)
 

@@ -19,12 +19,12 @@ from typing import Annotated
 
 import tyro
 
-from sim.commands.importing.folder import Made, MeshArgs, import_all, scene_works
+from sim.commands.importing.folder import Made, MeshArgs, file_works, import_all
 from sim.files import inside, write_together
 from sim.houses.house import House
 from sim.houses.load import read_rules, validate_house
 from sim.houses.mjcf import read_spec
-from sim.importers.mesh import Axis, find_files, import_mesh
+from sim.importers.mesh import Axis, files_of, find_files, import_mesh
 from sim.importers.scenes import compiled
 from sim.importers.surfaces import check_installed
 
@@ -49,7 +49,7 @@ def main(args: Args) -> int:
     check_installed()
     rules = {} if args.categories is None else read_rules(args.categories)
     files = find_files(args.path)[: args.houses]
-    works = scene_works(files, None, lambda file: file.with_suffix(".mtl"))
+    works = file_works(files, files_of)
     return import_all(
         works, functools.partial(_make, args, rules), args.out, total=len(files),
         options=f"mesh {args.config} {args.up} {json.dumps(rules)}", pictures=args.pictures, workers=args.workers,

@@ -17,8 +17,8 @@ from typing import Annotated
 
 import tyro
 
-from sim.commands.importing.folder import Made, SceneArgs, import_all, scene_works
-from sim.houses.references import require_root
+from sim.commands.importing.folder import Made, SceneArgs, file_works, import_all
+from sim.houses.references import files_of, require_root
 from sim.importers.molmospaces import find_houses, import_scene, metadata_file, name_of
 from sim.importers.procthor import Doors
 from sim.importers.scenes import write_scene
@@ -38,7 +38,8 @@ def main(args: Args) -> int:
     """Writes the houses, labels.json, pictures and import.json; returns 1 if a house could not be imported."""
     require_root(args.root)
     files = find_houses(args.path)[: args.houses]
-    works = (replace(work, name=name_of(work.source)) for work in scene_works(files, args.root, metadata_file))
+    works = file_works(files, lambda file: [metadata_file(file), *files_of(file, args.root)])
+    works = (replace(work, name=name_of(work.source)) for work in works)
     return import_all(
         works, functools.partial(_make, args), args.out, total=len(files),
         options=f"molmospaces {args.doors} {args.texture_px} {args.pack}", pictures=args.pictures, workers=args.workers,

@@ -17,8 +17,8 @@ from typing import Annotated
 
 import tyro
 
-from sim.commands.importing.folder import Made, SceneArgs, import_all, scene_works
-from sim.houses.references import require_root
+from sim.commands.importing.folder import Made, SceneArgs, file_works, import_all
+from sim.houses.references import files_of, require_root
 from sim.importers.robocasa import find_scenes, import_kitchen
 from sim.importers.scenes import write_scene
 
@@ -35,8 +35,9 @@ def main(args: Args) -> int:
     """Writes the houses, labels.json, pictures and import.json; returns 1 if a house could not be imported."""
     require_root(args.root)
     files = find_scenes(args.path)[: args.houses]
+    works = file_works(files, lambda file: files_of(file, args.root))
     return import_all(
-        scene_works(files, args.root), functools.partial(_make, args), args.out, total=len(files),
+        works, functools.partial(_make, args), args.out, total=len(files),
         options=f"robocasa {args.texture_px} {args.pack}", pictures=args.pictures, workers=args.workers,
     )  # fmt: skip
 

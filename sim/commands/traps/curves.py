@@ -102,5 +102,5 @@ def _point(agent: str, quantity: str, rows: Rows, values: Sequence[float]) -> Po
     assert collisions.mean is not None
     return Point(
         agent, quantity, min(values), max(values), float(np.mean(values)), len(rows),
-        share.count / share.of, *share.interval, collisions.mean, *collisions.ends,
+        share.mean, *share.interval, collisions.mean, *collisions.ends,
     )  # fmt: skip

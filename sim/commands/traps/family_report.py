@@ -194,7 +194,7 @@ def _family_point(rows: Rows, agent: str, family: str) -> Point | None:
     share = proportion([bool(row["escaped"]) for row in rows], traps)
     found = estimate([float(row["collisions"]) for row in rows], traps)
     numbers = [found.mean or 0.0, *found.ends]
-    return Point(agent, family, 0.0, 0.0, 0.0, len(rows), share.count / share.of, *share.interval, *numbers)
+    return Point(agent, family, 0.0, 0.0, 0.0, len(rows), share.mean, *share.interval, *numbers)
 
 
 def _bars(axes: Axes, x: np.ndarray, points: Sequence[Point], name: str, agent: str, number: int, *, line: str) -> None:

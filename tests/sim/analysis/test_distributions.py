@@ -19,7 +19,7 @@ from sim.analysis.report.distributions import (
     first_sight_histogram,
     spl_histogram,
 )
-from sim.analysis.report.figures import causes, grouped, means
+from sim.analysis.report.figures import causes, grouped, means, proportion_of
 from sim.analysis.report.trend import HEIGHT, METRICS, TOP, trend
 
 Line = dict[str, Any]
@@ -141,3 +141,10 @@ def test_two_runs_are_no_trend_and_a_number_that_no_run_has_is_left_out() -> Non
     assert trend(runs([1], [2]), "AB") == []
     without = [[line(collisions=None)]] * 3
     assert "collisions" not in [chart.title for chart in trend(without, "ABC")]
+
+
+def test_a_proportion_is_over_episodes_whatever_their_number_of_replicates() -> None:
+    lines = [line(episode_id=name) for name in ("x", "x~1", "x~2", "y")]
+    found = proportion_of([True, True, True, False], lines)
+    assert (found.count, found.of, found.percent) == (3, 4, 50.0)
+    assert proportion_of([], []).percent == 0.0

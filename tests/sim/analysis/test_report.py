@@ -275,6 +275,32 @@ def test_an_unfinished_run_and_broken_episodes_are_reported(pair: tuple[Path, Pa
     assert "Episodes that ended with an error" in page
 
 
+def test_a_complete_shard_is_finished_and_an_incomplete_one_names_the_folder_of_the_run(
+    pair: tuple[Path, Path],
+) -> None:
+    _, folder = pair
+    shard = folder.parent / "whole" / "shard_1_of_2"
+    shutil.copytree(folder, shard)
+    config = json.loads((shard / "config.json").read_text()) | {"shard": "1/2", "episodes": 8}
+    (shard / "config.json").write_text(json.dumps(config))
+    assert "Not finished" not in _page(shard)
+    (shard / "config.json").write_text(json.dumps(config | {"episodes": 9}))
+    page = _page(shard)
+    assert "Not finished: 4 of 5 episodes have ended." in page
+    assert f"The command with --out {shard.parent} runs the rest." in page
+
+
+@pytest.mark.parametrize("missing", [{}, {"split_identity": None}])
+def test_a_run_without_the_identity_of_its_split_is_shown_without_houses(
+    recorded_run: Path, tmp_path: Path, missing: dict[str, None]
+) -> None:
+    shutil.copytree(recorded_run / "found", tmp_path / "run")
+    config = json.loads((tmp_path / "run/config.json").read_text())
+    del config["split_identity"]
+    (tmp_path / "run/config.json").write_text(json.dumps(config | missing))
+    assert "has no field &#39;split_identity&#39;" in _page(tmp_path / "run")
+
+
 @pytest.mark.parametrize(
     ("broken", "sentence"),
     [

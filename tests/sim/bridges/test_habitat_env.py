@@ -321,6 +321,44 @@ def test_the_images_have_one_camera() -> None:
         Env()
 
 
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        ["SIMULATOR.DEPTH_SENSOR.NORMALIZE_DEPTH", "False", "ENVIRONMENT.MAX_EPISODE_STEPS", "100"],
+        ["SIMULATOR.DEPTH_SENSOR.NORMALIZE_DEPTH=False", "ENVIRONMENT.MAX_EPISODE_STEPS=100"],
+        ["SIMULATOR.DEPTH_SENSOR.NORMALIZE_DEPTH=false", "ENVIRONMENT.MAX_EPISODE_STEPS", 100],
+    ],
+)
+def test_overrides_have_values_of_python_and_of_json(overrides: list[Any]) -> None:
+    assert settings_of(get_config(None, overrides)) == {"normalize_depth": False, "max_steps": 100}
+    config = get_config(None, ["TASK.A=None", "TASK.B=null", "TASK.C=['x']", "TASK.D=3.0.0", "TASK.E", "some text"])
+    assert [config.TASK[name] for name in "ABCDE"] == [None, None, ["x"], "3.0.0", "some text"]
+
+
+def test_the_tree_under_habitat_is_a_configuration_and_an_unknown_tree_is_none() -> None:
+    config = get_config(None, ["habitat.environment.max_episode_steps=9"])
+    assert settings_of(config.habitat) == settings_of(config) == {"max_steps": 9}
+    with pytest.raises(ConfigError, match=r"needs one of the sections ENVIRONMENT, .*; it has TASK_CONFIG\.$"):
+        settings_of(Config(TASK_CONFIG=config))
+    with pytest.raises(ConfigError, match=r"SPLIT='a' and habitat\.dataset\.split='b'; both layouts must agree"):
+        settings_of(get_config(None, ["DATASET.SPLIT=a", "habitat.dataset.split=b"]))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"episodes": "3"}, "episodes must be an integer, got '3'"),
+        ({"seed": "x"}, "seed must be an integer, got 'x'"),
+        ({"camera": 3}, "camera must be a CameraModel or a dict"),
+        ({"hfov_deg": True}, "hfov_deg must be a number, got True"),
+        ({"normalize_depth": "no"}, "normalize_depth must be True or False"),
+    ],
+)
+def test_an_option_of_another_type_is_refused(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(ConfigError, match=f"^{message}"):
+        Env(**options)
+
+
 def test_no_path_to_the_goal_is_an_infinite_distance(env: Env) -> None:
     env.reset()
     env._info["distance_to_goal"] = None

@@ -74,6 +74,17 @@ def test_the_follower_drives_to_a_place_on_the_shortest_path_and_stops(env: Env)
         env.reset()
 
 
+def test_the_follower_begins_anew_when_an_episode_does(env: Env) -> None:
+    follower, ahead, actions = ShortestPathFollower(env.sim, 0.25), [-0.6, 0.0, 2.0], []
+    for _ in range(3):
+        env.rewind()
+        env.reset()
+        for _ in range(2):
+            actions.append(follower.get_next_action(ahead))
+            env.step(actions[-1])
+    assert actions == [1] * 6
+
+
 def test_actions_can_be_one_hot_and_a_place_without_a_path_stops_or_is_an_error(env: Env) -> None:
     one_hot = ShortestPathFollower(env.sim, 0.5, return_one_hot=True)
     assert np.array_equal(one_hot.get_next_action(env.sim.get_agent_state().position), [1, 0, 0, 0])

@@ -268,6 +268,11 @@ serve(lambda setup: Agent() if setup.camera.width_px == 640 and setup.goals[0] =
             agent.share_no_memory()
         assert agent._process is not None
         assert (agent._process.memory is not None) == shared
+        if not shared:  # in a new process too
+            agent.close()
+            agent.reset("chair", 0)
+            assert agent._process is not None
+            assert agent._process.memory is None
         agent.act(observation)
         agent.act({name: np.zeros_like(each) for name, each in observation.items()})
         image, words = agent.map_image()

@@ -13,7 +13,7 @@ import pytest
 from sim.bridges.habitat.conversions import to_action
 from sim.bridges.process import ProcessAgent
 from sim.bridges.process_command import ProcessConfig
-from sim.bridges.stubborn_client import _from_habitat
+from sim.bridges.stubborn_client import from_habitat
 from sim.composition.options import RunOptions
 from sim.composition.setup import resolve
 from sim.errors import AgentError, ConfigError
@@ -85,12 +85,12 @@ FORMS: list[Any] = [
 
 @pytest.mark.parametrize("given", FORMS, ids=repr)
 def test_the_client_understands_an_action_as_the_bridge_does(given: Any) -> None:
-    assert int(_from_habitat(given)) == to_action(given)
+    assert int(from_habitat(given)) == to_action(given)
 
 
 def test_a_truth_value_is_no_action() -> None:
     with pytest.raises(TypeError, match="truth value"):
-        _from_habitat({"action": True})
+        from_habitat({"action": True})
 
 
 def test_options_of_habitat_need_its_interface_and_choose_the_goals() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -144,6 +145,14 @@ def test_the_command_that_a_report_prints_names_the_chosen_episodes() -> None:
     command = command_of(record_of(resolve(options), SPLIT))
     assert cli.parse(RunOptions, shlex.split(command)[2:]).only == options.only
     assert "--episodes" not in command
+
+
+def test_the_command_that_a_report_prints_has_the_replicates_and_the_files() -> None:
+    options = RunOptions(semantics="gt", replicates=5, episodes=8, record=True, mcap=True)
+    recorded = record_of(resolve(replace(options, episodes=40)), SPLIT)  # as `stubborn run` counts them
+    parsed = cli.parse(RunOptions, shlex.split(command_of(recorded))[2:])
+    assert (parsed.replicates, parsed.episodes) == (5, 8)
+    assert (parsed.record, parsed.mcap, parsed.video) == (True, True, False)
 
 
 def test_the_line_of_an_episode_that_could_not_begin_has_the_entries_of_every_other(tmp_path: Path) -> None:

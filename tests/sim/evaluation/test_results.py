@@ -174,6 +174,8 @@ def test_a_summary_has_the_means_of_each_replicate_and_their_spread() -> None:
     assert summary["replicates"]["success"]["means"] == [1.0, 0.0, 1.0]
     assert summary["replicates"]["success"]["std"] == pytest.approx(math.sqrt(1 / 3))
     assert "replicates" not in summarise(lines[:1])
+    without = [each | {"spl": None} for each in lines]
+    assert summarise(without)["replicates"]["spl"] == {"means": [None, None, None], "std": None}
 
 
 def test_a_field_inside_the_configuration_that_differs_is_named(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import torch
 
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, write_split
@@ -139,6 +140,12 @@ def test_the_place_of_an_agent_with_a_noisy_pose_is_where_it_saw_it_from_the_rob
     env.close()
     assert agent.last_pose.distance_to(true.relative_to(EPISODE.start)) > 0.2
     assert line["stop_target_xy_m"] == pytest.approx(true.place_of(2.0, 1.0), abs=1e-5)
+
+
+def test_a_place_that_is_a_tensor_with_a_gradient_ends_the_episode_as_an_error(env: ObjectNavEnv) -> None:
+    place = torch.zeros(2, requires_grad=True)
+    line = play_episode(env, Aimed([Action.STOP], place), EPISODE, seed=0, name="x:mine")
+    assert "'x:mine', step 1: stop_target_xy_m() returned" in line["error"]
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 import trimesh
 from hypothesis import example, given, settings
@@ -17,9 +20,10 @@ from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
 from sim.importers.losses import Losses
-from sim.importers.mesh import find_files, import_mesh
-from sim.importers.mesh_house import MeshConfig
+from sim.importers.mesh import files_of, find_files, import_mesh
+from sim.importers.mesh_house import MeshConfig, MeshObject, Shape, build_house
 from sim.importers.obj import read_obj
+from sim.importers.surfaces import Paint, Surface
 from sim.world.check import check_own_house
 from tests.helpers.scanned import PIECES, triangles_of, write_glb
 
@@ -93,6 +97,82 @@ def test_an_obj_file_keeps_its_objects_and_colours(tmp_path: Path) -> None:
     assert surfaces[1].paint.rgba == (0.0, 0.0, 1.0, 1.0)
     scene = import_mesh(file, rules={}, up="z", config=MeshConfig())
     assert scene.house.report["furniture"]["chair"] == 1
+
+
+MATERIALS = """
+newmtl red
+Kd 1 0 0
+d 0.25
+newmtl first
+Kd 1 0 0
+map_Kd -s 2 2 2 -clamp on my picture.png
+newmtl last
+map_Kd my picture.png
+Kd 1 0 0
+"""
+
+
+def test_materials_of_an_obj_file_have_an_opacity_and_a_picture_whose_name_has_spaces(tmp_path: Path) -> None:
+    faces = [f"usemtl {name}\nf 1/1 2/1 3/1" for name in ("red", "first", "last")]
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0"
+    (tmp_path / "home.obj").write_text("\n".join(["mtllib all kinds.mtl", corners, *faces]))
+    (tmp_path / "all kinds.mtl").write_text(MATERIALS)
+    cv2.imwrite(str(tmp_path / "my picture.png"), np.full((4, 4, 3), 90, np.uint8))
+    losses = Losses()
+    red, first, last = read_obj(tmp_path / "home.obj", texture_px=64, losses=losses.changes)
+    assert red.paint.rgba == (1.0, 0.0, 0.0, 0.25)
+    for each in (first, last):
+        assert each.paint.rgba == (1.0, 1.0, 1.0, 1.0)
+        assert each.paint.picture is not None
+    assert not losses.changes
+    assert {file.name for file in files_of(tmp_path / "home.obj")} == {"all kinds.mtl", "my picture.png"}
+
+
+def test_a_home_is_imported_again_when_its_materials_change(tmp_path: Path) -> None:
+    file, out = write_obj(tmp_path), tmp_path / "out"
+    file.write_text(file.read_text().replace("mtllib flat.mtl", "mtllib other.mtl"))
+    materials = (tmp_path / "flat.mtl").rename(tmp_path / "other.mtl")
+    args = command.Args(path=file, out=out, pictures=0, up="z")
+    assert command.main(args) == 0
+    assert 'rgba="0 0 1 1"' in (out / "flat.xml").read_text()
+    materials.write_text(materials.read_text().replace("Kd 0 0 1", "Kd 0 1 0"))
+    assert command.main(args) == 0
+    assert 'rgba="0 0 1 1"' not in (out / "flat.xml").read_text()
+
+
+def test_the_parts_of_a_gltf_file_are_its_buffers_and_pictures(tmp_path: Path) -> None:
+    parts = {"buffers": [{"uri": "a%20b.bin"}, {}], "images": [{"uri": "data:image/png;base64,AA"}, {"uri": "c.png"}]}
+    (tmp_path / "home.gltf").write_text(json.dumps(parts))
+    assert files_of(tmp_path / "home.gltf") == [tmp_path / "a b.bin", tmp_path / "c.png"]
+    (tmp_path / "home.gltf").write_text("{")
+    assert files_of(tmp_path / "home.gltf") == []
+
+
+def test_homes_of_one_name_are_refused(tmp_path: Path) -> None:
+    for suffix in ("glb", "obj"):
+        (tmp_path / f"home.{suffix}").touch()
+    with pytest.raises(ConfigError, match=r"two homes of the name 'home', one of them 'home\.obj'"):
+        find_files(tmp_path)
+
+
+def test_an_object_may_be_a_single_triangle_and_a_rug_lies_flat_although_a_mat_on_a_table_does_not(
+    tmp_path: Path,
+) -> None:
+    def box(name: str, low: tuple[float, ...], high: tuple[float, ...]) -> MeshObject:
+        made = trimesh.creation.box(bounds=[low, high])
+        return MeshObject("rug", name, Shape((Surface(name, "", made.vertices, made.faces.astype(np.int32), Paint()),)))
+
+    rug = box("rug", (0.0, 0.0, 0.0), (1.0, 1.0, 0.015))
+    mat = replace(rug, position_m=(2.0, 0.0, 0.7))
+    corners = np.array([[0.0, 0.0, 0.5], [0.3, 0.0, 0.5], [0.0, 0.3, 0.9]])
+    flag = Shape((Surface("flag", "", corners, np.array([[0, 1, 2]], np.int32), Paint()),))
+    floor = replace(box("floor", (0.0, 0.0, -0.1), (4.0, 4.0, 0.0)), category="floor")
+    counts = []
+    for order in ([rug, mat], [mat, rug], [rug], [mat]):
+        objects = [floor, MeshObject("objects", "flag", flag, is_solid=False), *order]
+        made = build_house("home", "here", objects, (), MeshConfig(), Losses())
+        counts.append(made.report["collision_geoms"])
+    assert counts[0] == counts[1] == counts[3] > counts[2] == 0
 
 
 def test_a_home_in_one_node_gets_a_floor_and_walls(tmp_path: Path) -> None:
