@@ -4,8 +4,9 @@ The limits of speed and acceleration are those of `DriveConfig`. The wheels' mot
 position or heading, which is the caller's task. The commanded speed of a wheel stays as near to the measured one as
 the torque of the motor can act on, so that a robot that was held up does not first have to slow down to turn back.
 
-A contact blocks the robot if the command pushes for `DriveConfig.blocked_s` and the body hardly moves. It is a
-collision once, in the period in which it begins to block.
+A contact blocks the robot if the command pushes for `DriveConfig.blocked_s` and the body moves or turns by less than
+`DriveConfig` says in its direction, as in discrete actions. It is a collision once, in the period in which it begins to
+block; it blocks until the body follows the command by `FREE_SHARE`, or the command ends.
 """
 
 from __future__ import annotations
@@ -24,8 +25,10 @@ from sim.robot.drive import Motion
 from sim.robot.motors import Motors
 from sim.robot.odometry import Odometry
 
-BLOCKED_M = 0.0025
-"""The robot is blocked if it has moved by less than this, or if a turn on the spot is blocked as `DriveConfig` says."""
+FREE_SHARE = 0.5
+"""A robot that was blocked is free again when it moves or turns by this share of the command."""
+SLOW_SHARE = 0.25
+"""No command is blocked while the body follows it by this share, however slow it is."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +54,8 @@ class VelocityDrive:
         self._reach_rad_s = config.wheels.max_torque_nm / config.wheels.motor_gain_nm_s
         self._touch_ticks = math.ceil(self._drive.touch_memory_s / self._tick_s)
         self._motors, self._odometry = Motors(config, model, body), odometry
-        self._moves: deque[tuple[float, float]] = deque(maxlen=round(self._drive.blocked_s / self._tick_s))
-        """Distance (m) and angle (rad) of each of the last ticks in which the command pushed, without sign."""
+        self._moves: deque[float] = deque(maxlen=round(self._drive.blocked_s / self._tick_s))
+        """Distance (m) or angle (rad), in the direction of the command, of the last ticks in which it pushed."""
         self.reset(NOMINAL)
 
     def reset(self, conditions: Conditions) -> None:
@@ -65,7 +68,7 @@ class VelocityDrive:
     def run(self, command: Velocity, period_s: float) -> Motion:
         """Holds a command for a period, which is a whole number of ticks of the controller."""
         self._log.clear()
-        if command.speed_m_s * self._last.speed_m_s < 0.0:  # nothing ahead blocks a robot that drives back
+        if self._push_of(command) != self._push_of(self._last):  # nothing ahead blocks a robot that drives back
             self._moves.clear()
         self._last = command
         x0, y0, yaw0, _, _ = self._body.state()
@@ -112,17 +115,32 @@ class VelocityDrive:
         mujoco.mj_step(self._model, self._data, self._steps)
         self._odometry.update()
         x, y, yaw, _, _ = self._body.state()
-        self._moves.append((math.hypot(x - x0, y - y0), abs(wrap_angle(yaw - yaw0))))
+        ahead_m = (x - x0) * math.cos(yaw0) + (y - y0) * math.sin(yaw0)
+        forward, turning = self._push_of(command)
+        self._moves.append(forward * ahead_m if forward else turning * wrap_angle(yaw - yaw0))
 
     def _is_blocked(self, command: Velocity) -> bool:
-        """Returns whether the command has pushed for long enough without an effect."""
-        pushes_forward = self._pushes_forward(command)
-        if not pushes_forward and abs(command.rate_rad_s) < self._drive.pushing_rad_s:
+        """Returns whether the command has pushed for long enough without an effect, or not got free since."""
+        forward, turning = self._push_of(command)
+        if not (forward or turning):
             self._moves.clear()
         if len(self._moves) < (self._moves.maxlen or 0):
             return False
-        moved_m, turned_rad = (sum(each) for each in zip(*self._moves, strict=True))
-        return moved_m < BLOCKED_M if pushes_forward else turned_rad < self._drive.blocked_rad
+        speed, least = (
+            (command.speed_m_s, self._drive.blocked_m) if forward else (command.rate_rad_s, self._drive.blocked_rad)
+        )
+        wanted = len(self._moves) * self._tick_s * abs(speed)
+        return sum(self._moves) < (FREE_SHARE * wanted if self._blocked else min(least, SLOW_SHARE * wanted))
+
+    def _push_of(self, command: Velocity) -> tuple[int, int]:
+        """Returns the signs of the speed and of the rate by which a command must move the robot if nothing blocks it.
+
+        One of them is 0, and both if the command is too slow.
+        """
+        if self._pushes_forward(command):
+            return int(math.copysign(1, command.speed_m_s)), 0
+        pushes = abs(command.rate_rad_s) >= self._drive.pushing_rad_s
+        return 0, int(math.copysign(pushes, command.rate_rad_s))
 
     def _pushes_forward(self, command: Velocity) -> bool:
         """Returns whether a command must move the robot if nothing blocks it."""

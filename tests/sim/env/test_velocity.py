@@ -111,6 +111,16 @@ def test_a_collision_is_counted_once_when_a_contact_begins_to_block(tmp_path: Pa
     env.close()
 
 
+@pytest.mark.parametrize(("seed", "steps"), [(0, 50), (2, 90)])
+def test_a_robot_that_swings_at_furniture_with_slipping_wheels_has_one_collision(seed: int, steps: int) -> None:
+    env = ObjectNavVelocityEnv(split="val", sensors=(), time_limit_s=30.0)
+    env.reset(seed=seed)
+    for _ in range(steps):
+        info = env.step(np.array(AHEAD, np.float32))[-1]
+    assert (info["collisions"], info["blocked"]) == (1, True)
+    env.close()
+
+
 @pytest.mark.parametrize("command", [Velocity(0.5, 0.0), Velocity(-0.5, 0.0)])
 def test_only_commands_that_push_by_the_robots_configuration_are_blocked(command: Velocity) -> None:
     house = with_box(sofa_room(), "cabinet_00", centre_m=(-1.0, 1.0, 0.5), half_m=(0.1, 0.5, 0.5))
