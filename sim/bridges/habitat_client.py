@@ -22,7 +22,7 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
-from sim.bridges.stubborn_client import HABITAT_ACTIONS, Link, serve
+from sim.bridges.stubborn_client import HABITAT_ACTIONS, Link, Observation, serve
 
 LOG = logging.getLogger("habitat")
 HABITAT_MODULES = {
@@ -327,10 +327,6 @@ class _Record(SimpleNamespace):
     """An object with attributes, in place of Habitat's classes of episodes."""
 
 
-class _Observations(dict):
-    """The observation of one step: a dict of arrays by the name of the sensor."""
-
-
 def _get_config(config_paths=None, overrides=None, *_: Any, **__: Any) -> Config:
     """Returns the configuration of the run, with what YAML files add to it, changed by overrides."""
     config = _config_of_the_run()
@@ -372,7 +368,7 @@ def _provide_habitat():
     objects = {
         "Agent": Agent, "Benchmark": _Benchmark, "Challenge": _Challenge, "Config": Config, "Env": _Env,
         "HabitatSimActions": HabitatActions(), "ObjectGoal": _Record, "ObjectGoalNavEpisode": _Record,
-        "Observations": _Observations, "RLEnv": _Env, "ShortestPathFollower": _Env, "get_config": _get_config,
+        "Observations": Observation, "RLEnv": _Env, "ShortestPathFollower": _Env, "get_config": _get_config,
         "logger": LOG, "read_write": read_write,
     }  # fmt: skip
     sys.meta_path.insert(0, StandIn(objects))
@@ -419,7 +415,7 @@ def main(words):
     sys.modules["stubborn_client"] = sys.modules["__main__"]  # for agents that import it
     request = Link.of_this_process().first[0]
     if request is not None and request["setup"].get("interface") != "habitat":
-        sys.exit("Give --config agent.interface=habitat, or end your program with stubborn_client.serve(agent).")
+        sys.exit("Give --config agent.interface=habitat, or end your program with stubborn_client.serve(agent)")
     _provide_habitat()
     if not os.path.isfile(words[0]) and ":" in words[0]:
         sys.argv, sys.path[0] = words[:1], os.getcwd()

@@ -51,7 +51,10 @@ from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
+try:
+    import numpy as np
+except ImportError:
+    sys.exit("stubborn_client.py needs NumPy in the Python of the agent, " + sys.executable)
 
 VERSION = 1
 """Version of the protocol; both sides must have the same."""
@@ -112,6 +115,13 @@ def sizes_of(prefix):
     return header_bytes, array_bytes
 
 
+class Observation(dict):
+    """The observation of one step: a dict of arrays by the name of the sensor."""
+
+    def __missing__(self, name):
+        raise KeyError("no observation {!r}; there are {}".format(name, ", ".join(self)))
+
+
 def unpack_arrays(described, content):
     """Returns the arrays of a message by name, as views of its content.
 
@@ -122,7 +132,7 @@ def unpack_arrays(described, content):
     Raises:
         ProtocolError: the description does not fit the content.
     """
-    found, begin = {}, 0
+    found, begin = Observation(), 0
     for each in described:
         if each["dtype"] not in DTYPES:
             raise ProtocolError("array '{}' has the type {!r}".format(each["name"], each["dtype"]))
@@ -371,5 +381,5 @@ def _text_of(error):
     """Returns an error in one line, with file and line of the agent's code."""
     text = " ".join(f"{type(error).__name__}: {error}".split())[:2000]
     frames = traceback.extract_tb(error.__traceback__)
-    frame = next((each for each in reversed(frames) if each[0] != __file__), None)
+    frame = next((each for each in reversed(frames) if each[0] != __file__ and not each[0].startswith("<")), None)
     return text if frame is None else f"{text} ({os.path.basename(frame[0])}, line {frame[1]})"

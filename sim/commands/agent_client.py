@@ -7,6 +7,7 @@ stubborn agent-client > stubborn_client.py          # does the same
 from __future__ import annotations
 
 import inspect
+import re
 import sys
 from dataclasses import dataclass
 
@@ -14,7 +15,7 @@ from sim import cli
 from sim.bridges import habitat_client, stubborn_client
 from sim.files import write_atomically
 
-IMPORT = "from sim.bridges.stubborn_client import HABITAT_ACTIONS, Link, serve\n"
+IMPORT = re.compile(r"^from sim\.bridges\.stubborn_client import .*\n", re.MULTILINE)
 """The line of `habitat_client` that one file does not need."""
 
 
@@ -39,4 +40,4 @@ def main(args: Args) -> int:
 def client_file() -> str:
     """Returns the content of the file: the module `stubborn_client`, and `habitat_client` without its import of it."""
     protocol, habitat = inspect.getsource(stubborn_client), inspect.getsource(habitat_client)
-    return f"{protocol}\n\n{habitat.replace(IMPORT, '')}"
+    return f"{protocol}\n\n{IMPORT.sub('', habitat)}"

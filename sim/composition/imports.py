@@ -78,7 +78,11 @@ def import_attribute(
         with _limited(FACTORY_S):
             module = importlib.import_module(module_name)
     except ModuleNotFoundError as error:
-        reason = explain(error) or f"no module '{error.name}' can be imported from here."
+        if error.name is None or f"{module_name}.".startswith(f"{error.name}."):
+            reason = f"no module '{error.name}' can be imported from here."
+        else:
+            reason = f"it imports '{error.name}', which is not installed{place_of(error, below=__file__)}."
+        reason = explain(error) or reason
         raise ConfigError(f"'{name}': {reason}") from None
     except BaseException as error:  # the user's code
         if is_stop(error):

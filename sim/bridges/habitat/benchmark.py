@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+from collections.abc import Mapping
 from typing import Any
 
 from sim.bridges.habitat.config import get_config
@@ -17,7 +18,7 @@ class Benchmark:
     """Evaluates agents over the episodes of an `Env`.
 
     Args:
-        config_paths: argument of `get_config`.
+        config_paths: argument of `get_config`, or a configuration that it returned.
         eval_remote: must be False: there is no server.
         options: further arguments of `Env`, such as `split` and `episodes`.
     """
@@ -25,7 +26,7 @@ class Benchmark:
     def __init__(self, config_paths: Any = None, eval_remote: bool = False, **options: Any) -> None:
         if eval_remote:
             raise ConfigError("eval_remote must be False: there is no evaluation server.")
-        self._env = Env(get_config(config_paths), **options)
+        self._env = Env(config_paths if isinstance(config_paths, Mapping) else get_config(config_paths), **options)
 
     def evaluate(self, agent: Any, num_episodes: int | None = None) -> dict[str, float]:
         """Runs the agent and returns the mean of each metric; `collisions` gives `collisions/count` and so on.

@@ -6,9 +6,10 @@ the camera. All other values describe this project's task and change nothing.
 
 from __future__ import annotations
 
+import functools
 import logging
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,8 @@ _LOG = logging.getLogger("habitat")
 _MOST_BYTES = 1 << 20
 _MOST_VALUES = 20_000
 """Largest number of values of a file; a value that aliases repeat counts each time."""
+MOST_NAMED = 6
+"""A warning names so many entries."""
 _OLD, _NEW = "SIMULATOR.{}_SENSOR.{}", "habitat.simulator.agents.main_agent.sim_sensors.{}_sensor.{}"
 
 
@@ -149,13 +152,7 @@ def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
             configuration has no section of either layout.
     """
     default, found = make_config(), dict[str, Any]()
-    if config and not any(section in config for section in default):
-        if not any(section in config for section in default["habitat"]):
-            raise ConfigError(
-                f"The configuration needs one of the sections {', '.join(default)}, or those of `habitat` "
-                f"({', '.join(default['habitat'])}); it has {', '.join(map(str, config))}."
-            )
-        config = {"habitat": config}
+    config = _whole(config, default)
     for name, paths in SETTINGS.items():
         values = {path: _at(config, path) for path in paths}
         changed = {path: value for path, value in values.items() if value not in (None, _at(default, path))}
@@ -165,6 +162,55 @@ def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
                 why = "all images have one camera" if "sensor" in path.lower() else "both layouts must agree"
                 raise ConfigError(f"The configuration has {first}={found[name]!r} and {path}={value!r}; {why}.")
     return found
+
+
+def log_ignored(config: Mapping[str, Any]) -> None:
+    """Logs the entries that change nothing: those with another value than this project's task, and unknown ones."""
+    default = make_config()
+    taken = {path for paths in SETTINGS.values() for path in paths}
+    others, unknown = [], []
+    for path, value in _leaves(_whole(config, default)):
+        here = _at(default, path)
+        if path in taken or value == here:
+            continue
+        if here is None:
+            unknown.append(path)
+        else:
+            others.append(f"{path}={value!r} (here {here!r})")
+    for what, found in (("have no effect", others), ("are unknown here", unknown)):
+        if found:
+            more = f" and {len(found) - MOST_NAMED} more" if len(found) > MOST_NAMED else ""
+            _warn_once(f"These entries of the configuration {what}: {', '.join(found[:MOST_NAMED])}{more}.")
+
+
+@functools.cache
+def _warn_once(text: str) -> None:
+    _LOG.warning("%s", text)
+
+
+def _whole(config: Mapping[str, Any], default: Config) -> Mapping[str, Any]:
+    """Returns a configuration, or that whose tree under `habitat` is given.
+
+    Raises:
+        ConfigError: it has no section of either layout.
+    """
+    if not config or any(section in config for section in default):
+        return config
+    if not any(section in config for section in default["habitat"]):
+        raise ConfigError(
+            f"The configuration needs one of the sections {', '.join(default)}, or those of `habitat` "
+            f"({', '.join(default['habitat'])}); it has {', '.join(map(str, config))}."
+        )
+    return {"habitat": config}
+
+
+def _leaves(tree: Mapping[str, Any], place: str = "") -> Iterator[tuple[str, Any]]:
+    """Yields the dotted path of each value that is no tree, and the value."""
+    for name, value in tree.items():
+        if isinstance(value, Mapping):
+            yield from _leaves(value, f"{place}{name}.")
+        else:
+            yield f"{place}{name}", value
 
 
 def _upper(tree: Mapping[str, Any]) -> dict[str, Any]:

@@ -27,6 +27,7 @@ import numpy as np
 from gymnasium import spaces
 
 from sim.bridges.habitat_client import ACTION_IDS, HabitatActions
+from sim.bridges.stubborn_client import Observation as _Observation
 from sim.bridges.stubborn_client import from_habitat
 from sim.errors import AgentError, ConfigError
 from sim.interface import GOAL_CATEGORIES, MPCAT40, Action, CameraModel, Observation
@@ -40,7 +41,7 @@ COMPASS_STEP_RAD = math.radians(0.2)
 end 0.05 degrees too far, so that without rounding such an agent oscillates between two headings."""
 
 
-class Observations(dict[str, Any]):
+class Observations(_Observation):
     """The observation of one step: a dict of arrays by the name of the sensor."""
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import contextlib
 import math
 import numbers
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import ArrayLike, NDArray
 
-from sim.bridges.habitat.config import Config, make_config, settings_of
+from sim.bridges.habitat.config import Config, log_ignored, make_config, settings_of
 from sim.bridges.habitat.conversions import Conversion, Observations, to_action
 from sim.bridges.habitat.episodes import ObjectGoalNavEpisode, to_habitat
 from sim.bridges.habitat.shortest_path import ShortestPaths
@@ -67,6 +67,7 @@ class Env:
     def __init__(self, config: Mapping[str, Any] | None = None, dataset: None = None, **options: Any) -> None:
         if dataset is not None:
             raise ConfigError("Env takes no dataset: split= names a split, house= an MJCF file.")
+        log_ignored(config or {})
         given = settings_of(config or {}) | _defaults | {k: v for k, v in options.items() if v is not None}
         _check_types(given)
         if "house" in given:
@@ -93,6 +94,19 @@ class Env:
     def episodes(self) -> list[ObjectGoalNavEpisode]:
         """The episodes, in their order."""
         return [to_habitat(self._env.split, episode) for episode in self._listed]
+
+    @episodes.setter
+    def episodes(self, chosen: Iterable[ObjectGoalNavEpisode]) -> None:
+        """Chooses some of these episodes, and their order; the next `reset` starts the first one."""
+        known = {each.episode_id: each for each in self._listed}
+        ids = [each.episode_id for each in chosen]
+        other = next((each for each in ids if each not in known), None)
+        if other is not None or not ids:
+            raise ConfigError(
+                f"episodes must be one or more of env.episodes, got {'none' if other is None else other}."
+            )
+        self._listed = [known[each] for each in ids]
+        self.rewind()
 
     @property
     def number_of_episodes(self) -> int:

@@ -91,21 +91,22 @@ class ShortestPathFollower:
 
     Args:
         sim: `Env.sim`.
-        goal_radius: path length to the place at which `get_next_action` stops, metres; at least a MOVE_FORWARD.
+        goal_radius: path length to the place at which `get_next_action` stops, metres; less than a MOVE_FORWARD counts
+            as that, since a place cannot be met more exactly.
         return_one_hot: True: actions are float32 (4,) with a one.
         stop_on_error: False: raise EpisodeError where no path leads to the place, in place of stopping.
 
     Raises:
-        ConfigError: the radius is too small.
+        ConfigError: the radius is not positive.
     """
 
     def __init__(
         self, sim: Simulator, goal_radius: float, return_one_hot: bool = False, stop_on_error: bool = True
     ) -> None:
-        if not goal_radius >= FORWARD_M:
-            raise ConfigError(f"ShortestPathFollower needs a goal_radius >= {FORWARD_M} m, got {goal_radius}.")
+        if not goal_radius > 0.0:
+            raise ConfigError(f"ShortestPathFollower needs a goal_radius > 0 m, got {goal_radius}.")
         self._sim = sim
-        self._radius_m = float(goal_radius)
+        self._radius_m = max(float(goal_radius), FORWARD_M)
         self._return_one_hot = return_one_hot
         self._stop_on_error = stop_on_error
         self._follower: Follower | None = None

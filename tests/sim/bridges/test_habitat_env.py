@@ -344,6 +344,36 @@ def test_the_tree_under_habitat_is_a_configuration_and_an_unknown_tree_is_none()
         settings_of(get_config(None, ["DATASET.SPLIT=a", "habitat.dataset.split=b"]))
 
 
+def test_entries_of_a_configuration_that_change_nothing_are_named(
+    house: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    config = get_config(None, ["SIMULATOR.TURN_ANGLE=15", "SIMULATOR.RGB_SENSORR.WIDTH=64", "TASK.SEED=1"])
+    Env(config, house=house, episodes=1).close()
+    said = [record.getMessage() for record in caplog.records]
+    assert "These entries of the configuration have no effect: SIMULATOR.TURN_ANGLE=15 (here 30)." in said
+    assert "These entries of the configuration are unknown here: SIMULATOR.RGB_SENSORR.WIDTH, TASK.SEED." in said
+    caplog.clear()
+    Env(get_config(None, ["ENVIRONMENT.MAX_EPISODE_STEPS=9"]), house=house, episodes=1).close()
+    assert not caplog.records
+
+
+def test_a_script_may_choose_episodes_and_give_a_benchmark_its_configuration(split: Path) -> None:
+    with Env(split=split, camera=SMALL) as env:
+        chosen = env.episodes[::-1][:2]
+        env.episodes = chosen
+        env.reset()
+        assert (env.current_episode.episode_id, env.number_of_episodes) == (chosen[0].episode_id, 2)
+        with pytest.raises(ConfigError, match=r"one or more of env\.episodes, got none"):
+            env.episodes = []
+    config = get_config(None, ["ENVIRONMENT.MAX_EPISODE_STEPS=2"])
+    assert Benchmark(config, split=split, camera=SMALL).evaluate(Wanderer(), 1)["num_steps"] == 2.0
+
+
+def test_an_observation_that_is_not_there_is_named_with_those_that_are(env: Env) -> None:
+    with pytest.raises(KeyError, match=r"no observation 'objectgoals'; there are .*objectgoal"):
+        env.reset()["objectgoals"]
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

@@ -94,6 +94,7 @@ def test_actions_can_be_one_hot_and_a_place_without_a_path_stops_or_is_an_error(
         ShortestPathFollower(env.sim, 0.5, stop_on_error=False).get_next_action([30.0, 0.0, 0.0])
 
 
-def test_a_radius_below_a_step_is_refused(env: Env) -> None:
-    with pytest.raises(ConfigError, match=r"goal_radius >= 0\.25 m, got 0\.1"):
-        ShortestPathFollower(env.sim, 0.1)
+def test_a_radius_below_a_step_counts_as_a_step_and_none_is_refused(env: Env) -> None:
+    assert ShortestPathFollower(env.sim, 0.1).get_next_action([-1.76, 0.0, 2.0]) == 0
+    with pytest.raises(ConfigError, match=r"goal_radius > 0 m, got 0\.0"):
+        ShortestPathFollower(env.sim, 0.0)
