@@ -148,12 +148,17 @@ def with_split(args: Args) -> Args:
     others = [name for name in house_files(args.out) if name != args.house.stem]
     if others:
         raise ConfigError(f"--out '{args.out}' holds the house '{others[0]}' already; give a folder of its own.")
+    if args.house.resolve().parent == args.out.resolve():
+        raise ConfigError(f"--out '{args.out}' is the folder of '{args.house}', which would be overwritten.")
     house = load_house(args.house, labels_path=args.labels, root=args.root)
+    fixed = house_sidecar(args.house, args.labels)
+    for other, is_written in ((LABELS_FILE, args.labels is not None), (f"{house.name}.json", fixed != EMPTY_SIDECAR)):
+        if (args.out / other).exists() and not is_written:
+            raise ConfigError(f"--out '{args.out}' holds '{other}', which would change the house; delete it first.")
     files = {args.out / name: content for name, content in packed(house, args.house).items()}
     if args.labels is not None:
         files[args.out / LABELS_FILE] = read_bytes(args.labels, what="Label rules")
     write_together(files)
-    fixed = house_sidecar(args.house, args.labels)
     if fixed != EMPTY_SIDECAR:
         write_sidecar(args.out / f"{house.name}.xml", fixed)
     _require_same(house, load_house(args.out / f"{house.name}.xml", labels_path=labels_of(args.out)))
@@ -165,7 +170,8 @@ def _require_same(house: House, written: House) -> None:
     first, second = house.spec.copy().compile(), written.spec.copy().compile()
     same = first.ngeom == second.ngeom and np.allclose(first.geom_pos, second.geom_pos, atol=1e-4)
     if same:
-        labels = [read_labels(model, rules=house.rules, ignore_prefix="") for model in (first, second)]
+        pairs = ((first, house.rules), (second, written.rules))
+        labels = [read_labels(model, rules=rules, ignore_prefix="") for model, rules in pairs]
         same = np.array_equal(labels[0].geom_category, labels[1].geom_category)
     if not same:
         raise HouseError(f"House '{house.name}' changes when MuJoCo writes it as one file; use it with --house.")

@@ -8,6 +8,7 @@ stubborn gallery --sheet --furniture runs/models --categories chair --out runs/g
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -79,6 +80,9 @@ def main(args: Args) -> int:
         raise ConfigError("gallery needs --houses FILE ..., --house FILE or --sheet.")
     if args.house is None and (args.labels is not None or args.root is not None):
         raise ConfigError("--labels and --root need --house.")
+    twice = [name for name, count in Counter(path.stem for path in args.houses).items() if count > 1]
+    if twice:
+        raise ConfigError(f"Two of --houses are called '{twice[0]}', so that their pictures would have one name.")
     catalogue = CATALOGUE if args.furniture is None else _imported(args.furniture, args.pool)
     sheets = {category: catalogue.styles(category) for category in args.categories or catalogue.categories}
     for path in args.houses:

@@ -77,22 +77,22 @@ def main(args: Args) -> int:
     rules = rules_of(propose(model)) if args.labels is None else read_rules(args.labels)
     house = House(house.name, house.spec, rules, house.path)
     labels = read_labels(model, rules=rules, ignore_prefix="")
-    console = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else TABLE_WIDTH)
+    console = Console(markup=False, highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else TABLE_WIDTH)
     console.print(table_of(model, rows_of(model, labels)))
     for sentence in summary(labels):
-        console.print(sentence, markup=False)
+        console.print(sentence)
     if args.out is not None:
         write_atomically(args.out, rules_text(rules))
         console.print(f"Wrote {len(rules)} rules to {args.out}. Edit the categories, then check them with --labels.")
     if args.picture is not None:
         plain, coloured = draw_top(house), draw_top(house, colours=distinct_colours(labels.categories()))
         write_picture(args.picture, np.hstack([plain, coloured]))
-        console.print(f"Drew {args.picture}.", markup=False)
+        console.print(f"Drew {args.picture}.")
     if args.labels is None:
         _warn(console, house, model)
     else:
         load_house(args.house, labels_path=args.labels, root=args.root)
-        console.print(f"'{args.house.stem}' can be used with these labels.", markup=False)
+        console.print(f"'{args.house.stem}' can be used with these labels.")
     return 0
 
 
@@ -141,7 +141,7 @@ def _warn(console: Console, house: House, model: mujoco.MjModel) -> None:
     try:
         validate_house(house, model)
     except HouseError as error:
-        console.print(f"WARNING: a run would refuse '{house.name}' with these labels: {error}", markup=False)
+        console.print(f"WARNING: a run would refuse '{house.name}' with these labels: {error}")
 
 
 def _check(args: Args) -> None:

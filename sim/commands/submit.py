@@ -20,7 +20,7 @@ from sim.analysis.comparison import read_run
 from sim.errors import ConfigError
 from sim.invocation import command
 from sim.submissions.checks import truth_of
-from sim.submissions.contents import SUFFIX, read_submission, write_submission
+from sim.submissions.contents import SUFFIX, write_submission
 from sim.submissions.leaderboard import LEAST_EPISODES
 from sim.submissions.packing import About, pack
 
@@ -51,7 +51,6 @@ def main(args: Args) -> int:
     about = About(name=args.name, authors=args.authors, description=args.description, links=args.links)
     submission = pack(read_run(args.run), about)
     size = write_submission(out, submission)
-    read_submission(out)
     inputs, count = submission.manifest.inputs, len(submission.episodes)
     isolated = "in a process of its own" if inputs.isolated else "in the process of the simulator"
     print(f"{out}: {count} episodes of {submission.manifest.split.name}, {size / 1000:.0f} KB.")

@@ -72,19 +72,24 @@ def read_scenes(path: Path) -> dict[str, SceneEpisodes]:
     """Returns the episodes of a file, or of a folder with `content/*.json.gz`, by the name of their scene.
 
     Raises:
-        ConfigError: there is no such file, or one has another format.
+        ConfigError: there is no such file, one has another format, or there are too many.
     """
     files = [path]
     if path.is_dir():
-        found = itertools.chain(path.glob("content/*.json.gz"), path.glob("*.json.gz"))
-        files = sorted(itertools.islice(found, MAX_EPISODE_FILES))
+        files = sorted(itertools.chain(path.glob("content/*.json.gz"), path.glob("*.json.gz")))
+        if len(files) > MAX_EPISODE_FILES:
+            raise ConfigError(f"--episodes '{path}' has {len(files)} files; at most {MAX_EPISODE_FILES} are read.")
     if not files:
         raise ConfigError(f"--episodes '{path}' has no content/*.json.gz.")
     scenes: dict[str, SceneEpisodes] = {}
+    seen: set[tuple[str, str | int]] = set()
     for file in files:
         content = read_gzip_json(file, SourceFile, what="Episode file")
         for entry in content.episodes:
-            scenes.setdefault(scene_name(entry.scene_id), SceneEpisodes()).entries.append(entry)
+            scene = scene_name(entry.scene_id)
+            if (scene, entry.episode_id) not in seen:  # the index of a folder may repeat what its files have
+                seen.add((scene, entry.episode_id))
+                scenes.setdefault(scene, SceneEpisodes()).entries.append(entry)
         for key, goals in content.goals_by_category.items():
             suffix = next((suffix for suffix in _SUFFIXES if f"{suffix}_" in key), None)
             if suffix is not None:

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.episodes.drawing import far_enough
-from sim.episodes.hazards import NEAR_PATH_M
 from sim.episodes.recipes import EpisodeRecipe
 from sim.geometry.pose import Pose
 from sim.houses.hazards import read_hazards
@@ -24,6 +23,8 @@ from sim.world.freespace import FreeSpace
 
 LEAST_START_M2 = 1.0
 """Smaller areas hold too few different starts for a rule."""
+NEAR_PATH_M = 0.3
+"""A path that comes this near to a hazard meets it: the robot's radius is 0.18 m, and its paths leave some margin."""
 FARTHER_PATH_M = 1.0
 """If no path leads within `NEAR_PATH_M` of a hazard, one within this distance counts."""
 VIEWS = 6

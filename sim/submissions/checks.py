@@ -103,7 +103,7 @@ def _require_same_physics(submission: Submission, where: str) -> None:
 
 def _require_same_split(submission: Submission, split: Split, where: str) -> None:
     made_on = submission.manifest.split
-    if made_on.sha256 != split.sha256:
+    if (made_on.version, made_on.sha256) != (split.version, split.sha256):
         raise ConfigError(
             f"{where} was made on the split '{made_on.name}' {made_on.version} with sha256 {made_on.sha256[:12]}, and "
             f"'{split.name}' {split.version} here has {split.sha256[:12]}; name the folder of its split with --split."

@@ -7,6 +7,7 @@ and length, and it names no path that is opened.
 from __future__ import annotations
 
 import gzip
+import tempfile
 from collections import Counter
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -15,7 +16,7 @@ import msgspec
 from msgspec import Meta
 
 from sim.errors import ConfigError
-from sim.evaluation.results import ResultLine, SplitIdentity
+from sim.evaluation.results import ResultLine
 from sim.files import write_atomically
 from sim.reading import Count, Metres, Name, Seed, parse_json, read_bytes, read_gzip_json
 
@@ -53,6 +54,14 @@ class Inputs(msgspec.Struct, forbid_unknown_fields=True):
     """The agent ran in a process of its own (`--agent process:COMMAND`), which got observations and nothing else."""
 
 
+class SplitOf(msgspec.Struct, forbid_unknown_fields=True):
+    """The split of the run."""
+
+    name: Short
+    version: Short
+    sha256: Annotated[str, Meta(pattern=r"^[0-9a-f]{64}\Z")]
+
+
 class Manifest(msgspec.Struct, forbid_unknown_fields=True):
     """What the authors say about the run."""
 
@@ -61,7 +70,7 @@ class Manifest(msgspec.Struct, forbid_unknown_fields=True):
     authors: Annotated[tuple[Short, ...], Meta(max_length=50)]
     description: Text
     links: Annotated[tuple[Link, ...], Meta(max_length=10)]
-    split: SplitIdentity
+    split: SplitOf
     seed: Seed
     physics: Count
     """Version of the physics (`sim.robot.config.PHYSICS_VERSION`)."""
@@ -73,6 +82,7 @@ class Manifest(msgspec.Struct, forbid_unknown_fields=True):
 class Result(ResultLine):
     """The result line of an episode; fields that no check needs are dropped."""
 
+    failure: Name | None = None
     stop_target_xy_m: tuple[Metres, Metres] | None = None
     touches: int | None = None
     uses_ground_truth: bool = False
@@ -132,8 +142,13 @@ def write_submission(file: Path, submission: Submission) -> int:
     """Writes a submission, the same content to the same bytes, and returns their number.
 
     Raises:
+        ConfigError: `read_submission` would refuse the file, which is not written.
         OSError: the file cannot be written.
     """
     content = gzip.compress(msgspec.json.encode(submission), 9, mtime=0)
+    with tempfile.TemporaryDirectory() as folder:
+        tried = Path(folder) / file.name
+        tried.write_bytes(content)
+        read_submission(tried)
     write_atomically(file, content)
     return len(content)

@@ -100,7 +100,7 @@ def tables(rows: Sequence[Row]) -> list[ResultTable]:
     for row in (each for each in rows if not each.refusal):
         by_split.setdefault(_split(row), []).append(row)
     for (name, version, sha256), members in sorted(by_split.items()):
-        title = f"{name} {version} ({sha256[:12]})"
+        title = f"{plain(name)} {plain(version)} ({sha256[:12]})"
         ordered = sorted(members, key=_rank)
         found.append(ResultTable(name, title, HEADER, [(_name(row), _cells(row)) for row in ordered], NOTES))
     return found

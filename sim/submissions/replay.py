@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from sim.env.scene import Scene
 from sim.episodes.splits import Episode, Split, load_split
-from sim.errors import ObjectNavError
+from sim.errors import EpisodeError, PhysicsError
 from sim.evaluation.rollout import episode_seed
 from sim.interface import Action
 from sim.robot.conditions import Conditions
@@ -62,14 +62,14 @@ def replay_house(job: Job, entries: Sequence[tuple[Entry, bool]]) -> list[Replay
     Args:
         job: common to all episodes.
         entries: episodes of one house, each with whether its frames are rendered.
+
+    Raises:
+        HouseError, RenderError: the house cannot be loaded or rendered on this machine, whatever the submission says.
     """
     began_s = time.process_time()
     split, setting = _split(job.split), job.setting
     episodes = [split.episode(entry.result.episode_id) for entry, _ in entries]
-    try:
-        world, task, look, close = _scene(split, episodes[0].house, setting, frames=any(each for _, each in entries))
-    except ObjectNavError as error:
-        return [Replay(each.episode_id, {}, (), False, str(error), 0.0) for each in episodes]
+    world, task, look, close = _scene(split, episodes[0].house, setting, frames=any(each for _, each in entries))
     found = []
     try:
         for episode, (entry, framed) in zip(episodes, entries, strict=True):
@@ -115,7 +115,7 @@ def _replay(
     *,
     began_s: float,
 ) -> Replay:
-    """Replays one episode; an error of the physics is its fault."""
+    """Replays one episode; an error of the episode or the physics is its fault."""
     fault, metrics, places = "", dict[str, Any](), ()
     try:
         world.reset(episode.start, conditions)
@@ -127,7 +127,7 @@ def _replay(
         metrics = task.metrics() | task.stop_target()
         if not task.done:
             fault = f"the episode has not ended after its {len(entry.actions)} actions"
-    except ObjectNavError as error:
+    except (EpisodeError, PhysicsError) as error:
         fault = str(error).rstrip(".")
     return Replay(episode.episode_id, metrics, places, look is not None, fault, round(time.process_time() - began_s, 4))
 

@@ -62,7 +62,7 @@ def setting_of(config: Mapping[str, Any], *, where: str) -> Setting:
         raise ConfigError(f"{where}: its configuration has no field 'config'.")
     try:
         parts = {name: _part(getattr(Setting(), name), tree.get(name), name, where) for name in PARTS}
-        setting = Setting(**parts, noise_name=_noise_name(tree["noise"]))
+        setting = Setting(**parts, noise_name=_noise_name(parts["noise"]))
     except RecursionError:
         raise ConfigError(f"{where}: its configuration is nested too deeply.") from None
     if setting.robot.physics.timestep_s < LEAST_TIMESTEP_S:
@@ -70,14 +70,9 @@ def setting_of(config: Mapping[str, Any], *, where: str) -> Setting:
     return setting
 
 
-def _noise_name(given: Mapping[str, Any]) -> str:
-    """Returns the preset with the recorded fields; a sensor that was added later has fields that a run may lack."""
-    recorded = dict(_flat(given, ""))
-    for name, preset in NOISE_PRESETS.items():
-        fields = dict(_flat(as_json(preset), ""))
-        if all(path in fields and fields[path] == value for path, value in recorded.items()):
-            return name
-    return OWN_NOISE
+def _noise_name(noise: NoiseConfig) -> str:
+    """Returns the preset that a noise is."""
+    return next((name for name, preset in NOISE_PRESETS.items() if as_json(preset) == as_json(noise)), OWN_NOISE)
 
 
 def _part(default: Any, given: Any, name: str, where: str) -> Any:

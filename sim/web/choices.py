@@ -16,7 +16,7 @@ from sim.composition.agents import EXPLORERS, SPECS, find_agent, find_explorer, 
 from sim.composition.human import HUMAN_NAME
 from sim.composition.options import RunOptions
 from sim.composition.segmenters import KINDS, NetworkConfig, find_segmentation
-from sim.episodes.splits import load_split, one_house, shipped_splits
+from sim.episodes.splits import HOUSE_SUFFIXES, load_split, one_house, shipped_splits
 from sim.errors import ConfigError, HouseError
 from sim.houses.labels import read_labels
 from sim.interface import GOAL_CATEGORIES
@@ -133,7 +133,8 @@ class Choices:
 
     def _request(self, asked: _Start, options: RunOptions) -> EpisodeRequest:
         """Returns a request; raises ConfigError if a part of it is not offered."""
-        self._require("house" if asked.split.endswith(".xml") else "split", asked.split, self._splits)
+        is_house = Path(asked.split).suffix.lower() in HOUSE_SUFFIXES
+        self._require("house" if is_house else "split", asked.split, self._splits)
         self._require("agent", asked.agent, self._agents)
         self._require("semantics", asked.semantics, self._semantics)
         if asked.explorer:

@@ -13,6 +13,7 @@ from typing import Any, BinaryIO, NamedTuple
 
 from sim import invocation
 from sim.analysis.comparison import Line, Run, differences_table, require_same_episodes
+from sim.analysis.metrics import episodes_of
 from sim.analysis.report.figures import METRICS
 from sim.analysis.tables import Cell, ResultTable
 from sim.errors import ConfigError
@@ -135,7 +136,7 @@ class Runs:
             (metric.title, [metric.cell(lines[0]), metric.cell(lines[1]), metric.difference(lines[0], lines[1])])
             for metric in METRICS
         ]
-        title = f"B - A, paired over {len(common)} episodes of both"
+        title = f"B - A, paired over {len(set(episodes_of(lines[0])))} episodes of both"
         means = ResultTable("comparison", title, ("metric", f"A: {first}", f"B: {second}", "B - A"), rows)
         return [_table_as_json(table) for table in (means, differences_table(a, b))]
 

@@ -181,3 +181,15 @@ def test_a_packed_house_keeps_its_sidecar(tmp_path: Path) -> None:
     split = load_split(tmp_path / "packed")
     assert split.sidecar("pane").zone_m == (2.0, 1.0, 4.0, 4.0)
     assert len(split.episodes) == 1
+
+
+def test_a_house_is_not_overwritten_and_nothing_of_an_earlier_command_changes_it(tmp_path: Path) -> None:
+    house = write_trap(tmp_path / "mine")
+    before = house.read_bytes()
+    with pytest.raises(ConfigError, match=r"is the folder of .* which would be overwritten"):
+        main(Args(house=house, out=house.parent))
+    assert house.read_bytes() == before
+    (tmp_path / "packed").mkdir()
+    (tmp_path / "packed" / "labels.json").write_text('{"sofa": "bed"}')
+    with pytest.raises(ConfigError, match=r"holds 'labels\.json', which would change the house"):
+        main(Args(house=house, out=tmp_path / "packed"))

@@ -16,6 +16,7 @@ from sim.commands import gallery
 from sim.commands import label as label_house
 from sim.commands.views import generate as generate_views
 from sim.episodes.splits import load_split
+from sim.errors import ConfigError
 from sim.gl import mujoco
 from sim.houses.house import House
 from sim.houses.labels import read_labels
@@ -68,6 +69,23 @@ def test_proposed_labels_can_be_written_edited_and_checked(
     assert "Goals: cabinet, cushion, sofa, plant, stool." in output
     assert "'flat' can be used with these labels." in output
     assert read(picture).shape == (220, 2 * 280, 3)
+
+
+def test_names_with_square_brackets_are_printed_as_they_are(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    house = with_box(room(4, 4), "lamp[/left]", centre_m=(1.0, 1.0, 0.5), half_m=(0.2, 0.2, 0.5))
+    (tmp_path / "lit.xml").write_text(house.spec.to_xml())
+    out = tmp_path / "[old]" / "labels.json"
+    words = ["--house", str(tmp_path / "lit.xml"), "--out", str(out)]
+    assert cli.run(label_house.Args, label_house.main, words) == 0
+    printed = capsys.readouterr().out
+    assert "lamp[/left]" in printed
+    assert f"rules to {out}." in printed
+
+
+def test_pictures_of_two_houses_of_one_name_are_refused(tmp_path: Path) -> None:
+    houses = (tmp_path / "a" / "same.xml", tmp_path / "b" / "same.xml")
+    with pytest.raises(ConfigError, match="Two of --houses are called 'same'"):
+        gallery.main(gallery.Args(houses=houses, out=tmp_path))
 
 
 def test_proposed_labels_never_replace_a_file(scene: tuple[Path, Path], capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,6 +14,7 @@ fault.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import statistics
 import time
@@ -195,9 +196,10 @@ def _void(house: House, views: int) -> list[str]:
     """Returns a sentence if views from random free positions show void."""
     if not views:
         return []
-    scene = Scene(house, robot=RobotConfig(), camera=CAMERA, profile="fast")
-    void = sum(_void_pixels(scene, views))
-    scene.close()
+    with contextlib.closing(Scene(house, robot=RobotConfig(), camera=CAMERA, profile="fast")) as scene:
+        if not scene.task.truth.space(0.0).free.any():
+            return ["there is no free place at floor level for views"]
+        void = sum(_void_pixels(scene, views))
     share = void / (views * CAMERA.width_px * CAMERA.height_px)
     return (
         [f"{void} pixels of {views} views ({share:.1%}) show void: no surface, or one without a label"] if void else []

@@ -19,7 +19,7 @@ import tyro
 from sim import cli
 from sim.commands.seal.make import make_split, require_empty
 from sim.episodes.splits import Split, load_split
-from sim.errors import ConfigError, ObjectNavError
+from sim.errors import ConfigError
 from sim.submissions.sealing import Seal, digest_of, other_versions, read_seal, read_secret, require_sealed
 
 
@@ -71,7 +71,7 @@ def _made(args: Args, seal: Seal) -> Split:
     try:
         split = make_split(args.out, secret, houses=seal.houses, episode_count=seal.episodes, workers=args.workers)
         require_sealed(split, seal)
-    except ObjectNavError:
-        shutil.rmtree(args.out)
+    except BaseException:  # Ctrl-C too
+        shutil.rmtree(args.out, ignore_errors=True)
         raise
     return split

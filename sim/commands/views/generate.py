@@ -149,9 +149,7 @@ def main(args: Args) -> int:
         sys.stdout.flush()
         notes[int(note.shard.rsplit("-", 1)[1])] = note
     # Other machines may have finished shards in the meantime.
-    complete = [
-        n for task in tasks if (n := notes[task.number] or read_note(args.out, shard_name(task.number), verify=False))
-    ]
+    complete = [note for task in tasks if (note := notes[task.number] or _kept(args, task, config)) is not None]
     command = "stubborn views " + _command(args)
     index = write_index(args.out, complete, command=command, config=config)
     print(_summary(index))
@@ -211,7 +209,8 @@ def _shard_of(args: Args, config: dict[str, Any], task: ShardTask, fresh_seed: i
     try:
         name = shard_name(task.number)
         rng = np.random.default_rng([args.seed, 1, task.number])
-        record = {"house": task.house, "seed": args.seed, "profile": args.profile, "versions": config["versions"]}
+        shown = task.house if fresh_seed is None else _recipe(args, fresh_seed).name
+        record = {"house": shown, "seed": args.seed, "profile": args.profile, "versions": config["versions"]}
         views = sample_views(
             scene, rng, task.views, stem=name, record=record, block_px=args.shrink, extras=args.extras,
             sequence=args.sequence, aim=args.aim, styles=styles,

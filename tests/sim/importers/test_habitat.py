@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import shutil
 from collections import Counter
@@ -16,7 +17,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from sim.commands.importing import habitat as command
-from sim.episodes.imported import scene_name
+from sim.episodes.imported import read_scenes, scene_name
 from sim.episodes.splits import load_split
 from sim.errors import ConfigError, HouseError
 from sim.gl import mujoco
@@ -93,6 +94,17 @@ def test_a_home_has_its_instances_and_rooms_and_an_open_door(
     assert sum(room.area_m2 for room in rooms) == pytest.approx(32.0, rel=0.04)
     if name != "mp3d":  # its surface is uneven, and its check costs the same again
         assert check_own_house(house)[0] == []
+
+
+def test_an_episode_that_index_and_content_have_counts_once(tmp_path: Path) -> None:
+    entry = {
+        "episode_id": 0, "scene_id": "hm3d/val/00800-x/x.basis.glb", "start_position": [0, 0, 0],
+        "start_rotation": [0, 0, 0, 1], "object_category": "chair",
+    }  # fmt: skip
+    (tmp_path / "content").mkdir()
+    for name in ("val.json.gz", "content/x.json.gz"):
+        (tmp_path / name).write_bytes(gzip.compress(json.dumps({"episodes": [entry]}).encode()))
+    assert [len(each.entries) for each in read_scenes(tmp_path).values()] == [1]
 
 
 def test_a_dynamic_chair_is_turned_and_can_be_pushed(homes: dict[str, tuple[Path, Path, House]]) -> None:

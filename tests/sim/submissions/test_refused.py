@@ -11,7 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim.configuration import as_json
 from sim.errors import ConfigError
+from sim.sensors.noise import NOISE_PRESETS
 from sim.submissions.contents import MAX_FILE_BYTES, read_submission
 from tests.helpers.submissions import (
     Edit,
@@ -38,6 +40,14 @@ REFUSED: dict[str, tuple[Edit, str]] = {
     "another goal": (in_first_result(goal="bed"), "its result has goal 'bed', the split has 'sofa'"),
     "another house": (in_first_result(house="palace"), "its result has house 'palace'"),
     "another split": (in_split(sha256="0" * 64), "was made on the split 'tiny' 1 with sha256 000000000000"),
+    "another version of the split": (in_split(version="2"), "was made on the split 'tiny' 2 with sha256"),
+    "a version of the split that is markup": (in_split(version="=1**\n\n<img src=//evil>"), "version"),
+    "a split without a hash": (in_split(sha256="x"), "sha256"),
+    "a cause of failure with control characters": (in_first_result(success=0.0, failure="a\x1b[2J"), "failure"),
+    "a part of a noise": (
+        together(in_inputs(noise="harsh"), in_tree("", noise={"depth": as_json(NOISE_PRESETS["harsh"])["depth"]})),
+        "declares noise 'harsh', and its configuration has 'own'",
+    ),
     "an action that does not exist": (in_actions(lambda a: "7" + a[1:]), "actions'"),
     "actions after STOP": (in_actions(lambda a: a + "11", counted=True), "has actions after STOP"),
     "too many actions": (in_actions(lambda a: "1" * 26, counted=True), "has 26 actions; the task allows 25"),

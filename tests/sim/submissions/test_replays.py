@@ -13,7 +13,9 @@ import pytest
 from sim.analysis.comparison import read_run
 from sim.commands import submit
 from sim.configuration import as_json
+from sim.errors import HouseError, RenderError
 from sim.sensors.actuation_noise import ActuationNoise
+from sim.submissions import replay
 from sim.submissions.contents import read_submission
 from sim.submissions.packing import About, pack
 from tests.helpers.submissions import (
@@ -134,6 +136,18 @@ def test_a_replay_finds_a_lie(folder: Path, tmp_path: Path, lie: str) -> None:
     first, *_ = judged(folder, written(tmp_path / "forged.json.gz", content))
     assert first.judgement == "different"
     assert re.search(sentence, first.text), first.text
+
+
+@pytest.mark.parametrize("error", [RenderError("OpenGL is not available here."), HouseError("House 'x' is missing.")])
+def test_a_fault_of_this_machine_is_no_verdict_on_the_authors(
+    folder: Path, error: Exception, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr(replay, "_scene", fails)
+    with pytest.raises(type(error), match=str(error)):
+        judged(folder, folder / "oracle.json.gz")
 
 
 def test_a_result_that_no_action_can_have_made_is_told_from_changed_actions(folder: Path, tmp_path: Path) -> None:
