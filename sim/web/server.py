@@ -339,7 +339,10 @@ def _carry_out(hub: Hub, make_request: MakeRequest, client: Client, text: str | 
         message = parse_json(text, dict[str, Any], where="The message")
         if message.get("do") == "show":
             wanted = message.get("pictures")
+            before = client.names
             client.names = frozenset(name for name in NAMES if isinstance(wanted, list) and name in wanted)
+            if client.names - before:
+                client.frame_number = 0  # the present frame may have them already
         elif message.get("do") in ("start", "again"):
             hub.session.controls.ask_for(make_request(message))
         else:

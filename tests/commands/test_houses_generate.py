@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from sim.commands.houses import generate as generate_houses
-from sim.errors import HouseError
+from sim.errors import ConfigError, HouseError
 from sim.housegen.furniture.catalogue import Catalogue
 from sim.housegen.generator import HouseConfig
 from sim.housegen.splits.recipes import Recipe
@@ -54,3 +55,19 @@ def test_houses_of_withheld_styles_show_what_training_leaves_out(
     chairs = [shown[i].styles("chair", "wide", "dining") for i in range(2)]
     assert all(is_withheld(style) for style in chairs[1])
     assert not all(is_withheld(style) for style in chairs[0])
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"split": "val", "area_m2": 80.0}, "--area-m2 has no effect with --split val"),
+        ({"split": "train", "first_seed": 3}, "--first-seed has no effect with --split train"),
+        (
+            {"transfer_test": True, "furniture": Path("models"), "withheld": "only"},
+            "--withheld has no effect with --tra",
+        ),
+    ],
+)
+def test_options_that_recipes_determine_are_refused(options: dict[str, Any], message: str, tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=message):
+        generate_houses.main(generate_houses.Args(out=tmp_path, **options))

@@ -25,7 +25,7 @@ import statistics
 import sys
 import time
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Literal
 
@@ -112,6 +112,12 @@ def main(args: Args) -> int:
     for option, given in (("--transfer-test", args.transfer_test), ("--only-imported", args.only_imported)):
         if given and args.furniture is None:
             raise ConfigError(f"{option} needs --furniture, a folder that `{command('import', 'furniture')}` made.")
+    if args.split is not None or args.transfer_test:
+        kept = {"out", "split", "houses", "workers", "furniture", "transfer_test", "furniture_split", "only_imported"}
+        for each in fields(args):
+            if each.name not in kept and getattr(args, each.name) != each.default:
+                of = f"--split {args.split}" if args.split else "--transfer-test"
+                raise ConfigError(f"--{each.name.replace('_', '-')} has no effect with {of}, whose recipes say it.")
     began_s = time.perf_counter()
     if args.split == "train":
         made = list(_write_train(args))

@@ -11,7 +11,8 @@ import pytest
 pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
 
 from sim.web.answers import OpenFile
-from sim.web.server import OnlyFromHere
+from sim.web.driven import DrivenRuns
+from sim.web.server import Client, Hub, OnlyFromHere, _carry_out
 
 HOSTS = frozenset(("127.0.0.1", "localhost", "::1"))
 
@@ -102,3 +103,16 @@ def test_a_file_that_changes_meanwhile_has_the_length_that_was_announced(tmp_pat
     answer = OpenFile((tmp_path / "file").open("rb"), "video/mp4")
     (tmp_path / "file").write_bytes(now)
     assert len(answer_to(answer, [])[2]) == 10
+
+
+def test_a_page_that_shows_another_picture_gets_the_present_frame_again(tmp_path: Path) -> None:
+    hub, page = Hub(DrivenRuns(tmp_path)), Client()
+
+    def tell(text: str) -> int:
+        page.frame_number = 7
+        assert _carry_out(hub, lambda message: None, page, text) is None  # type: ignore[arg-type]
+        return page.frame_number
+
+    assert tell('{"do": "show", "pictures": ["camera"]}') == 7
+    assert tell('{"do": "show", "pictures": ["camera", "map"]}') == 0
+    assert tell('{"do": "show", "pictures": ["camera", "map"]}') == 7
