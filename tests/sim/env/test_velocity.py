@@ -115,8 +115,7 @@ def test_a_collision_is_counted_once_when_a_contact_begins_to_block(tmp_path: Pa
 def test_a_robot_that_swings_at_furniture_with_slipping_wheels_has_one_collision(seed: int, steps: int) -> None:
     env = ObjectNavVelocityEnv(split="val", sensors=(), time_limit_s=30.0)
     env.reset(seed=seed)
-    for _ in range(steps):
-        info = env.step(np.array(AHEAD, np.float32))[-1]
+    info = drive(env, AHEAD, steps)[-1]
     assert (info["collisions"], info["blocked"]) == (1, True)
     env.close()
 
