@@ -31,7 +31,7 @@ from sim import cli
 from sim.analysis.metrics import COLLISIONS, SPL, SUCCESS, Metric
 from sim.evaluation.intervals import Estimate, estimate, paired_difference
 from sim.evaluation.results import metric_value
-from tools.research.result_archive import ARCHIVES, ArchivedRun, RunKey, read_archives
+from tools.research.result_archive import ARCHIVE, ArchivedRun, RunKey, read_archive
 from tools.research.result_definitions import run_key
 
 SIZES = ((10, 10), (15, 7), (20, 15), (30, 7))
@@ -69,8 +69,8 @@ class Args:
     """Resamples of the bootstraps."""
     only_ours: bool = False
     """Simulate the interval of the results alone."""
-    archives: tuple[Path, ...] = ARCHIVES
-    """Archives of result lines."""
+    archive: Path = ARCHIVE
+    """Archive of result lines."""
     seed: cli.Seed = 0
 
 
@@ -89,7 +89,7 @@ def main(args: Args) -> int:
     rng = np.random.default_rng(args.seed)
     methods = {} if args.only_ours else METHODS
     with tempfile.TemporaryDirectory() as folder:
-        known = list(scenarios(read_archives(args.archives, Path(folder), lambda _: None)))
+        known = list(scenarios(read_archive(args.archive, Path(folder), lambda _: None)))
     names = " ".join(f"{name:>12}" for name in ("ours", *methods))
     print(f"Coverage in % and, after /, width over that of t; houses x episodes, correlation\n{'':46}{names}")
     for houses, episodes in SIZES:

@@ -9,13 +9,12 @@ from rich.console import Console
 from sim.commands.reproduce.paper_tables import PAPER_TABLES, table_named
 from sim.commands.reproduce.reproduce import Args, episodes_of, make_table
 from sim.errors import ConfigError
+from tools.research.result_archive import ARCHIVE
 
 PAPER = "paper.md"
-VERSION = "3.0.0"
-"""Version of the splits of the page's runs."""
 EPISODES = 200
 """The first episodes of val, as far as all runs of a table have them."""
-ABOUT = """\
+ABOUT = f"""\
 # The paper's tables
 
 Columns that begin with *paper* are of Luo et al. (2022), from MP3D houses in Habitat; all others are measured here, in
@@ -24,7 +23,7 @@ segmentation, `rednet` the network that ships. `cloned`, a small end-to-end agen
 and is not that agent.
 
 `stubborn reproduce all --episodes 200 --workers 2` runs all of it again, and resumes; each table states its hours. This
-page is made from the [result lines](splits-3.0.0.tar.gz) by `python -m tools.research.result_tables`.
+page is made from the [result lines]({ARCHIVE.name}) by `python -m tools.research.result_tables`.
 
 """
 
@@ -43,6 +42,6 @@ def paper_page(folder: Path) -> str:
     for name in PAPER_TABLES:
         page = make_table(part, name, table_named(name).setups(), Console(quiet=True))
         if page is None:
-            raise ConfigError(f"The archive of splits {VERSION} lacks a run of the paper's table '{name}'.")
+            raise ConfigError(f"'{ARCHIVE.name}' lacks a run of the paper's table '{name}'.")
         pages.append(page)
     return ABOUT + "\n".join(pages)

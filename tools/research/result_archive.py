@@ -1,15 +1,13 @@
-"""Reads the archives of result lines, and chooses the runs that the tables of results are made from.
+"""Reads the archive of result lines that the tables of results are made from.
 
-An archive, such as `docs/tables/splits-2.0.0.tar.gz` for version 2.0.0 of the splits, holds one folder for each run,
-with the `config.json` and `results.jsonl` that `stubborn run` wrote. Runs that newer ones replace are in its folder
-`older`; tables do not use them.
+It holds one folder for each run, with the `config.json` and `results.jsonl` that `stubborn run` wrote.
 """
 
 from __future__ import annotations
 
 import shlex
 import tarfile
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -24,9 +22,10 @@ from sim.errors import ConfigError
 from sim.reading import PlainMember, convert, open_plain
 
 ROOT = Path(__file__).resolve().parents[2]
-ARCHIVES = tuple(sorted((ROOT / "docs" / "tables").glob("splits-*.tar.gz")))
-OLDER = "older"
-"""The folder of the archive with the runs that newer ones replace."""
+TABLES = ROOT / "docs" / "tables"
+VERSION = "3.0.0"
+"""Version of the splits of the tables. Results of different ones are of different houses or physics."""
+ARCHIVE = TABLES / f"splits-{VERSION}.tar.gz"
 RUN_FILES = ("config.json", "results.jsonl")
 MAX_FILE_BYTES = 50_000_000
 GROUND_TRUTH_KINDS = ("gt", "noisy")
@@ -56,7 +55,7 @@ class RunKey:
     """Options of `stubborn run` that are not the default, such as "--explorer informed-tour"."""
     semantics: str
     version: str
-    """Version of the splits: results of different ones are of different houses or physics."""
+    """Version of the splits."""
 
     @property
     def name(self) -> str:
@@ -115,14 +114,6 @@ class ArchivedRun:
         return " ".join(filter(None, [*parts, "--split", shlex.quote(source), f"--episodes {episodes}"]))
 
 
-def read_archives(archives: Iterable[Path], folder: Path, say: Say) -> dict[RunKey, ArchivedRun]:
-    """Returns the runs of several archives, each of another version of the splits; see `read_archive`."""
-    runs: dict[RunKey, ArchivedRun] = {}
-    for archive in archives:
-        runs |= read_archive(archive, folder / archive.name.removesuffix(".tar.gz"), say)
-    return runs
-
-
 def read_archive(archive: Path, folder: Path, say: Say) -> dict[RunKey, ArchivedRun]:
     """Returns the runs of an archive; what is not a run is reported and skipped.
 
@@ -132,47 +123,28 @@ def read_archive(archive: Path, folder: Path, say: Say) -> dict[RunKey, Archived
         say: receives a sentence on each folder and file that is skipped.
 
     Raises:
-        ConfigError: the archive cannot be read, or holds no run.
+        ConfigError: the archive cannot be read, holds no run, or holds two of the same row.
     """
     try:
         with open_plain(archive, what="Archive") as stream, tarfile.open(fileobj=stream, tarinfo=PlainMember) as opened:
             names = sorted(set(_extract(opened, folder, say)))
     except (OSError, tarfile.TarError, EOFError, ValueError, RecursionError) as error:
         raise ConfigError(f"Archive '{archive}' cannot be read: {error}.") from None
-    found: list[ArchivedRun] = []
+    found: dict[RunKey, ArchivedRun] = {}
     for name in names:
         try:
             run = read_run(folder / name)
             if not run.lines:
                 raise ConfigError("it has no episode.")
-            found.append(ArchivedRun(key_of(run), run, name))
+            archived = ArchivedRun(key_of(run), run, name)
         except ConfigError as error:
             say(f"Skipped '{name}': {error}")
+            continue
+        if found.setdefault(archived.key, archived) is not archived:
+            raise ConfigError(f"'{found[archived.key].folder}' and '{name}' of '{archive}' are runs of the same row.")
     if not found:
         raise ConfigError(f"Archive '{archive}' holds no run.")
-    return newest(found, say)
-
-
-def newest(runs: Iterable[ArchivedRun], say: Say) -> dict[RunKey, ArchivedRun]:
-    """Returns one run for each key: that with the most episodes, among equals that of the later version.
-
-    Raises:
-        ConfigError: two runs are equal in both.
-    """
-    chosen: dict[RunKey, ArchivedRun] = {}
-    for run in runs:
-        other = chosen.setdefault(run.key, run)
-        if other is run:
-            continue
-        if _rank(other) == _rank(run):
-            raise ConfigError(
-                f"'{other.folder}' and '{run.folder}' are runs of the same agent, split and segmentation; move the "
-                f"older one to the folder '{OLDER}' of the archive."
-            )
-        kept, dropped = (run, other) if _rank(run) > _rank(other) else (other, run)
-        say(f"Skipped '{dropped.folder}': '{kept.folder}' has more episodes or a later version.")
-        chosen[run.key] = kept
-    return chosen
+    return found
 
 
 def key_of(run: Run) -> RunKey:
@@ -204,16 +176,11 @@ def _setting_text(value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value).replace(" ", "")
 
 
-def _rank(run: ArchivedRun) -> tuple[int, Sequence[int]]:
-    version = str(run.run.config.get("versions", {}).get("stubborn-objectnav", "0"))
-    return len(run.run.lines), [int(part) for part in version.split(".") if part.isdigit()]
-
-
 def _extract(opened: tarfile.TarFile, folder: Path, say: Say) -> Iterator[str]:
     """Writes the files of runs below a folder, and yields the folder of each in the archive."""
     for member in opened:
         path = PurePosixPath(member.name)
-        if member.isdir() or path.parts[:1] == (OLDER,):
+        if member.isdir():
             continue
         inside = not path.is_absolute() and ".." not in path.parts and len(path.parts) > 1
         if not inside or not member.isfile() or path.name not in RUN_FILES or member.size > MAX_FILE_BYTES:

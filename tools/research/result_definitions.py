@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from sim.analysis.metrics import COLLISIONS, EXPLORED, FIRST_SIGHT, SPL, STEPS, SUCCESS, TRAPPED, Metric
-from tools.research.result_archive import RunKey
+from tools.research.result_archive import VERSION, RunKey
 
 SOFT_SPL = Metric("soft SPL", "soft_spl", digits=3)
 DISTANCE = Metric("distance to goal, m", "distance_to_goal", digits=2)
@@ -62,17 +62,6 @@ class PageTable:
             yield from (row for row, _ in cells)
 
 
-EARLIER = "2.0.0"
-"""Version of the splits of most tables but the headline, of earlier physics and an earlier network."""
-HEADLINE_VERSIONS = {
-    "val": "3.0.0",
-    "large": "3.0.0",
-    "hazards": "3.0.0",
-    "transfer": "3.0.0",
-    "contact-val": "2.1.0",
-    "contact-heldout": "2.1.0",
-}
-"""That of the splits of the headline table. The traps are the same in 2.1.0 and 3.0.0."""
 HEADLINE_EPISODES = {
     "val": 200,
     "large": 100,
@@ -83,7 +72,7 @@ HEADLINE_EPISODES = {
 }
 HEADLINE = {
     "val": ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet"),
-    "large": ("oracle gt", "stubborn gt", "stubborn-plus rednet"),
+    "large": ("oracle gt", "stubborn gt"),
     "hazards": ("stubborn gt", "stubborn-plus gt"),
     "transfer": ("stubborn-plus rednet",),
     "contact-val": ("stubborn-plus gt",),
@@ -94,9 +83,9 @@ FURTHER_EPISODES = {"large": 100, "hazards": 100, "test": 500}
 FURTHER = {
     "large": ("stubborn rednet", "stubborn-plus rednet"),
     "hazards": ("stubborn rednet", "stubborn-plus rednet"),
-    "test": ("stubborn rednet", "stubborn-plus rednet"),
+    "test": ("stubborn-plus rednet",),
 }
-"""The same on further splits, of the earlier version."""
+"""The same on harder splits and, for the last measurement, on `test`."""
 RESOLVED = ("headline", "further")
 """Tables whose primary comparisons have a row in resolution.csv."""
 ABLATION = {
@@ -106,8 +95,7 @@ ABLATION = {
     "stubborn-iv": "IV: and exploration avoids them",
     "stubborn": "V: and visited ground is free",
 }
-ABLATION_SPLITS = ("val", "hazards", "large")
-ABLATION_EPISODES = 200
+ABLATION_EPISODES = {"val": 200, "hazards": 200}
 EXPLORERS = {
     "stubborn": "corners (`stubborn`)",
     "frontier-avoid": "`frontier-avoid`",
@@ -118,7 +106,7 @@ EXPLORERS = {
     "random": "`random`",
     "oracle": "`oracle`",
 }
-EXPLORER_EPISODES = {"val": 200, "large": 300}
+EXPLORER_EPISODES = {"val": 200, "large": 100}
 PRIMARY_EXPLORERS = ("stubborn --explorer informed-tour", "poni")
 """Explorers whose comparison with corners is primary."""
 DRIFT = ("stubborn --noise realsense", "stubborn --noise realsense --config noise.pose.from_odometry=false")
@@ -131,37 +119,34 @@ SEMEXP = {
     "semexp --config agent.explorer.semantics=shuffled": "`semexp`, shuffled semantics",
 }
 """The last two are controls: they show whether `semexp` uses the goal and the semantics, and are compared with it."""
-SEMEXP_VERSION, SEMEXP_EPISODES = "3.0.0", 200
-REPLACED = (("semexp", EARLIER),)
-"""Agents and versions of the splits whose runs are those of another agent, which had this name before."""
+SEMEXP_EPISODES = 200
 NETWORK = (
-    ("val", "stubborn", "naive Bayes", "stubborn", "rednet", 200),
-    ("val", "stubborn", "none", "stubborn --verification none", "rednet", 200),
-    ("val", "stubborn-plus", "tracks", "stubborn-plus", "rednet", 200),
-    ("val, `noisy`", "stubborn", "naive Bayes", "stubborn", "noisy", 200),
-    ("val, `noisy`", "stubborn-plus", "tracks", "stubborn-plus", "noisy", 200),
-    ("transfer", "stubborn", "naive Bayes", "stubborn", "rednet", 100),
-    ("transfer", "stubborn-plus", "tracks", "stubborn-plus", "rednet", 100),
+    ("val", "stubborn", "naive Bayes", 200),
+    ("val", "stubborn --verification none", "none", 200),
+    ("val", "stubborn-plus", "tracks", 200),
+    ("transfer", "stubborn", "naive Bayes", 100),
+    ("transfer", "stubborn-plus", "tracks", 100),
 )
+"""Split, agent with options, its verification, episodes."""
 
 
-def run_key(split: str, name: str, semantics: str, version: str = EARLIER) -> RunKey:
+def run_key(split: str, name: str, semantics: str) -> RunKey:
     """Returns the key of an agent with options, such as "stubborn --explorer tour"."""
     agent, _, options = name.partition(" ")
-    return RunKey(split, agent, options, semantics, version)
+    return RunKey(split, agent, options, semantics, VERSION)
 
 
-def _of_agent(split: str, agent: str, version: str) -> RunKey:
+def _of_agent(split: str, agent: str) -> RunKey:
     """Returns the key of an entry of `HEADLINE`, such as "stubborn gt"."""
     name, semantics = agent.split()
-    return run_key(split, name, semantics, version)
+    return run_key(split, name, semantics)
 
 
 def page_tables() -> tuple[PageTable, ...]:
     """Returns the tables of the page."""
     return (
-        _agents("headline", HEADLINE, HEADLINE_EPISODES, HEADLINE_VERSIONS),
-        _agents("further", FURTHER, FURTHER_EPISODES, dict.fromkeys(FURTHER, EARLIER)),
+        _agents("headline", HEADLINE, HEADLINE_EPISODES),
+        _agents("further", FURTHER, FURTHER_EPISODES),
         _ablation(),
         _explorers(),
         _semexp(),
@@ -171,53 +156,50 @@ def page_tables() -> tuple[PageTable, ...]:
 
 def comparisons() -> Iterator[Comparison]:
     """Yields the comparisons that the page may quote."""
-    yield from _agents_compared("headline", HEADLINE, HEADLINE_EPISODES, HEADLINE_VERSIONS)
-    yield from _agents_compared("further", FURTHER, FURTHER_EPISODES, dict.fromkeys(FURTHER, EARLIER))
+    yield from _agents_compared("headline", HEADLINE, HEADLINE_EPISODES)
+    yield from _agents_compared("further", FURTHER, FURTHER_EPISODES)
     *rows, whole = ABLATION
-    for split in ABLATION_SPLITS:
+    for split, episodes in ABLATION_EPISODES.items():
         for name in rows:
             first, second = run_key(split, name, "gt"), run_key(split, whole, "gt")
-            yield Comparison("ablation", first, second, ABLATION_EPISODES)
+            yield Comparison("ablation", first, second, episodes)
     for split, episodes in EXPLORER_EPISODES.items():
         for name in list(EXPLORERS)[1:]:
             first, second = run_key(split, name, "gt"), run_key(split, "stubborn", "gt")
             yield Comparison("explorers", first, second, episodes, name in PRIMARY_EXPLORERS)
-    corners, semexp, *controls = (run_key("val", name, "gt", SEMEXP_VERSION) for name in SEMEXP)
+    corners, semexp, *controls = (run_key("val", name, "gt") for name in SEMEXP)
     for first, second in ((semexp, corners), *((control, semexp) for control in controls)):
         yield Comparison("semexp", first, second, SEMEXP_EPISODES)
     yield from _network_comparisons()
-    first, second = (run_key("val", name, "gt", HEADLINE_VERSIONS["val"]) for name in DRIFT)
+    first, second = (run_key("val", name, "gt") for name in DRIFT)
     yield Comparison("drift", first, second, DRIFT_EPISODES)
 
 
 def _agents_compared(
-    table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int], versions: Mapping[str, str]
+    table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int]
 ) -> Iterator[Comparison]:
     """Yields each pair of agents of a split; those of our two agents with the same segmentation are primary."""
     for split, names in agents.items():
-        present = [_of_agent(split, agent, versions[split]) for agent in names]
+        present = [_of_agent(split, agent) for agent in names]
         for second, first in itertools.combinations(present, 2):
             primary = second.agent == "stubborn" and first.semantics == second.semantics
             yield Comparison(table, first, second, episodes[split], primary)
 
 
 def _network_comparisons() -> Iterator[Comparison]:
-    """Yields, for each split and segmentation of the table, each row minus the first one."""
-    keys: dict[tuple[str, str, int], list[RunKey]] = {}
-    for shown, _, _, name, semantics, episodes in NETWORK:
-        split = _split(shown)
-        keys.setdefault((split, semantics, episodes), []).append(run_key(split, name, semantics))
-    for (_, _, episodes), (second, *others) in keys.items():
+    """Yields, for each split of the table, each row minus the first one."""
+    keys: dict[tuple[str, int], list[RunKey]] = {}
+    for split, name, _, episodes in NETWORK:
+        keys.setdefault((split, episodes), []).append(run_key(split, name, "rednet"))
+    for (_, episodes), (second, *others) in keys.items():
         yield from (Comparison("network", first, second, episodes) for first in others)
 
 
-def _agents(
-    table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int], versions: Mapping[str, str]
-) -> PageTable:
+def _agents(table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int]) -> PageTable:
     rows = []
     for split, agent in ((split, agent) for split, names in agents.items() for agent in names):
         name, semantics = agent.split()
-        row = RowKey(_of_agent(split, agent, versions[split]), episodes[split])
+        row = RowKey(_of_agent(split, agent), episodes[split])
         shown = "-" if name == "oracle" else "truth" if semantics == "gt" else "network"
         rows.append(((f"{split}, {row.episodes}", f"`{name}`", shown), _cells(row, (SUCCESS, SPL))))
     header = ("split, episodes", "agent", "segmentation", "success %", "SPL")
@@ -227,15 +209,9 @@ def _agents(
 def _ablation() -> PageTable:
     rows = []
     for name, label in ABLATION.items():
-        val, hazards, large = (
-            RowKey(run_key(split, name, "gt"), ABLATION_EPISODES) for split in ("val", "hazards", "large")
-        )
-        hard = _cells(hazards, (SUCCESS, TRAPPED, COLLISIONS))
-        rows.append(((label,), (*_cells(val, (SUCCESS,)), *hard, *_cells(large, (SUCCESS,)))))
-    header = (
-        "measures", "val: success %", "hazards: success %", "hazards: trapped %", "hazards: collisions",
-        "large: success %",
-    )  # fmt: skip
+        val, hazards = (RowKey(run_key(split, name, "gt"), count) for split, count in ABLATION_EPISODES.items())
+        rows.append(((label,), (*_cells(val, (SUCCESS,)), *_cells(hazards, (SUCCESS, TRAPPED, COLLISIONS)))))
+    header = ("measures", "val: success %", "hazards: success %", "hazards: trapped %", "hazards: collisions")
     return PageTable("ablation", header, tuple(rows))
 
 
@@ -252,16 +228,16 @@ def _explorers() -> PageTable:
 def _semexp() -> PageTable:
     rows = []
     for name, label in SEMEXP.items():
-        row = RowKey(run_key("val", name, "gt", SEMEXP_VERSION), SEMEXP_EPISODES)
+        row = RowKey(run_key("val", name, "gt"), SEMEXP_EPISODES)
         rows.append(((label,), _cells(row, (SUCCESS, SPL, MEDIAN))))
     return PageTable("semexp", ("explorer", "success %", "SPL", "first sight"), tuple(rows))
 
 
 def _network() -> PageTable:
     rows = []
-    for shown, agent, verification, name, semantics, episodes in NETWORK:
-        row = RowKey(run_key(_split(shown), name, semantics), episodes)
-        labels = (f"{shown}, {episodes}", f"`{agent}`", verification)
+    for split, name, verification, episodes in NETWORK:
+        row = RowKey(run_key(split, name, "rednet"), episodes)
+        labels = (f"{split}, {episodes}", f"`{row.run.agent}`", verification)
         rows.append((labels, _cells(row, (SUCCESS, SPL, FALSE_DETECTIONS))))
     header = ("split, episodes", "agent", "verification", "success %", "SPL", "false detections")
     return PageTable("network", header, tuple(rows))
@@ -269,7 +245,3 @@ def _network() -> PageTable:
 
 def _cells(row: RowKey, columns: Sequence[Metric | str]) -> tuple[tuple[RowKey, Metric | str], ...]:
     return tuple((row, column) for column in columns)
-
-
-def _split(shown: str) -> str:
-    return shown.partition(",")[0]

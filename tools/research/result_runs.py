@@ -4,7 +4,7 @@
 
 The folder of the runs, --out, receives the runs of the archive first, so that another machine continues where one
 stopped; rows take turns. The archive then holds all runs of --out that are of its version of the splits.
-`tools.research.result_tables` makes the tables from the archives.
+`tools.research.result_tables` makes the tables from it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import tarfile
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from sim import cli
@@ -30,9 +30,8 @@ from sim.episodes.splits import load_split
 from sim.errors import ConfigError
 from sim.files import write_atomically
 from sim.reading import read_bytes
-from tools.research.result_archive import RUN_FILES, RunKey, key_of, read_archive
+from tools.research.result_archive import ARCHIVE, RUN_FILES, VERSION, RunKey, key_of, read_archive
 from tools.research.result_definitions import comparisons, page_tables
-from tools.research.result_tables import TABLES
 
 CHUNK = 50
 """Episodes of a row before the next row's turn."""
@@ -42,9 +41,7 @@ CHUNK = 50
 class Args:
     """Run the missing episodes of the tables of results, and archive their lines."""
 
-    version: str = "3.0.0"
-    """Version of the splits; rows of splits that have another one now are left out."""
-    splits: tuple[str, ...] = ("val", "hazards", "large", "test")
+    splits: tuple[str, ...] = ("val", "hazards", "large", "test", "contact-val", "contact-heldout")
     """Splits whose rows are run; runs of another one, such as a folder, are archived too if --out has them."""
     minutes: cli.NotNegative | None = None
     """Time limit: no chunk begins after it. 0 only archives the runs of --out."""
@@ -52,45 +49,46 @@ class Args:
     """Number of processes."""
     out: cli.OutFolder = Path("runs/results")
     """Folder of the runs; that of `stubborn reproduce` will do."""
-    tables: cli.OutFolder = TABLES
-    """Folder of the archive."""
+    archive: Path = ARCHIVE
+    """The archive, which is read and written."""
 
 
 def main(args: Args) -> int:
     """Runs episodes and writes the archive; returns the exit status."""
-    archive = args.tables / f"splits-{args.version}.tar.gz"
-    if archive.is_file():
-        unpack(archive, args.out, args.version)
-    wanted, folders = needed(args.splits, args.version), runs_in(args.out, args.version)
+    if args.archive.is_file():
+        unpack(args.archive, args.out)
+    wanted, folders = needed(args.splits), runs_in(args.out)
     end_s = time.monotonic() + (math.inf if args.minutes is None else 60.0 * args.minutes)
     for turn in range(math.ceil(max(wanted.values(), default=0) / CHUNK)):
         for key, most in wanted.items():
             if time.monotonic() < end_s:
                 run(key, folders.setdefault(key, args.out / name_of(key)), min((turn + 1) * CHUNK, most), args)
-    folders = runs_in(args.out, args.version)
-    write_atomically(archive, pack(folders))
+    folders = runs_in(args.out)
+    write_atomically(args.archive, pack(folders))
     console = display.make_console()
     for key, most in wanted.items():
         there = len(read_run(folders[key]).lines) if key in folders else 0
         if there < most:
             console.print(f"{key.split}: {key.name}, {key.semantics}: {there} of {most} episodes", highlight=False)
-    console.print(f"{len(folders)} runs in {archive}", highlight=False)
+    console.print(f"{len(folders)} runs in {args.archive}", highlight=False)
     return 0
 
 
-def needed(splits: Sequence[str], version: str) -> dict[RunKey, int]:
+def needed(splits: Sequence[str]) -> dict[RunKey, int]:
     """Returns the runs of some splits that the tables need, with their number of episodes, in the order of the tables.
 
-    A run of an earlier version of its split is replaced by one of this version.
+    Raises:
+        ConfigError: a split has another version now than the tables.
     """
+    for split in splits:
+        if (now := load_split(split).version) != VERSION:
+            raise ConfigError(f"'{split}' has version {now}, the tables {VERSION} (tools/research/result_archive.py).")
     rows = [(row.run, row.episodes) for table in page_tables() for row in table.needed()]
     rows += [(key, pair.episodes) for pair in comparisons() for key in (pair.first, pair.second)]
-    now = {split: load_split(split).version for split in splits}
     found: dict[RunKey, int] = {}
     for key, episodes in rows:
-        if now.get(key.split) == version:
-            current = replace(key, version=version)
-            found[current] = max(episodes, found.get(current, 0))
+        if key.split in splits:
+            found[key] = max(episodes, found.get(key, 0))
     return found
 
 
@@ -108,8 +106,8 @@ def run(key: RunKey, folder: Path, episodes: int, args: Args) -> None:
     subprocess.run([sys.executable, "-m", "sim.run", "--agent", key.agent, *words], check=True)
 
 
-def runs_in(out: Path, version: str) -> dict[RunKey, Path]:
-    """Returns the folders of runs in a folder, of one version of the splits.
+def runs_in(out: Path) -> dict[RunKey, Path]:
+    """Returns the folders of runs in a folder that are of the tables' version of the splits.
 
     Raises:
         ConfigError: two folders hold runs of the same row, or a run cannot be read.
@@ -117,14 +115,14 @@ def runs_in(out: Path, version: str) -> dict[RunKey, Path]:
     found: dict[RunKey, Path] = {}
     for file in sorted(out.glob(f"*/{RUN_FILES[1]}")):
         key = key_of(read_run(file.parent))
-        if key.version == version and found.setdefault(key, file.parent) != file.parent:
+        if key.version == VERSION and found.setdefault(key, file.parent) != file.parent:
             raise ConfigError(f"'{found[key]}' and '{file.parent}' are runs of the same row.")
     return found
 
 
-def unpack(archive: Path, out: Path, version: str) -> None:
-    """Copies the runs of an archive, all of one version of the splits, to a folder that has fewer episodes of them."""
-    present = runs_in(out, version)
+def unpack(archive: Path, out: Path) -> None:
+    """Copies the runs of an archive to a folder that has fewer episodes of them."""
+    present = runs_in(out)
     with tempfile.TemporaryDirectory() as folder:
         for key, run in read_archive(archive, Path(folder), lambda text: None).items():
             target = present.get(key, out / run.folder)

@@ -1,4 +1,4 @@
-"""Makes the tables of results: `docs/tables/*.csv` and the tables of docs/results.md, from archives of result lines.
+"""Makes the tables of results: `docs/tables/*.csv` and the tables of docs/results.md, from the archive of result lines.
 
     python -m tools.research.result_tables            # writes them
     python -m tools.research.result_tables --check    # exit status 1 where a file differs from what it would write
@@ -37,16 +37,15 @@ from sim.files import write_together
 from sim.reading import read_bytes, read_text
 from sim.reading import read_csv as read_table
 from sim.task.failures import CAUSES
-from tools.research.paper_page import PAPER, VERSION, paper_page
+from tools.research.paper_page import PAPER, paper_page
 from tools.research.resolution import paired_lines, resolution_record
-from tools.research.result_archive import ARCHIVES, ROOT, ArchivedRun, RunKey, read_archives
+from tools.research.result_archive import ARCHIVE, ROOT, TABLES, ArchivedRun, RunKey, read_archive
 from tools.research.result_definitions import (
     COMPARED,
     FAILED,
     MEANS,
     MEDIAN,
     PRIMARY_METRICS,
-    REPLACED,
     RESOLVED,
     Comparison,
     PageTable,
@@ -57,7 +56,6 @@ from tools.research.result_definitions import (
 
 Record = dict[str, str]
 """One row of a CSV file, by column."""
-TABLES = ROOT / "docs" / "tables"
 PAGE = ROOT / "docs" / "results.md"
 RESULTS, COMPARISONS, RESOLUTION = "results.csv", "comparisons.csv", "resolution.csv"
 QUANTITY = re.compile(r"([-+]?\d[\d.]*)(?: (?:points|steps|%|of SPL))? (\[[-+]?\d[\d.]*, [-+]?\d[\d.]*\])")
@@ -66,12 +64,12 @@ QUANTITY = re.compile(r"([-+]?\d[\d.]*)(?: (?:points|steps|%|of SPL))? (\[[-+]?\
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Write the tables of results from the archives of result lines, or check them."""
+    """Write the tables of results from the archive of result lines, or check them."""
 
     check: bool = False
     """Write nothing; the exit status is 1 where a file differs."""
-    archives: tuple[Path, ...] = ARCHIVES
-    """Archives of result lines, each of one version of the splits."""
+    archive: Path = ARCHIVE
+    """Archive of result lines."""
     tables: Path = TABLES
     """Folder of the CSV files."""
     page: Path = PAGE
@@ -86,12 +84,12 @@ def main(args: Args) -> int:
         console.print(text, markup=False, highlight=False, soft_wrap=True)
 
     with tempfile.TemporaryDirectory() as folder:
-        runs = read_archives(args.archives, Path(folder), say)
+        runs = read_archive(args.archive, Path(folder), say)
         results = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
         pairs = list(comparisons())
         compared = with_families(pairs, [comparison_record(each, runs) for each in pairs])
         resolved = [resolution_record(each, runs) for each in pairs if each.table in RESOLVED and each.primary]
-        paper = paper_page(Path(folder) / f"splits-{VERSION}")
+        paper = paper_page(Path(folder))
     page = fill_page(read_text(args.page, what="--page"), results)
     wanted = {
         args.tables / RESULTS: to_csv(results),
@@ -114,20 +112,18 @@ def main(args: Args) -> int:
 
 
 def row_keys(runs: Mapping[RunKey, ArchivedRun]) -> list[RowKey]:
-    """Returns the rows of results.csv in order: each run with all its episodes but those of `REPLACED`, and what the
-    page's tables need.
+    """Returns the rows of results.csv in order: each run with all its episodes, and what the page's tables need.
 
     Raises:
         ConfigError: a table needs a run that the archive does not have.
     """
-    kept = (item for item in runs.items() if (item[0].agent, item[0].version) not in REPLACED)
-    keys = {RowKey(key, run.episodes) for key, run in kept}
+    keys = {RowKey(key, run.episodes) for key, run in runs.items()}
     for table in page_tables():
         for key in table.needed():
             if key.run not in runs:
                 raise ConfigError(
                     f"Table '{table.name}' needs a run of '{key.run.name}' with {key.run.semantics} segmentation on "
-                    f"{key.run.split} {key.run.version}; the archives have none."
+                    f"{key.run.split} {key.run.version}; the archive has none."
                 )
             keys.add(key)
     return sorted(keys, key=lambda key: (key.run, key.episodes))
