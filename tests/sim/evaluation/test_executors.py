@@ -46,7 +46,7 @@ def test_an_item_of_an_ordered_map_whose_worker_died_is_tried_once_more(tmp_path
 
 
 def test_an_item_that_kills_every_worker_ends_an_ordered_map_with_its_name(tmp_path: Path) -> None:
-    with pytest.raises(WorkersError, match=r"^Item 1, 'deadly': .*workers were lost"):
+    with pytest.raises(WorkersError, match=r"^Item [12], 'deadly': .*workers were lost"):
         list(ordered_map(die, ["deadly", "deadly"], workers=2))
 
 
