@@ -13,7 +13,7 @@ import math
 import reprlib
 import tomllib
 import typing
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -120,19 +120,20 @@ def read_settings(file: Path) -> dict[str, Any]:
     """
     content = read_bytes(file, what="--config-file", most=MAX_SETTINGS_BYTES)
     if file.suffix != ".toml":
-        return dict(_flat(parse_json(content, dict[str, Any], where=f"--config-file '{file}'")))
+        return dict(leaves_of(parse_json(content, dict[str, Any], where=f"--config-file '{file}'")))
     try:
-        return dict(_flat(tomllib.loads(content.decode("utf-8"))))
+        return dict(leaves_of(tomllib.loads(content.decode("utf-8"))))
     except RecursionError:
         raise ConfigError(f"--config-file '{file}' is nested too deeply.") from None
     except ValueError as error:
         raise ConfigError(f"--config-file '{file}' is not valid: {error}") from None
 
 
-def _flat(content: Mapping[str, Any], prefix: str = "") -> Iterable[tuple[str, Any]]:
-    for key, value in content.items():
+def leaves_of(tree: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Yields the dotted path of each value of nested mappings that is not a mapping, after `prefix`, and the value."""
+    for key, value in tree.items():
         if isinstance(value, Mapping):
-            yield from _flat(value, f"{prefix}{key}.")
+            yield from leaves_of(value, f"{prefix}{key}.")
         else:
             yield f"{prefix}{key}", value
 

@@ -142,10 +142,8 @@ def override(config: Config, overrides: Any) -> None:
 def parsed(text: str) -> Any:
     """Returns the value of a text in JSON or Python, such as `false` and `False`; the text itself if it is neither."""
     for read in (json.loads, ast.literal_eval):
-        try:
+        with contextlib.suppress(ValueError, SyntaxError, MemoryError, RecursionError):
             return read(text)
-        except (ValueError, SyntaxError, MemoryError, RecursionError):
-            pass
     return text
 
 

@@ -253,7 +253,7 @@ class _Client:
 def from_habitat(given: Any) -> Any:
     """Returns the number of an action in one of Habitat's forms: a number, a name, or a dict with the key `action`.
 
-    A number may be a tensor or array of one element. What is none of these is returned unchanged.
+    A number may be a tensor or array of one element. Anything else is returned unchanged.
 
     Raises:
         TypeError: it is a truth value.

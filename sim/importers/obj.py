@@ -152,7 +152,7 @@ def _read_materials(folder: Path, name: str, texture_px: int, paints: dict[str, 
 
 
 def _share(word: str) -> float:
-    """Returns a number as one in [0, 1]; raises ValueError if it is none."""
+    """Returns a number as one in [0, 1]; raises ValueError if it is not one."""
     value = float(word)
     if math.isnan(value):
         raise ValueError("a colour or opacity is a number")
@@ -175,12 +175,13 @@ def _is_value(word: str) -> bool:
 
 
 def used_files(file: Path) -> Iterator[Path]:
-    """Yields the files that an OBJ file names, and those that its materials name, whether they exist or not."""
+    """Yields the files of its folder that an OBJ file and its materials name, whether they exist or not."""
     for named in _words_after("mtllib", file):
-        materials = file.parent / " ".join(named)
-        yield materials
-        for words in _words_after("map_Kd", materials):
-            yield file.parent / _picture_name(words)
+        materials = _path_inside(file.parent, " ".join(named))
+        if materials is not None:
+            yield materials
+            pictures = (_path_inside(file.parent, _picture_name(words)) for words in _words_after("map_Kd", materials))
+            yield from (picture for picture in pictures if picture is not None)
 
 
 def _words_after(key: str, file: Path) -> Iterator[list[str]]:
@@ -195,15 +196,21 @@ def _words_after(key: str, file: Path) -> Iterator[list[str]]:
             yield words[1:]
 
 
+def _path_inside(folder: Path, name: str) -> Path | None:
+    """Returns the path of a named file in the folder or below it; None if it is elsewhere."""
+    base = folder.resolve()
+    target = (base / name.replace("\\", "/")).resolve()
+    return target if target.is_relative_to(base) else None
+
+
 def _file_inside(folder: Path, name: str, losses: Counter[str]) -> bytes | None:
     """Returns a file of the folder or below it; None if it is missing.
 
     Raises:
         HouseError: it is outside of the folder.
     """
-    base = folder.resolve()
-    target = (base / name.replace("\\", "/")).resolve()
-    if not target.is_relative_to(base):
+    target = _path_inside(folder, name)
+    if target is None:
         raise HouseError(f"A mesh in '{folder}' uses '{printable(name)[:100]}', which is outside of its folder.")
     try:
         return read_bytes(target, what="File", most=MAX_FILE_BYTES)

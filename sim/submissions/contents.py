@@ -149,6 +149,9 @@ def write_submission(file: Path, submission: Submission) -> int:
     with tempfile.TemporaryDirectory() as folder:
         tried = Path(folder) / file.name
         tried.write_bytes(content)
-        read_submission(tried)
+        try:
+            read_submission(tried)
+        except ConfigError as error:
+            raise ConfigError(str(error).replace(str(tried), str(file))) from None
     write_atomically(file, content)
     return len(content)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from sim.configuration import as_json, with_fields
+from sim.configuration import as_json, leaves_of, with_fields
 from sim.errors import ConfigError
 from sim.interface import CameraModel
 from sim.robot.config import RobotConfig
@@ -37,8 +37,8 @@ class Setting:
         standard = Setting()
         found = []
         for part in ("robot", "camera", "task"):
-            before = dict(_flat(as_json(getattr(standard, part)), part))
-            for path, value in _flat(as_json(getattr(self, part)), part):
+            before = dict(leaves_of(as_json(getattr(standard, part)), f"{part}."))
+            for path, value in leaves_of(as_json(getattr(self, part)), f"{part}."):
                 if value != before.get(path):
                     found.append(f"{path} is {value!r}, in the standard {before.get(path)!r}")
         if self.noise_name == OWN_NOISE:
@@ -81,18 +81,8 @@ def _part(default: Any, given: Any, name: str, where: str) -> Any:
         raise ConfigError(f"{where}: its configuration has no field 'config.{name}'.")
     if given.get("file") is not None:
         raise ConfigError(f"{where}: the robot is that of a file (--robot), which a submission does not contain.")
-    values = dict(_flat(given, ""))
+    values = dict(leaves_of(given))
     try:
         return with_fields(default, {path: value for path, value in values.items() if path != "file"})
     except ConfigError as error:
         raise ConfigError(f"{where}: {name} is not allowed in this version of the simulator: {error}") from None
-
-
-def _flat(content: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
-    """Yields path and value of each field of nested objects."""
-    for key, value in content.items():
-        path = f"{prefix}.{key}" if prefix else str(key)
-        if isinstance(value, Mapping):
-            yield from _flat(value, path)
-        else:
-            yield path, value

@@ -30,7 +30,7 @@ def obstacle_polygons(
     robot: RobotModel,
     floor_z_m: float,
 ) -> list[ConvexPolygon]:
-    """Returns the plan projections of what is an obstacle on a storey; the robot does not count.
+    """Returns the plan projections of the obstacles on a storey, without the robot.
 
     Args:
         model: a compiled house or world.

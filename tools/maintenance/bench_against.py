@@ -127,7 +127,7 @@ class Worker:
             command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=self._errors,  # a file: a pipe that nobody reads would block the process once it is full
+            stderr=self._errors,  # a file: a full pipe would block the process
             cwd=folder,
             env={**os.environ, "PYTHONPATH": str(folder)},  # in place of the version that is installed
             text=True,

@@ -138,7 +138,7 @@ def _row(split: str, houses: Sequence[HouseDifficulty]) -> str:
         _spread([house.area_m2 for house in houses]),
         _spread([house.rooms for house in houses]),
         f"{sum(house.storeys > 1 for house in houses)}",
-        f"{len(distances_m)}",
+        f"{len(instances)}",
         f"{statistics.median(distances_m):.1f} ({min(distances_m):.1f}-{max(distances_m):.1f})" if distances_m else "-",
         _spread(instances),
         _percent([count == 1 for count in instances]),

@@ -9,11 +9,12 @@ from __future__ import annotations
 import functools
 import logging
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from sim.bridges.habitat_client import Config, add, merge, override, remove_other_actions, to_config
+from sim.configuration import leaves_of
 from sim.errors import ConfigError
 from sim.interface import FORWARD_M, MAX_STEPS, TURN_RAD, Action, CameraModel, RobotModel, SuccessRule
 from sim.reading import read_bytes
@@ -169,7 +170,7 @@ def log_ignored(config: Mapping[str, Any]) -> None:
     default = make_config()
     taken = {path for paths in SETTINGS.values() for path in paths}
     others, unknown = [], []
-    for path, value in _leaves(_whole(config, default)):
+    for path, value in leaves_of(_whole(config, default)):
         here = _at(default, path)
         if path in taken or value == here:
             continue
@@ -202,15 +203,6 @@ def _whole(config: Mapping[str, Any], default: Config) -> Mapping[str, Any]:
             f"({', '.join(default['habitat'])}); it has {', '.join(map(str, config))}."
         )
     return {"habitat": config}
-
-
-def _leaves(tree: Mapping[str, Any], place: str = "") -> Iterator[tuple[str, Any]]:
-    """Yields the dotted path of each value that is no tree, and the value."""
-    for name, value in tree.items():
-        if isinstance(value, Mapping):
-            yield from _leaves(value, f"{place}{name}.")
-        else:
-            yield f"{place}{name}", value
 
 
 def _upper(tree: Mapping[str, Any]) -> dict[str, Any]:

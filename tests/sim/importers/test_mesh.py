@@ -126,6 +126,11 @@ def test_materials_of_an_obj_file_have_an_opacity_and_a_picture_whose_name_has_s
         assert each.paint.picture is not None
     assert not losses.changes
     assert {file.name for file in files_of(tmp_path / "home.obj")} == {"all kinds.mtl", "my picture.png"}
+    with (tmp_path / "all kinds.mtl").open("a") as materials:
+        materials.write("newmtl far\nmap_Kd ..\\outside.png\nnewmtl near\nmap_Kd sub\\b.png\n")
+    (tmp_path / "sub").mkdir()
+    found = {file.relative_to(tmp_path.resolve()).as_posix() for file in files_of(tmp_path / "home.obj")}
+    assert found == {"all kinds.mtl", "my picture.png", "sub/b.png"}
 
 
 def test_a_home_is_imported_again_when_its_materials_change(tmp_path: Path) -> None:
