@@ -61,6 +61,7 @@ COMMANDS: Mapping[str, Command] = {
     "train segmentation": Command("sim.commands.train.segmentation", "Train a segmentation network on views"),
     "train verifier": Command("sim.commands.train.verifier", "Fit the verifier of a segmentation"),
     "train fusion": Command("sim.commands.train.fusion", "Fit the fusion of views to a segmentation"),
+    "train context": Command("sim.commands.train.context", "Fit which objects are near objects of each category"),
     "train semexp": Command("sim.commands.train.semexp", "Train the explorer `semexp` in plans"),
     "train poni": Command("sim.commands.train.poni", "Train the explorer `poni` on plans"),
     "train cloned": Command("sim.commands.train.cloned", "Train the agent `cloned` on demonstrations"),

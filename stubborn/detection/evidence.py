@@ -15,7 +15,6 @@ from jaxtyping import Bool, Float32, Float64, Int
 
 from sim.interface import ConfigError
 from stubborn.detection.fusion import IS_SURFACE, Fusion
-from stubborn.detection.shape import FEATURES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +55,6 @@ class Evidence:
         self._weights = np.zeros((tracks, views), np.float32)
         self._whole = np.zeros((tracks, views), np.float32)
         """The part of the weights from frames in which the edge of the image does not cut the track."""
-        self._shapes = np.zeros((tracks, FEATURES), np.float32)
         self._ring_weight = np.repeat(np.array(fusion.ring_weights, np.float32), config.sectors)
         self.probability: Float32[np.ndarray, "tracks classes"] = np.full((tracks, classes), 1.0 / classes, np.float32)
         """Fused probability of each class."""
@@ -68,7 +66,6 @@ class Evidence:
         pixels: Int[np.ndarray, " n"],
         dx_m: Float64[np.ndarray, " n"],
         dy_m: Float64[np.ndarray, " n"],
-        shape: Float32[np.ndarray, "n features"] | None = None,
         whole: Bool[np.ndarray, " n"] | bool = True,
     ) -> None:
         """Enters one frame.
@@ -78,7 +75,6 @@ class Evidence:
             mean: mean posteriors of their pixels.
             pixels: number of these pixels.
             dx_m: offset in x from the middle of each track to the camera; `dy_m` is the offset in y.
-            shape: features of the shape of each track; None: not known.
             whole: False for a track that the edge of the image cuts.
         """
         view = self._view(dx_m, dy_m)
@@ -86,8 +82,6 @@ class Evidence:
         self._sums[tracks, view] += weight[:, None] * mean
         self._weights[tracks, view] += weight
         self._whole[tracks, view] += weight * whole
-        if shape is not None:
-            self._shapes[tracks] = shape
         self.probability[tracks] = self._fused(tracks)
 
     def merge(self, track: int, into: int) -> None:
@@ -126,4 +120,4 @@ class Evidence:
     def _fused(self, tracks: Int[np.ndarray, " n"]) -> Float32[np.ndarray, "n classes"]:
         mean, weight = self.views(tracks)
         used = weight.any(axis=0)
-        return self.fusion.probabilities(mean[:, used], (weight * self._ring_weight)[:, used], self._shapes[tracks])
+        return self.fusion.probabilities(mean[:, used], (weight * self._ring_weight)[:, used])

@@ -3,8 +3,8 @@
 The posteriors of a track's pixels contain two facts: how much of it is wall, floor or ceiling (a voxel holds a part of
 what is behind the object), and which object the rest shows. They are separated: the object's categories compete with
 each other, and the share of surface shows whether there is an object at all. Views are averaged with a weight for each
-range of distance; the average is sharpened more when there are more views, and each category has an offset. The shape
-of the object (`stubborn.detection.shape`) adds to the log-odds of each category.
+range of distance; the average is sharpened more when there are more views, and each category has an offset. What
+is near the object counts besides, see `stubborn.detection.context`.
 
 The parameters describe the errors of one kind of segmentation. `stubborn train fusion` fits them to tracks in houses
 with furniture that the network has not seen, and writes `stubborn/detection/fusions/<kind>.json`.
@@ -12,7 +12,6 @@ with furniture that the network has not seen, and writes `stubborn/detection/fus
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -24,7 +23,6 @@ from jaxtyping import Float32
 
 from sim.interface import MPCAT40, ConfigError, SegmenterSpec
 from sim.reading import Number, read_json
-from stubborn.detection.shape import FEATURES
 
 FOLDER = Path(__file__).parent / "fusions"
 """Folder of the shipped parameters."""
@@ -34,8 +32,6 @@ SURFACES = ("wall", "floor", "ceiling")
 """Categories of the surfaces behind, below and above every object."""
 IS_SURFACE = np.array([name in SURFACES for name in MPCAT40[1:]])
 """One entry for each category of `MPCAT40` except void."""
-NOTHING = "nothing"
-"""The name of no object in `Fusion.shape`."""
 _OBJECTS = tuple(name for name in MPCAT40[1:] if name not in SURFACES)
 _Positive = Annotated[float, msgspec.Meta(gt=0.0, le=1e3)]
 
@@ -57,34 +53,22 @@ class Fusion:
     logarithm of the total weight."""
     offsets: Mapping[str, float] = field(default_factory=dict)
     """Log-odds to add for a category: positive where the segmenter misses it more often than it reports it falsely."""
-    shape: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    """Log-odds to add for a category, for each feature of the shape; `NOTHING` stands for no object. Without entries,
-    the shape does not count."""
 
     def __post_init__(self) -> None:
         unknown = sorted(set(self.offsets) - set(MPCAT40[1:]) | set(self.offsets) & set(SURFACES))
         if unknown:
             raise ConfigError(f"Fusion.offsets must name categories of objects, got '{unknown[0]}'.")
-        unknown = sorted(set(self.shape) - {*_OBJECTS, NOTHING})
-        if unknown:
-            raise ConfigError(f"Fusion.shape must name categories of objects or '{NOTHING}', got '{unknown[0]}'.")
-        if any(len(weights) != FEATURES for weights in self.shape.values()):
-            raise ConfigError(f"Fusion.shape must have {FEATURES} numbers for each category.")
         if not (self.sharpness > 0.0 and self.floor > 0.0 and min(self.ring_weights, default=0.0) > 0.0):
             raise ConfigError("Fusion needs ring_weights, sharpness and floor > 0.")
 
     def probabilities(
-        self,
-        mean: Float32[np.ndarray, "n views classes"],
-        weight: Float32[np.ndarray, "n views"],
-        shape: Float32[np.ndarray, "n features"] | None = None,
+        self, mean: Float32[np.ndarray, "n views classes"], weight: Float32[np.ndarray, "n views"]
     ) -> Float32[np.ndarray, "n classes"]:
         """Returns the probability of each category, for each track.
 
         Args:
             mean: mean posterior of the track's pixels in each view; any finite values in views without weight.
             weight: weight of each view, including the factor of its distance; 0 for directions without a view.
-            shape: features of each track's shape; None: they are not known and do not count.
         """
         objects, surface = mean[:, :, ~IS_SURFACE], mean[:, :, IS_SURFACE]
         of_objects, of_surface = objects.sum(axis=2), surface.sum(axis=2)
@@ -100,9 +84,6 @@ class Fusion:
         z += self._offsets
         constant, slope, growth = self.surface
         none = constant + slope * np.log(behind / (1.0 - behind)) + growth * np.log(total)
-        if shape is not None and self.shape:
-            added = shape @ self._of_shape
-            z, none = z + added[:, :-1], none + added[:, -1]
         odds, odds_of_none = np.exp(z), np.exp(none)
         whole = odds.sum(axis=1) + odds_of_none
         result = np.empty((len(mean), len(IS_SURFACE)), np.float32)
@@ -115,12 +96,6 @@ class Fusion:
     def _offsets(self) -> Float32[np.ndarray, " objects"]:
         return np.array([self.offsets.get(name, 0.0) for name in _OBJECTS], np.float32)
 
-    @functools.cached_property
-    def _of_shape(self) -> Float32[np.ndarray, "features columns"]:
-        """The log-odds of each feature: one column for each object, the last one for no object."""
-        nothing = (0.0,) * FEATURES
-        return np.array([self.shape.get(name, nothing) for name in (*_OBJECTS, NOTHING)], np.float32).T
-
 
 class _Parameters(msgspec.Struct):
     """The part of a file that the agent reads."""
@@ -131,7 +106,6 @@ class _Parameters(msgspec.Struct):
     floor: _Positive
     surface: tuple[Number, Number, Number]
     offsets: dict[str, Number]
-    shape: dict[str, tuple[Number, ...]] = {}
 
 
 class _File(msgspec.Struct):

@@ -2,8 +2,8 @@
 
 The parameters are those of highest likelihood of the true categories, with a normal prior on the offsets: a network
 makes different errors on different furniture, and an offset that helps only in the houses of the fit does harm in
-others; the same holds for the log-odds of the shape. Each track enters several times during its episode, with the
-views and the shape that were known then, because an agent has to decide after few views.
+others. Each track enters several times during its episode, with the views that were known then, because an agent has to
+decide after few views.
 """
 
 from __future__ import annotations
@@ -20,8 +20,7 @@ from torch import Tensor
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, ConfigError
 from stubborn.detection.evidence import EvidenceConfig
-from stubborn.detection.fusion import IS_SURFACE, NOTHING, SURFACES, Fusion
-from stubborn.detection.shape import FEATURES, features_of
+from stubborn.detection.fusion import IS_SURFACE, SURFACES, Fusion
 
 FOLDS = 5
 LEAST_PIXELS = 40
@@ -31,10 +30,6 @@ TRUE_SHARE = 0.25
 background."""
 OFFSET_PRIOR = 30.0
 """Weight of the prior of the offsets, as a number of tracks."""
-SHAPE_PRIOR = 100.0
-"""Weight of the prior of the log-odds of each feature of the shape, as a number of tracks. With a small prior, the fit
-learns the shapes of its few models. The houses left out have the same models and do not show it; 11 episodes of `val`
-do, by which the weight was chosen: log loss 0.491 with 3, 0.474 with 100, and 0.484 without the shape."""
 PLAUSIBLE = 0.1
 """Goals below this probability, before and after the fit, are left out: nearly all are true negatives."""
 _BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.85, 0.95, 1.0)
@@ -51,8 +46,6 @@ class Sample:
     """Numbers of the views, see `Evidence.views`."""
     mean: Float32[np.ndarray, "views classes"]
     weight: Float32[np.ndarray, " views"]
-    shape: Float32[np.ndarray, " features"]
-    """Features of its shape."""
 
 
 def true_category(counts: Int[np.ndarray, " ids"]) -> int:
@@ -69,12 +62,11 @@ def samples_of(log: Sequence[Mapping[str, Any]]) -> list[Sample]:
 
     Args:
         log: one entry for each episode. It holds `house`; `counts` (n, 41), the number of pixels of each true id for
-            each track; `track` (s,) and `measures` (s, 6), the track and the shape of each sample; and for all views of
-            the samples `sample` (m,), `view` (m,), `mean` (m, 40) and `weight` (m,).
+            each track; `track` (s,), the track of each sample; and for all views of the samples `sample` (m,),
+            `view` (m,), `mean` (m, 40) and `weight` (m,).
     """
     result = []
     for episode in log:
-        shape = features_of(episode["measures"].astype(np.float32))
         for number, track in enumerate(episode["track"].tolist()):
             mine, counts = episode["sample"] == number, episode["counts"][track]
             if counts.sum() < LEAST_PIXELS or not mine.any():
@@ -86,20 +78,16 @@ def samples_of(log: Sequence[Mapping[str, Any]]) -> list[Sample]:
                     episode["view"][mine],
                     episode["mean"][mine].astype(np.float32),
                     episode["weight"][mine].astype(np.float32),
-                    shape[number],
                 )
             )
     return result
 
 
-def fit(
-    samples: Sequence[Sample], *, shape: bool = True, sectors: int = EvidenceConfig.sectors, steps: int = 300
-) -> Fusion:
+def fit(samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors, steps: int = 300) -> Fusion:
     """Returns the parameters of highest posterior probability.
 
     Args:
         samples: see `samples_of`.
-        shape: False fits no log-odds of the shape.
         sectors: directions of `EvidenceConfig`; a view's number divided by it is its range of distance.
         steps: number of steps of Adam.
 
@@ -117,21 +105,17 @@ def fit(
         "floor": torch.tensor(-5.0),
         "surface": torch.tensor([-3.0, 1.0, 0.0]),
         "offsets": torch.zeros(len(names)),
-        "shape": torch.zeros(FEATURES, len(names) + 1),
     }
     for each in free.values():
         each.requires_grad_(True)
-    free["shape"].requires_grad_(shape)
-    optimizer = torch.optim.Adam([each for each in free.values() if each.requires_grad], lr=0.05)
+    optimizer = torch.optim.Adam(free.values(), lr=0.05)
     for _ in range(steps):
         optimizer.zero_grad()
         loss = torch.nn.functional.cross_entropy(data.log_odds(free), data.category)
-        prior = OFFSET_PRIOR * (free["offsets"] ** 2).sum() + SHAPE_PRIOR * (free["shape"] ** 2).sum()
-        (loss + prior / len(samples)).backward()
+        (loss + OFFSET_PRIOR * (free["offsets"] ** 2).sum() / len(samples)).backward()
         optimizer.step()
     value = {name: each.detach().numpy().astype(np.float64) for name, each in free.items()}
     rings = np.exp(value["rings"] - value["rings"][EvidenceConfig.near_ring])
-    of_shape = zip((*names, NOTHING), value["shape"].T.round(3).tolist(), strict=True)
     return Fusion(
         ring_weights=tuple(rings.round(4).tolist()),
         sharpness=round(float(np.exp(value["sharpness"])), 4),
@@ -139,7 +123,6 @@ def fit(
         floor=float(f"{np.exp(value['floor']):.4g}"),
         surface=tuple(value["surface"].round(4).tolist()),
         offsets={name: round(float(each), 3) for name, each in zip(names, value["offsets"], strict=True)},
-        shape={name: tuple(weights) for name, weights in of_shape} if shape else {},
     )
 
 
@@ -153,8 +136,6 @@ class _Data:
     """(n, rings) weighted sum of the share of the surfaces."""
     weight: Tensor
     """(n, rings) sum of the weights."""
-    shape: Tensor
-    """(n, features) features of the shape."""
     category: Tensor
     """(n,) number of the true object; the last number means no object."""
 
@@ -174,8 +155,7 @@ class _Data:
             np.add.at(weight[i], ring, each.weight)
             if each.category >= 0:
                 category[i] = number[each.category]
-        shape = np.stack([each.shape for each in samples])
-        return cls(*(torch.from_numpy(each) for each in (objects, behind, weight, shape, category)))
+        return cls(*(torch.from_numpy(each) for each in (objects, behind, weight, category)))
 
     def log_odds(self, free: Mapping[str, Tensor]) -> Tensor:
         """Returns the values of `Fusion.probabilities` before the softmax, (n, objects + 1); the last is no object."""
@@ -188,7 +168,7 @@ class _Data:
         z = torch.log_softmax(sharpness * torch.log(averaged + free["floor"].exp()), dim=1) + free["offsets"]
         constant, slope, growth = free["surface"]
         none = constant + slope * torch.logit(behind) + growth * torch.log(total)
-        return torch.cat([z, none], dim=1) + self.shape @ free["shape"]
+        return torch.cat([z, none], dim=1)
 
 
 def probabilities(
@@ -197,14 +177,11 @@ def probabilities(
     """Returns the probability of each category of `MPCAT40[1:]`, for each sample."""
     rings = np.array(fusion.ring_weights, np.float32)
     return np.concatenate(
-        [
-            fusion.probabilities(each.mean[None], (each.weight * rings[each.view // sectors])[None], each.shape[None])
-            for each in samples
-        ]
+        [fusion.probabilities(each.mean[None], (each.weight * rings[each.view // sectors])[None]) for each in samples]
     )
 
 
-def left_out(samples: Sequence[Sample], *, shape: bool = True) -> Float32[np.ndarray, "n classes"]:
+def left_out(samples: Sequence[Sample]) -> Float32[np.ndarray, "n classes"]:
     """Returns the probabilities of each sample with parameters that were fitted to other houses; see `fit`."""
     houses = sorted({each.house for each in samples})
     if len(houses) < 2:
@@ -214,7 +191,7 @@ def left_out(samples: Sequence[Sample], *, shape: bool = True) -> Float32[np.nda
     for number in sorted(set(fold.values())):
         test = [i for i, each in enumerate(samples) if fold[each.house] == number]
         others = [each for each in samples if fold[each.house] != number]
-        result[test] = probabilities(fit(others, shape=shape), [samples[i] for i in test])
+        result[test] = probabilities(fit(others), [samples[i] for i in test])
     return result
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from jaxtyping import Bool, Float32, Float64
@@ -13,6 +14,7 @@ from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import FORWARD_M, ConfigError, Observation
 from stubborn.detection.approach import Approach, approach_from_here, approach_on, on_map
+from stubborn.detection.context import SHIPPED, read_context
 from stubborn.detection.fusion import fusion_for
 from stubborn.detection.look import LookConfig, Verdicts, look_at
 from stubborn.detection.seeker import SeekerParts
@@ -30,6 +32,11 @@ class TrackSeekerConfig:
 
     tracks: TrackConfig = field(default_factory=TrackConfig)
     look: LookConfig = field(default_factory=LookConfig)
+    context: Path | None = None
+    """File of `stubborn train context`, which says what is near objects of each category; None: the shipped one."""
+    context_share: float = 0.5
+    """With an imperfect detector, the share of the log-odds of the context that counts. Of 0, 0.5 and 1, chosen on
+    `val`."""
     core_share: float = 0.7
     """The robot does not drive to cells of a track whose mean score is below this share of the track's highest one."""
     near_best_m: float = 0.5
@@ -46,6 +53,8 @@ class TrackSeekerConfig:
     """After this many steps in which an approach did not move the robot, the agent stops if a STOP counts there."""
 
     def __post_init__(self) -> None:
+        if not 0.0 <= self.context_share <= 1.0:
+            raise ConfigError(f"TrackSeekerConfig.context_share must be in [0, 1], got {self.context_share}.")
         if not (0.0 <= self.core_share <= 1.0 and 0.0 <= self.part_share <= 1.0 and self.as_good >= 0.0):
             raise ConfigError(
                 "TrackSeekerConfig needs core_share and part_share in [0, 1] and as_good >= 0, got "
@@ -78,6 +87,8 @@ class TrackSeeker:
         self.robot = parts.robot
         self.segmenter = parts.segmenter
         self.fusion = fusion_for(parts.segmenter.spec, config.tracks.evidence.fusion)
+        has_context = parts.segmenter.spec.needs_verification and config.context_share > 0.0
+        self.context = read_context(config.context or SHIPPED) if has_context else None
         self.finder = finder
         self.distances = parts.distances
         self.max_steps = parts.max_steps
@@ -127,7 +138,7 @@ class TrackSeeker:
             )
         self.tracks.add(self.segmenter.posteriors(observation), observation["depth"], pose, self.goal)
         least_voxels = 1 if self.verdicts.exact else self.config.tracks.least_voxels
-        self.probability = self.tracks.probabilities(self.goal, least_voxels)
+        self.probability = self.tracks.probabilities(self.goal, least_voxels, self.context, self.config.context_share)
         self.step, self._pose = step, pose
         if self._decide(pose):
             navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map

@@ -16,18 +16,15 @@ from jaxtyping import Bool, Float32, Int, Int16
 
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
-from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, ConfigError
+from sim.interface import MPCAT40_ID, CameraModel, ConfigError
+from stubborn.detection.context import IS_OBJECT, Context
 from stubborn.detection.evidence import Evidence, EvidenceConfig
 from stubborn.detection.fusion import Fusion
-from stubborn.detection.shape import features_of
-from stubborn.kernels.tracks import claim, label_pixels, means_by_track, overlaps_of, regions_of, shapes_of, voxels_of
+from stubborn.kernels.tracks import claim, label_pixels, means_by_track, overlaps_of, regions_of, voxels_of
 from stubborn.mapping.projection import Rays
 
-STRUCTURE = (
-    "wall", "floor", "door", "window", "stairs", "ceiling", "column", "lighting", "beam", "railing", "misc",
-)  # fmt: skip
-"""Classes that are not objects: they do not begin tracks, but their probability counts against existing tracks."""
-_IS_OBJECT = np.array([name not in STRUCTURE for name in MPCAT40[1:]])
+_ALMOST_1 = np.float32(0.999)
+"""The largest probability of a track in the context of others."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +62,8 @@ class TrackConfig:
     surface."""
     inside_rad: float = 0.15
     """A track whose middle is nearer than this angle to the image's left or right edge is not seen whole."""
+    least_in_context: float = 0.02
+    """Context (`stubborn.detection.context`) does not change the probability of tracks with less than this."""
     most_tracks: int = 2048
     """Limit of the number of tracks; objects beyond it are not tracked."""
     evidence: EvidenceConfig = field(default_factory=EvidenceConfig)
@@ -121,7 +120,7 @@ class Tracks:
         """Enters one frame: depth in metres, and posteriors at a whole fraction of its resolution."""
         rays = self._rays_for(posteriors.shape[2])
         d, voxel = self._voxels(rays, depth, pose)
-        label = label_pixels(posteriors, _IS_OBJECT, MPCAT40_ID[goal] - 1, self.config.hot)
+        label = label_pixels(posteriors, IS_OBJECT, MPCAT40_ID[goal] - 1, self.config.hot)
         region, count = regions_of(label, voxel, d, self.config.depth_jump)
         overlap, labels = overlaps_of(region, count, label, voxel, self._owner, self.count + 1)
         track_of, takes_over = self._associate(overlap, labels, MPCAT40_ID[goal] - 1)
@@ -131,17 +130,41 @@ class Tracks:
         if self.in_view.size:
             x_m, y_m = self.middles(self.in_view)
             seen = means[self.in_view], pixels[self.in_view]
-            shape = features_of(self.measures(self.in_view)) if self.evidence.fusion.shape else None
             off_rad = np.arctan2(y_m - pose.y_m, x_m - pose.x_m) - pose.yaw_rad
             whole = np.cos(off_rad) >= math.cos(0.5 * self.camera.hfov_rad - self.config.inside_rad)
-            self.evidence.add(self.in_view, *seen, pose.x_m - x_m, pose.y_m - y_m, shape, whole)
+            self.evidence.add(self.in_view, *seen, pose.x_m - x_m, pose.y_m - y_m, whole)
 
-    def probabilities(self, goal: str, least_voxels: int = 1) -> Float32[np.ndarray, " numbers"]:
-        """Returns the probability of the goal for each track; 0 for entry 0 and for tracks with fewer voxels."""
-        probability = self.evidence.probability[: self.count + 1, MPCAT40_ID[goal] - 1].copy()
-        probability[self._size[: self.count + 1] < least_voxels] = 0.0
-        probability[0] = 0.0
+    def probabilities(
+        self, goal: str, least_voxels: int = 1, context: Context | None = None, share: float = 1.0
+    ) -> Float32[np.ndarray, " numbers"]:
+        """Returns the probability of the goal for each track; 0 for entry 0 and for tracks with fewer voxels.
+
+        Args:
+            goal: the category.
+            least_voxels: tracks with fewer voxels do not count, also not as context.
+            context: changes the probabilities by what is near a track.
+            share: the share of its log-odds that counts.
+        """
+        counts = self._size[: self.count + 1] >= least_voxels
+        counts[0] = False
+        probability = np.where(counts, self.evidence.probability[: self.count + 1, MPCAT40_ID[goal] - 1], np.float32(0))
+        likely = np.flatnonzero(probability >= self.config.least_in_context)
+        if context is not None and likely.size:
+            there = self.evidence.probability[likely]
+            there[:, IS_OBJECT] *= np.exp(share * context.log_ratios(self._nearby(likely, counts, context.radius_m)))
+            probability[likely] = there[:, MPCAT40_ID[goal] - 1] / there.sum(axis=1)
         return probability
+
+    def _nearby(
+        self, tracks: Int[np.ndarray, " n"], counts: Bool[np.ndarray, " numbers"], radius_m: float
+    ) -> Float32[np.ndarray, "n objects"]:
+        """Returns the probability that one of the other tracks that count, nearer than this, is of each category."""
+        others = np.flatnonzero(counts)
+        (x_m, y_m), (other_x_m, other_y_m) = self.middles(tracks), self.middles(others)
+        near = np.hypot(x_m[:, None] - other_x_m, y_m[:, None] - other_y_m) < radius_m
+        near &= tracks[:, None] != others
+        none = np.log1p(-self.evidence.probability[others][:, IS_OBJECT].clip(max=_ALMOST_1))
+        return np.asarray(1.0 - np.exp(near.astype(np.float32) @ none))
 
     def middles(self, tracks: Int[np.ndarray, " n"]) -> tuple[np.ndarray, np.ndarray]:
         """Returns x and y of the middle of each track's rectangle, metres."""
@@ -182,11 +205,6 @@ class Tracks:
     def sizes(self, tracks: Int[np.ndarray, " n"]) -> Int[np.ndarray, " n"]:
         """Returns the number of voxels of each track; 0 for a track that was merged into another one."""
         return self._size[tracks]
-
-    def measures(self, tracks: Int[np.ndarray, " n"]) -> Float32[np.ndarray, "n measures"]:
-        """Returns the measures of the shape of each track; see `stubborn.detection.shape`."""
-        box = self._low[tracks], self._high[tracks]
-        return shapes_of(self._owner, tracks.astype(np.int64), *box, self._shape, self._edge_m)
 
     def shown(
         self, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose, columns: int

@@ -45,7 +45,7 @@ def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(split: Pa
         content = train_tracks.read_tracks(tmp_path / "tracks" / f"{line['episode_id']}.npz")
         assert len(content["counts"]) == line["tracks"] > 0
         assert content["mean"].shape == (len(content["sample"]), len(MPCAT40) - 1)
-        assert len(content["measures"]) == len(content["track"]) == content["sample"].max() + 1
+        assert len(content["track"]) == content["sample"].max() + 1
         assert set(content["track"].tolist()) == set(range(line["tracks"]))
         assert len(content["track"]) > line["tracks"]  # most are logged several times
         assert (content["weight"] > 0).all()
@@ -67,7 +67,7 @@ def test_a_file_holds_the_tracks_only(split: Path, tmp_path: Path, monkeypatch: 
         np, "savez_compressed", lambda file, **arrays: given.append(set(arrays)) or write(file, **arrays)
     )
     log_after(split, tmp_path, 1)
-    assert given == [{"counts", "track", "measures", "sample", "view", "mean", "weight"}]
+    assert given == [{"counts", "track", "sample", "view", "mean", "weight"}]
 
 
 def test_an_episode_without_tracks_is_logged_and_adds_no_samples(
@@ -84,7 +84,7 @@ def test_an_episode_without_tracks_is_logged_and_adds_no_samples(
     content = train_tracks.read_tracks(tmp_path / "tracks" / "tiny_0.npz")
     shapes = {name: values.shape for name, values in content.items()}
     assert shapes == {
-        "counts": (0, len(MPCAT40)), "track": (0,), "measures": (0, 6),
+        "counts": (0, len(MPCAT40)), "track": (0,),
         "sample": (0,), "view": (0,), "mean": (0, len(MPCAT40) - 1), "weight": (0,),
     }  # fmt: skip
 
@@ -130,10 +130,6 @@ def test_merged_tracks_are_counted_together():
             )
 
         @staticmethod
-        def measures(tracks: np.ndarray) -> np.ndarray:
-            return np.tile(tracks[:, None], (1, 6)).astype(np.float32)
-
-        @staticmethod
         def now() -> np.ndarray:
             return np.array([0, 1, 1, 3])
 
@@ -148,5 +144,4 @@ def test_merged_tracks_are_counted_together():
     content = train_tracks.logged(tracks, counts, samples)  # type: ignore[arg-type]
     assert content["counts"][:, 3].tolist() == [15]
     assert content["track"].tolist() == [0, 0]  # as it was before it was merged, and at the end
-    assert content["measures"][:, 0].tolist() == [2.0, 1.0]
     assert content["sample"].tolist() == [0, 1]

@@ -535,10 +535,20 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f" 60 --log {{tmp}}/log"
         " --out {tmp}/fusion.json",
     ),
+    "stubborn houses plans --split runs/own --out runs/plans/own": (
+        "stubborn houses generate --pool train --kind studio --houses 1 --out {tmp}/own",
+        "stubborn episodes --split {tmp}/own --episodes 3",
+        "stubborn houses plans --split {tmp}/own --out {tmp}/plans/own",
+    ),
+    "stubborn train context --plans runs/plans/own --out runs/context.json": (
+        *_PLANS,
+        "stubborn train context --plans {tmp}/plans --out {tmp}/context.json",
+    ),
     f"{_RUN} --agent stubborn-plus --weights runs/rednet/rednet.safetensors --config"
-    " agent.seeker.tracks.evidence.fusion=runs/fusion.json": (
+    " agent.seeker.tracks.evidence.fusion=runs/fusion.json agent.seeker.context=runs/context.json": (
         f"{_RUN} --agent stubborn-plus --weights {_SHIPPED} --config"
-        f" agent.seeker.tracks.evidence.fusion=stubborn/detection/fusions/rednet.json {_SMALL} --episodes 1"
+        " agent.seeker.tracks.evidence.fusion=stubborn/detection/fusions/rednet.json"
+        f" agent.seeker.context=stubborn/detection/context.json {_SMALL} --episodes 1"
         " --out {tmp}/run",
     ),
     f"{_RUN} --explorer informed-tour --semantics gt --record --episodes 100 --workers 2 --out runs/real": (

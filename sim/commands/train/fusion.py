@@ -5,12 +5,11 @@
 
 The agent explores without stopping and looks at whatever may be the goal. All tracks are logged, those of all
 categories: an episode gives about a hundred. A track is logged when its views reach certain weights, and at the end of
-the episode, with the mean posteriors of its views and with its shape; and once with the number of its pixels of each
-true category.
+the episode, with the mean posteriors of its views; and once with the number of its pixels of each true category.
 
 The log has one line and one file (tracks/<episode>.npz) per episode. The same command continues it, and more episodes
 extend it, as long as split, code and detector are the same. --minutes 0 runs no episode and fits the existing log. Then
-`stubborn.detection.fusion_fit` fits the parameters and judges them on houses left out, with and without the shape.
+`stubborn.detection.fusion_fit` fits the parameters and judges them on houses left out.
 
 The houses should have furniture on which the network was not trained, otherwise the fit overestimates its quality: see
 docs/segmentation.md. Houses of val and test are for --judge only.
@@ -58,7 +57,7 @@ LEAST_VOXELS = 6
 LEVELS = (0.4, 1.0, 2.0, 3.5, 6.0)
 """A track is logged when the total weight of its views reaches each of these values."""
 MAX_FILE_BYTES = 256 << 20
-_ARRAYS = ("counts", "track", "measures", "sample", "view", "mean", "weight")
+_ARRAYS = ("counts", "track", "sample", "view", "mean", "weight")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,12 +107,11 @@ def main(args: Args) -> int:
 
 
 def compared(samples: Sequence[Sample]) -> dict[str, Any]:
-    """Returns the quality on houses left out: with and without the shape, and of plain averages on the same pairs."""
-    fitted, shapeless, plain = left_out(samples), left_out(samples, shape=False), probabilities(Fusion(), samples)
+    """Returns the quality on houses left out, and that of plain averages on the same pairs."""
+    fitted, plain = left_out(samples), probabilities(Fusion(), samples)
     goals = np.array([MPCAT40.index(name) - 1 for name in GOAL_CATEGORIES])
     among = np.maximum(fitted, plain)[:, goals] >= PLAUSIBLE
-    compared = {"fitted": fitted, "without the shape": shapeless, "averages": plain}
-    return {name: judge(p, samples, among) for name, p in compared.items()}
+    return {name: judge(p, samples, among) for name, p in (("fitted", fitted), ("averages", plain))}
 
 
 def tracks_of(args: Args, split: Split) -> list[dict[str, Any]]:
@@ -203,7 +201,7 @@ class TrackRunner:
 
 
 class TrackSamples:
-    """The views and the shapes of tracks at several steps of an episode."""
+    """The views of tracks at several steps of an episode."""
 
     def __init__(self) -> None:
         self._level: dict[int, int] = {}
@@ -224,7 +222,6 @@ class TrackSamples:
         mean, weight = tracks.evidence.views(numbers)
         sample, view = np.nonzero(weight > 0.0)
         added = {
-            "measures": tracks.measures(numbers),
             "sample": (len(self._track) + sample).astype(np.int32),
             "view": view.astype(np.int16),
             "mean": mean[sample, view].astype(np.float16),
@@ -248,7 +245,6 @@ class TrackSamples:
         result = {name: parts[name][views] for name in ("view", "mean", "weight")}
         return result | {
             "track": track[track >= 0].astype(np.int32),
-            "measures": parts["measures"][track >= 0],
             "sample": number[parts["sample"][views]].astype(np.int32),
         }
 

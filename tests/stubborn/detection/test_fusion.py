@@ -11,7 +11,7 @@ import torch
 
 from sim.interface import MPCAT40, ConfigError, SegmenterSpec
 from stubborn.detection.evidence import EvidenceConfig
-from stubborn.detection.fusion import FOLDER, IS_SURFACE, NOTHING, SURFACES, Fusion, fusion_for, read_fusion
+from stubborn.detection.fusion import FOLDER, IS_SURFACE, SURFACES, Fusion, fusion_for, read_fusion
 from stubborn.detection.fusion_fit import (
     Sample,
     _Data,
@@ -22,7 +22,6 @@ from stubborn.detection.fusion_fit import (
     samples_of,
     true_category,
 )
-from stubborn.detection.shape import FEATURES, features_of
 
 CHAIR, TABLE, WALL = (MPCAT40.index(name) - 1 for name in ("chair", "table", "wall"))
 CLASSES = len(MPCAT40) - 1
@@ -81,9 +80,8 @@ def test_many_uninformative_views_give_no_nan():
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"offsets": {"wall": 1.0}}, {"offsets": {"unicorn": 1.0}}, {"sharpness": 0.0}, {"ring_weights": ()},
-     {"shape": {"wall": (0.0,) * FEATURES}}, {"shape": {"chair": (1.0,)}}],
-)  # fmt: skip
+    [{"offsets": {"wall": 1.0}}, {"offsets": {"unicorn": 1.0}}, {"sharpness": 0.0}, {"ring_weights": ()}],
+)
 def test_wrong_parameters_are_refused(wrong: dict):
     with pytest.raises(ConfigError, match="Fusion"):
         Fusion(**wrong)
@@ -125,17 +123,8 @@ def test_a_track_has_the_category_of_a_quarter_of_its_pixels():
     assert true_category(counts) == -1
 
 
-LOW, HIGH = features_of(np.array([[0.0, 0.4, 0.5, 0.5, 0.1, 1.0], [0.0, 1.0, 0.5, 0.5, 0.4, 0.2]], np.float32))
-"""Features of the shapes of a stool and of a chair with a back."""
-
-
-def sampled(
-    n: int, *, chairs_called_tables: float = 0.0, far_lies: bool = False, high_chairs: bool = False
-) -> list[Sample]:
-    """Returns tracks of chairs and tables whose network takes some chairs for tables, or is wrong from far away.
-
-    With `high_chairs`, chairs are high and tables low.
-    """
+def sampled(n: int, *, chairs_called_tables: float = 0.0, far_lies: bool = False) -> list[Sample]:
+    """Returns tracks of chairs and tables whose network takes some chairs for tables, or is wrong from far away."""
     rng = np.random.default_rng(0)
     result = []
     for i in range(n):
@@ -147,28 +136,14 @@ def sampled(
             shown = rng.choice([CHAIR, TABLE]) if far_lies and view == FAR else seen
             mean.append(posterior(**{MPCAT40[1 + shown]: 0.7, "wall": 0.1}))
         weight = np.ones(len(views), np.float32)
-        shape = HIGH if high_chairs and category == CHAIR else LOW
-        result.append(Sample(f"house_{i % 7}", category, np.array(views), np.stack(mean), weight, shape))
+        result.append(Sample(f"house_{i % 7}", category, np.array(views), np.stack(mean), weight))
     return result
-
-
-def test_the_fit_tells_chairs_from_tables_by_their_height():
-    samples = sampled(600, chairs_called_tables=1.0, high_chairs=True)
-    fitted, shapeless = (fit(samples, shape=shape, steps=100) for shape in (True, False))
-    assert shapeless.shape == {}
-    assert fitted.shape.keys() == {*MPCAT40[1:]} - {*SURFACES} | {NOTHING}
-    right = [
-        (probabilities(fusion, samples).argmax(axis=1) == [each.category for each in samples]).mean()
-        for fusion in (fitted, shapeless)
-    ]
-    assert right[0] == 1.0
-    assert right[1] == pytest.approx(0.5, abs=0.01)
 
 
 @pytest.mark.costly
 def test_the_fit_finds_how_often_a_category_is_missed():
     samples = sampled(400, chairs_called_tables=0.4)
-    fusion = fit(samples, shape=False)
+    fusion = fit(samples)
     assert fusion.offsets["chair"] - fusion.offsets["table"] > 0.3
     p = probabilities(fusion, [each for each in samples if each.mean[0].argmax() == TABLE])
     assert p[:, TABLE].mean() == pytest.approx(1.0 / 1.4, abs=0.1)  # true tables among apparent ones
@@ -182,7 +157,7 @@ def test_the_fit_finds_that_far_views_are_worth_less():
 
 
 def test_the_fit_maximises_the_likelihood_that_the_agent_computes():
-    samples = sampled(200, far_lies=True, high_chairs=True)
+    samples = sampled(200, far_lies=True)
     fusion = fit(samples)
     free = {
         "rings": torch.tensor(np.log(fusion.ring_weights)),
@@ -191,7 +166,6 @@ def test_the_fit_maximises_the_likelihood_that_the_agent_computes():
         "floor": torch.tensor(np.log(fusion.floor)),
         "surface": torch.tensor(fusion.surface),
         "offsets": torch.tensor([fusion.offsets[name] for name in MPCAT40[1:] if name not in SURFACES]),
-        "shape": torch.tensor(list(fusion.shape.values())).T,
     }
     p = torch.softmax(_Data.of(samples, 12).log_odds({k: v.float() for k, v in free.items()}), dim=1).numpy()
     np.testing.assert_allclose(p[:, :-1], probabilities(fusion, samples)[:, ~IS_SURFACE], atol=2e-4)
@@ -209,14 +183,11 @@ def test_a_track_enters_as_often_as_it_was_logged():
         "house": "a",
         "counts": counts,
         "track": np.array([0, 0, 1, 2]),
-        "measures": np.zeros((4, 6), np.float32),
         "sample": np.array([0, 1, 1, 1, 2, 3]),
         "view": np.array([NEAR, NEAR, NEAR + 1, FAR, NEAR, NEAR]),
         "mean": np.stack([posterior(chair=0.9)] * 6),
         "weight": np.ones(6, np.float16),
     }
-    episode["measures"][1, 1] = 1.0
     samples = samples_of([episode])
     assert [len(each.view) for each in samples] == [1, 3, 1]
     assert {each.category for each in samples} == {CHAIR}
-    assert (samples[0].shape != samples[1].shape).any()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -70,7 +71,7 @@ def agent_with(probability: float, look: LookConfig | None = None) -> tuple[Stub
     )
     assert isinstance(agent, StubbornAgent)
     assert isinstance(agent.seeker, TrackSeeker)
-    agent.seeker.fusion = Fusion()  # not the fitted one, whose parameters change with the network
+    agent.seeker.fusion, agent.seeker.context = Fusion(), None  # not the fitted ones, whose parameters change
     return agent, agent.seeker
 
 
@@ -341,7 +342,27 @@ def test_a_stop_at_a_part_judges_the_track_that_is_approached_and_not_a_better_o
     assert seeker.confidence == pytest.approx(0.75)
 
 
-@pytest.mark.parametrize("wrong", [{"as_good": -0.1}, {"core_share": 1.5}, {"part_share": -1.0}, {"near_best_m": 0.0}])
+def test_context_counts_for_imperfect_detectors_and_with_a_share():
+    def seeker_of(segmenter: object, **options: object) -> TrackSeeker:
+        config = TrackSeekerConfig(**options)  # type: ignore[arg-type]
+        agent = agents.make(
+            "stubborn-plus", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=segmenter, seeker=config
+        )
+        assert isinstance(agent, StubbornAgent)
+        assert isinstance(agent.seeker, TrackSeeker)
+        return agent.seeker
+
+    assert seeker_of(Unsure(0.5)).context is not None
+    assert seeker_of(Unsure(0.5), context_share=0.0).context is None
+    assert seeker_of(GroundTruthSegmenter()).context is None
+    with pytest.raises(ConfigError, match="Context file"):
+        seeker_of(Unsure(0.5), context=Path("nowhere.json"))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"context_share": 1.5}, {"as_good": -0.1}, {"core_share": 1.5}, {"part_share": -1.0}, {"near_best_m": 0.0}],
+)
 def test_wrong_settings_are_refused(wrong: dict):
     with pytest.raises(ConfigError, match="TrackSeekerConfig"):
         TrackSeekerConfig(**wrong)

@@ -55,9 +55,7 @@ def test_an_object_is_one_track_from_all_sides_that_are_passed():
         look(tracks, pose, TABLE, PICTURE)
     assert len(of(tracks, "table")) == 1
     assert len(of(tracks, "picture")) == 1
-    (table,), (picture,) = of(tracks, "table"), of(tracks, "picture")
-    heights_m = tracks.measures(np.array([table, picture]))[:, :2]
-    np.testing.assert_allclose(heights_m, [[0.0, 0.7], [1.0, 1.6]], atol=0.11)
+    (table,) = of(tracks, "table")
     assert tracks.middle_xy_m(table) == pytest.approx((2.3, 0.0), abs=0.2)
     index, mask = tracks.footprint(table)
     x_m, y_m = FRAME.centres(*np.nonzero(np.pad(mask, ((index[0].start, 0), (index[1].start, 0)))))

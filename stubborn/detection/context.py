@@ -1,0 +1,110 @@
+"""The objects around an object as evidence for its category: towels hang near sinks, cushions lie on sofas.
+
+The ratio P(category | objects nearby) / P(category) multiplies the probabilities of a track. The ratios describe how
+homes are furnished, not a segmentation: they are fitted to house plans (`stubborn train context`), and the shipped ones
+to those of generated houses. Less than 1 of their logarithm counts, because a network has seen the surroundings in its
+images too, and because other homes are furnished otherwise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import numpy as np
+from jaxtyping import Float32
+
+from sim.interface import MPCAT40, ConfigError
+from sim.reading import Number, read_json
+
+SHIPPED = Path(__file__).with_name("context.json")
+"""The ratios of generated houses."""
+STRUCTURE = (
+    "wall", "floor", "door", "window", "stairs", "ceiling", "column", "lighting", "beam", "railing", "misc",
+)  # fmt: skip
+"""Classes that are not objects: they do not begin tracks, but their probability counts against existing tracks."""
+OBJECTS = tuple(name for name in MPCAT40[1:] if name not in STRUCTURE)
+"""The categories of tracks, which are evidence for each other."""
+IS_OBJECT = np.array([name not in STRUCTURE for name in MPCAT40[1:]])
+"""One entry for each category of `MPCAT40` except void."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Context:
+    """A log-linear model of the category of an object, given the categories nearby; all arrays are as `OBJECTS`."""
+
+    radius_m: float
+    """Objects are nearby if their middles are nearer than this in the plan."""
+    frequency: Float32[np.ndarray, " objects"]
+    """Share of each category among all objects."""
+    constant: Float32[np.ndarray, " objects"]
+    """Log-odds of each category with nothing nearby, besides the logarithm of its frequency."""
+    weight: Float32[np.ndarray, "objects objects"]
+    """Log-odds to add for the category of a row if one of a column is nearby. The diagonal is 0: two tracks of one
+    category may be parts of one object."""
+
+    def log_ratios(self, nearby: Float32[np.ndarray, "n objects"]) -> Float32[np.ndarray, "n objects"]:
+        """Returns log(P(category | nearby) / P(category)).
+
+        Args:
+            nearby: for each category, the probability that an object of it is nearby.
+        """
+        prior = np.log(self.frequency)
+        log_odds = nearby @ self.weight.T + self.constant + prior
+        log_odds -= log_odds.max(axis=1, keepdims=True)
+        return log_odds - np.log(np.exp(log_odds).sum(axis=1, keepdims=True)) - prior
+
+
+class _Object(msgspec.Struct):
+    frequency: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)]
+    constant: Number
+    nearby: dict[str, Number]
+
+
+class _Parameters(msgspec.Struct):
+    radius_m: Annotated[float, msgspec.Meta(gt=0.0, le=100.0)]
+    objects: dict[str, _Object]
+
+
+class _File(msgspec.Struct):
+    """A file of `stubborn train context`."""
+
+    context: _Parameters
+
+
+def read_context(file: Path = SHIPPED) -> Context:
+    """Returns the model in a file that `stubborn train context` wrote.
+
+    Raises:
+        ConfigError: the file is missing or holds something else.
+    """
+    found = read_json(file, _File, what="Context file").context
+    unknown = {*found.objects, *(name for each in found.objects.values() for name in each.nearby)} - set(OBJECTS)
+    if unknown:
+        raise ConfigError(f"Context file '{file}': '{min(unknown)}' is none of {', '.join(OBJECTS)}.")
+    missing = set(OBJECTS) - set(found.objects)
+    if missing:
+        raise ConfigError(f"Context file '{file}' has no entry for '{min(missing)}'.")
+    rows = [found.objects[name] for name in OBJECTS]
+    return Context(
+        radius_m=found.radius_m,
+        frequency=np.array([each.frequency for each in rows], np.float32),
+        constant=np.array([each.constant for each in rows], np.float32),
+        weight=np.array([[each.nearby.get(name, 0.0) for name in OBJECTS] for each in rows], np.float32),
+    )
+
+
+def content_of(context: Context) -> dict[str, object]:
+    """Returns the entry `context` of a file that `read_context` reads."""
+    rows = zip(OBJECTS, context.frequency, context.constant, context.weight, strict=True)
+    objects = {
+        name: {
+            "frequency": float(f"{frequency:.3g}"),
+            "constant": round(float(constant), 2),
+            "nearby": {other: round(float(v), 2) for other, v in zip(OBJECTS, weight, strict=True) if abs(v) >= 0.005},
+        }
+        for name, frequency, constant, weight in rows
+    }
+    return {"radius_m": context.radius_m, "objects": objects}

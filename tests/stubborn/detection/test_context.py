@@ -1,0 +1,146 @@
+"""The objects nearby as evidence: what the model says, what tracks make of it, its files, and the fit."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, ConfigError
+from stubborn.detection.context import OBJECTS, SHIPPED, Context, content_of, read_context
+from stubborn.detection.context_fit import fit, log_losses, surroundings
+from tests.stubborn.detection.test_tracks import PICTURE, TABLE, VIEWS, look, tracked
+
+SINK, TOWEL, BED, PICTURE_ID = (OBJECTS.index(name) for name in ("sink", "towel", "bed", "picture"))
+
+
+def context(radius_m: float = 2.5, **weights: float) -> Context:
+    """Returns a model in which an object near a table is more probably one of these categories."""
+    weight = np.zeros((len(OBJECTS), len(OBJECTS)), np.float32)
+    for name, each in weights.items():
+        weight[OBJECTS.index(name), OBJECTS.index("table")] = each
+    frequency = np.full(len(OBJECTS), 1.0 / len(OBJECTS), np.float32)
+    return Context(radius_m=radius_m, frequency=frequency, constant=np.zeros_like(frequency), weight=weight)
+
+
+def near(*names: str) -> np.ndarray:
+    return np.array([[name in names for name in OBJECTS]], np.float32)
+
+
+def test_the_shipped_model_knows_homes():
+    shipped = read_context()
+    alone, by_sink = shipped.log_ratios(near()), shipped.log_ratios(near("sink", "toilet"))
+    assert by_sink[0, TOWEL] - by_sink[0, BED] > alone[0, TOWEL] - alone[0, BED] + 2.0
+    assert shipped.log_ratios(near("sofa"))[0, OBJECTS.index("cushion")] > 1.0
+    assert not np.diag(shipped.weight).any()
+    assert set(GOAL_CATEGORIES) <= set(OBJECTS)
+
+
+def test_the_probabilities_that_follow_add_up_to_one():
+    shipped = read_context()
+    p = shipped.frequency * np.exp(shipped.log_ratios(near("bed", "mirror")))
+    assert p.sum() == pytest.approx(1.0, abs=0.01)  # frequencies in the file are rounded
+
+
+def test_a_track_is_weighed_by_the_other_tracks_within_the_radius():
+    tracks = tracked()
+    for pose in VIEWS:
+        look(tracks, pose, TABLE, PICTURE, goal="table", taken_for="bed")
+    goal, plain = "bed", tracks.probabilities("bed")
+    track = int(plain.argmax())
+    assert 0.3 < plain[track] < 0.95
+    # The picture is 2.2 m from the table, which is a bed with the rest of its probability.
+    of_picture = context(bed=0.0)
+    of_picture.weight[BED, PICTURE_ID] = 2.0
+    higher = tracks.probabilities(goal, context=of_picture)
+    assert higher[track] > plain[track] + 0.03
+    assert plain[track] < tracks.probabilities(goal, context=of_picture, share=0.5)[track] < higher[track]
+    near_only = Context(
+        radius_m=1.5, frequency=of_picture.frequency, constant=of_picture.constant, weight=of_picture.weight
+    )
+    assert tracks.probabilities(goal, context=near_only)[track] == pytest.approx(plain[track], abs=0.02)
+    assert tracks.probabilities(goal, least_voxels=10**6, context=of_picture).max() == 0.0
+
+
+def test_a_track_is_no_context_of_itself():
+    tracks = tracked()
+    look(tracks, VIEWS[0], TABLE, goal="bed", taken_for="bed")
+    plain = tracks.probabilities("bed", least_voxels=20)
+    assert (plain > 0.1).sum() == 1
+    np.testing.assert_allclose(tracks.probabilities("bed", 20, context(bed=3.0)), plain, atol=1e-3)
+
+
+def test_a_file_is_read_as_it_was_written(tmp_path: Path):
+    file = tmp_path / "context.json"
+    given = context(1.25, bed=1.5, towel=-0.75)
+    file.write_text(json.dumps({"context": content_of(given)}))
+    found = read_context(file)
+    assert found.radius_m == 1.25
+    np.testing.assert_array_equal(found.weight, given.weight)
+    np.testing.assert_allclose(found.frequency, given.frequency, rtol=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("entry", "value", "message"),
+    [
+        (("unicorn",), {"frequency": 0.1, "constant": 0.0, "nearby": {}}, "'unicorn' is none of chair"),
+        (("bed", "nearby", "wall"), 1.0, "'wall' is none of chair"),
+        (("bed",), None, "expected object, got null"),
+        (("bed", "frequency"), 0.0, "frequency"),
+        (("bed", "constant"), "high", "constant"),
+    ],
+)
+def test_a_wrong_file_is_refused_by_its_entry(tmp_path: Path, entry: tuple[str, ...], value: object, message: str):
+    content = json.loads(SHIPPED.read_text())
+    *path, last = entry
+    part = content["context"]["objects"]
+    for name in path:
+        part = part[name]
+    part[last] = value
+    file = tmp_path / "context.json"
+    file.write_text(json.dumps(content))
+    with pytest.raises(ConfigError, match=message):
+        read_context(file)
+    del content["context"]["objects"]["bed"]
+    content["context"]["objects"].pop("unicorn", None)
+    file.write_text(json.dumps(content))
+    with pytest.raises(ConfigError, match="no entry for 'bed'"):
+        read_context(file)
+
+
+def bathroom_and_bedroom(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Returns objects of a house: a sink, a towel and a mirror here, a bed, clothes and a mirror 8 m away; a wall."""
+    names = ("sink", "towel", "mirror", "wall", "bed", "clothes", "mirror")
+    x_m = np.repeat((0.0, 8.0), (4, 3)) + rng.uniform(-0.5, 0.5, 7)
+    return x_m, rng.uniform(-0.5, 0.5, 7), np.array([MPCAT40_ID[name] for name in names])
+
+
+def test_the_fit_finds_what_is_near_what():
+    rng = np.random.default_rng(0)
+    houses = [surroundings(*bathroom_and_bedroom(rng), 2.5, rng) for _ in range(200)]
+    assert all(len(category) == 6 for _, category in houses)  # a wall is no object
+    found = fit(houses[:180], 2.5, steps=200)
+    ratio = found.log_ratios(near("sink"))[0]
+    assert ratio[TOWEL] > ratio[OBJECTS.index("mirror")] > ratio[OBJECTS.index("clothes")]
+    alone, with_context = log_losses(found, houses[180:])
+    assert with_context < alone - 0.3
+    assert alone == pytest.approx(np.log(5.0), abs=0.2)  # five categories, of which one is twice as frequent
+
+
+def test_a_part_of_what_is_around_is_seen():
+    x_m, y_m, category = np.zeros(40), np.arange(40) * 0.01, np.full(40, MPCAT40_ID["chair"])
+    category[20:] = MPCAT40_ID["table"]
+    rng = np.random.default_rng(0)
+    many, _ = surroundings(x_m, y_m, category, 1.0, rng)
+    assert many[:, OBJECTS.index("chair")].mean() > 0.9
+    few, _ = surroundings(x_m[19:21], y_m[19:21], category[19:21], 1.0, rng)
+    again = [surroundings(x_m[19:21], y_m[19:21], category[19:21], 1.0, rng)[0].sum() for _ in range(100)]
+    assert few.shape == (2, len(OBJECTS))
+    assert 0.8 < np.mean(again) < 1.5  # 0.575 of two
+
+
+def test_too_few_objects_are_refused():
+    with pytest.raises(ConfigError, match="100 are needed"):
+        fit([], 2.5)
