@@ -2,8 +2,8 @@
 
 The ratio P(category | objects nearby) / P(category) multiplies the probabilities of a track. The ratios describe how
 homes are furnished, not a segmentation: they are fitted to house plans (`stubborn train context`), and the shipped ones
-to those of generated houses. Less than 1 of their logarithm counts, because a network has seen the surroundings in its
-images too, and because other homes are furnished otherwise.
+to those of generated houses. Only a share of their logarithm counts (`TrackSeekerConfig.context_share`), because a
+network has seen the surroundings in its images too, and because other homes are furnished otherwise.
 """
 
 from __future__ import annotations
@@ -33,14 +33,17 @@ IS_OBJECT = np.array([name not in STRUCTURE for name in MPCAT40[1:]])
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Context:
-    """A log-linear model of the category of an object, given the categories nearby; all arrays are as `OBJECTS`."""
+    """A log-linear model of the category of an object, given the categories nearby.
+
+    Its arrays are in the order of `OBJECTS`.
+    """
 
     radius_m: float
     """Objects are nearby if their middles are nearer than this in the plan."""
     frequency: Float32[np.ndarray, " objects"]
-    """Share of each category among all objects."""
+    """Share of each category among all objects; 0: not known, its ratio is always 1."""
     constant: Float32[np.ndarray, " objects"]
-    """Log-odds of each category with nothing nearby, besides the logarithm of its frequency."""
+    """Log-odds of each category with nothing nearby, in addition to the logarithm of its frequency."""
     weight: Float32[np.ndarray, "objects objects"]
     """Log-odds to add for the category of a row if one of a column is nearby. The diagonal is 0: two tracks of one
     category may be parts of one object."""
@@ -51,21 +54,24 @@ class Context:
         Args:
             nearby: for each category, the probability that an object of it is nearby.
         """
-        prior = np.log(self.frequency)
-        log_odds = nearby @ self.weight.T + self.constant + prior
+        known = self.frequency > 0.0
+        prior = np.log(self.frequency[known])
+        log_odds = nearby @ self.weight[known].T + self.constant[known] + prior
         log_odds -= log_odds.max(axis=1, keepdims=True)
-        return log_odds - np.log(np.exp(log_odds).sum(axis=1, keepdims=True)) - prior
+        result = np.zeros_like(nearby)
+        result[:, known] = log_odds - np.log(np.exp(log_odds).sum(axis=1, keepdims=True)) - prior
+        return result
 
 
 class _Object(msgspec.Struct):
-    frequency: Annotated[float, msgspec.Meta(gt=0.0, le=1.0)]
+    frequency: Annotated[float, msgspec.Meta(ge=1e-6, le=1.0)]
     constant: Number
     nearby: dict[str, Number]
 
 
 class _Parameters(msgspec.Struct):
     radius_m: Annotated[float, msgspec.Meta(gt=0.0, le=100.0)]
-    objects: dict[str, _Object]
+    objects: Annotated[dict[str, _Object], msgspec.Meta(min_length=1)]
 
 
 class _File(msgspec.Struct):
@@ -84,16 +90,13 @@ def read_context(file: Path = SHIPPED) -> Context:
     unknown = {*found.objects, *(name for each in found.objects.values() for name in each.nearby)} - set(OBJECTS)
     if unknown:
         raise ConfigError(f"Context file '{file}': '{min(unknown)}' is none of {', '.join(OBJECTS)}.")
-    missing = set(OBJECTS) - set(found.objects)
-    if missing:
-        raise ConfigError(f"Context file '{file}' has no entry for '{min(missing)}'.")
-    rows = [found.objects[name] for name in OBJECTS]
-    return Context(
-        radius_m=found.radius_m,
-        frequency=np.array([each.frequency for each in rows], np.float32),
-        constant=np.array([each.constant for each in rows], np.float32),
-        weight=np.array([[each.nearby.get(name, 0.0) for name in OBJECTS] for each in rows], np.float32),
-    )
+    frequency, constant = np.zeros((2, len(OBJECTS)), np.float32)
+    weight = np.zeros((len(OBJECTS), len(OBJECTS)), np.float32)
+    for name, each in found.objects.items():
+        number = OBJECTS.index(name)
+        frequency[number], constant[number] = each.frequency, each.constant
+        weight[number] = [each.nearby.get(other, 0.0) for other in OBJECTS]
+    return Context(radius_m=found.radius_m, frequency=frequency, constant=constant, weight=weight)
 
 
 def content_of(context: Context) -> dict[str, object]:
@@ -106,5 +109,6 @@ def content_of(context: Context) -> dict[str, object]:
             "nearby": {other: round(float(v), 2) for other, v in zip(OBJECTS, weight, strict=True) if abs(v) >= 0.005},
         }
         for name, frequency, constant, weight in rows
+        if frequency > 0.0
     }
     return {"radius_m": context.radius_m, "objects": objects}

@@ -15,6 +15,8 @@ from jaxtyping import Float32, Float64, Int
 from sim.interface import MPCAT40, MPCAT40_ID, ConfigError
 from stubborn.detection.context import OBJECTS, Context
 
+LEAST_OBJECTS = 10
+"""A category with fewer objects is not known: nothing can be said of what is near it."""
 LEAST_SEEN = 0.15
 """Of the objects around an object, a share between this and 1 is seen."""
 PRIOR = 3.0
@@ -22,7 +24,7 @@ PRIOR = 3.0
 _NUMBER = np.full(len(MPCAT40), -1)
 _NUMBER[[MPCAT40_ID[name] for name in OBJECTS]] = np.arange(len(OBJECTS))
 Surroundings = tuple[Float32[np.ndarray, "n objects"], Int[np.ndarray, " n"]]
-"""For each object, which categories are nearby (1 or 0), and its own; both as `OBJECTS`."""
+"""For each object, which categories are nearby (1 or 0), and its own, by their numbers in `OBJECTS`."""
 
 
 def surroundings(
@@ -64,8 +66,10 @@ def fit(houses: Sequence[Surroundings], radius_m: float, *, steps: int = 400) ->
     if len(category) < 100:
         raise ConfigError(f"The plans have {len(category)} objects; 100 are needed: give more plans.")
     counts = np.bincount(category, minlength=len(OBJECTS)) + 0.5
-    frequency = counts / counts.sum()
-    prior = torch.from_numpy(np.log(frequency).astype(np.float32))
+    known = counts >= LEAST_OBJECTS
+    nearby, category = nearby[known[category]], category[known[category]]
+    frequency = known * counts / max((known * counts).sum(), 1.0)
+    prior = torch.from_numpy(np.log(frequency, where=known, out=np.full(len(OBJECTS), -np.inf)).astype(np.float32))
     weight = torch.zeros(len(OBJECTS), len(OBJECTS), requires_grad=True)
     constant = torch.zeros(len(OBJECTS), requires_grad=True)
     others = 1.0 - torch.eye(len(OBJECTS))
@@ -79,14 +83,22 @@ def fit(houses: Sequence[Surroundings], radius_m: float, *, steps: int = 400) ->
     return Context(
         radius_m=radius_m,
         frequency=frequency.astype(np.float32),
-        constant=constant.detach().numpy(),
-        weight=(weight * others).detach().numpy(),
+        constant=constant.detach().numpy() * known,
+        weight=(weight * others).detach().numpy() * known[:, None],
     )
 
 
 def log_losses(context: Context, houses: Sequence[Surroundings]) -> tuple[float, float]:
-    """Returns the mean log loss of the categories of objects: by their frequency alone, and by what is nearby."""
+    """Returns the mean log loss of known categories of objects: by their frequency alone, and by what is nearby.
+
+    Raises:
+        ConfigError: the houses have no object of a known category.
+    """
     nearby, category = (np.concatenate(each) for each in zip(*houses, strict=True))
+    known = context.frequency[category] > 0.0
+    if not known.any():
+        raise ConfigError("The plans held back have no object of a category that the others have: give more plans.")
+    nearby, category = nearby[known], category[known]
     frequency = np.log(context.frequency[category])
     ratio = context.log_ratios(nearby)[np.arange(len(category)), category]
     return -float(frequency.mean()), -float((frequency + ratio).mean())

@@ -3,8 +3,8 @@
 The posteriors of a track's pixels contain two facts: how much of it is wall, floor or ceiling (a voxel holds a part of
 what is behind the object), and which object the rest shows. They are separated: the object's categories compete with
 each other, and the share of surface shows whether there is an object at all. Views are averaged with a weight for each
-range of distance; the average is sharpened more when there are more views, and each category has an offset. What
-is near the object counts besides, see `stubborn.detection.context`.
+range of distance; the average is sharpened more when there are more views, and each category has an offset. Objects
+nearby are additional evidence, see `stubborn.detection.context`.
 
 The parameters describe the errors of one kind of segmentation. `stubborn train fusion` fits them to tracks in houses
 with furniture that the network has not seen, and writes `stubborn/detection/fusions/<kind>.json`.

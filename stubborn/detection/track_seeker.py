@@ -35,8 +35,8 @@ class TrackSeekerConfig:
     context: Path | None = None
     """File of `stubborn train context`, which says what is near objects of each category; None: the shipped one."""
     context_share: float = 0.5
-    """With an imperfect detector, the share of the log-odds of the context that counts. Of 0, 0.5 and 1, chosen on
-    `val`."""
+    """With an imperfect detector, the share of the context's log ratios that counts; 0: none. Of 0, 0.5 and 1, chosen
+    on `val`."""
     core_share: float = 0.7
     """The robot does not drive to cells of a track whose mean score is below this share of the track's highest one."""
     near_best_m: float = 0.5

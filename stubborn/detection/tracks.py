@@ -23,6 +23,8 @@ from stubborn.detection.fusion import Fusion
 from stubborn.kernels.tracks import claim, label_pixels, means_by_track, overlaps_of, regions_of, voxels_of
 from stubborn.mapping.projection import Rays
 
+_LEAST = 0.02
+"""Context does not change a probability below this: it would stay far below what is worth a look."""
 _ALMOST_1 = np.float32(0.999)
 """The largest probability of a track in the context of others."""
 
@@ -62,8 +64,6 @@ class TrackConfig:
     surface."""
     inside_rad: float = 0.15
     """A track whose middle is nearer than this angle to the image's left or right edge is not seen whole."""
-    least_in_context: float = 0.02
-    """Context (`stubborn.detection.context`) does not change the probability of tracks with less than this."""
     most_tracks: int = 2048
     """Limit of the number of tracks; objects beyond it are not tracked."""
     evidence: EvidenceConfig = field(default_factory=EvidenceConfig)
@@ -135,7 +135,7 @@ class Tracks:
             self.evidence.add(self.in_view, *seen, pose.x_m - x_m, pose.y_m - y_m, whole)
 
     def probabilities(
-        self, goal: str, least_voxels: int = 1, context: Context | None = None, share: float = 1.0
+        self, goal: str, least_voxels: int = 1, context: Context | None = None, share: float = 0.0
     ) -> Float32[np.ndarray, " numbers"]:
         """Returns the probability of the goal for each track; 0 for entry 0 and for tracks with fewer voxels.
 
@@ -143,16 +143,16 @@ class Tracks:
             goal: the category.
             least_voxels: tracks with fewer voxels do not count, also not as context.
             context: changes the probabilities by what is near a track.
-            share: the share of its log-odds that counts.
+            share: the share of its log ratios that counts.
         """
         counts = self._size[: self.count + 1] >= least_voxels
         counts[0] = False
         probability = np.where(counts, self.evidence.probability[: self.count + 1, MPCAT40_ID[goal] - 1], np.float32(0))
-        likely = np.flatnonzero(probability >= self.config.least_in_context)
+        likely = np.flatnonzero(probability >= _LEAST)
         if context is not None and likely.size:
-            there = self.evidence.probability[likely]
-            there[:, IS_OBJECT] *= np.exp(share * context.log_ratios(self._nearby(likely, counts, context.radius_m)))
-            probability[likely] = there[:, MPCAT40_ID[goal] - 1] / there.sum(axis=1)
+            by_class = self.evidence.probability[likely]
+            by_class[:, IS_OBJECT] *= np.exp(share * context.log_ratios(self._nearby(likely, counts, context.radius_m)))
+            probability[likely] = by_class[:, MPCAT40_ID[goal] - 1] / by_class.sum(axis=1)
         return probability
 
     def _nearby(

@@ -40,6 +40,12 @@ def test_objects_of_a_plan_are_near_others_within_the_radius(plan: Plan):
     assert not around(plan, 0.5, np.random.default_rng(0))[0].any()
 
 
+def test_objects_above_the_ceiling_belong_to_the_next_storey(plan: Plan):
+    lower = replace(plan, ceiling_m=0.85)  # below the towel and the clothes
+    _, category = around(lower, 2.5, np.random.default_rng(0))
+    assert sorted(category.tolist()) == sorted((SINK, BED))
+
+
 def test_it_writes_what_the_agent_reads_and_judges_plans_that_it_held_back(
     plan: Plan, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
@@ -63,6 +69,7 @@ def test_it_writes_what_the_agent_reads_and_judges_plans_that_it_held_back(
 def test_without_plans_or_a_file_it_says_what_to_give(tmp_path: Path):
     with pytest.raises(ConfigError, match="No plan in"):
         main(Args(plans=(tmp_path,), out=tmp_path / "x.json"))
-    for wrong in ({}, {"out": tmp_path / "x.json", "shipped": True}):
-        with pytest.raises(ConfigError, match="--out FILE"):
-            main(Args(plans=(tmp_path,), **wrong))  # type: ignore[arg-type]
+    with pytest.raises(ConfigError, match="--out FILE"):
+        main(Args(plans=(tmp_path,)))
+    with pytest.raises(ConfigError, match="exclude each other"):
+        main(Args(plans=(tmp_path,), out=tmp_path / "x.json", shipped=True))

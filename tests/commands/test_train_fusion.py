@@ -13,6 +13,8 @@ from sim.commands.train import fusion as train_tracks
 from sim.episodes.splits import Episode, write_split
 from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, ConfigError
+from stubborn.detection.fusion import Fusion
+from stubborn.detection.track_seeker import TrackSeeker
 from tests.helpers.worlds import room, with_box
 
 
@@ -35,6 +37,15 @@ def log_after(split: Path, log: Path, episodes: int) -> list[dict]:
     with pytest.raises(ConfigError, match=r"are needed.*run more episodes"):  # more samples, or another house
         train_tracks.main(args)
     return [json.loads(line) for line in (log / "results.jsonl").read_text().splitlines()]
+
+
+def test_the_agent_of_the_log_uses_no_fitted_parameters(split: Path, tmp_path: Path):
+    args = train_tracks.Args(split=str(split), semantics="noisy", log=tmp_path, out=tmp_path / "x.json")
+    runner = train_tracks.TrackRunner((args, tmp_path))
+    seeker = runner._agent.seeker
+    assert isinstance(seeker, TrackSeeker)
+    assert (seeker.fusion, seeker.context) == (Fusion(), None)
+    runner.close()
 
 
 @pytest.mark.costly

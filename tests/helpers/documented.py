@@ -535,12 +535,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f" 60 --log {{tmp}}/log"
         " --out {tmp}/fusion.json",
     ),
-    "stubborn houses plans --split runs/own --out runs/plans/own": (
+    "stubborn houses plans --split runs/unseen --out runs/plans/unseen": (
         "stubborn houses generate --pool train --kind studio --houses 1 --out {tmp}/own",
         "stubborn episodes --split {tmp}/own --episodes 3",
         "stubborn houses plans --split {tmp}/own --out {tmp}/plans/own",
     ),
-    "stubborn train context --plans runs/plans/own --out runs/context.json": (
+    "stubborn train context --plans runs/plans/unseen --out runs/context.json": (
         *_PLANS,
         "stubborn train context --plans {tmp}/plans --out {tmp}/context.json",
     ),

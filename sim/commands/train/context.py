@@ -1,10 +1,10 @@
 """Fits which objects are near objects of each category, by which `stubborn-plus` weighs what its network reports.
 
-    stubborn houses plans --pool train --houses 250 --out runs/plans
-    stubborn train context --plans runs/plans --out runs/context.json
+    stubborn houses plans --pool train --first-seed 0 --houses 240 --out runs/plans/train
+    stubborn train context --plans runs/plans/train --shipped
 
-One plan in ten is held back; on it the log loss of the categories is printed: by their frequency alone, and with the
-objects nearby. The agent reads the file with `--config agent.seeker.context=FILE`.
+One plan in ten is held back; on these the log loss of the categories is printed: by their frequency alone, and with the
+objects nearby. The agent reads a file of your own with `--config agent.seeker.context=FILE`.
 """
 
 from __future__ import annotations
@@ -32,21 +32,25 @@ class Args:
     plans: tuple[Path, ...]
     """Folders of plans (`stubborn houses plans`)."""
     out: cli.OutFile | None = None
-    """File of the parameters."""
+    """File of the parameters (JSON)."""
     shipped: bool = False
-    """Replace the parameters that ship."""
+    """In place of --out: replace the parameters that ship."""
     radius_m: cli.Positive = 2.5
-    """Objects are near one another if their middles are nearer than this."""
+    """Two objects are near each other if their middles are nearer than this in the plan."""
     seed: cli.Seed = 0
-    """Seed of the choice of what is seen of the surroundings."""
+    """Seed of the random choice of the nearby objects that count as seen."""
 
 
 def main(args: Args) -> int:
     """Fits, writes and judges; returns the exit status."""
-    if (args.out is None) != args.shipped:
+    if args.out is not None and args.shipped:
+        raise ConfigError("--out and --shipped exclude each other.")
+    if args.out is None and not args.shipped:
         raise ConfigError("Give --out FILE for the parameters, or --shipped to replace those that ship.")
     rng = np.random.default_rng(args.seed)
-    fitted, held_back = ([around(read_plan(file), args.radius_m, rng) for file in f] for f in split_plans(args.plans))
+    fitted, held_back = (
+        [around(read_plan(file), args.radius_m, rng) for file in files] for files in split_plans(args.plans)
+    )
     context = fit(fitted, args.radius_m)
     quality: dict[str, object] = {"plans": len(fitted), "objects": sum(len(category) for _, category in fitted)}
     if held_back:
@@ -57,18 +61,20 @@ def main(args: Args) -> int:
     content = {"command": f"stubborn train context {shlex.join(words)}", **quality, "context": content_of(context)}
     file = args.out or SHIPPED
     write_atomically(file, json.dumps(content, indent=1, allow_nan=False) + "\n")
-    print(", ".join(f"{value} {name}" for name, value in quality.items()))
+    print(f"{quality['objects']} objects of {quality['plans']} plans")
+    if held_back:
+        print(f"log loss {with_context:.3f} on {len(held_back)} plans held back, {alone:.3f} by frequency alone")
     print(f"written: {file}")
     return 0
 
 
 def around(plan: Plan, radius_m: float, rng: np.random.Generator) -> Surroundings:
     """Returns what is around the objects of one plan."""
-    row_and_col = np.stack(np.divmod(plan.span_cell, plan.frame.shape[1]))
-    there = np.unique(plan.span_instance)
-    of = np.searchsorted(there, plan.span_instance)
-    low, high = np.full((2, there.size), np.inf), np.zeros((2, there.size))
-    np.minimum.at(low, (slice(None), of), row_and_col)
-    np.maximum.at(high, (slice(None), of), row_and_col)
+    on_storey = plan.span_low_m < plan.ceiling_m  # spans reach above the ceiling, into the next storey
+    row_and_col = np.stack(np.divmod(plan.span_cell[on_storey], plan.frame.shape[1]))
+    instances, number = np.unique(plan.span_instance[on_storey], return_inverse=True)
+    low, high = np.full((2, instances.size), np.inf), np.zeros((2, instances.size))
+    np.minimum.at(low, (slice(None), number), row_and_col)
+    np.maximum.at(high, (slice(None), number), row_and_col)
     middle_m = 0.5 * plan.frame.cell_m * (low + high)
-    return surroundings(middle_m[1], middle_m[0], plan.categories[there].astype(np.intp), radius_m, rng)
+    return surroundings(middle_m[1], middle_m[0], plan.categories[instances].astype(np.intp), radius_m, rng)

@@ -147,10 +147,10 @@ class TrackRunner:
             robot=self._env.robot_model,
             success=self._env.success_rule,
             segmenter=make_segmenter(args.semantics, self._env, args.weights),
-            config=replace(PLUS, seeker=replace(SEEKER, look=LOOK_AT_ALL)),
+            config=replace(PLUS, seeker=replace(SEEKER, look=LOOK_AT_ALL, context_share=0.0)),
         )
         assert isinstance(self._agent.seeker, TrackSeeker)
-        self._agent.seeker.fusion = Fusion()  # what is logged must not depend on the parameters that the fit replaces
+        self._agent.seeker.fusion = Fusion()  # what is logged must depend on no fitted parameters, also not on context
 
     def run(self, episode: Episode) -> dict[str, Any]:
         """Runs one episode to its last step and writes its tracks; returns its line."""

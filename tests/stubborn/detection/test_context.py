@@ -11,7 +11,7 @@ import pytest
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, ConfigError
 from stubborn.detection.context import OBJECTS, SHIPPED, Context, content_of, read_context
 from stubborn.detection.context_fit import fit, log_losses, surroundings
-from tests.stubborn.detection.test_tracks import PICTURE, TABLE, VIEWS, look, tracked
+from tests.stubborn.detection.test_tracks import PICTURE, TABLE, VIEWS, look, of, tracked
 
 SINK, TOWEL, BED, PICTURE_ID = (OBJECTS.index(name) for name in ("sink", "towel", "bed", "picture"))
 
@@ -42,6 +42,9 @@ def test_the_probabilities_that_follow_add_up_to_one():
     shipped = read_context()
     p = shipped.frequency * np.exp(shipped.log_ratios(near("bed", "mirror")))
     assert p.sum() == pytest.approx(1.0, abs=0.01)  # frequencies in the file are rounded
+    few = context()
+    few.frequency[:2], few.frequency[2:], few.constant[0] = 0.5, 0.0, np.log(3.0)
+    np.testing.assert_allclose(np.exp(few.log_ratios(near())[0, :3]), [1.5, 0.5, 1.0], rtol=1e-5)
 
 
 def test_a_track_is_weighed_by_the_other_tracks_within_the_radius():
@@ -54,14 +57,33 @@ def test_a_track_is_weighed_by_the_other_tracks_within_the_radius():
     # The picture is 2.2 m from the table, which is a bed with the rest of its probability.
     of_picture = context(bed=0.0)
     of_picture.weight[BED, PICTURE_ID] = 2.0
-    higher = tracks.probabilities(goal, context=of_picture)
+    higher = tracks.probabilities(goal, 1, of_picture, 1.0)
     assert higher[track] > plain[track] + 0.03
-    assert plain[track] < tracks.probabilities(goal, context=of_picture, share=0.5)[track] < higher[track]
+    assert plain[track] < tracks.probabilities(goal, 1, of_picture, 0.5)[track] < higher[track]
+    of_picture.weight[BED, PICTURE_ID] = 20.0
+    assert 0.99 < tracks.probabilities(goal, 1, of_picture, 1.0).max() <= 1.0
     near_only = Context(
         radius_m=1.5, frequency=of_picture.frequency, constant=of_picture.constant, weight=of_picture.weight
     )
-    assert tracks.probabilities(goal, context=near_only)[track] == pytest.approx(plain[track], abs=0.02)
-    assert tracks.probabilities(goal, least_voxels=10**6, context=of_picture).max() == 0.0
+    assert tracks.probabilities(goal, 1, near_only, 1.0)[track] == pytest.approx(plain[track], abs=0.02)
+    assert tracks.probabilities(goal, 10**6, of_picture, 1.0).max() == 0.0
+
+
+def test_only_tracks_with_enough_voxels_are_context_and_certain_ones_give_no_nan():
+    tracks = tracked()
+    for pose in VIEWS:
+        look(tracks, pose, TABLE, PICTURE, goal="table", taken_for="bed")
+    (picture,) = of(tracks, "picture")
+    of_picture = context()
+    of_picture.weight[BED, PICTURE_ID] = 2.0
+    tracks.evidence.probability[picture] = np.eye(40, dtype=np.float32)[MPCAT40_ID["picture"] - 1]
+    certain = tracks.probabilities("bed", 6, of_picture, 1.0)
+    track = int(tracks.probabilities("bed").argmax())
+    assert certain[track] > tracks.probabilities("bed")[track] + 0.03
+    tracks._size[picture] = 5
+    assert tracks.probabilities("bed", 6, of_picture, 1.0)[track] == pytest.approx(
+        tracks.probabilities("bed")[track], abs=1e-3
+    )
 
 
 def test_a_track_is_no_context_of_itself():
@@ -69,7 +91,7 @@ def test_a_track_is_no_context_of_itself():
     look(tracks, VIEWS[0], TABLE, goal="bed", taken_for="bed")
     plain = tracks.probabilities("bed", least_voxels=20)
     assert (plain > 0.1).sum() == 1
-    np.testing.assert_allclose(tracks.probabilities("bed", 20, context(bed=3.0)), plain, atol=1e-3)
+    np.testing.assert_allclose(tracks.probabilities("bed", 20, context(bed=3.0), 1.0), plain, atol=1e-3)
 
 
 def test_a_file_is_read_as_it_was_written(tmp_path: Path):
@@ -88,7 +110,7 @@ def test_a_file_is_read_as_it_was_written(tmp_path: Path):
         (("unicorn",), {"frequency": 0.1, "constant": 0.0, "nearby": {}}, "'unicorn' is none of chair"),
         (("bed", "nearby", "wall"), 1.0, "'wall' is none of chair"),
         (("bed",), None, "expected object, got null"),
-        (("bed", "frequency"), 0.0, "frequency"),
+        (("bed", "frequency"), 1e-50, "frequency"),
         (("bed", "constant"), "high", "constant"),
     ],
 )
@@ -103,10 +125,22 @@ def test_a_wrong_file_is_refused_by_its_entry(tmp_path: Path, entry: tuple[str, 
     file.write_text(json.dumps(content))
     with pytest.raises(ConfigError, match=message):
         read_context(file)
+
+
+def test_a_category_that_a_file_leaves_out_has_the_ratio_1(tmp_path: Path):
+    content = json.loads(SHIPPED.read_text())
     del content["context"]["objects"]["bed"]
-    content["context"]["objects"].pop("unicorn", None)
+    file = tmp_path / "context.json"
     file.write_text(json.dumps(content))
-    with pytest.raises(ConfigError, match="no entry for 'bed'"):
+    found = read_context(file)
+    ratios = found.log_ratios(near("mirror", "clothes"))[0]
+    assert ratios[BED] == 0.0
+    assert (np.delete(ratios, BED) != 0.0).all()
+    again = json.loads(json.dumps(content_of(found)))
+    assert again["objects"].keys() == content["context"]["objects"].keys()
+    content["context"]["objects"] = {}
+    file.write_text(json.dumps(content))
+    with pytest.raises(ConfigError, match="objects"):
         read_context(file)
 
 
@@ -124,6 +158,10 @@ def test_the_fit_finds_what_is_near_what():
     found = fit(houses[:180], 2.5, steps=200)
     ratio = found.log_ratios(near("sink"))[0]
     assert ratio[TOWEL] > ratio[OBJECTS.index("mirror")] > ratio[OBJECTS.index("clothes")]
+    assert not np.diag(found.weight).any()
+    assert np.abs(fit(houses[:25], 2.5, steps=200).weight).max() < np.abs(found.weight).max()
+    absent = OBJECTS.index("cushion")
+    assert found.frequency[absent] == ratio[absent] == 0.0
     alone, with_context = log_losses(found, houses[180:])
     assert with_context < alone - 0.3
     assert alone == pytest.approx(np.log(5.0), abs=0.2)  # five categories, of which one is twice as frequent
@@ -139,6 +177,16 @@ def test_a_part_of_what_is_around_is_seen():
     again = [surroundings(x_m[19:21], y_m[19:21], category[19:21], 1.0, rng)[0].sum() for _ in range(100)]
     assert few.shape == (2, len(OBJECTS))
     assert 0.8 < np.mean(again) < 1.5  # 0.575 of two
+
+
+def test_objects_of_unknown_categories_are_not_judged():
+    rng = np.random.default_rng(0)
+    houses = [surroundings(*bathroom_and_bedroom(rng), 2.5, rng) for _ in range(30)]
+    found = fit(houses, 2.5, steps=50)
+    cushions = (np.zeros((5, len(OBJECTS)), np.float32), np.full(5, OBJECTS.index("cushion")))
+    assert log_losses(found, [*houses, cushions]) == log_losses(found, houses)
+    with pytest.raises(ConfigError, match="held back"):
+        log_losses(found, [cushions])
 
 
 def test_too_few_objects_are_refused():

@@ -16,6 +16,7 @@ from stubborn import agents
 from stubborn.agent import StubbornAgent
 from stubborn.detection import track_seeker
 from stubborn.detection.approach import Approach
+from stubborn.detection.context import OBJECTS, read_context
 from stubborn.detection.fusion import Fusion
 from stubborn.detection.look import LookConfig
 from stubborn.detection.track_seeker import TrackSeeker, TrackSeekerConfig
@@ -357,6 +358,22 @@ def test_context_counts_for_imperfect_detectors_and_with_a_share():
     assert seeker_of(GroundTruthSegmenter()).context is None
     with pytest.raises(ConfigError, match="Context file"):
         seeker_of(Unsure(0.5), context=Path("nowhere.json"))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_a_seeker_decides_by_the_probabilities_that_the_context_leaves(share: float):
+    agent, seeker = agent_with(0.5)
+    seeker.config = replace(seeker.config, context_share=share)
+    seeker.context = read_context()
+    seeker.context.constant[OBJECTS.index("bed")] = -2.0
+    run_episode(GridWorld(ROOM, START, camera=SMALL_CAMERA), agent, "bed", max_steps=3)
+    assert seeker.tracks is not None
+    least = seeker.config.tracks.least_voxels
+    expected = seeker.tracks.probabilities("bed", least, seeker.context, share)
+    np.testing.assert_array_equal(seeker.probability, expected)
+    plain = seeker.tracks.probabilities("bed", least)
+    assert plain.max() > 0.3
+    assert (seeker.probability.max() < plain.max() - 0.1) == (share > 0.0)
 
 
 @pytest.mark.parametrize(
