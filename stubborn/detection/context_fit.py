@@ -62,9 +62,10 @@ def fit(houses: Sequence[Surroundings], radius_m: float, *, steps: int = 400) ->
     Raises:
         ConfigError: there are fewer than 100 objects.
     """
-    nearby, category = (np.concatenate(each) for each in zip(*houses, strict=True)) if houses else ((), ())
-    if len(category) < 100:
-        raise ConfigError(f"The plans have {len(category)} objects; 100 are needed: give more plans.")
+    count = sum(len(category) for _, category in houses)
+    if count < 100:
+        raise ConfigError(f"The plans have {count} objects; 100 are needed: give more plans.")
+    nearby, category = (np.concatenate(each) for each in zip(*houses, strict=True))
     counts = np.bincount(category, minlength=len(OBJECTS)) + 0.5
     known = counts >= LEAST_OBJECTS
     nearby, category = nearby[known[category]], category[known[category]]

@@ -53,17 +53,16 @@ def main(args: Args) -> int:
     )
     context = fit(fitted, args.radius_m)
     quality: dict[str, object] = {"plans": len(fitted), "objects": sum(len(category) for _, category in fitted)}
+    print(f"{quality['objects']} objects of {quality['plans']} plans")
     if held_back:
         alone, with_context = log_losses(context, held_back)
+        print(f"log loss {with_context:.3f} on {len(held_back)} plans held back, {alone:.3f} by frequency alone")
         quality |= {"held_back": len(held_back), "log_loss_of_frequency": round(alone, 3)}
         quality |= {"log_loss": round(with_context, 3)}
     words = ["--plans", *map(str, args.plans), "--radius-m", f"{args.radius_m:g}", "--seed", str(args.seed)]
     content = {"command": f"stubborn train context {shlex.join(words)}", **quality, "context": content_of(context)}
     file = args.out or SHIPPED
     write_atomically(file, json.dumps(content, indent=1, allow_nan=False) + "\n")
-    print(f"{quality['objects']} objects of {quality['plans']} plans")
-    if held_back:
-        print(f"log loss {with_context:.3f} on {len(held_back)} plans held back, {alone:.3f} by frequency alone")
     print(f"written: {file}")
     return 0
 
@@ -71,10 +70,10 @@ def main(args: Args) -> int:
 def around(plan: Plan, radius_m: float, rng: np.random.Generator) -> Surroundings:
     """Returns what is around the objects of one plan."""
     on_storey = plan.span_low_m < plan.ceiling_m  # spans reach above the ceiling, into the next storey
-    row_and_col = np.stack(np.divmod(plan.span_cell[on_storey], plan.frame.shape[1]))
     instances, number = np.unique(plan.span_instance[on_storey], return_inverse=True)
     low, high = np.full((2, instances.size), np.inf), np.zeros((2, instances.size))
-    np.minimum.at(low, (slice(None), number), row_and_col)
-    np.maximum.at(high, (slice(None), number), row_and_col)
+    for axis, cell in enumerate(np.divmod(plan.span_cell[on_storey], plan.frame.shape[1])):
+        np.minimum.at(low[axis], number, cell)
+        np.maximum.at(high[axis], number, cell)
     middle_m = 0.5 * plan.frame.cell_m * (low + high)
     return surroundings(middle_m[1], middle_m[0], plan.categories[instances].astype(np.intp), radius_m, rng)

@@ -11,7 +11,17 @@ import numpy as np
 import pytest
 
 from sim.geometry.pose import Pose
-from sim.interface import MAX_STEPS, MPCAT40_ID, Action, ConfigError, Observation, RobotModel, Scores, SegmenterSpec
+from sim.interface import (
+    MAX_STEPS,
+    MPCAT40_ID,
+    Action,
+    ConfigError,
+    Observation,
+    RobotModel,
+    Scores,
+    Segmenter,
+    SegmenterSpec,
+)
 from stubborn import agents
 from stubborn.agent import StubbornAgent
 from stubborn.detection import track_seeker
@@ -344,7 +354,7 @@ def test_a_stop_at_a_part_judges_the_track_that_is_approached_and_not_a_better_o
 
 
 def test_context_counts_for_imperfect_detectors_and_with_a_share():
-    def seeker_of(segmenter: object, **options: object) -> TrackSeeker:
+    def seeker_of(segmenter: Segmenter, **options: object) -> TrackSeeker:
         config = TrackSeekerConfig(**options)  # type: ignore[arg-type]
         agent = agents.make(
             "stubborn-plus", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=segmenter, seeker=config
