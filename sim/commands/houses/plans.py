@@ -58,6 +58,10 @@ class Args:
     """Without a split: floor area; sampled when not given."""
 
 
+OF_GENERATED = ("pool", "first_seed", "kind", "area_m2")
+"""Options without an effect on the houses of a split."""
+
+
 @dataclass(frozen=True)
 class Exported:
     """The result of one house."""
@@ -71,6 +75,10 @@ class Exported:
 
 def main(args: Args) -> int:
     """Writes the plans; returns 1 if a house gave no plan."""
+    without_effect = [name for name in OF_GENERATED if getattr(args, name) != getattr(Args, name)]
+    if args.split is not None and without_effect:
+        option = without_effect[0].replace("_", "-")
+        raise ConfigError(f"--{option} is for generated houses, not for those of --split: leave one of the two out.")
     args.out.mkdir(parents=True, exist_ok=True)
     results = []
     for exported in _exported(args):
