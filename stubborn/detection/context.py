@@ -89,7 +89,7 @@ def read_context(file: Path = SHIPPED) -> Context:
     found = read_json(file, _File, what="Context file").context
     unknown = {*found.objects, *(name for each in found.objects.values() for name in each.nearby)} - set(OBJECTS)
     if unknown:
-        raise ConfigError(f"Context file '{file}': '{min(unknown)}' is none of {', '.join(OBJECTS)}.")
+        raise ConfigError(f"Context file '{file}': unknown object '{min(unknown)}'; known are {', '.join(OBJECTS)}.")
     frequency, constant = np.zeros((2, len(OBJECTS)), np.float32)
     weight = np.zeros((len(OBJECTS), len(OBJECTS)), np.float32)
     for name, each in found.objects.items():

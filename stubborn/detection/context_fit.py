@@ -16,7 +16,7 @@ from sim.interface import MPCAT40, MPCAT40_ID, ConfigError
 from stubborn.detection.context import OBJECTS, Context
 
 LEAST_OBJECTS = 10
-"""A category with fewer objects is not known: nothing can be said of what is near it."""
+"""A category with fewer objects is unknown: its ratio is 1."""
 LEAST_SEEN = 0.15
 """Of the objects around an object, a share between this and 1 is seen."""
 PRIOR = 3.0

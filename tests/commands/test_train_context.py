@@ -1,4 +1,4 @@
-"""The fit of what is near what, from plans of houses to the file that the agent reads."""
+"""The fit of the context, from plans of houses to the file that the agent reads."""
 
 from __future__ import annotations
 

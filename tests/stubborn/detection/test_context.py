@@ -107,8 +107,8 @@ def test_a_file_is_read_as_it_was_written(tmp_path: Path):
 @pytest.mark.parametrize(
     ("entry", "value", "message"),
     [
-        (("unicorn",), {"frequency": 0.1, "constant": 0.0, "nearby": {}}, "'unicorn' is none of chair"),
-        (("bed", "nearby", "wall"), 1.0, "'wall' is none of chair"),
+        (("unicorn",), {"frequency": 0.1, "constant": 0.0, "nearby": {}}, "unknown object 'unicorn'; known are chair"),
+        (("bed", "nearby", "wall"), 1.0, "unknown object 'wall'; known are chair"),
         (("bed",), None, "expected object, got null"),
         (("bed", "frequency"), 1e-50, "frequency"),
         (("bed", "constant"), "high", "constant"),
