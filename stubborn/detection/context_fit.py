@@ -23,7 +23,7 @@ PRIOR = 3.0
 """Weight of the normal prior of the log-odds, as a number of objects."""
 _NUMBER = np.full(len(MPCAT40), -1)
 _NUMBER[[MPCAT40_ID[name] for name in OBJECTS]] = np.arange(len(OBJECTS))
-Surroundings = tuple[Float32[np.ndarray, "n objects"], Int[np.ndarray, " n"]]
+Surroundings = tuple[Float32[np.ndarray, "_ objects"], Int[np.ndarray, " _"]]  # `_`: houses differ in their number
 """For each object, which categories are nearby (1 or 0), and its own, by their numbers in `OBJECTS`."""
 
 
