@@ -7,10 +7,11 @@ setup(
     package_dir={"sim.assets": "assets"},
     package_data={
         "sim.assets": ["mjcf_houses/**/*"],
-        "sim.analysis.report": ["page/*"],
-        "sim.web": ["page/*"],
+        "sim.app.analysis.report": ["page/*"],
+        "sim.app.web": ["page/*"],
         "sim.houses": ["*.csv"],
         "sim.robot": ["sidecars/*.json"],
-        "stubborn": ["**/*.json", "**/*.npz", "**/*.safetensors"],
+        "sim": ["*.pyi"],
+        "stubborn": ["*.pyi", "**/*.json", "**/*.npz", "**/*.safetensors"],
     },
 )

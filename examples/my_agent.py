@@ -47,7 +47,7 @@ class Wanderer:
 def make(
     *, camera: CameraModel, robot: RobotModel, segmenter: Segmenter, config: WandererConfig | None, **others: object
 ) -> Wanderer:
-    """Returns the agent; `others` are the parts of `sim.interface.AgentFactory` that it does not use."""
+    """Returns the agent; `others` are the parts of `AgentFactory` that it does not use."""
     return Wanderer(segmenter, config or WandererConfig())
 
 

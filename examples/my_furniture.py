@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from sim import CATALOGUE, Style, Workbench, generate, house_text
-from sim.paths import assets_dir
+from sim.core.paths import assets_dir
 
 
 def crate(w: Workbench) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 import webdataset
 
-from stubborn.segmentation.dataset import decode_member
+from sim.training.segmentation.dataset import decode_member
 
 
 def read_with_webdataset(shards: str) -> Iterator[dict[str, Any]]:

@@ -28,8 +28,9 @@ from numpy.typing import NDArray
 
 import sim.gym
 from examples.ppo_agent import CAMERA, GOAL, SENSORS
-from sim import Action, ConfigError, Pose, cli
-from sim.files import write_atomically
+from sim import Action, ConfigError, Pose
+from sim.app import cli
+from sim.core.files import write_atomically
 
 try:
     from stable_baselines3 import PPO

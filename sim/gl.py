@@ -12,7 +12,7 @@ import os
 import sys
 from typing import Any
 
-from sim.errors import RenderError
+from sim.core.errors import RenderError
 
 INSTALL_HINT = "apt-get install -y libegl1 libegl-mesa0 libgl1-mesa-dri"
 """Command that installs offscreen rendering on Debian and Ubuntu."""

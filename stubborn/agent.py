@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sim.geometry.grid import GridFrame, Window, cells_near_segment
-from sim.geometry.pose import Pose
-from sim.interface import (
+from sim.core.geometry.grid import GridFrame, Window, cells_near_segment
+from sim.core.geometry.pose import Pose
+from sim.core.interface import (
     FORWARD_M,
     GOAL_CATEGORIES,
     MAX_STEPS,
@@ -191,15 +191,15 @@ class StubbornAgent:
         return self.last_action
 
     def overridden(self, action: Action) -> None:
-        """Records that another action than the agent's own is carried out; see `sim.interface.Overridable`."""
+        """Records that another action than the agent's own is carried out; see `sim.core.interface.Overridable`."""
         self.last_action = action
 
     def stop_confidence(self) -> float | None:
-        """Returns the confidence in the most recently accepted candidate; see `sim.interface.StatesConfidence`."""
+        """Returns the confidence in the most recently accepted candidate; see `sim.core.interface.StatesConfidence`."""
         return self.seeker.confidence
 
     def stop_target_xy_m(self) -> tuple[float, float] | None:
-        """Returns the place of the highest score of the last accepted candidate; see `sim.interface.StatesTarget`."""
+        """Returns the place of the highest score of the last accepted candidate; see `StatesTarget`."""
         if self.seeker.accepted_cell is None:
             return None
         x_m, y_m = self.navmap.frame.centres(*self.seeker.accepted_cell)

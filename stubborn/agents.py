@@ -8,7 +8,7 @@ from dataclasses import fields, replace
 from types import MappingProxyType
 from typing import Any
 
-from sim.interface import MAX_STEPS, Agent, AgentSpec, CameraModel, ConfigError, RobotModel, Segmenter, SuccessRule
+from sim.core.interface import MAX_STEPS, Agent, AgentSpec, CameraModel, ConfigError, RobotModel, Segmenter, SuccessRule
 from stubborn.agent import AgentConfig, CollisionAvoidance, StubbornAgent
 from stubborn.baselines.cloned import ClonedConfig, cloned_agent
 from stubborn.baselines.random import RandomConfig, random_agent

@@ -28,8 +28,8 @@ from safetensors.torch import save
 from torch import Tensor, nn
 from torch.overrides import TorchFunctionMode
 
-from sim.interface import ConfigError
-from sim.reading import convert, open_plain, reason_of, require_small_zip
+from sim.core.interface import ConfigError
+from sim.core.reading import convert, open_plain, reason_of, require_small_zip
 
 MAX_WEIGHT = 1e12
 """Largest magnitude of a number in a file of weights."""

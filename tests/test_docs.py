@@ -1,4 +1,4 @@
-"""The documentation is short and consistent: words, links, pictures, code, examples; nothing from other hosts."""
+"""The documentation is consistent: links, pictures, code, examples; nothing from other hosts."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from typing import Any
 
 import pytest
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.housegen.furniture import CATALOGUE
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.homes.housegen.furniture import CATALOGUE
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
@@ -35,39 +35,12 @@ from stubborn.planning.planner import Planner, PlanningConfig, Route
 from tests.helpers import documented
 from tests.helpers.documented import ROOT, Block
 from tests.helpers.sampling import sample
-from tests.sim.housegen import test_furniture as furniture_laws
+from tests.sim.homes.housegen import test_furniture as furniture_laws
 from tools.maintenance.site_hooks import fetched_from_elsewhere
 
 DOCS = ROOT / "docs"
 CONFIGURED = (agent, collision_marks, corners, mapper, planner, distances)
 """Modules with the configs that the page of differences names."""
-MOST_WORDS = {
-    "README.md": 450,
-    "docs/index.md": 450,
-    "docs/names.md": 350,
-    "docs/concepts.md": 800,
-    "docs/task.md": 700,
-    "docs/running.md": 700,
-    "docs/watching.md": 800,
-    "docs/agents.md": 800,
-    "docs/gymnasium.md": 800,
-    "docs/habitat.md": 700,
-    "docs/houses.md": 1100,
-    "docs/furniture.md": 600,
-    "docs/worlds.md": 750,
-    "docs/datasets.md": 450,
-    "docs/segmentation.md": 800,
-    "docs/explorers.md": 850,
-    "docs/results.md": 900,
-    "docs/leaderboard.md": 600,
-    "docs/differences.md": 700,
-    "docs/traps.md": 270,
-    "docs/performance.md": 300,
-    "docs/maintaining.md": 250,
-}
-"""The largest number of words of each page, code and tables included. A new page takes its words from other pages."""
-MOST_WORDS_IN_ALL = 12_500 + MOST_WORDS["docs/habitat.md"] + MOST_WORDS["docs/leaderboard.md"]
-MOST_LINES_OF_CHANGELOG = 80
 CHANGELOG_HEADINGS = {"Added", "Changed", "Deprecated", "Fixed", "Removed", "Security"}
 PAGES = [str(page.relative_to(ROOT)) for page in documented.pages()]
 WRITTEN = [page for page in PAGES if not page.startswith("docs/tables/")]
@@ -119,16 +92,6 @@ def test_every_link_and_picture_leads_somewhere(page: str) -> None:
 
 
 @pytest.mark.parametrize("page", WRITTEN)
-def test_a_page_has_a_limit_of_words_and_keeps_it(page: str) -> None:
-    assert page in MOST_WORDS, "give a new page words of other pages"
-    assert len((ROOT / page).read_text(encoding="utf-8").split()) <= MOST_WORDS[page]
-
-
-def test_all_pages_together_keep_the_limit_of_words() -> None:
-    assert sum(len((ROOT / page).read_text(encoding="utf-8").split()) for page in WRITTEN) <= MOST_WORDS_IN_ALL
-
-
-@pytest.mark.parametrize("page", WRITTEN)
 def test_a_page_reads_on_github_as_on_the_site_and_names_no_commit(page: str) -> None:
     text = (ROOT / page).read_text(encoding="utf-8")
     assert not NOT_ON_GITHUB.findall(text)
@@ -137,12 +100,11 @@ def test_a_page_reads_on_github_as_on_the_site_and_names_no_commit(page: str) ->
 
 def test_commits_and_marks_of_mkdocs_are_found() -> None:
     assert len(COMMIT.findall("`2158948a`, 1f9d8bd, 1234567, effaced, 0.474, val_0018")) == 2
-    assert len(NOT_ON_GITHUB.findall('--8<-- "examples/my_agent.py"\n\n::: sim.interface\n')) == 2
+    assert len(NOT_ON_GITHUB.findall('--8<-- "examples/my_agent.py"\n\n::: sim.core.interface\n')) == 2
 
 
-def test_the_changelog_is_short_and_keeps_its_headings() -> None:
+def test_the_changelog_keeps_its_headings() -> None:
     lines = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8").splitlines()
-    assert len(lines) <= MOST_LINES_OF_CHANGELOG
     assert {line.removeprefix("### ") for line in lines if line.startswith("### ")} <= CHANGELOG_HEADINGS
     versions = [line.removeprefix("## ") for line in lines if line.startswith("## ")]
     assert versions[0] == "[Unreleased]"

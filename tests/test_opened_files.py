@@ -1,4 +1,4 @@
-"""Files that a user or data names are opened by `sim.reading` and `sim.files`, which refuse what is no plain file."""
+"""Files that users name are opened by `sim.core.reading` and `sim.core.files`, which refuse what is no plain file."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ import pytest
 import torch
 from torch import nn
 
-from sim.composition.imports import import_attribute
-from sim.datasets.coco import decode_mask
-from sim.errors import ConfigError
-from sim.evaluation.results import RunDirectory
-from sim.files import open_to_grow
-from sim.geometry import compiling
-from sim.reading import image_size_px, read_csv, read_json
+from sim.app.composition.imports import import_attribute
+from sim.app.evaluation.results import RunDirectory
+from sim.core.errors import ConfigError
+from sim.core.files import open_to_grow
+from sim.core.geometry import compiling
+from sim.core.reading import image_size_px, read_csv, read_json
+from sim.training.segmentation.dataset import read_members, read_shard
+from sim.training.views.coco import decode_mask
 from stubborn.network_files import read_checkpoint, with_weights
-from stubborn.segmentation.dataset import read_members, read_shard
 
 ROOT = Path(__file__).parents[1]
 OPENERS = {
@@ -40,35 +40,38 @@ METHODS = {"open", "read_text", "read_bytes"}
 GIVEN_OPEN = {"stream", "fileobj", "packed", "raw"}
 """Names that the project gives to files that are open already."""
 EXCEPTIONS = {
-    ("sim/reading.py", "os.open"): "the function that opens",
-    ("sim/files.py", "open"): "the function that opens what grows",
-    ("sim/files.py", "os.open"): "the function that opens what grows, and a folder whose names are synced",
-    ("sim/cli.py", "os.open"): "os.devnull",
-    ("sim/paths.py", "file.read_bytes"): "modules of this project, for the hash of the code",
-    ("sim/paths.py", "file.read_text"): "a fixed file of the system, /proc/cpuinfo",
-    ("sim/submissions/sealing.py", "os.open"): "creates a new file that only its owner can read",
+    ("sim/core/reading.py", "os.open"): "the function that opens",
+    ("sim/core/files.py", "open"): "the function that opens what grows",
+    ("sim/core/files.py", "os.open"): "the function that opens what grows, and a folder whose names are synced",
+    ("sim/app/cli.py", "os.open"): "os.devnull",
+    ("sim/core/paths.py", "file.read_bytes"): "modules of this project, for the hash of the code",
+    ("sim/core/paths.py", "file.read_text"): "a fixed file of the system, /proc/cpuinfo",
+    ("sim/app/submissions/sealing.py", "os.open"): "creates a new file that only its owner can read",
     ("sim/task/trajectory.py", "part.open"): "a new part file with a name of its own",
-    ("sim/datasets/shards.py", "part.open"): "a new part file with a name of its own",
-    ("sim/viewers/video.py", "av.open"): "a new part file with a name of its own",
-    ("sim/housegen/imported/library.py", "(assets_dir() / TRANSFER_LIST).read_text"): "a file that ships",
-    ("sim/housegen/splits/house_list.py", "source.read_bytes"): "textures that ship",
-    ("sim/housegen/imported/sources.py", "zipfile.ZipFile"): "is given an open file",
-    ("sim/analysis/report/build.py", "(files('sim.analysis.report') / 'page' / name).read_text"): "a file that ships",
-    ("sim/commands/bench/growth.py", "Path('/proc/self/status').read_text"): "a fixed file of the system",
-    ("sim/web/server.py", "hub.open"): "no file",
+    ("sim/training/views/shards.py", "part.open"): "a new part file with a name of its own",
+    ("sim/app/viewers/video.py", "av.open"): "a new part file with a name of its own",
+    ("sim/homes/housegen/imported/library.py", "(assets_dir() / TRANSFER_LIST).read_text"): "a file that ships",
+    ("sim/episodes/house_list.py", "source.read_bytes"): "textures that ship",
+    ("sim/homes/housegen/imported/sources.py", "zipfile.ZipFile"): "is given an open file",
+    (
+        "sim/app/analysis/report/build.py",
+        "(files('sim.app.analysis.report') / 'page' / name).read_text",
+    ): "a file that ships",
+    ("sim/app/commands/bench/growth.py", "Path('/proc/self/status').read_text"): "a fixed file of the system",
+    ("sim/app/web/server.py", "hub.open"): "no file",
     ("stubborn/segmentation/processor.py", "_PROCESSOR.read_text"): "a fixed file of the system, /proc/cpuinfo",
     ("stubborn/segmentation/lite0.py", "torch.load"): "weights of an installed package",
-    ("sim/composition/segmenters.py", "safe_open"): "as in stubborn/network_files.py",
+    ("sim/app/composition/segmenters.py", "safe_open"): "as in stubborn/network_files.py",
     ("stubborn/network_files.py", "safe_open"): "takes a name only; open_plain is called just before",
     ("tools/maintenance/site_hooks.py", "file.read_text"): "pages that the maintainer's build has just written",
     ("tools/maintenance/readme_picture.py", "av.open"): "writes to memory",
     ("tools/research/result_runs.py", "tarfile.open"): "writes to memory",
     ("tools/maintenance/bench_against.py", "tarfile.open"): "the output of git",
-    ("sim/bridges/process_guard.py", "open"): "states of processes in /proc, which no user names",
-    ("sim/bridges/process_guard.py", "os.open"): "/dev/null",
-    ("sim/bridges/stubborn_client.py", "os.open"): "runs in the agent's process; memory that the simulator names",
-    ("sim/housegen/imported/infinigen_worker.py", "open"): "runs in the user's Python; a new part file",
-    ("sim/bridges/habitat_client.py", "open"): "runs in the agent's process; a file that the agent's code names",
+    ("sim/app/bridges/process_guard.py", "open"): "states of processes in /proc, which no user names",
+    ("sim/app/bridges/process_guard.py", "os.open"): "/dev/null",
+    ("sim/app/bridges/stubborn_client.py", "os.open"): "runs in the agent's process; memory that the simulator names",
+    ("sim/homes/housegen/imported/infinigen_worker.py", "open"): "runs in the user's Python; a new part file",
+    ("sim/app/bridges/habitat_client.py", "open"): "runs in the agent's process; a file that the agent's code names",
 }
 
 
@@ -193,7 +196,7 @@ def test_a_module_of_the_user_that_hides_the_package_is_named(tmp_path: Path, mo
 def test_numba_has_a_folder_of_its_user_where_nothing_else_can_be_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("sim.geometry.compiling._can_write", lambda folder: False)
+    monkeypatch.setattr("sim.core.geometry.compiling._can_write", lambda folder: False)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     monkeypatch.setenv("NUMBA_CACHE_DIR", "")
     folder = compiling.choose_cache()

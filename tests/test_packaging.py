@@ -52,12 +52,12 @@ def test_the_wheel_holds_the_shipped_houses(tmp_path: Path) -> None:
     for file in (ROOT / "stubborn/detection/verifiers").glob("*.json"):
         assert f"stubborn/detection/verifiers/{file.name}" in packed
     assert "stubborn/segmentation/weights/rednet.safetensors" in packed
-    for file in (ROOT / "sim/analysis/report/page").iterdir():
-        assert f"sim/analysis/report/page/{file.name}" in packed
+    for file in (ROOT / "sim/app/analysis/report/page").iterdir():
+        assert f"sim/app/analysis/report/page/{file.name}" in packed
     for file in (ROOT / "sim/robot/sidecars").iterdir():
         assert f"sim/robot/sidecars/{file.name}" in packed
-    for file in (ROOT / "sim/web/page").iterdir():
-        assert f"sim/web/page/{file.name}" in packed
+    for file in (ROOT / "sim/app/web/page").iterdir():
+        assert f"sim/app/web/page/{file.name}" in packed
 
 
 def test_the_citation_names_the_version_of_the_package() -> None:

@@ -19,9 +19,20 @@ PACKAGES = (sim, stubborn)
 NAMES = [(package, name) for package in PACKAGES for name in package.__all__]
 
 
+def modules_of(package: ModuleType) -> dict[str, str]:
+    """Returns the module of each name in the stub of a package."""
+    stub = ast.parse(Path(str(package.__file__)).with_suffix(".pyi").read_text())
+    return {
+        alias.name: f"{package.__name__}.{node.module}"
+        for node in stub.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+
+
 @pytest.mark.parametrize(("package", "name"), NAMES, ids=lambda value: getattr(value, "__name__", value))
 def test_a_public_name_is_the_object_of_its_module(package: ModuleType, name: str) -> None:
-    module = importlib.import_module(package._MODULE_OF[name])
+    module = importlib.import_module(modules_of(package)[name])
     assert name in dir(package)
     assert getattr(package, name) is getattr(module, name)
     value = getattr(module, name)
@@ -30,21 +41,23 @@ def test_a_public_name_is_the_object_of_its_module(package: ModuleType, name: st
 
 
 @pytest.mark.parametrize("package", PACKAGES, ids=lambda package: package.__name__)
-def test_type_checkers_see_the_names_of_the_table(package: ModuleType) -> None:
-    tree = ast.parse(Path(str(package.__file__)).read_text())
-    guarded = next(node for node in tree.body if isinstance(node, ast.If))
-    seen = {
-        alias.name: node.module for node in guarded.body if isinstance(node, ast.ImportFrom) for alias in node.names
-    }
-    assert seen == package._MODULE_OF
-    assert set(package.__all__) == set(seen)
-    assert len(package.__all__) == len(set(package.__all__))
-
-
-@pytest.mark.parametrize("package", PACKAGES, ids=lambda package: package.__name__)
 def test_a_name_that_does_not_exist_raises_the_usual_error(package: ModuleType) -> None:
-    with pytest.raises(AttributeError, match=f"module '{package.__name__}' has no attribute 'Sofa'"):
+    with pytest.raises(AttributeError, match="Sofa"):
         package.Sofa  # noqa: B018 - the access raises
+
+
+OLD_NAMES = (
+    ("sim.interface", "Action"), ("sim.errors", "HouseError"), ("sim.configuration", "with_fields"),
+    ("sim.housegen", "generate"), ("stubborn", "LabelledView"), ("stubborn", "ViewDataset"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("module", "name"), OLD_NAMES)
+def test_an_old_name_works_and_says_where_the_new_one_is(module: str, name: str) -> None:
+    with pytest.warns(DeprecationWarning, match=r"is now '.*'; the old name is removed in 0\.4\.0") as warned:
+        value = getattr(importlib.import_module(module), name)
+    assert value.__name__ == name
+    assert warned[0].filename == __file__
 
 
 @pytest.mark.parametrize("package", PACKAGES, ids=lambda package: package.__name__)
@@ -64,9 +77,7 @@ def test_no_name_of_the_agent_imports_mujoco() -> None:
 
 
 def test_subpackages_can_be_imported_as_before() -> None:
-    code = (
-        "import sim, sim.gym, gymnasium, sim.geometry.grid; gymnasium.spec(sim.gym.ENV_ID); sim.geometry.grid.GridFrame"
-    )
+    code = "import gymnasium, sim, sim.gym, sim.core.geometry.grid as g; gymnasium.spec(sim.gym.ENV_ID); g.GridFrame"
     assert "gymnasium" in modules_after(code)
 
 

@@ -1,4 +1,7 @@
-"""Imports have one direction: packages of `sim` and `stubborn` in a fixed order, and no cycle among modules."""
+"""Imports have one direction: the layers of docs/concepts.md, the rooms in each, and no circle among modules.
+
+Every import counts, also one in a function or under `TYPE_CHECKING`.
+"""
 
 from __future__ import annotations
 
@@ -11,33 +14,53 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
+LAYERS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "core": (("sim.core",), ()),
+    "agent": (("stubborn",), ("core",)),
+    "simulator": (
+        (
+            "sim.gl", "sim.houses", "sim.robot", "sim.renderer", "sim.sensors", "sim.world", "sim.task",
+            "sim.episodes", "sim.env", "sim.detectors",
+        ),
+        ("core",),
+    ),
+    "homes": (("sim.homes",), ("core", "simulator")),
+    "training": (("sim.training",), ("core", "agent", "simulator", "homes")),
+    "app": (("sim.app",), ("core", "agent", "simulator", "homes", "training")),
+    "doors": (
+        ("sim.gym", "sim.run", "sim.report", "sim.web", "sim.teleop"),
+        ("core", "agent", "simulator", "homes", "training", "app"),
+    ),
+    "old names": (("sim.interface", "sim.errors", "sim.configuration", "sim.housegen", "sim.bridges"), ("core",)),
+}  # fmt: skip
+"""Each layer: its packages, and the layers below it that it may import."""
 ROOMS = (
-    ("sim.errors",),
-    ("sim.geometry",),
-    ("sim.reading", "sim.interface", "sim.gl", "sim.files", "sim.paths", "sim.configuration"),
-    ("sim.invocation", "sim.cli"),
+    ("sim.core.errors", "sim.core.deprecation"),
+    ("sim.core.geometry",),
+    ("sim.core",),
+    ("sim.gl",),
     ("sim.houses",),
     ("sim.robot",),
+    ("sim.renderer",),
     ("sim.sensors",),
     ("sim.world",),
-    ("sim.housegen",),
-    ("sim.importers",),
     ("sim.task",),
     ("sim.episodes",),
-    ("sim.plans",),
     ("sim.env",),
     ("sim.detectors",),
-    ("sim.datasets",),
-    ("sim.bridges.ros",),
-    ("sim.viewers",),
-    ("sim.evaluation",),
-    ("sim.analysis",),
-    ("sim.submissions",),
-    ("sim.bridges",),
-    ("sim.composition", "sim.twin"),
-    ("sim.web",),
-    ("sim.gym", "sim.run", "sim.report", "sim.teleop"),
-    ("sim.commands",),
+    ("sim.homes.housegen",),
+    ("sim.homes.importers",),
+    ("sim.homes.plans",),
+    ("sim.training",),
+    ("sim.app.cli",),
+    ("sim.app.viewers",),
+    ("sim.app.evaluation",),
+    ("sim.app.analysis",),
+    ("sim.app.submissions",),
+    ("sim.app.bridges",),
+    ("sim.app.composition",),
+    ("sim.app.web",),
+    ("sim.app.commands",),
 )
 """The rooms of `sim`, lowest first: a module imports its own room and those before it."""
 AGENT_ROOMS = (
@@ -51,10 +74,6 @@ AGENT_ROOMS = (
     ("stubborn.agents",),
 )
 """The rooms of `stubborn`, lowest first."""
-KNOWN_TO_THE_AGENT = ("sim.interface", "sim.geometry", "sim.reading")
-"""Modules of `sim` that `stubborn` may import."""
-COMPOSITION_ROOTS = ("sim.composition", "sim.commands", "sim.run", "sim.teleop", "sim.twin")
-"""Modules that may import both `sim` and `stubborn`."""
 
 
 def module_files() -> dict[str, Path]:
@@ -75,11 +94,8 @@ def imported_by() -> dict[str, tuple[str, ...]]:
     return {name: tuple(imports(name)) for name in FILES}
 
 
-def imports(module: str, *, at_import_time: bool = False) -> Iterator[str]:
-    """Returns the modules that a module imports, with those inside functions unless only import time counts."""
-    tree = ast.parse(FILES[module].read_text())
-    nodes = top_level(tree) if at_import_time else ast.walk(tree)
-    for node in nodes:
+def imports(module: str) -> Iterator[str]:
+    for node in ast.walk(ast.parse(FILES[module].read_text())):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:
@@ -88,19 +104,16 @@ def imports(module: str, *, at_import_time: bool = False) -> Iterator[str]:
                 yield full if full in FILES else node.module
 
 
-def pairs_of(package: str) -> Iterator[tuple[str, str]]:
-    """Yields each module of a package with each module that it imports."""
-    yield from ((name, imported) for name in FILES if within(name, package) for imported in imported_by()[name])
+def within(module: str, package: str) -> bool:
+    return module == package or module.startswith(f"{package}.")
 
 
-def top_level(tree: ast.Module) -> Iterator[ast.stmt]:
-    for node in tree.body:
-        if isinstance(node, (ast.Import, ast.ImportFrom)):
-            yield node
-
-
-def within(module: str, room: str) -> bool:
-    return module == room or module.startswith(f"{room}.")
+def layer_of(module: str) -> str | None:
+    """Returns the layer of a module; None for one of another project and for the packages `sim` and `stubborn`."""
+    for layer, (packages, _) in LAYERS.items():
+        if any(within(module, package) for package in packages):
+            return layer
+    return None
 
 
 def rank(module: str, rooms: tuple[tuple[str, ...], ...]) -> int:
@@ -110,37 +123,47 @@ def rank(module: str, rooms: tuple[tuple[str, ...], ...]) -> int:
     raise AssertionError(f"'{module}' is in no room: put it into one, or add its room to this table.")
 
 
-@pytest.mark.parametrize(("package", "rooms"), [("sim", ROOMS), ("stubborn", AGENT_ROOMS)])
-def test_a_module_imports_its_own_room_and_those_below(package: str, rooms: tuple[tuple[str, ...], ...]) -> None:
-    modules = [name for name in FILES if within(name, package) and name != package]
-    above = [
-        f"{module} imports {imported}, which is above it."
+def test_every_module_is_in_a_layer() -> None:
+    assert [name for name in FILES if name != "sim" and layer_of(name) is None] == []
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_a_layer_imports_itself_and_the_layers_below_it(layer: str) -> None:
+    allowed = {layer, None, *LAYERS[layer][1]}
+    modules = [name for name in FILES if layer_of(name) == layer]
+    assert [
+        f"{module} ({layer}) imports {imported} ({layer_of(imported)})."
         for module in modules
         for imported in imported_by()[module]
-        if within(imported, package) and rank(imported, rooms) > rank(module, rooms)
-    ]
-    assert above == []
+        if layer_of(imported) not in allowed
+    ] == []
 
 
-def test_the_agent_knows_of_the_world_only_its_interface() -> None:
-    for module, imported in pairs_of("stubborn"):
-        assert not within(imported, "mujoco"), f"{module} imports {imported}."
-        if within(imported, "sim"):
-            assert any(within(imported, known) for known in KNOWN_TO_THE_AGENT), f"{module} imports {imported}."
+@pytest.mark.parametrize(("package", "rooms"), [("sim", ROOMS), ("stubborn", AGENT_ROOMS)])
+def test_a_module_imports_its_own_room_and_those_below(package: str, rooms: tuple[tuple[str, ...], ...]) -> None:
+    without = {"sim", "stubborn"} | {name for name in FILES if layer_of(name) in ("doors", "old names")}
+    modules = [name for name in FILES if within(name, package) and name not in without]
+    packages = {"sim.homes", "sim.app"}  # each holds only a docstring
+    assert [
+        f"{module} imports {imported}, which is above it."
+        for module in modules
+        if module not in packages
+        for imported in imported_by()[module]
+        if within(imported, package) and imported not in without and rank(imported, rooms) > rank(module, rooms)
+    ] == []
 
 
-def test_only_the_composition_roots_know_the_agent_and_only_gl_imports_mujoco() -> None:
-    for module, imported in pairs_of("sim"):
-        if within(imported, "stubborn"):
-            assert any(within(module, root) for root in COMPOSITION_ROOTS), f"{module} imports {imported}."
-        assert not within(imported, "mujoco") or module == "sim.gl", f"{module} imports {imported}."
-        assert not within(imported, "tools"), f"{module} imports {imported}."
-        assert not within(imported, "tests"), f"{module} imports {imported}."
+def test_only_gl_imports_mujoco_and_no_package_imports_tools_or_tests() -> None:
+    for module in FILES:
+        for imported in imported_by()[module]:
+            assert not within(imported, "mujoco") or module == "sim.gl", f"{module} imports {imported}."
+            assert not within(imported, "tools"), f"{module} imports {imported}."
+            assert not within(imported, "tests"), f"{module} imports {imported}."
 
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
-    graph = {name: {m for m in imports(name, at_import_time=True) if m in FILES and m != name} for name in FILES}
-    graphlib.TopologicalSorter(graph).prepare()  # raises CycleError, which names the cycle
+    graph = {name: {m for m in imported_by()[name] if m in FILES and m != name} for name in FILES}
+    graphlib.TopologicalSorter(graph).prepare()  # raises CycleError, which names the circle
 
 
 def test_every_package_has_a_docstring_about_its_content() -> None:

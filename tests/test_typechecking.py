@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from jaxtyping import TypeCheckError
 
-from sim.geometry.fast_marching import distances
+from sim.core.geometry.fast_marching import distances
 
 
 @pytest.mark.parametrize(
@@ -25,6 +25,8 @@ def test_a_wrong_array_is_refused_under_pytest(sources: np.ndarray, passable: np
 
 
 def test_users_need_no_beartype() -> None:
-    code = "import sys, sim.geometry.fast_marching, stubborn.detection.verification; print('beartype' in sys.modules)"
+    code = (
+        "import sys, sim.core.geometry.fast_marching, stubborn.detection.verification; print('beartype' in sys.modules)"
+    )
     answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert answer.stdout.strip() == "False"

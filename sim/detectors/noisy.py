@@ -21,10 +21,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.interface import MPCAT40, MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec, category_id
 from sim.detectors.confusions import CONFUSIONS
 from sim.env.scene import Scene
 from sim.gl import mujoco
-from sim.interface import MPCAT40, MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec, category_id
 from sim.world.world import World
 
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from sim.core.errors import ConfigError
 from sim.episodes.splits import HOUSE_SUFFIXES, Split, load_split, split_of_files
-from sim.errors import ConfigError
 
 
 def chosen_split(

@@ -9,8 +9,8 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from sim.errors import ConfigError
-from sim.interface import FORWARD_M, TURN_RAD, Action, wrap_angle
+from sim.core.errors import ConfigError
+from sim.core.interface import FORWARD_M, TURN_RAD, Action, wrap_angle
 
 POSITION_TOLERANCE_M = 0.002
 """A forward has reached its end this near to it ..."""

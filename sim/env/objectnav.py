@@ -13,18 +13,19 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from sim.configuration import as_settings
+from sim.core.configuration import as_settings
+from sim.core.errors import EpisodeError, HouseError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES, SENSORS, Action, CameraModel, ConfigError, RobotModel, SuccessRule
 from sim.env.chosen_split import chosen_split
 from sim.env.scene import Scene, SceneCache
 from sim.episodes.drawing import sample_episode
-from sim.episodes.splits import Episode, Split, require_start
-from sim.errors import EpisodeError, HouseError
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, SENSORS, Action, CameraModel, ConfigError, RobotModel, SuccessRule
+from sim.episodes.episode import Episode, require_start
+from sim.episodes.splits import Split
+from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
 from sim.robot.drive import Motion
 from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise, noise_from_dict
-from sim.sensors.profiles import RenderProfile, get_profile
 from sim.sensors.scan import ScanConfig, ScanSensor
 from sim.sensors.sensor import Sensor, SensorContext
 from sim.sensors.standard import STANDARD_SENSORS, resolve_sensors
@@ -40,7 +41,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
 
     ## Observations
     A dict with one array for each sensor: those in `sensors`, and always `gps`, `compass` and `objectgoal`. Shapes,
-    dtypes and units are in `sim.interface.Observation`.
+    dtypes and units are in `sim.core.interface.Observation`.
 
     ## Reward
     1 for a STOP that succeeds (a visible point of an instance within 1.0 m, see `SuccessRule`), else 0.

@@ -21,7 +21,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import FORWARD_M, TURN_RAD, Action, Observation
+from sim.core.interface import FORWARD_M, TURN_RAD, Action, Observation
 from sim.task.objectnav import Task
 from sim.world.freespace import CELL_M, FreeSpace
 

@@ -6,8 +6,8 @@ from typing import Any, SupportsFloat
 
 import gymnasium
 
-from sim.errors import ConfigError
-from sim.geometry.numbers import is_number
+from sim.core.errors import ConfigError
+from sim.core.geometry.numbers import is_number
 
 
 class ProgressReward(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable
 
+from sim.core.interface import CameraModel, ConfigError
 from sim.env.memory import return_freed_memory
 from sim.houses.house import House
-from sim.interface import CameraModel, ConfigError
+from sim.renderer.camera import Camera
+from sim.renderer.gloss import geom_gloss
+from sim.renderer.profiles import RenderProfile
 from sim.robot.config import RobotConfig
-from sim.sensors.camera import Camera
-from sim.sensors.gloss import geom_gloss
-from sim.sensors.profiles import RenderProfile
 from sim.task.config import TaskConfig
 from sim.task.objectnav import Task
 from sim.world.world import World

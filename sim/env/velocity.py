@@ -9,9 +9,9 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from sim.core.errors import ConfigError
+from sim.core.interface import MAX_STEPS, Action
 from sim.env.objectnav import ObjectNavEnv
-from sim.errors import ConfigError
-from sim.interface import MAX_STEPS, Action
 from sim.robot.velocity import Velocity
 
 ACTION_S = 1.2

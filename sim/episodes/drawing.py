@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.episodes.splits import Episode
-from sim.errors import EpisodeError
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, wrap_angle
+from sim.core.errors import EpisodeError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES, wrap_angle
+from sim.episodes.episode import Episode
 from sim.task.objectnav import Task
 from sim.world.world import World
 

@@ -20,9 +20,9 @@ from typing import Annotated, Any
 
 import msgspec
 
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, wrap_angle
-from sim.reading import Metres, Name, Number, read_gzip_json
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, wrap_angle
+from sim.core.reading import Metres, Name, Number, read_gzip_json
 
 Json = dict[str, Any]
 

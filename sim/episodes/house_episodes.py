@@ -10,15 +10,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.errors import EpisodeError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import wrap_angle
 from sim.episodes import habitat
 from sim.episodes.drawing import draw_start
 from sim.episodes.reachable_goals import find_reachable_goals, storeys_of
 from sim.episodes.recipes import EpisodeRecipe
 from sim.episodes.start_rules import Lookout, quadrant_headings, start_cells
-from sim.errors import EpisodeError
-from sim.geometry.pose import Pose
 from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar
-from sim.interface import wrap_angle
 from sim.task.objectnav import Task
 
 MAX_REDRAWS = 20

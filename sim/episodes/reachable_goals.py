@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.geometry.pose import Pose
 from sim.episodes import habitat
-from sim.geometry.pose import Pose
 from sim.houses.house import Room
 from sim.task.footprints import Footprint
 from sim.task.objectnav import Task

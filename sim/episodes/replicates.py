@@ -6,12 +6,10 @@ import math
 import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:  # it imports MuJoCo, which readers of results do not need
-    from sim.episodes.splits import Episode
+from sim.episodes.episode import Episode
 
 MOVED_M = 0.01
 """Distance of the start of a replicate from that of its episode."""

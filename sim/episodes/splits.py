@@ -2,7 +2,7 @@
 
 A split is a folder of house files with its episodes next to them in Habitat's ObjectNav layout (see
 `sim.episodes.habitat`): `val/<house>.xml`, `val/val.json.gz`, `val/content/<house>.json.gz`. Instead of house files it
-may have a list of recipes, `train/houses.json` (see `sim.housegen.splits.house_list`), whose houses are generated on
+may have a list of recipes, `train/houses.json` (see `sim.episodes.house_list`), whose houses are generated on
 first use.
 
 `labels.json` in the folder holds label rules for its houses (docs/worlds.md).
@@ -21,20 +21,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from sim.core.errors import EpisodeError, HouseError
+from sim.core.files import inside, write_together
+from sim.core.interface import ConfigError
+from sim.core.invocation import command
+from sim.core.paths import assets_dir
+from sim.core.reading import Name, first_unprintable, printable, read_bytes, read_json, sha256_of
 from sim.episodes import habitat
+from sim.episodes.episode import Episode
+from sim.episodes.house_list import HouseList, has_house_list, read_house_list
 from sim.episodes.replicates import find_episode
-from sim.errors import EpisodeError, HouseError
-from sim.files import inside, write_together
-from sim.geometry.pose import Pose
-from sim.housegen.splits.house_list import HouseList, has_house_list, read_house_list
 from sim.houses.house import House
 from sim.houses.load import load_house
 from sim.houses.references import files_of
 from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, sidecar_path
-from sim.interface import GOAL_CATEGORIES, ConfigError
-from sim.invocation import command
-from sim.paths import assets_dir
-from sim.reading import Name, first_unprintable, printable, read_bytes, read_json, sha256_of
 
 UNREACHABLE_FILE = "unreachable.json"
 LABELS_FILE = "labels.json"
@@ -42,32 +42,6 @@ HOUSE_SUFFIXES = (".xml", ".mjcf")
 """Suffixes of house files, in lower or upper case."""
 _MOST_BYTES = 256 << 20
 """Largest size of a house file."""
-FARTHEST_M = 10_000.0
-"""Largest coordinate of a start."""
-
-
-@dataclass(frozen=True)
-class Episode:
-    """One episode: the robot starts at a pose in a house and searches for an instance of a category."""
-
-    episode_id: str
-    house: str
-    """Name of the house within its split."""
-    goal: str
-    start: Pose
-    shortest_path_m: float | None = None
-    """Recorded geodesic distance from the start to the nearest place where a STOP succeeds; None: unknown."""
-
-    def __post_init__(self) -> None:
-        if self.goal not in GOAL_CATEGORIES:
-            raise EpisodeError(f"Unknown goal '{self.goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
-        require_start(self.start)
-
-
-def require_start(start: Pose) -> None:
-    """Raises EpisodeError if a number of a start is NaN, infinite or larger than `FARTHEST_M`."""
-    if not all(abs(value) <= FARTHEST_M for value in (start.x_m, start.y_m, start.yaw_rad, start.floor_z_m)):
-        raise EpisodeError(f"The start {start} is not allowed: finite numbers of at most {FARTHEST_M:g} are.")
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.geometry.pose import Pose
 from sim.episodes.drawing import far_enough
 from sim.episodes.recipes import EpisodeRecipe
-from sim.geometry.pose import Pose
 from sim.houses.hazards import read_hazards
-from sim.sensors.camera import Camera
+from sim.renderer.camera import Camera
 from sim.task.metrics import EXPLORED_SHARE, goal_share
 from sim.task.objectnav import Task
 from sim.world.freespace import FreeSpace

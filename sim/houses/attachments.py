@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from sim.errors import HouseError
+from sim.core.errors import HouseError
+from sim.core.reading import printable
 from sim.gl import mujoco
 from sim.houses.references import asset_path
-from sim.reading import printable
 
 FRAME = "stubborn_attach_"
 """Beginning of the names of the frames to which models are attached."""

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from sim.core.interface import MPCAT40_ID
 from sim.gl import mujoco
 from sim.houses.labels import Labels, collidable_geoms, names_of_geom, rendered_geoms
-from sim.interface import MPCAT40_ID
 
 MAX_NAMES = 8
 """Most names that a sentence lists."""

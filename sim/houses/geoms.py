@@ -12,7 +12,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.convex import Polytope
+from sim.core.geometry.convex import Polytope
 from sim.gl import mujoco
 
 CURVE_TOLERANCE_M = 0.002

@@ -1,8 +1,8 @@
 """Reads the hazards that sites of a house declare, and measures how near a path comes to them.
 
-A hazard is an obstacle that depth cannot see, sees too late or takes for passable, placed by `sim.housegen.hazards`
-where paths lead. Its site is a box of the world body named `hazard_<kind>_<number>` around its geoms. Sites are never
-rendered.
+A hazard is an obstacle that depth cannot see, sees too late or takes for passable, placed by
+`sim.homes.housegen.hazards` where paths lead. Its site is a box of the world body named `hazard_<kind>_<number>` around
+its geoms. Sites are never rendered.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.descent_kernels import descend
+from sim.core.geometry.descent_kernels import descend
 from sim.gl import mujoco
 
 _HAZARD = re.compile(r"hazard_(?P<kind>[a-z][a-z_]*)_\d+")

@@ -17,9 +17,9 @@ import numpy as np
 import regex
 from numpy.typing import NDArray
 
-from sim.errors import HouseError
+from sim.core.errors import HouseError
+from sim.core.interface import MPCAT40, MPCAT40_ID
 from sim.gl import mujoco
-from sim.interface import MPCAT40, MPCAT40_ID
 
 COVER_MASK = (8, 0)
 """Contype and conaffinity of floors that only wheels and casters touch: furniture stands on the floor below."""

@@ -7,7 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from sim.errors import HouseError
+from sim.core.errors import HouseError
+from sim.core.interface import MPCAT40_ID
+from sim.core.invocation import command
+from sim.core.reading import read_json, reason_of
 from sim.gl import mujoco
 from sim.houses.foreign import make_walls_solid, remove_unsupported, void_notes
 from sim.houses.house import House
@@ -15,9 +18,6 @@ from sim.houses.labels import ROBOT_PREFIX, Labels, collidable_geoms, describe_g
 from sim.houses.light import add_light
 from sim.houses.mjcf import read_spec, require_few_contacts, require_sizes
 from sim.houses.references import require_root
-from sim.interface import MPCAT40_ID
-from sim.invocation import command
-from sim.reading import read_json, reason_of
 
 FLOOR_TOLERANCE_M = 0.01
 """Largest distance of the top of the ground floor from z = 0."""

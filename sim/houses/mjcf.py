@@ -17,12 +17,12 @@ from xml.parsers import expat
 
 import numpy as np
 
-from sim.errors import HouseError, ObjectNavError
+from sim.core.errors import HouseError, ObjectNavError
+from sim.core.reading import MAX_BYTES, image_size_px, open_plain, printable, read_bytes, reason_of
 from sim.gl import mujoco
 from sim.houses.attachments import Attachment, attach, attachment_of, use_absolute_paths
 from sim.houses.mjcf_text import Composition, as_utf8
 from sim.houses.references import Allowed, Reference, asset_path, asset_references, path_as_read
-from sim.reading import MAX_BYTES, image_size_px, open_plain, printable, read_bytes, reason_of
 
 MAX_ELEMENTS = 100_000
 """Largest number of elements of a file, with all copies by `replicate`; the largest shipped house has 6,000."""

@@ -18,11 +18,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from sim.errors import HouseError
+from sim.core.errors import HouseError
+from sim.core.reading import MAX_PIXELS, image_size_px, read_bytes, reason_of
 from sim.gl import mujoco
 from sim.houses.house import House
 from sim.houses.references import asset_path
-from sim.reading import MAX_PIXELS, image_size_px, read_bytes, reason_of
 
 MAX_FILE_BYTES = 512 << 20
 FOLDER = "files"

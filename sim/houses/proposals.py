@@ -15,10 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.interface import MPCAT40
 from sim.gl import mujoco
 from sim.houses.labels import VOID, Labels, collidable_geoms, names_of_geom, rendered_geoms
 from sim.houses.taxonomies import category_of_ending, words_of
-from sim.interface import MPCAT40
 
 WORDS: Mapping[str, tuple[str, ...]] = {
     "wall": ("backwall", "partition", "perimeter"),

@@ -16,11 +16,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from sim.errors import HouseError, ObjectNavError
+from sim.core.errors import HouseError, ObjectNavError
+from sim.core.paths import assets_dir
+from sim.core.reading import printable, read_bytes
 from sim.gl import mujoco
 from sim.houses.mjcf_text import as_utf8
-from sim.paths import assets_dir
-from sim.reading import printable, read_bytes
 
 SHARED_TEXTURES = "textures"
 """Name of the folder, next to a split's folder, that all its houses may use."""

@@ -13,11 +13,11 @@ from typing import Any, Literal
 
 import msgspec
 
-from sim.errors import HouseError
-from sim.files import write_atomically
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES
-from sim.reading import Count, Metres, Name, read_json
+from sim.core.errors import HouseError
+from sim.core.files import write_atomically
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES
+from sim.core.reading import Count, Metres, Name, read_json
 
 Parameter = float | int | str
 """Value of a parameter of a trap."""
@@ -31,7 +31,7 @@ class TrapFacts:
     difficulty: str
     seed: int
     parameters: Mapping[str, Parameter]
-    """Parameters of the family, as `sim.housegen.traps.families` names them."""
+    """Parameters of the family, as `sim.homes.housegen.traps.families` names them."""
     gap_m: float
     """Width of the narrowest passage of the route to the goal."""
     hidden_length_m: float

@@ -2,7 +2,7 @@
 
 Its column `source` says where a category comes from: `mp3d` is Matterport3D's category_mapping.tsv, `hm3d` is HM3DSem's
 hm3dsem_category_mappings.tsv, and `ours` is a decision of this project, for names that neither table has or for which
-both say `misc`. Its column `use` says what a generated house shows for the object (`sim.importers.fitting`).
+both say `misc`. Its column `use` says what a generated house shows for the object (`sim.homes.importers.fitting`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
 
-from sim.reading import read_csv
+from sim.core.reading import read_csv
 
 Taxonomy = Literal["ai2thor", "habitat", "robocasa"]
 """AI2-THOR's object types, also those of ProcTHOR and MolmoSpaces; names in Habitat's data sets (HM3D, MP3D, HSSD) of

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from sim.errors import HouseError
-from sim.files import inside, write_together
+from sim.core.errors import HouseError
+from sim.core.files import inside, write_together
+from sim.core.reading import read_bytes, reason_of
 from sim.gl import mujoco
 from sim.houses.house import House
 from sim.houses.load import load_house, validate_house
 from sim.houses.references import SHARED_TEXTURES, asset_path
-from sim.reading import read_bytes, reason_of
 
 _IDENTITY_QUAT = ' quat="1 0 0 0"'
 _QUAT = re.compile(r' quat="([^"]*)"')

@@ -26,9 +26,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.interface import wrap_angle
 from sim.gl import mujoco
 from sim.houses.labels import COVER_MASK, ROBOT_PREFIX, geoms_of
-from sim.interface import wrap_angle
 from sim.robot.config import RobotConfig
 
 PREFIX = ROBOT_PREFIX

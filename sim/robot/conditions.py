@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from sim.errors import ConfigError
+from sim.core.errors import ConfigError
 
 
 @dataclass(frozen=True, kw_only=True)

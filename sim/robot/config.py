@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Literal, get_args
 
-from sim.interface import CLIMB_M, FORWARD_M, TURN_RAD, ConfigError, RobotModel
+from sim.core.interface import CLIMB_M, FORWARD_M, TURN_RAD, ConfigError, RobotModel
 
 PHYSICS_VERSION = 2
 """Results of different versions of the physics are not comparable, and runs are not resumed across them. 1: feedback of

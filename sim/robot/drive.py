@@ -13,8 +13,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from sim.core.interface import Action, wrap_angle
 from sim.gl import mujoco
-from sim.interface import Action, wrap_angle
 from sim.robot.blocking import Blocking
 from sim.robot.body import Body
 from sim.robot.conditions import NOMINAL, Conditions

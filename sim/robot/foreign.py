@@ -32,9 +32,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from sim.core.interface import CLIMB_M, CameraModel, ConfigError
+from sim.core.reading import read_bytes, read_json, sha256_of
 from sim.houses.references import files_of
-from sim.interface import CLIMB_M, CameraModel, ConfigError
-from sim.reading import read_bytes, read_json, sha256_of
 from sim.robot.config import BodyConfig, DriveConfig, RobotConfig, RobotFile, WheelConfig
 from sim.robot.measurement import RobotMeasurements, measure
 from sim.robot.menagerie import is_menagerie, menagerie_files

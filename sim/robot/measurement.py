@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.interface import ConfigError
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope
 from sim.houses.mjcf import read_spec, require_sizes
-from sim.interface import ConfigError
 from sim.robot.config import RobotFile
 from sim.robot.posing import pose_joints
 

@@ -17,7 +17,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 
 PREFIX = "menagerie:"
 SIDECARS = Path(__file__).with_name("sidecars")

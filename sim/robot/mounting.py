@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.errors import ConfigError, HouseError
+from sim.core.errors import ConfigError, HouseError
 from sim.gl import mujoco
 from sim.houses.labels import RENDERED_GROUPS
 from sim.robot.body import (

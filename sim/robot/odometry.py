@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from sim.geometry.pose import Pose
-from sim.interface import wrap_angle
+from sim.core.geometry.pose import Pose
+from sim.core.interface import wrap_angle
 from sim.robot.body import Body
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import RobotConfig

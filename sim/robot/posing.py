@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.interface import ConfigError
 from sim.gl import mujoco
-from sim.interface import ConfigError
 
 _KINDS = {
     mujoco.mjtJoint.mjJNT_HINGE.value: "rad",

@@ -15,8 +15,8 @@ import math
 from collections import deque
 from dataclasses import dataclass
 
+from sim.core.interface import Action, wrap_angle
 from sim.gl import mujoco
-from sim.interface import Action, wrap_angle
 from sim.robot.body import Body
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import RobotConfig

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.errors import ConfigError
+from sim.core.errors import ConfigError
 from sim.robot.conditions import NOMINAL, Conditions
 
 _BOUNDS = (0.01, 10.0)

@@ -29,7 +29,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import CameraModel, ConfigError
+from sim.core.interface import CameraModel, ConfigError
 from sim.sensors.depth_kernels import add_errors, cast_shadows, find_edges, make_holes, shift_pixels
 from sim.sensors.random_fields import levels, shift_pairs, smooth_normal, uniform_bytes
 from sim.sensors.ranges import require_range
@@ -71,7 +71,7 @@ class DepthNoise:
     edge_jump_1_m: float = 0.05
     """A jump is a difference in 1 / z of at least this: 5 cm at 1 m, 20 cm at 2 m; a pixel of disparity of a D435."""
     hole_share: float = 0.0
-    """Share of pixels without return on a surface whose gloss is 1 (see `sim.sensors.gloss`)."""
+    """Share of pixels without return on a surface whose gloss is 1 (see `sim.renderer.gloss`)."""
     hole_gloss: float = 0.3
     """Gloss at which that share has fallen linearly to 0."""
     hole_patch_px: float = 8.0

@@ -14,8 +14,8 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from sim.core.interface import CLIMB_M, CameraModel
 from sim.gl import mujoco
-from sim.interface import CLIMB_M, CameraModel
 from sim.robot.body import PREFIX
 from sim.sensors.ranges import require_range
 from sim.sensors.sensor import NoiseSettings, SensorContext

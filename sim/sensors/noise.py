@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import CameraModel, ConfigError
+from sim.core.interface import CameraModel, ConfigError
 from sim.robot.conditions import Conditions
 from sim.sensors.actuation_noise import ActuationNoise
 from sim.sensors.depth_noise import DepthNoise

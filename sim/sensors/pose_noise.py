@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import CameraModel, ConfigError, wrap_angle
+from sim.core.interface import CameraModel, ConfigError, wrap_angle
 from sim.sensors.ranges import require_range
 from sim.sensors.sensor import Sensor, SensorContext
 from sim.sensors.standard import CompassSensor, GpsSensor

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from sim.errors import ConfigError
+from sim.core.errors import ConfigError
 
 
 def require_range(config: object, low: float, high: float, *names: str) -> None:

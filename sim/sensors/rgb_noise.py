@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import CameraModel
+from sim.core.interface import CameraModel
 from sim.sensors.random_fields import fill_normal
 from sim.sensors.ranges import require_range
 

@@ -13,9 +13,9 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from sim.errors import ConfigError
+from sim.core.errors import ConfigError
+from sim.core.interface import CameraModel
 from sim.gl import mujoco
-from sim.interface import CameraModel
 from sim.sensors.ranges import require_range
 from sim.sensors.sensor import NoiseSettings, SensorContext
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import CameraModel
+from sim.core.interface import CameraModel
 from sim.sensors.ranges import require_range
 from sim.sensors.scan import ScanConfig
 

@@ -4,7 +4,8 @@ A sensor is one object: its key in the observation, its Gymnasium space, what it
 `ObjectNavEnv(sensors=("rgb", MySensor()))` takes such objects in addition to the names of `sim.sensors.standard`.
 
 A sensor declares the images (`images`) and the fields of `SensorContext` (`reads`) that it reads; it gets no others. If
-a sensor declares ground truth (`sim.interface.reads_truth`), the result lines of its agent have `uses_ground_truth`.
+a sensor declares ground truth (`sim.core.interface.reads_truth`), the result lines of its agent have
+`uses_ground_truth`.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from sim.geometry.pose import Pose
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CONTEXT_FIELDS, CameraModel, ConfigError
 from sim.gl import mujoco
-from sim.interface import CONTEXT_FIELDS, CameraModel, ConfigError
 from sim.robot.drive import Motion
 
 
@@ -100,7 +101,7 @@ class NoiseModel(Protocol):
         ...
 
     def begin(self, gloss: NDArray[np.float32]) -> None:
-        """Starts an episode in a house whose geoms have this gloss, (ngeom,) in [0, 1] (`sim.sensors.gloss`)."""
+        """Starts an episode in a house whose geoms have this gloss, (ngeom,) in [0, 1] (`sim.renderer.gloss`)."""
         ...
 
     def apply(
@@ -128,7 +129,7 @@ class Sensor(Protocol):
     """One key of the observation. Reading it must not change the world.
 
     A sensor that reads fields of `SensorContext` other than `images` names them in an attribute `reads`, a tuple of
-    names of `sim.interface.CONTEXT_FIELDS`.
+    names of `sim.core.interface.CONTEXT_FIELDS`.
     """
 
     @property
@@ -138,7 +139,7 @@ class Sensor(Protocol):
 
     @property
     def images(self) -> tuple[str, ...]:
-        """Rendered images that it needs, of `rgb`, `depth`, `semantic` and `geom` (`sim.sensors.camera`)."""
+        """Rendered images that it needs, of `rgb`, `depth`, `semantic` and `geom` (`sim.renderer.camera`)."""
         ...
 
     @property

@@ -1,4 +1,4 @@
-"""The sensors, named as in Habitat where it has them; shapes and units are in `sim.interface.Observation`."""
+"""The sensors, named as in Habitat where it has them; shapes and units are in `sim.core.interface.Observation`."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from sim.errors import ConfigError
-from sim.interface import CONTEXT_FIELDS, GOAL_CATEGORIES, MPCAT40, POSE_SENSORS, SCAN, SENSORS, CameraModel
+from sim.core.errors import ConfigError
+from sim.core.interface import CONTEXT_FIELDS, GOAL_CATEGORIES, MPCAT40, POSE_SENSORS, SCAN, SENSORS, CameraModel
 from sim.sensors.measured import BumperSensor, ImuSensor, OdometrySensor
 from sim.sensors.scan import ScanSensor
 from sim.sensors.sensor import NoiseSettings, Sensor, SensorContext, declared_fields

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from sim.errors import ConfigError
-from sim.interface import MAX_STEPS, SuccessRule
+from sim.core.errors import ConfigError
+from sim.core.interface import MAX_STEPS, SuccessRule
 
 MOST_STEPS = 1_000_000
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.interface import Action, SuccessRule
+from sim.core.interface import Action, SuccessRule
 from sim.task.failures import (
     LOOP_STEPS,
     STOPPED_AT_GOAL_M,

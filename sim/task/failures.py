@@ -6,8 +6,8 @@ The first rule that applies decides:
 
 1. `misc`: the physics broke. `stairs`: the robot drove over an edge.
 2. The agent called STOP. `stopped_short`: it stopped for the goal, but too far from it or behind a wall. An agent that
-   states for which place it stops (`sim.interface.StatesTarget`) did so if that place is within `TARGET_ON_GOAL_M` of
-   the footprint of an instance. One that states none is assumed to have done so if an instance is within
+   states for which place it stops (`sim.core.interface.StatesTarget`) did so if that place is within `TARGET_ON_GOAL_M`
+   of the footprint of an instance. One that states none is assumed to have done so if an instance is within
    `STOPPED_AT_GOAL_M` in plan, and the goal covered 0.8 % of one of the last `FACED_FRAMES` frames; this counts a STOP
    for another object next to an instance in view as `stopped_short`, too. Otherwise it is `false_detection`, however
    near an instance is, also for an agent that gives up or stops at random, because the record does not distinguish

@@ -10,11 +10,11 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.geometry.convex import ConvexPolygon, polygon_from_above
+from sim.core.geometry.convex import ConvexPolygon, polygon_from_above
+from sim.core.interface import MPCAT40_ID
 from sim.gl import mujoco
 from sim.houses.geoms import PLANE_DEPTH_M, geom_polytope, mesh_is_convex, mesh_triangles
 from sim.houses.labels import Instance, Labels, collidable_geoms, rendered_geoms
-from sim.interface import MPCAT40_ID
 
 if TYPE_CHECKING:
     from scipy.spatial import KDTree

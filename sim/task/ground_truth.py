@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.errors import EpisodeError
-from sim.geometry.grid import GridFrame
+from sim.core.errors import EpisodeError
+from sim.core.geometry.grid import GridFrame
+from sim.core.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
 from sim.gl import mujoco
 from sim.houses.labels import rendered_geoms
-from sim.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
 from sim.task.seen_floor import SeenFloor, floor_cells
 from sim.task.success import SIGHT_BLOCKERS, GoalRegion, Surroundings
 from sim.world.freespace import FreeSpace

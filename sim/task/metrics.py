@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import MPCAT40_ID
+from sim.core.interface import MPCAT40_ID
 
 TRAPPED_WINDOW_STEPS = 100
 TRAPPED_RADIUS_M = 1.0

@@ -9,9 +9,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.errors import EpisodeError
-from sim.geometry.pose import Pose
-from sim.interface import Action, CameraModel
+from sim.core.errors import EpisodeError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, CameraModel
 from sim.robot.drive import Motion
 from sim.task import metrics
 from sim.task.config import TaskConfig

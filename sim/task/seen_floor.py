@@ -13,10 +13,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.convex import ConvexPolygon
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import MPCAT40_ID, CameraModel
+from sim.core.geometry.convex import ConvexPolygon
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MPCAT40_ID, CameraModel
 
 CELL_M = 0.1
 """Edge of a cell of the floor."""

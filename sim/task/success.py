@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.convex import ConvexPolygon, lines_blocked, polygon_from_above
+from sim.core.geometry.convex import ConvexPolygon, lines_blocked, polygon_from_above
+from sim.core.interface import MPCAT40_ID, SuccessRule
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope, geoms_between, mesh_triangles
 from sim.houses.labels import Labels, rendered_geoms
-from sim.interface import MPCAT40_ID, SuccessRule
 from sim.task.footprints import Footprint, Footprints, house_floors, is_hollow
 from sim.world.freespace import FreeSpace
 

@@ -19,9 +19,9 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.pose import Pose
-from sim.interface import Action, ConfigError
-from sim.reading import MAX_BYTES, Metres, Number, parse_json, read_npz, reason_of
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, ConfigError
+from sim.core.reading import MAX_BYTES, Metres, Number, parse_json, read_npz, reason_of
 from sim.robot.drive import Ended, Motion
 from sim.task.metrics import EXPLORED_SHARE
 
@@ -40,7 +40,7 @@ class Trajectory:
     poses: NDArray[np.float32]  # (n + 1, 4)
     """x, y, yaw and floor height in the world; metres and radians."""
     actions: NDArray[np.uint8]  # (n,)
-    """Values of `sim.interface.Action`."""
+    """Values of `sim.core.interface.Action`."""
     ended: NDArray[np.uint8]  # (n,)
     """Reason why each motion ended: index into `ENDED`."""
     collided: NDArray[np.bool_]  # (n,)

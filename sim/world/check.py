@@ -15,12 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.errors import HouseError
-from sim.geometry.grid import GridFrame
+from sim.core.errors import HouseError
+from sim.core.geometry.grid import GridFrame
+from sim.core.interface import GOAL_CATEGORIES, RobotModel, SuccessRule
 from sim.gl import mujoco
 from sim.houses.house import House, Room, read_rooms
 from sim.houses.labels import Instance, Labels, collidable_geoms, cover_geoms, describe_geom, read_labels
-from sim.interface import GOAL_CATEGORIES, RobotModel, SuccessRule
 from sim.world.freespace import FreeSpace, connected_to
 from sim.world.room_requirements import unmet_requirements
 

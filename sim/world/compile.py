@@ -11,11 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from sim.errors import HouseError
+from sim.core.errors import HouseError
+from sim.core.interface import MPCAT40_ID
 from sim.gl import mujoco
 from sim.houses.house import House, Room, read_rooms
 from sim.houses.labels import COVER_MASK, Instance, Labels, read_labels
-from sim.interface import MPCAT40_ID
 from sim.robot.body import FLOOR_MASK, MOVABLE_MASK, PREFIX, STATIC_MASK
 from sim.robot.config import RobotConfig
 from sim.robot.mounting import robot_spec

@@ -15,15 +15,15 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.errors import HouseError
-from sim.geometry.convex import ConvexPolygon
-from sim.geometry.convex_kernels import clear_near, mark_inside
-from sim.geometry.fast_marching import distances
-from sim.geometry.grid import GridFrame
+from sim.core.errors import HouseError
+from sim.core.geometry.convex import ConvexPolygon
+from sim.core.geometry.convex_kernels import clear_near, mark_inside
+from sim.core.geometry.fast_marching import distances
+from sim.core.geometry.grid import GridFrame
+from sim.core.interface import RobotModel, SuccessRule
 from sim.gl import mujoco
 from sim.houses.house import Room
 from sim.houses.labels import Labels
-from sim.interface import RobotModel, SuccessRule
 from sim.world.obstacles import obstacle_polygons
 from sim.world.plan import floor_polygons, house_extent, room_rectangles
 

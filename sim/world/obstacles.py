@@ -6,13 +6,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.convex import ConvexPolygon, polygon_from_above
-from sim.geometry.convex_kernels import mark_inside
-from sim.geometry.grid import GridFrame
+from sim.core.geometry.convex import ConvexPolygon, polygon_from_above
+from sim.core.geometry.convex_kernels import mark_inside
+from sim.core.geometry.grid import GridFrame
+from sim.core.interface import MPCAT40_ID, RobotModel
 from sim.gl import mujoco
 from sim.houses.geoms import UNBOUNDED_M, geom_polytope
 from sim.houses.labels import ROBOT_PREFIX, Labels, collidable_geoms, geoms_of
-from sim.interface import MPCAT40_ID, RobotModel
 from sim.world.plan import polygons_between
 
 LEVEL_FLOOR_M = 0.03

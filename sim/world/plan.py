@@ -7,13 +7,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.errors import HouseError
-from sim.geometry.convex import ConvexPolygon, polygon_from_above
+from sim.core.errors import HouseError
+from sim.core.geometry.convex import ConvexPolygon, polygon_from_above
+from sim.core.interface import MPCAT40_ID
 from sim.gl import mujoco
 from sim.houses.geoms import UNBOUNDED_M, geom_polytope, geoms_between
 from sim.houses.house import Room
 from sim.houses.labels import Labels, collidable_geoms, cover_geoms
-from sim.interface import MPCAT40_ID
 
 FLOOR_STEP_M = 0.05
 """A floor belongs to a storey when its top is at most this far above or below the storey's height."""

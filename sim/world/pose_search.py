@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, TURN_RAD, Action
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import FORWARD_M, TURN_RAD, Action
 from sim.world.freespace import FreeSpace
 
 GRID_M = 0.0125

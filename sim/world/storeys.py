@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.interface import MPCAT40_ID
 from sim.gl import mujoco
 from sim.houses.labels import Labels
-from sim.interface import MPCAT40_ID
 from sim.robot.body import FLOOR_MASK
 
 LEVEL_M = 0.15

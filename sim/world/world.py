@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from sim.errors import EpisodeError, PhysicsError
-from sim.geometry.pose import Pose
+from sim.core.errors import EpisodeError, PhysicsError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, SuccessRule, wrap_angle
 from sim.gl import mujoco
 from sim.houses.house import House
 from sim.houses.labels import cover_geoms
-from sim.interface import Action, SuccessRule, wrap_angle
 from sim.robot.body import Body
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import RobotConfig

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, Action, ConfigError, Observation, Segmenter
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES, Action, ConfigError, Observation, Segmenter
 from stubborn.baselines.cloned_input import NO_ACTION, motion_of, small_categories, small_depth
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ class ClonedAgent:
         self._step = 0
 
     def overridden(self, action: Action) -> None:
-        """See `sim.interface.Overridable`."""
+        """See `sim.core.interface.Overridable`."""
         self._before = int(action)
 
     def act(self, observation: Observation) -> Action:

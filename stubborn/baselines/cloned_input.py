@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float32, Int, UInt8
 
-from sim.geometry.pose import Pose, wrap_angle
-from sim.interface import FORWARD_M, GOAL_CATEGORIES, MAX_STEPS, MPCAT40, MPCAT40_ID, TURN_RAD, Action
+from sim.core.geometry.pose import Pose, wrap_angle
+from sim.core.interface import FORWARD_M, GOAL_CATEGORIES, MAX_STEPS, MPCAT40, MPCAT40_ID, TURN_RAD, Action
 
 WIDTH_PX, HEIGHT_PX = 64, 48
 LEVELS = 255

@@ -11,7 +11,7 @@ import torch
 from jaxtyping import Float, UInt8
 from torch import Tensor, nn
 
-from sim.interface import GOAL_CATEGORIES, MPCAT40, Action
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40, Action
 from stubborn.baselines.cloned_input import GOAL_IDS, HEIGHT_PX, LEVELS, MOTION, NO_ACTION, WIDTH_PX
 from stubborn.network_files import Family
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.interface import Action, ConfigError, Observation
+from sim.core.interface import Action, ConfigError, Observation
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Int
 
-from sim.geometry.grid import Window
-from sim.geometry.pose import Pose
+from sim.core.geometry.grid import Window
+from sim.core.geometry.pose import Pose
 from stubborn.detection.viewpoints import LastResort, ViewpointFinder, Viewpoints
 from stubborn.mapping.masks import nearest
 from stubborn.mapping.navmap import NavMap

@@ -1,6 +1,6 @@
 """Classifiers that separate true (class 1) from false (class 0) candidates by four features.
 
-`stubborn.detection.verifier_fit` fits them with scikit-learn. This module evaluates them with NumPy only.
+`sim.training.fits.verifier` fits them with scikit-learn. This module evaluates them with NumPy only.
 """
 
 from __future__ import annotations

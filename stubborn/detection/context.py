@@ -16,8 +16,8 @@ import msgspec
 import numpy as np
 from jaxtyping import Float32
 
-from sim.interface import MPCAT40, ConfigError
-from sim.reading import Number, read_json
+from sim.core.interface import MPCAT40, ConfigError
+from sim.core.reading import Number, read_json
 
 SHIPPED = Path(__file__).with_name("context.json")
 """The ratios of generated houses."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from sim.interface import MAX_STEPS, ConfigError, SegmenterSpec, SuccessRule
+from sim.core.interface import MAX_STEPS, ConfigError, SegmenterSpec, SuccessRule
 from stubborn.mapping.navmap import CollisionLayer
 
 TUNED_FOR_M = 1.0

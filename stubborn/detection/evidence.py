@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 from stubborn.detection.fusion import IS_SURFACE, Fusion
 
 

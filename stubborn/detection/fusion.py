@@ -21,8 +21,8 @@ import msgspec
 import numpy as np
 from jaxtyping import Float32
 
-from sim.interface import MPCAT40, ConfigError, SegmenterSpec
-from sim.reading import Number, read_json
+from sim.core.interface import MPCAT40, ConfigError, SegmenterSpec
+from sim.core.reading import Number, read_json
 
 FOLDER = Path(__file__).parent / "fusions"
 """Folder of the shipped parameters."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int
 
-from sim.geometry.pose import Pose
-from sim.interface import ConfigError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import ConfigError
 from stubborn.detection.approach import Approach, approach_to
 from stubborn.detection.evidence import Evidence
 from stubborn.detection.viewpoints import ViewpointFinder

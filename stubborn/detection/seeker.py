@@ -9,9 +9,9 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Bool
 
-from sim.geometry.grid import Window
-from sim.geometry.pose import Pose
-from sim.interface import MAX_STEPS, CameraModel, Observation, RobotModel, Segmenter
+from sim.core.geometry.grid import Window
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MAX_STEPS, CameraModel, Observation, RobotModel, Segmenter
 from stubborn.detection.approach import Approach, approach_on, on_map
 from stubborn.detection.candidates import CandidateParts
 from stubborn.detection.classifiers import Features

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, Float32, Float64
 
-from sim.geometry.grid import Window, cells_near_segment
-from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, ConfigError, Observation
+from sim.core.geometry.grid import Window, cells_near_segment
+from sim.core.geometry.pose import Pose
+from sim.core.interface import FORWARD_M, ConfigError, Observation
 from stubborn.detection.approach import Approach, approach_from_here, approach_on, on_map
 from stubborn.detection.context import SHIPPED, read_context
 from stubborn.detection.fusion import fusion_for

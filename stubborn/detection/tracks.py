@@ -14,9 +14,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Bool, Float32, Int, Int16
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import MPCAT40_ID, CameraModel, ConfigError
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MPCAT40_ID, CameraModel, ConfigError
 from stubborn.detection.context import IS_OBJECT, Context
 from stubborn.detection.evidence import Evidence, EvidenceConfig
 from stubborn.detection.fusion import Fusion

@@ -14,8 +14,8 @@ from typing import Annotated, Any, Protocol, runtime_checkable
 
 import msgspec
 
-from sim.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
-from sim.reading import Number, convert, read_json
+from sim.core.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
+from sim.core.reading import Number, convert, read_json
 from stubborn.detection.classifiers import Classifier, Features, NaiveBayes
 
 FOLDER = Path(__file__).parent / "verifiers"

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float32
 
-from sim.geometry.pose import Pose
+from sim.core.geometry.pose import Pose
 from stubborn.detection.distances import StopDistances
 from stubborn.mapping.masks import NearestCells, sight_is_clear
 from stubborn.mapping.navmap import CollisionLayer, NavMap

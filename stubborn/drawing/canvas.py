@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
 
 Colour = tuple[int, int, int]
 

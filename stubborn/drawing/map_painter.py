@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.pose import Pose
-from sim.interface import Action, Agent
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, Agent
 from stubborn.agent import StubbornAgent
 from stubborn.drawing.canvas import BACKGROUND, ROBOT, ROOM_FOR_TEXT_PX, Canvas, Colour
 from stubborn.mapping.navmap import NavMap
@@ -38,7 +38,7 @@ LEGEND: tuple[tuple[str, Colour], ...] = (
     ("rejected", REJECTED),
     ("route, its end", ROUTE),
 )
-"""Name and colour of each item; a colour that is also in the true plan (`sim.viewers.topview`) has the same meaning."""
+"""Name and colour of each item; a colour that is also in the true plan has the same meaning."""
 GROUND: tuple[tuple[str, Colour], ...] = (("driven over", SWEPT), ("floor seen", SEEN_FREE), ("never seen", UNKNOWN))
 """The pale colours of the ground, for legends that have space for them."""
 _SMALLEST_SIDE_M, _STRIDE_M, _EDGE_M = 8.0, 2.0, 0.25
@@ -65,7 +65,7 @@ def draw_map(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False) -
 
 
 class AgentMapPainter:
-    """A `sim.viewers.viewer.MapPainter` of the agent's map, for videos.
+    """A `sim.app.viewers.viewer.MapPainter` of the agent's map, for videos.
 
     The area of the picture does not move and grows in large steps. `paint` is called at each step; a new map means a
     new episode.

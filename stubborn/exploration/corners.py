@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.geometry.grid import GridFrame, cells_near_segment
-from sim.interface import CameraModel, ConfigError
+from sim.core.geometry.grid import GridFrame, cells_near_segment
+from sim.core.interface import CameraModel, ConfigError
 from stubborn.exploration.explorer import Exploration, Ground, Search
 from stubborn.exploration.places import MapCells, Place
 from stubborn.planning.planner import FreeSpace, Goal

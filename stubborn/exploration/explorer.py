@@ -20,9 +20,9 @@ from typing import Literal, Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Bool
 
-from sim.geometry.grid import Window
-from sim.geometry.pose import Pose
-from sim.interface import Action, CameraModel
+from sim.core.geometry.grid import Window
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, CameraModel
 from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.planner import FreeSpace, Goal, Planner, Route
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.geometry.pose import Pose
-from sim.interface import CameraModel, ConfigError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CameraModel, ConfigError
 from stubborn.exploration.explorer import Exploration, Ground, Search
 from stubborn.exploration.frontiers import Frontiers, require_margin, spend_around
 from stubborn.exploration.places import LookAround, MapCells

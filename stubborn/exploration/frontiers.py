@@ -12,9 +12,9 @@ import cv2
 import numpy as np
 from jaxtyping import Bool
 
-from sim.geometry.grid import Window, cells_near_segment
-from sim.geometry.pose import Pose
-from sim.interface import ConfigError
+from sim.core.geometry.grid import Window, cells_near_segment
+from sim.core.geometry.pose import Pose
+from sim.core.interface import ConfigError
 from stubborn.exploration.explorer import Ground, Search
 from stubborn.mapping.masks import distance_to, farther_than
 from stubborn.mapping.navmap import CollisionLayer

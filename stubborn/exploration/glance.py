@@ -13,8 +13,8 @@ import cv2
 import numpy as np
 from jaxtyping import Float64
 
-from sim.geometry.pose import Pose
-from sim.interface import TURN_RAD, Action, CameraModel, ConfigError, wrap_angle
+from sim.core.geometry.pose import Pose
+from sim.core.interface import TURN_RAD, Action, CameraModel, ConfigError, wrap_angle
 from stubborn.mapping.navmap import NavMap
 
 _TURNS = (*range(-5, 0), *range(1, 7))

@@ -10,9 +10,9 @@ import numpy as np
 from jaxtyping import Bool, UInt8, UInt32
 from numpy.typing import NDArray
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES
 from stubborn.mapping.navmap import NavMap
 
 LAYERS = ("obstacle", "seen", "trail", "robot")

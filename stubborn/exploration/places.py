@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Int
 
-from sim.geometry.grid import Window
-from sim.interface import Action
+from sim.core.geometry.grid import Window
+from sim.core.interface import Action
 from stubborn.exploration.explorer import Ground, Search
 from stubborn.planning.planner import Goal
 

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from jaxtyping import Bool, Float32
 
-from sim.geometry.fast_marching import travel_times
-from sim.geometry.grid import GridFrame, Window, cells_near_segment
-from sim.geometry.pose import Pose
-from sim.interface import CameraModel, ConfigError
+from sim.core.geometry.fast_marching import travel_times
+from sim.core.geometry.grid import GridFrame, Window, cells_near_segment
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CameraModel, ConfigError
 from stubborn.exploration.explorer import Exploration, Ground, Search
 from stubborn.exploration.frontiers import Frontiers, require_margin, spend_around
 from stubborn.exploration.places import MapCells

@@ -20,7 +20,7 @@ from jaxtyping import Float, Float32, UInt8
 from torch import Tensor, nn
 from torch.nn import functional
 
-from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.core.interface import GOAL_CATEGORIES, ConfigError
 from stubborn.exploration.patches import LAYERS
 from stubborn.network_files import Family
 

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from jaxtyping import Bool, Float32
 
-from sim.geometry.grid import GridFrame
-from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.core.geometry.grid import GridFrame
+from sim.core.interface import GOAL_CATEGORIES, ConfigError
 from stubborn.exploration.explorer import Ground
 from stubborn.exploration.patches import patch_around
 

@@ -17,8 +17,8 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float
 
-from sim.geometry.grid import cells_near_segment
-from sim.interface import GOAL_CATEGORIES, CameraModel, ConfigError
+from sim.core.geometry.grid import cells_near_segment
+from sim.core.interface import GOAL_CATEGORIES, CameraModel, ConfigError
 from stubborn.exploration.explorer import Exploration, Ground, Search
 from stubborn.exploration.potentials import GoalKind, SemanticsKind
 from stubborn.exploration.semexp_input import CELLS, PolicyInput, observe

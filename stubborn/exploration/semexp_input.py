@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int32, UInt8
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES
 from stubborn.exploration.patches import MapPatch, patch_around
 from stubborn.mapping.navmap import NavMap
 

@@ -17,7 +17,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.core.interface import GOAL_CATEGORIES, ConfigError
 from stubborn.exploration.semexp_input import CELLS, GEOMETRY, GIBSON, HEADINGS, PolicyInput
 from stubborn.network_files import Family, read_checkpoint, with_weights
 

@@ -20,10 +20,10 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int
 
-from sim.geometry.fast_marching import travel_times
-from sim.geometry.grid import cells_near_segment
-from sim.geometry.pose import Pose
-from sim.interface import TURN_RAD, CameraModel, ConfigError, wrap_angle
+from sim.core.geometry.fast_marching import travel_times
+from sim.core.geometry.grid import cells_near_segment
+from sim.core.geometry.pose import Pose
+from sim.core.interface import TURN_RAD, CameraModel, ConfigError, wrap_angle
 from stubborn.exploration.explorer import Exploration, Ground, Search
 from stubborn.exploration.frontiers import Frontiers, require_margin, spend_around
 from stubborn.exploration.glance import GlanceConfig, Glancer

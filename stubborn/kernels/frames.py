@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from sim.geometry.compiling import njit
+from sim.core.geometry.compiling import njit
 
 _PAIRS = ((1, 0), (0, 1), (1, 1), (1, -1))
 """Offsets in rows and columns to one of each two opposite neighbours."""

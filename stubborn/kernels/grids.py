@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from sim.geometry.compiling import njit
+from sim.core.geometry.compiling import njit
 
 MAX_REACH = 180
 """Largest distance in cells that `distance_within` computes: twice its square still fits into 16 bits."""

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from sim.geometry.compiling import njit
+from sim.core.geometry.compiling import njit
 
 
 @njit(cache=True)

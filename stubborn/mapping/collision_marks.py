@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool
 
-from sim.geometry.grid import GridFrame, cells_near_segment
-from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, TURN_RAD, Action, ConfigError, wrap_angle
+from sim.core.geometry.grid import GridFrame, cells_near_segment
+from sim.core.geometry.pose import Pose
+from sim.core.interface import FORWARD_M, TURN_RAD, Action, ConfigError, wrap_angle
 from stubborn.mapping.navmap import CollisionLayer, NavMap
 
 STAYED_M = 0.4 * FORWARD_M

@@ -23,9 +23,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from jaxtyping import Bool, Float64, Int
 
-from sim.geometry.grid import cells_near_segment
-from sim.geometry.pose import Pose
-from sim.interface import ConfigError
+from sim.core.geometry.grid import cells_near_segment
+from sim.core.geometry.pose import Pose
+from sim.core.interface import ConfigError
 from stubborn.mapping.collision_marks import CollisionConfig, mark_collision
 from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.mapping.panes import LineRule, Pane, find_panes

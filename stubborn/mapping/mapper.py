@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Int, UInt32
 
-from sim.geometry.grid import Window
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError, RobotModel, Scores
+from sim.core.geometry.grid import Window
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError, RobotModel, Scores
 from stubborn.kernels.frames import enter_bits, goal_bits
 from stubborn.mapping.drops import DropConfig, Drops
 from stubborn.mapping.navmap import NavMap

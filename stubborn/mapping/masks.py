@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 from stubborn.kernels.grids import MAX_REACH, distance_within
 
 Cells = tuple[Int[np.ndarray, " n"], Int[np.ndarray, " n"]]

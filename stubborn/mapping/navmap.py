@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 from jaxtyping import Bool, Float32, Int8, Int32, UInt32
 
-from sim.geometry.grid import GridFrame, Window
+from sim.core.geometry.grid import GridFrame, Window
 
 _LAYERS: Mapping[str, type] = MappingProxyType(
     {  # the widest types first, so that each layer is aligned
@@ -76,7 +76,7 @@ class NavMap:
     shown_y: Float32[np.ndarray, "rows cols"]
     """The y component of the same sum."""
     goals_seen: UInt32[np.ndarray, "rows cols"]
-    """Bit g is set where goal category g of `sim.interface.GOAL_CATEGORIES` was seen; for explorers that read it
+    """Bit g is set where goal category g of `sim.core.interface.GOAL_CATEGORIES` was seen; for explorers that read it
     (`stubborn.exploration.explorer.ReadsSemantics`), else 0."""
     rejected: Bool[np.ndarray, "rows cols"]
     """True: verification rejected a candidate here; it never counts again in this episode."""

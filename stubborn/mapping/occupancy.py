@@ -15,9 +15,9 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Int, UInt8
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import CameraModel, ConfigError
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CameraModel, ConfigError
 from stubborn.kernels.frames import (
     cells_seen_past,
     enter_evidence,

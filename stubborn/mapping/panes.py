@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float64
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float32, Int32, UInt8
 
-from sim.geometry.grid import GridFrame, Window
-from sim.geometry.pose import Pose
-from sim.interface import CameraModel
+from sim.core.geometry.grid import GridFrame, Window
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CameraModel
 from stubborn.kernels.frames import cells_of_pixels, count_obstacle_points, ground_points
 
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float32
 
-from sim.geometry.fast_marching import travel_times
-from sim.geometry.grid import GridFrame, cells_near_segment
-from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, ConfigError
+from sim.core.geometry.fast_marching import travel_times
+from sim.core.geometry.grid import GridFrame, cells_near_segment
+from sim.core.geometry.pose import Pose
+from sim.core.interface import FORWARD_M, ConfigError
 from stubborn.kernels.grids import distance_within, speeds
 from stubborn.mapping.masks import connected, farther_than
 from stubborn.mapping.navmap import CollisionLayer, NavMap

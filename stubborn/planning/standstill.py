@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 
 
 @dataclass(frozen=True, kw_only=True)

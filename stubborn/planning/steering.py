@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Bool, Float32, Float64
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import TURN_RAD, Action, wrap_angle
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import TURN_RAD, Action, wrap_angle
 from stubborn.kernels.grids import bilinear, sweep
 from stubborn.mapping.masks import connected
 from stubborn.planning.planner import FreeSpace, PlanningConfig, Route

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from sim.interface import Action, ConfigError
+from sim.core.interface import Action, ConfigError
 
 _BLOCKED_TURNS = 2
 """The mode begins after this many turns that did not turn the robot, without a forward or another turn between."""

@@ -15,7 +15,7 @@ import torch
 from jaxtyping import Float, Float32, Int64
 from torch import Tensor, nn
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 from stubborn.segmentation.rednet import CLASSES
 
 HOLD = 0.02

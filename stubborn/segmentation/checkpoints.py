@@ -15,8 +15,8 @@ import msgspec
 import torch
 from torch import Tensor
 
-from sim.interface import ConfigError
-from sim.reading import Number, convert
+from sim.core.interface import ConfigError
+from sim.core.reading import Number, convert
 from stubborn.network_files import read_checkpoint, read_weights, with_weights, write_weights
 from stubborn.segmentation.networks import FAMILIES, Architecture, Network, build_network, family
 from stubborn.segmentation.rednet import PUBLISHED

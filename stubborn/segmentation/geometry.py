@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float32
 
-from sim.interface import CameraModel, ConfigError
+from sim.core.interface import CameraModel, ConfigError
 from stubborn.kernels.surfaces import fill_surface_channels
 
 CHANNELS: tuple[str, ...] = ("inverse_depth", "valid", "height", "right", "up", "forward")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import MPCAT40, Observation, Scores, SegmenterSpec, category_id
+from sim.core.interface import MPCAT40, Observation, Scores, SegmenterSpec, category_id
 from stubborn.kernels.frames import scores_of_category
 
 STRIDE_PX = 4

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float32
 
-from sim.interface import CameraModel
+from sim.core.interface import CameraModel
 from stubborn.segmentation import geometry
 from stubborn.segmentation.preprocess import normalise_depth, pad_edges
 

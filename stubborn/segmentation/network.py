@@ -10,7 +10,7 @@ import torch
 from jaxtyping import Float, Float32, UInt8
 from torch import Tensor
 
-from sim.interface import CameraModel, ConfigError, Observation, Scores, SegmenterSpec, category_id
+from sim.core.interface import CameraModel, ConfigError, Observation, Scores, SegmenterSpec, category_id
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.inputs import INPUTS

@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 import torch
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 from stubborn.segmentation.rednet import COMPACT, PUBLISHED, RedNet, RedNetConfig
 from stubborn.segmentation.unet import MobileEncoder, UNet, UNetConfig
 

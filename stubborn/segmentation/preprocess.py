@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float32, Shaped, UInt8
 
-from sim.interface import CameraModel, ConfigError
+from sim.core.interface import CameraModel, ConfigError
 
 RGB_MEAN = np.array([0.493, 0.468, 0.438], np.float32)
 RGB_STD = np.array([0.544, 0.521, 0.499], np.float32)

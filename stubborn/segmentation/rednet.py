@@ -19,7 +19,7 @@ from torch import Tensor, nn
 from torch.nn import functional
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
-from sim.interface import MPCAT40, ConfigError
+from sim.core.interface import MPCAT40, ConfigError
 from stubborn.segmentation.inputs import INPUTS, InputKind
 from stubborn.segmentation.preprocess import require_whole_strides
 

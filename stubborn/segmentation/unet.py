@@ -19,7 +19,7 @@ from jaxtyping import Float
 from torch import Tensor, cat, nn
 from torch.nn import functional
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 from stubborn.segmentation.inputs import INPUTS, InputKind
 from stubborn.segmentation.lite0 import Lite0
 from stubborn.segmentation.preprocess import require_whole_strides

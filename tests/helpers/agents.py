@@ -8,7 +8,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from sim.interface import Action, AgentSpec, CameraModel, Observation
+from sim.core.interface import Action, AgentSpec, CameraModel, Observation
 from sim.sensors.sensor import SensorContext
 
 SEEN: list[set[str]] = []

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
 from stubborn.mapping.navmap import NavMap
 
 LAYER_OF = {

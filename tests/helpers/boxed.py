@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.geometry.grid import GridFrame
+from sim.core.geometry.grid import GridFrame
 from stubborn.mapping.collision_marks import CollisionConfig, mark_visited
 from stubborn.mapping.navmap import NavMap
 from tests.helpers.ground import START

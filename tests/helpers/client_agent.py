@@ -13,7 +13,7 @@ if os.path.exists(os.path.join(os.path.dirname(os.path.abspath(__file__)), "stub
     import stubborn_client as client  # pyright: ignore[reportMissingImports]
 else:  # in the repository
     ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-    FILE = os.path.join(ROOT, "sim", "bridges", "stubborn_client.py")
+    FILE = os.path.join(ROOT, "sim", "app", "bridges", "stubborn_client.py")
     SPEC = importlib.util.spec_from_file_location("stubborn_client", FILE)
     assert SPEC is not None and SPEC.loader is not None  # noqa: PT018
     client = importlib.util.module_from_spec(SPEC)

@@ -1,7 +1,7 @@
 """Code blocks of README and docs: what readers will copy, and how a test tries it without their hours.
 
 `TRIALS` has a line for every command that stands in a `sh` block. A command that is not in it fails
-`tests/commands/test_commands.py`, so whoever documents one says here how it is tried.
+`tests/sim/app/commands/test_commands.py`, so whoever documents one says here how it is tried.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sim.commands.main import COMMANDS, split
+from sim.app.commands.main import COMMANDS, split
 
 ROOT = Path(__file__).resolve().parents[2]
 PYTHON = ".venv/bin/python"
@@ -109,7 +109,7 @@ def canonical(words: Sequence[str]) -> str:
         return shlex.join(["stubborn", *rest])
     if first not in ("python", PYTHON) or not rest:
         return shlex.join(words)
-    if rest[0] == "-m" and rest[1] in ("sim.run", "sim.report", "sim.web", "sim.teleop"):
+    if rest[0] == "-m" and rest[1] in ("sim.run", "sim.report", "sim.web"):
         return shlex.join(["stubborn", rest[1].removeprefix("sim."), *rest[2:]])
     old = re.fullmatch(r"tools/(\w+)\.py", rest[0])
     if old and old[1] in MOVED:
@@ -222,7 +222,7 @@ _IN_SCENE = (
 _OF_SCENE = "--house {tmp}/s/flat.xml --labels {tmp}/s/labels.json"
 _PACKED = f"stubborn episodes {_OF_SCENE} --episodes 2 --out {{tmp}}/split"
 _KITCHEN = "runs/worlds/gymnasium_robotics/envs/assets/kitchen_franka"
-_PACKAGE = Only("needs files of another package; tests/commands/test_foreign_houses.py has a scene of its own")
+_PACKAGE = Only("needs files of another package; tests/sim/app/commands/test_foreign_houses.py has a scene of its own")
 _MODELS = (
     _FOREIGN.replace("foreign", "models") + 'write_folder(Path("{tmp}/source"), chairs=8)\'',
     "stubborn import furniture --source {tmp}/source --out {tmp}/models",
@@ -246,7 +246,7 @@ _ENTRY = (
     " --out {tmp}/entry"
 )
 _SUBMIT = "stubborn submit {tmp}/entry --name 'My agent' --authors 'A. Author' --out {tmp}/my_agent.json.gz"
-_ROWS = "a row needs 50 episodes; tests/sim/submissions/test_submission_commands.py makes tables of fewer"
+_ROWS = "a row needs 50 episodes; tests/sim/app/submissions/test_submission_commands.py makes tables of fewer"
 _SEAL = "stubborn seal make --out {tmp}/sealed2027 --secret-file {tmp}/secret --houses 1 --episodes 2"
 TRIALS: dict[str, tuple[str, ...] | Only] = {
     "make run": _NEEDS_SETUP,
@@ -368,7 +368,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "stubborn views --split train --views 1 --out {tmp}/views --workers 1",
     ),
     "stubborn train segmentation --furniture runs/models --hours 1.5 --out runs/rednet": Only(
-        "renders 800 views at least; tests/commands/test_views_mix.py and test_train_segmentation.py try its parts"
+        "renders 800 views at least; test_views_mix.py and test_train_segmentation.py try its parts"
     ),
     "stubborn train segmentation --init shipped --views views --val-views views_val --rate 0.0003 --hours 1"
     " --out runs/finer": (
@@ -445,9 +445,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --mcap --out runs/ros": (f"{_RUN} --agent oracle {_SMALL} --mcap --episodes 1 --out {{tmp}}/ros",),
     f"{_RUN} --rerun --episodes 2": Only("needs a display and the extra rerun"),
     "stubborn web --agent examples.my_agent:AGENT --house examples/my_house.xml": Only(
-        "serves until it is interrupted; tests/sim/web/test_choices.py chooses an agent and a house so"
+        "serves until it is interrupted; tests/sim/app/web/test_choices.py chooses an agent and a house so"
     ),
-    "stubborn web": Only("serves until it is interrupted; tests/sim/web/test_web.py starts it"),
+    "stubborn web": Only("serves until it is interrupted; tests/sim/app/web/test_web.py starts it"),
     # docs/worlds.md
     f"{_RUN} --house flat.xml --labels labels.json --episodes 20 --record --out runs/flat": (_SCENE, _IN_SCENE),
     "stubborn label --house flat.xml --out labels.json --picture runs/flat.png": (
@@ -505,7 +505,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     f"{_RUN} --episodes 1000 --shard 1/2 --out runs/big": (_SHARDS[0],),
     f"{_RUN} --episodes 1000 --shard 2/2 --out runs/big": (_SHARDS[1],),
-    "stubborn teleop --goal sofa --out runs/driven": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
     f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0": (
         f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0 {_SMALL} --semantics gt"
         f" --episodes 1 --out {{tmp}}/run",
@@ -522,7 +521,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn episodes --split runs/unseen --recipe val --episodes 720": _UNSEEN,
     "stubborn train verifier --semantics rednet --weights runs/rednet/rednet.safetensors --split runs/unseen"
     " --episodes 720 --out runs/verifier.json": Only(
-        "runs until there are enough candidates; tests/commands/test_train_verifier.py runs a few episodes"
+        "runs until there are enough candidates; tests/sim/app/commands/test_train_verifier.py runs a few episodes"
     ),
     f"{_RUN} --weights runs/rednet/rednet.safetensors --verifier runs/verifier.json": (
         f"{_RUN} --weights {_SHIPPED} --verifier stubborn/detection/verifiers/rednet.json {_SMALL} --episodes 1"
@@ -575,7 +574,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     "stubborn import furniture --source my_models --out runs/models": _MODELS,
     "stubborn import furniture infinigen --python infinigen/bin/python --out runs/infinigen": Only(
-        "needs an installed Infinigen; tests/commands/test_import_infinigen.py has a process in its place"
+        "needs an installed Infinigen; tests/sim/app/commands/test_import_infinigen.py has a process in its place"
     ),
     "stubborn import furniture --source runs/infinigen my_models --out runs/models": _MODELS,
     "stubborn import procthor train.jsonl.gz --out runs/procthor": (
@@ -606,10 +605,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "stubborn views --split val --views 4 --views-per-shard 4 --extras instances normals poses --out {tmp}/views",
     ),
     f"{_RUN} --agent habitat:my_agent:MyAgent --config agent.checkpoint=policy.pth": Only(
-        "needs an agent of the reader's; tests/sim/bridges/test_habitat_agents.py writes one"
+        "needs an agent of the reader's; tests/sim/app/bridges/test_habitat_agents.py writes one"
     ),
     "stubborn habitat 'evaluate.py --runs 1' --split val --episodes 5": Only(
-        "needs a script of the reader's; tests/sim/bridges/test_habitat_env.py writes one"
+        "needs a script of the reader's; tests/sim/app/bridges/test_habitat_env.py writes one"
     ),
     f"{_RUN} --agent habitat:simple_agents:RandomForwardAgent --config agent.success_distance=-1"
     " agent.goal_sensor_uuid=objectgoal": Only(_PUBLISHED),
@@ -619,7 +618,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --agent 'process:env/bin/python stubborn_client.py Stubborn/eval.py --evaluation local --timestep_limit"
     " 451' --config agent.interface=habitat": Only(_PUBLISHED),
     "stubborn bench --parts a,b,d --out runs/bench.json": Only(
-        "takes minutes; tests/commands/test_bench.py runs its parts"
+        "takes minutes; tests/sim/app/commands/test_bench.py runs its parts"
     ),
     "stubborn traps --family pane_gap --difficulty hard --seed 10 --out runs/panes": (
         "stubborn traps --family pane_gap --difficulty hard --seed 10 --out {tmp}/panes",

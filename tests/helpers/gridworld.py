@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import (
+from sim.core.interface import (
     FORWARD_M,
     GOAL_CATEGORIES,
     MPCAT40_ID,
@@ -76,7 +76,7 @@ def boxes_from_plan(plan: str, cell_m: float) -> list[Box]:
 
 
 class GridWorld:
-    """Boxes, a robot and a camera; the observations are those of `sim.interface`, with the start pose as origin."""
+    """Boxes, a robot and a camera; the observations are those of the interface, with the start pose as origin."""
 
     def __init__(
         self,
@@ -128,7 +128,7 @@ class GridWorld:
         }
 
     def render(self) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
-        """Returns depth as in `sim.interface` (0 near, maximum far) and mpcat40 ids."""
+        """Returns depth as in `sim.core.interface` (0 near, maximum far) and mpcat40 ids."""
         camera = self.camera
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
         ray_x, ray_y = cos - sin * self._left, sin + cos * self._left  # per metre of depth

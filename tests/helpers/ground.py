@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from sim.geometry.grid import GridFrame, Window
-from sim.geometry.pose import Pose
+from sim.core.geometry.grid import GridFrame, Window
+from sim.core.geometry.pose import Pose
 from stubborn.exploration.explorer import Explorer, Ground, run_explorer
 from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import visited_ground

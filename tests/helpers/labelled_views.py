@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.interface import MPCAT40_ID
-from stubborn.segmentation.dataset import LabelledView
+from sim.core.interface import MPCAT40_ID
+from sim.training.segmentation.dataset import LabelledView
 
 
 def a_view(height: int = 64, width: int = 96) -> LabelledView:

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from sim.evaluation.rollout import TIMES
+from sim.app.evaluation.rollout import TIMES
 
 
 def lines_of(out: Path) -> list[dict[str, Any]]:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sim.evaluation.watch import count_steps, marked
-from sim.interface import Action, Observation
+from sim.app.evaluation.watch import count_steps, marked
+from sim.core.interface import Action, Observation
 
 
 @dataclass

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.interface import MPCAT40_ID, Action, Observation, Perceived, Scores, SegmentationSpec, SegmenterSpec
 from sim.env.objectnav import ObjectNavEnv
-from sim.interface import MPCAT40_ID, Action, Observation, Perceived, Scores, SegmentationSpec, SegmenterSpec
 
 ASKED: list[set[str]] = []
 """Keys of each observation that a `Flat` got in this process."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.interface import GOAL_CATEGORIES
+from sim.core.interface import GOAL_CATEGORIES
 from stubborn.exploration.poni_net import MAPS, Predictor
 
 BED = GOAL_CATEGORIES.index("bed")

@@ -11,12 +11,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from sim.commands import verify
-from sim.episodes.splits import Episode, write_split
-from sim.geometry.pose import Pose
-from sim.run import entry
-from sim.submissions.verdicts import Verdict
-from sim.submissions.verification import Checked, Choices, check, verdicts
+from sim.app.commands import verify
+from sim.app.commands.run import entry
+from sim.app.submissions.verdicts import Verdict
+from sim.app.submissions.verification import Checked, Choices, check, verdicts
+from sim.core.geometry.pose import Pose
+from sim.episodes.episode import Episode
+from sim.episodes.splits import write_split
 from tests.helpers.worlds import sofa_room
 
 Edit = Callable[[dict[str, Any]], None]

@@ -13,16 +13,16 @@ import beartype
 from jaxtyping import AbstractArray, install_import_hook
 
 CHECKED = (
-    "sim.geometry.convex",
-    "sim.geometry.fast_marching",
-    "sim.geometry.grid",
+    "sim.core.geometry.convex",
+    "sim.core.geometry.fast_marching",
+    "sim.core.geometry.grid",
     "stubborn.exploration",
     "stubborn.mapping",
     "stubborn.planning",
     "stubborn.segmentation",
     "stubborn.detection",
 )
-"""Modules and packages that are checked. `sim.geometry.fast_marching_kernels` is not: numba compiles its functions."""
+"""Modules and packages that are checked. Kernels are not: numba compiles their functions."""
 
 FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 

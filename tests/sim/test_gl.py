@@ -27,7 +27,7 @@ def test_a_context_starts_without_a_display_after_the_user_imported_mujoco() -> 
 def test_a_backend_that_cannot_render_is_refused_only_when_something_is_rendered(name: str) -> None:
     assert _run("import sim.gl", MUJOCO_GL=name).returncode == 0
     done = _run(RENDER, MUJOCO_GL=name)
-    assert done.stderr.splitlines()[-1].startswith(f"sim.errors.RenderError: MUJOCO_GL is '{name}'")
+    assert done.stderr.splitlines()[-1].startswith(f"sim.core.errors.RenderError: MUJOCO_GL is '{name}'")
 
 
 def test_a_missing_library_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

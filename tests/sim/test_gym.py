@@ -17,8 +17,8 @@ from gymnasium import wrappers
 from gymnasium.utils.env_checker import check_env
 
 import sim.gym
-from sim.geometry.pose import Pose
-from sim.interface import Action, CameraModel, ConfigError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, CameraModel, ConfigError
 from tests.helpers.worlds import ledge
 
 ROOT = Path(__file__).resolve().parents[2]

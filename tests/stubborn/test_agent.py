@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from sim.interface import Action, CameraModel, ConfigError, Observation, RobotModel, Scores, SegmenterSpec
+from sim.core.interface import Action, CameraModel, ConfigError, Observation, RobotModel, Scores, SegmenterSpec
 from stubborn import agents
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.drawing import map_painter

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from examples import my_agent
-from sim.bridges.habitat.agents import HabitatAgent
-from sim.bridges.habitat.conversions import Conversion
-from sim.bridges.process import ProcessAgent
-from sim.bridges.process_command import ProcessConfig
-from sim.interface import (
+from sim.app.bridges.habitat.agents import HabitatAgent
+from sim.app.bridges.habitat.conversions import Conversion
+from sim.app.bridges.process import ProcessAgent
+from sim.app.bridges.process_command import ProcessConfig
+from sim.core.interface import (
     MPCAT40_ID,
     Action,
     Agent,
@@ -336,7 +336,7 @@ def test_importing_the_agents_imports_neither_mujoco_nor_the_rest_of_sim():
         "import sys, stubborn.agents, stubborn.drawing.map_painter, stubborn.segmentation.ground_truth\n"
         "import stubborn.detection.verification, stubborn.exploration.frontier, stubborn.baselines.cloned\n"
         "bad = [m for m in sys.modules if m.split('.')[0] in ('mujoco', 'gymnasium', 'OpenGL', 'sklearn')]\n"
-        "allowed = ('sim.interface', 'sim.errors', 'sim.geometry', 'sim.reading')\n"
+        "allowed = ('sim.core',)\n"
         "ours = [m for m in sys.modules if m.startswith('sim.') and not m.startswith(allowed)]\n"
         "print(bad + ours)"
     )

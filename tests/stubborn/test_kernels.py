@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sim.geometry.grid import GridFrame, Window
-from sim.geometry.pose import Pose
-from sim.interface import MPCAT40_ID, CameraModel, ConfigError
+from sim.core.geometry.grid import GridFrame, Window
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MPCAT40_ID, CameraModel, ConfigError
 from stubborn.kernels.frames import enter_bits, shows_no_noise
 from stubborn.kernels.grids import bilinear, distance_within, speeds
 from stubborn.mapping.masks import connected, distance_to, farther_than

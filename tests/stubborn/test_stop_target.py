@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from sim.geometry.pose import Pose
-from sim.interface import Agent, RobotModel, Segmenter, StatesTarget
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Agent, RobotModel, Segmenter, StatesTarget
 from stubborn import agents
 from stubborn.agent import StubbornAgent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter

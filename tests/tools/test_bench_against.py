@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 from tools.maintenance import bench_against
 from tools.maintenance.bench_against import Worker, commit_of, in_turns, unpack
 

@@ -8,14 +8,14 @@ from typing import Any
 
 import pytest
 
-from sim.analysis.comparison import read_run
-from sim.composition.options import RunOptions
-from sim.composition.setup import resolve
-from sim.configuration import as_json
-from sim.geometry.pose import Pose
-from sim.interface import Action, ConfigError
-from sim.plans.export import export_plans
-from sim.plans.plan import write_plan
+from sim.app.analysis.comparison import read_run
+from sim.app.composition.options import RunOptions
+from sim.app.composition.setup import resolve
+from sim.core.configuration import as_json
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, ConfigError
+from sim.homes.plans.export import export_plans
+from sim.homes.plans.plan import write_plan
 from sim.robot.drive import Motion
 from sim.task.trajectory import Recorder, trajectory_file, write_trajectory
 from tests.helpers.worlds import room, with_box

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from sim.commands.train.segmentation import Trainer
-from sim.interface import ConfigError
-from tests.commands.test_train_segmentation import rows, write_views
+from sim.app.commands.train.segmentation import Trainer
+from sim.core.interface import ConfigError
+from tests.sim.app.commands.test_train_segmentation import rows, write_views
 from tools.training.compare_networks import Args, main, trained_hours
 
 

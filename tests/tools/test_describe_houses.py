@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from sim.commands import episodes as make_episodes
-from sim.interface import GOAL_CATEGORIES
+from sim.app.commands import episodes as make_episodes
+from sim.core.interface import GOAL_CATEGORIES
 from tests.helpers.worlds import room, with_box
 from tools.maintenance import describe_houses
 

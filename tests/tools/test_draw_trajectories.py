@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 import pytest
 
-from sim import run
-from sim.analysis.comparison import read_run
-from sim.geometry.grid import GridFrame
-from sim.interface import ConfigError
+from sim.app.analysis.comparison import read_run
+from sim.app.commands import run
+from sim.core.geometry.grid import GridFrame
+from sim.core.interface import ConfigError
 from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.worlds import room, with_box
 from tools.research import draw_trajectories

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 import torch
 
-from sim.interface import MPCAT40_ID, ConfigError
+from sim.core.interface import MPCAT40_ID, ConfigError
+from sim.training.segmentation.dataset import list_shards
 from stubborn.segmentation.checkpoints import load_network, save_network
-from stubborn.segmentation.dataset import list_shards
 from stubborn.segmentation.rednet import RedNet
-from tests.commands.test_evaluate_objects import TINY
-from tests.commands.test_train_segmentation import write_views
+from tests.sim.app.commands.test_evaluate_objects import TINY
+from tests.sim.app.commands.test_train_segmentation import write_views
 from tools.training.name_crops import FRAME, Args, choose, main, predict
 
 

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from sim.viewers.video import VideoWriter
+from sim.app.viewers.video import VideoWriter
 from tools.maintenance.readme_picture import animation, frames_of, thinned
 
 

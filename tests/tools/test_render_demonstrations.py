@@ -9,11 +9,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from sim.datasets.demonstrations import list_demonstrations, read_demonstration
-from sim.geometry.pose import Pose
-from sim.interface import Action, ConfigError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, ConfigError
 from sim.robot.drive import Motion
 from sim.task.trajectory import Recorder, trajectory_file, write_trajectory
+from sim.training.cloned.demonstrations import list_demonstrations, read_demonstration
 from tests.helpers.worlds import room, with_box
 from tools.training import render_demonstrations
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.errors import ConfigError
+from sim.core.errors import ConfigError
 from tools.research import result_runs
 from tools.research.result_archive import VERSION, RunKey, read_archive
 from tools.research.result_definitions import page_tables

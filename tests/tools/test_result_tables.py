@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from scipy.special import stdtrit
 
-from sim.errors import ConfigError
+from sim.core.errors import ConfigError
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 from tools.research import result_tables
 from tools.research.paper_page import PAPER, paper_page

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from sim.episodes.splits import Episode, write_split
-from sim.geometry.pose import Pose
+from sim.core.geometry.pose import Pose
+from sim.episodes.episode import Episode
+from sim.episodes.splits import write_split
 from tests.helpers.worlds import room, with_box
 from tools.maintenance.split_report import Args, main
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.commands.traps.curves import MOST_BINS, QUANTITIES, bin_edges, curve
-from sim.commands.traps.family_report import as_csv, draw_curves, draw_families, family_grid
-from sim.commands.traps.report import Args, main
+from sim.app.commands.traps.curves import MOST_BINS, QUANTITIES, bin_edges, curve
+from sim.app.commands.traps.family_report import as_csv, draw_curves, draw_families, family_grid
+from sim.app.commands.traps.report import Args, main
+from sim.core.interface import ConfigError
 from sim.houses.sidecar import TrapFacts
-from sim.interface import ConfigError
 
 GAP, PANES, OBJECTS = QUANTITIES
 

@@ -8,21 +8,21 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from sim.commands.traps.make import Args, main, write_family_trap
-from sim.commands.traps.report import make_agent
-from sim.commands.traps.trial import run_trial
+from sim.app.commands.traps.make import Args, main, write_family_trap
+from sim.app.commands.traps.report import make_agent
+from sim.app.commands.traps.trial import run_trial
+from sim.core.errors import ConfigError
+from sim.core.interface import Action
+from sim.core.paths import assets_dir
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import load_split
-from sim.episodes.trap_families import DETOUR_M, MARGIN_M, draw_trap
-from sim.errors import ConfigError
 from sim.gl import mujoco
-from sim.housegen.traps.families.catalogue import FAMILIES, HELD_OUT
-from sim.housegen.traps.families.contact_splits import CONTACT_SPLITS, TrapKey
-from sim.housegen.traps.families.family import BLOCKING_M, CLIMBED_M, DIFFICULTIES, ROBOT_M, SPARE_M, Chance
+from sim.homes.housegen.traps.families.catalogue import FAMILIES, HELD_OUT
+from sim.homes.housegen.traps.families.contact_splits import CONTACT_SPLITS, TrapKey
+from sim.homes.housegen.traps.families.draw import DETOUR_M, MARGIN_M, draw_trap
+from sim.homes.housegen.traps.families.family import BLOCKING_M, CLIMBED_M, DIFFICULTIES, ROBOT_M, SPARE_M, Chance
 from sim.houses.geoms import geom_polytope
 from sim.houses.labels import collidable_geoms, read_labels
-from sim.interface import Action
-from sim.paths import assets_dir
 from sim.task.objectnav import Task
 from sim.world.world import World
 from tests.helpers.sampling import sample

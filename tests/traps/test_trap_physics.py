@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sim.commands.traps.report import Args, main, make_agent
-from sim.commands.traps.trial import Trial, run_trial
+from sim.app.commands.traps.report import Args, main, make_agent
+from sim.app.commands.traps.trial import Trial, run_trial
+from sim.core.geometry.pose import Pose
+from sim.core.interface import FORWARD_M, Action, ConfigError
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.recipes import START_TURNS_RAD
-from sim.geometry.pose import Pose
-from sim.housegen.traps.catalogue import TRAPS
-from sim.interface import FORWARD_M, Action, ConfigError
+from sim.homes.housegen.traps.catalogue import TRAPS
 from sim.robot.config import PHYSICS_VERSION
 from stubborn.agent import StubbornAgent
 from stubborn.agents import ABLATION

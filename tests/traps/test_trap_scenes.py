@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.commands.traps.make import write_scene
+from sim.app.commands.traps.make import write_scene
+from sim.core.errors import HouseError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MPCAT40_ID
+from sim.core.paths import assets_dir
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.recipes import START_TURNS_RAD
 from sim.episodes.splits import load_split, one_house
-from sim.errors import HouseError
-from sim.geometry.pose import Pose
-from sim.housegen.traps.catalogue import TRAPS
+from sim.homes.housegen.traps.catalogue import TRAPS
 from sim.houses.load import load_house
 from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, TrapFacts, read_sidecar, write_sidecar
-from sim.interface import MPCAT40_ID
-from sim.paths import assets_dir
 from tests.helpers.sampling import sample
 
 SHIPPED = assets_dir() / "traps"

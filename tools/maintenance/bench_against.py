@@ -24,10 +24,10 @@ from pathlib import Path
 import numpy as np
 from rich.table import Table
 
-from sim import cli
-from sim.analysis import display
-from sim.files import write_atomically
-from sim.interface import ConfigError
+from sim.app import cli
+from sim.app.analysis import display
+from sim.core.files import write_atomically
+from sim.core.interface import ConfigError
 from tools.maintenance.turns import PARTS
 
 ROOT = Path(__file__).resolve().parents[2]

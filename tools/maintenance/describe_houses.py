@@ -18,18 +18,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sim import cli
+from sim.app import cli
+from sim.app.evaluation.parallel import ordered_map
+from sim.core.files import write_together
+from sim.core.interface import GOAL_CATEGORIES, ConfigError, SuccessRule
+from sim.core.paths import assets_dir
+from sim.core.reading import read_bytes
+from sim.episodes.house_list import CACHE_VARIABLE
 from sim.episodes.splits import UNREACHABLE_FILE, Split, load_split, read_unreachable
-from sim.evaluation.parallel import ordered_map
-from sim.files import write_together
-from sim.housegen.splits.house_list import CACHE_VARIABLE
-from sim.housegen.splits.recipes import SPLITS as RECIPES
-from sim.housegen.splits.recipes import Recipe
+from sim.homes.housegen.splits.recipes import SPLITS as RECIPES
+from sim.homes.housegen.splits.recipes import Recipe
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels, rendered_geoms
-from sim.interface import GOAL_CATEGORIES, ConfigError, SuccessRule
-from sim.paths import assets_dir
-from sim.reading import read_bytes
 from sim.world.storeys import floor_levels
 
 SPLITS = ("val", "test", "large", "large-test", "hazards", "hazards-test", "train")

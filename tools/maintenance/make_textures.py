@@ -11,10 +11,10 @@ from pathlib import Path
 
 import cv2
 
-from sim import cli
-from sim.files import write_atomically
-from sim.housegen.surfaces.materials import texture_file
-from sim.housegen.surfaces.textures import TEXTURES
+from sim.app import cli
+from sim.core.files import write_atomically
+from sim.homes.housegen.surfaces.materials import texture_file
+from sim.homes.housegen.surfaces.textures import TEXTURES
 
 
 @dataclass(frozen=True)

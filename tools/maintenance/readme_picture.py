@@ -18,10 +18,10 @@ import numpy as np
 import tyro
 from numpy.typing import NDArray
 
-from sim import cli
-from sim.errors import ConfigError
-from sim.files import write_atomically
-from sim.reading import open_plain
+from sim.app import cli
+from sim.core.errors import ConfigError
+from sim.core.files import write_atomically
+from sim.core.reading import open_plain
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,15 +21,16 @@ from pathlib import Path
 
 import numpy as np
 
-from sim import cli
+from sim.app import cli
+from sim.app.evaluation.parallel import ordered_map
+from sim.core.files import write_atomically
+from sim.core.geometry.pose import Pose, wrap_angle
+from sim.core.interface import ConfigError
+from sim.core.paths import assets_dir
+from sim.episodes.episode import Episode
 from sim.episodes.reachable_goals import storeys_of
-from sim.episodes.splits import Episode, load_split, read_unreachable, shipped_splits
+from sim.episodes.splits import load_split, read_unreachable, shipped_splits
 from sim.episodes.start_rules import Lookout
-from sim.evaluation.parallel import ordered_map
-from sim.files import write_atomically
-from sim.geometry.pose import Pose, wrap_angle
-from sim.interface import ConfigError
-from sim.paths import assets_dir
 from sim.task.footprints import Footprint
 from sim.task.objectnav import Task
 from sim.world.world import World

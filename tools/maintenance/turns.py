@@ -35,7 +35,7 @@ class Step:
     """Whole steps of `stubborn` with ground-truth segmentation in val: environment and agent."""
 
     def __init__(self) -> None:
-        from sim.composition.segmenters import make_segmenter
+        from sim.app.composition.segmenters import make_segmenter
         from sim.env.objectnav import ObjectNavEnv
         from stubborn import agents
 
@@ -92,8 +92,8 @@ class Views:
 
     def __call__(self) -> dict[str, float]:
         """Writes a small shard of each profile."""
-        from sim.datasets.shards import write_shard
-        from sim.datasets.views import sample_views
+        from sim.training.views.shards import write_shard
+        from sim.training.views.views import sample_views
 
         seed, taken_s = next(self._seeds), {}
         for profile, scene in self._scenes.items():
@@ -149,10 +149,10 @@ PARTS: dict[str, Callable[[], Callable[[], dict[str, float]]]] = {
 
 
 def _scene(profile: str) -> Any:
+    from sim.core.interface import CameraModel
     from sim.env.scene import Scene
     from sim.episodes.splits import load_split
     from sim.gl import mujoco
-    from sim.interface import CameraModel
     from sim.robot.config import RobotConfig
 
     scene = Scene(load_split("val").load_house("val_03"), robot=RobotConfig(), camera=CameraModel(), profile=profile)
@@ -162,8 +162,8 @@ def _scene(profile: str) -> Any:
 
 def _poses() -> list[Any]:
     """Returns start poses of the episodes in val_03, in several directions."""
+    from sim.core.geometry.pose import Pose
     from sim.episodes.splits import load_split
-    from sim.geometry.pose import Pose
 
     starts = [episode.start for episode in load_split("val").episodes if episode.house == "val_03"]
     return [Pose(s.x_m, s.y_m, s.yaw_rad + turn, s.floor_z_m) for s in starts for turn in (0.0, 1.5, 3.0)]

@@ -25,24 +25,24 @@ from typing import Any
 import numpy as np
 from scipy.stats import spearmanr
 
-from sim import cli
-from sim.analysis.comparison import Run, read_run
-from sim.composition.agents import find_explorer
-from sim.configuration import with_fields
-from sim.errors import ConfigError
-from sim.evaluation.rollout import episode_seed
-from sim.files import inside, write_atomically
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import MAX_STEPS, CameraModel
-from sim.plans.plan import read_plan
-from sim.plans.sight import PlanCamera
+from sim.app import cli
+from sim.app.analysis.comparison import Run, read_run
+from sim.app.composition.agents import find_explorer
+from sim.app.evaluation.rollout import episode_seed
+from sim.core.configuration import with_fields
+from sim.core.errors import ConfigError
+from sim.core.files import inside, write_atomically
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MAX_STEPS, CameraModel
+from sim.homes.plans.plan import read_plan
+from sim.homes.plans.sight import PlanCamera
 from sim.robot.config import RobotConfig
 from sim.sensors.noise import NoiseConfig
 from sim.task.config import TaskConfig
 from sim.task.metrics import EXPLORED_SHARE, steps_to_first_sight
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
-from sim.twin.agent import TwinAgent, run_episode, twin_config
+from sim.training.plan_env.agent import TwinAgent, run_episode, twin_config
 from stubborn.agent import AgentConfig
 from stubborn.agents import PRESETS
 from stubborn.detection.seeker import TargetSeekerConfig

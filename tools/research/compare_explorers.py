@@ -6,7 +6,7 @@ python -m tools.research.compare_explorers --plans runs/plans/train runs/plans/l
 The whole agent runs, with an exact camera and a map as in the real environment; an episode ends with the first frame
 that shows the target, or after 500 steps. All explorers run the same episodes, in the houses that
 `stubborn train semexp` holds back; `stubborn train poni` holds back others (--houses held-back-poni). Intervals are
-over houses (`sim.evaluation.intervals`).
+over houses (`sim.app.evaluation.intervals`).
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from typing import Any
 
 import numpy as np
 
-from sim import cli
-from sim.analysis.tables import Cell
-from sim.commands.train.plan_split import split_plans
-from sim.configuration import parse_assignments, with_fields
-from sim.evaluation.intervals import estimate, paired_difference
-from sim.files import write_atomically
-from sim.interface import MAX_STEPS, CameraModel, ConfigError
-from sim.plans.episode import draw_goal_and_start
-from sim.plans.plan import read_plan
-from sim.plans.sight import PlanCamera
-from sim.twin import potential_files
-from sim.twin.agent import TwinAgent, run_episode, twin_config
+from sim.app import cli
+from sim.app.analysis.tables import Cell
+from sim.app.evaluation.intervals import estimate, paired_difference
+from sim.core.configuration import parse_assignments, with_fields
+from sim.core.files import write_atomically
+from sim.core.interface import MAX_STEPS, CameraModel, ConfigError
+from sim.homes.plans.episode import draw_goal_and_start
+from sim.homes.plans.plan import read_plan
+from sim.homes.plans.sight import PlanCamera
+from sim.training.plan_env.agent import TwinAgent, run_episode, twin_config
+from sim.training.plan_split import split_plans
+from sim.training.poni import potential_files
 from stubborn.agent import AgentConfig
 from stubborn.agents import EXPLORERS
 from stubborn.exploration.explorer import ExplorerConfig

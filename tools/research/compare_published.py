@@ -18,9 +18,9 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from sim import cli
-from sim.commands.agent_client import client_file
-from sim.files import write_atomically
+from sim.app import cli
+from sim.app.commands.agent_client import client_file
+from sim.core.files import write_atomically
 
 EXAMPLES = Path("Stubborn") / "obj_id_data.pickle"
 """Examples of targets from which the agent learns to verify; without any, it accepts each candidate."""
@@ -72,7 +72,7 @@ def stubborn(*words: str, folder: Path) -> None:
     root = Path(__file__).parents[2]
     paths = [root, Path(__file__).parent, folder / "Stubborn"]
     environment = {**os.environ, **ENVIRONMENT, "PYTHONPATH": os.pathsep.join(map(str, paths))}
-    subprocess.run([sys.executable, "-m", "sim.commands.main", *words], cwd=folder, env=environment, check=True)
+    subprocess.run([sys.executable, "-m", "sim.app.commands.main", *words], cwd=folder, env=environment, check=True)
 
 
 if __name__ == "__main__":

@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sim import cli
-from sim.analysis.figures import empty_figure
-from sim.interface import GOAL_CATEGORIES, ConfigError
-from sim.twin.potential_files import Batch, SampleSet, held_back
+from sim.app import cli
+from sim.core.interface import GOAL_CATEGORIES, ConfigError
+from sim.training.figures import empty_figure
+from sim.training.poni.potential_files import Batch, SampleSet, held_back
 from stubborn.exploration.patches import LAYERS
 from stubborn.exploration.poni_net import FILES, SHIPPED, Predictor
 

@@ -24,13 +24,13 @@ import tyro
 from numpy.typing import NDArray
 from rich.console import Console
 
-from sim import cli
-from sim.analysis import display
-from sim.analysis.comparison import Run, read_run, require_same_episodes
-from sim.analysis.report.drawings import ground_truth_of, split_of
-from sim.files import write_picture
-from sim.geometry.grid import GridFrame
-from sim.interface import ConfigError
+from sim.app import cli
+from sim.app.analysis import display
+from sim.app.analysis.comparison import Run, read_run, require_same_episodes
+from sim.app.analysis.report.drawings import ground_truth_of, split_of
+from sim.core.files import write_picture
+from sim.core.geometry.grid import GridFrame
+from sim.core.interface import ConfigError
 from sim.task.failures import cause_of_failure, first_looping_step, first_trapped_step
 from sim.task.ground_truth import GroundTruth
 from sim.task.metrics import EXPLORED_SHARE

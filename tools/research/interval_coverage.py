@@ -7,7 +7,7 @@ results, `docs/tables`. A sample has H houses with m episodes each; its episodes
 Gaussian copula, so that the normal scores of two episodes in one house have a given correlation. (In the recorded runs
 the intraclass correlation of success, SPL and collisions is between -0.09 and 0.14, on average 0.02.) The intervals:
 
-- `ours`: that of `sim.evaluation.intervals`, which all results have;
+- `ours`: that of `sim.app.evaluation.intervals`, which all results have;
 - `t`: mean and standard error of the means of the houses, with Student's t for H - 1 degrees of freedom;
 - `houses`: the percentile bootstrap of houses with all their episodes;
 - `two-stage`: the percentile bootstrap of houses, then of the episodes of each, of a tenth of the samples;
@@ -27,10 +27,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri, stdtrit
 
-from sim import cli
-from sim.analysis.metrics import COLLISIONS, SPL, SUCCESS, Metric
-from sim.evaluation.intervals import Estimate, estimate, paired_difference
-from sim.evaluation.results import metric_value
+from sim.app import cli
+from sim.app.analysis.metrics import COLLISIONS, SPL, SUCCESS, Metric
+from sim.app.evaluation.intervals import Estimate, estimate, paired_difference
+from sim.app.evaluation.results import metric_value
 from tools.research.result_archive import ARCHIVE, ArchivedRun, RunKey, read_archive
 from tools.research.result_definitions import run_key
 

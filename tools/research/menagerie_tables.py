@@ -21,21 +21,22 @@ from typing import Any
 
 import numpy as np
 
-from sim import cli, run
+from sim.app import cli
+from sim.app.commands import run
+from sim.app.viewers.chase import ChaseView
+from sim.core.errors import EpisodeError
+from sim.core.files import write_atomically, write_picture
+from sim.core.geometry.pose import Pose
+from sim.core.interface import FORWARD_M, TURN_RAD, Action, CameraModel
+from sim.core.reading import read_text
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import load_split
-from sim.errors import EpisodeError
-from sim.files import write_atomically, write_picture
-from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.house import House
-from sim.interface import FORWARD_M, TURN_RAD, Action, CameraModel
-from sim.reading import read_text
 from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot
 from sim.robot.menagerie import ENTRIES, PREFIX
 from sim.robot.velocity import Velocity
-from sim.viewers.chase import ChaseView
 from sim.world.world import World
 from tools.research.physics_tables import Row, floor, show
 

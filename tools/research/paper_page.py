@@ -6,9 +6,9 @@ from pathlib import Path
 
 from rich.console import Console
 
-from sim.commands.reproduce.paper_tables import PAPER_TABLES, table_named
-from sim.commands.reproduce.reproduce import Args, episodes_of, make_table
-from sim.errors import ConfigError
+from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, table_named
+from sim.app.commands.reproduce.reproduce import Args, episodes_of, make_table
+from sim.core.errors import ConfigError
 from tools.research.result_archive import ARCHIVE
 
 PAPER = "paper.md"

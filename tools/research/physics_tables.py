@@ -25,13 +25,13 @@ from numpy.typing import NDArray
 from rich.table import Table
 from scipy.optimize import minimize
 
-from sim import cli
-from sim.analysis import display
-from sim.files import write_atomically
-from sim.geometry.pose import Pose
+from sim.app import cli
+from sim.app.analysis import display
+from sim.core.files import write_atomically
+from sim.core.geometry.pose import Pose
+from sim.core.interface import FORWARD_M, TURN_RAD, Action
 from sim.gl import mujoco
 from sim.houses.house import House
-from sim.interface import FORWARD_M, TURN_RAD, Action
 from sim.robot.body import GRAVITY_M_S2
 from sim.robot.config import Base, DriveConfig, PhysicsConfig, RobotConfig
 from sim.sensors.noise import NOISE_PRESETS

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from sim.analysis.comparison import Line, require_same_episodes
-from sim.analysis.metrics import SUCCESS, episodes_of
-from sim.errors import ConfigError
-from sim.evaluation.results import metric_value
+from sim.app.analysis.comparison import Line, require_same_episodes
+from sim.app.analysis.metrics import SUCCESS, episodes_of
+from sim.app.evaluation.results import metric_value
+from sim.core.errors import ConfigError
 from tools.research.result_archive import ArchivedRun, RunKey
 from tools.research.result_definitions import Comparison
 

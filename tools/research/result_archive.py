@@ -14,12 +14,12 @@ from typing import Any
 
 import msgspec
 
-from sim.analysis.comparison import Line, Run, read_run
-from sim.composition.agents import find_agent
-from sim.composition.options import RunOptions
+from sim.app.analysis.comparison import Line, Run, read_run
+from sim.app.composition.agents import find_agent
+from sim.app.composition.options import RunOptions
+from sim.core.errors import ConfigError
+from sim.core.reading import PlainMember, convert, open_plain
 from sim.episodes.replicates import episode_of
-from sim.errors import ConfigError
-from sim.reading import PlainMember, convert, open_plain
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = ROOT / "docs" / "tables"

@@ -23,13 +23,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sim import cli
-from sim.analysis import display
-from sim.analysis.comparison import read_run
+from sim.app import cli
+from sim.app.analysis import display
+from sim.app.analysis.comparison import read_run
+from sim.core.errors import ConfigError
+from sim.core.files import write_atomically
+from sim.core.reading import read_bytes
 from sim.episodes.splits import load_split
-from sim.errors import ConfigError
-from sim.files import write_atomically
-from sim.reading import read_bytes
 from tools.research.result_archive import ARCHIVE, RUN_FILES, VERSION, RunKey, key_of, read_archive
 from tools.research.result_definitions import comparisons, page_tables
 

@@ -6,7 +6,7 @@
 `results.csv` has one row for each agent with its options, split and segmentation, `comparisons.csv` the paired
 differences, and `resolution.csv` the episodes that show a difference (`tools.research.resolution`). `paper.md` has
 the tables of the paper (`tools.research.paper_page`). Shares are between 0 and 1; `_low` and `_high` are the 95 %
-interval (`sim.evaluation.intervals`). In `comparisons.csv` the column `family` names the primary comparisons of a
+interval (`sim.app.evaluation.intervals`). In `comparisons.csv` the column `family` names the primary comparisons of a
 table: `success_p_holm` and `spl_p_holm` are their p-values, corrected by Holm's method for all primary comparisons of
 the table in both metrics. All others are exploratory, and nothing is corrected for their number. `_replicates_sd` is
 the standard deviation that chance alone gives the mean over one replicate of each episode (`stubborn run
@@ -26,16 +26,16 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sim import cli
-from sim.analysis import display
-from sim.analysis.comparison import Line
-from sim.analysis.metrics import FIRST_SIGHT, Metric, episodes_of, houses_of
-from sim.errors import ConfigError
-from sim.evaluation.intervals import Estimate, replicate_spread
-from sim.evaluation.results import metric_value
-from sim.files import write_together
-from sim.reading import read_bytes, read_text
-from sim.reading import read_csv as read_table
+from sim.app import cli
+from sim.app.analysis import display
+from sim.app.analysis.comparison import Line
+from sim.app.analysis.metrics import FIRST_SIGHT, Metric, episodes_of, houses_of
+from sim.app.evaluation.intervals import Estimate, replicate_spread
+from sim.app.evaluation.results import metric_value
+from sim.core.errors import ConfigError
+from sim.core.files import write_together
+from sim.core.reading import read_bytes, read_text
+from sim.core.reading import read_csv as read_table
 from sim.task.failures import CAUSES
 from tools.research.paper_page import PAPER, paper_page
 from tools.research.resolution import paired_lines, resolution_record

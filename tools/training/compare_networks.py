@@ -19,12 +19,12 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from sim import cli
-from sim.commands.train import segmentation
-from sim.files import write_atomically
-from sim.interface import ConfigError
-from sim.reading import Count as ReadCount
-from sim.reading import Number, convert, read_bytes
+from sim.app import cli
+from sim.app.commands.train import segmentation
+from sim.core.files import write_atomically
+from sim.core.interface import ConfigError
+from sim.core.reading import Count as ReadCount
+from sim.core.reading import Number, convert, read_bytes
 from stubborn.segmentation.networks import NETWORKS, build_network
 
 PRETRAINED = "lite0-imagenet"

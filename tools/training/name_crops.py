@@ -21,15 +21,15 @@ import numpy as np
 import torch
 from jaxtyping import Bool, UInt8
 
-from sim import cli
-from sim.commands.evaluate.segmentation import loader
-from sim.composition.segmenters import weights_file
-from sim.files import write_picture
-from sim.interface import GOAL_CATEGORIES, MPCAT40, ConfigError
-from sim.reading import read_bytes
+from sim.app import cli
+from sim.app.commands.evaluate.segmentation import loader
+from sim.app.composition.segmenters import weights_file
+from sim.core.files import write_picture
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40, ConfigError
+from sim.core.reading import read_bytes
+from sim.training.segmentation.dataset import GOAL_IDS, LabelledView, list_shards, read_shard, stored_block_px, tile
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network
-from stubborn.segmentation.dataset import GOAL_IDS, LabelledView, list_shards, read_shard, stored_block_px, tile
 from stubborn.segmentation.preprocess import padding, shrink
 
 CROP_PX, COLUMNS, ON_SHEET = 250, 6, 24

@@ -4,7 +4,7 @@
     python -m tools.training.render_demonstrations runs/shown/oracle runs/shown/poni --out runs/demonstrations
 
 Each episode of the runs that were recorded with --record becomes a file `<out>/<run>/<episode>.npz`
-(`sim.datasets.demonstrations`); no episode is run again. The same command continues a killed run. Train with
+(`sim.training.cloned.demonstrations`); no episode is run again. The same command continues a killed run. Train with
 `stubborn train cloned`.
 """
 
@@ -20,16 +20,16 @@ from pathlib import Path
 
 import tyro
 
-from sim import cli
-from sim.analysis.comparison import Run, read_run
-from sim.analysis.report.drawings import split_of
-from sim.datasets.demonstrations import demonstrate, read_demonstration, write_demonstration
-from sim.evaluation.parallel import ordered_map
-from sim.files import inside
-from sim.geometry.pose import Pose
-from sim.interface import CameraModel, ConfigError
-from sim.sensors.camera import Camera
+from sim.app import cli
+from sim.app.analysis.comparison import Run, read_run
+from sim.app.analysis.report.drawings import split_of
+from sim.app.evaluation.parallel import ordered_map
+from sim.core.files import inside
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CameraModel, ConfigError
+from sim.renderer.camera import Camera
 from sim.task.trajectory import read_trajectory, trajectory_file
+from sim.training.cloned.demonstrations import demonstrate, read_demonstration, write_demonstration
 from sim.world.world import World
 
 PRINT_EVERY_S = 10.0

@@ -3,11 +3,10 @@
     python -m tools.training.twin_demonstrations --houses 200 --episodes 20 --out runs/demonstrations/searches
 
 A house is generated from its seed and exported as a plan (docs/explorers.md). A demonstrator that knows the free space,
-but not where the goal is, explores the plan until the goal is in view and drives to it (`sim.twin.walks.search`);
-the small
-images are rendered at its poses. Searches that do not find the goal are left out. A file
-`<out>/<house>_<number>.npz` is one episode (`sim.datasets.demonstrations`); the same command continues a killed run.
-Train with `stubborn train cloned`.
+but not where the goal is, explores the plan until the goal is in view and drives to it
+(`sim.training.plan_env.walks.search`); the small images are rendered at its poses. Searches that do not find the goal
+are left out. A file `<out>/<house>_<number>.npz` is one episode (`sim.training.cloned.demonstrations`); the same
+command continues a killed run. Train with `stubborn train cloned`.
 """
 
 from __future__ import annotations
@@ -22,22 +21,22 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from sim import cli
-from sim.commands.houses.plans import house_of, name_of
-from sim.datasets.demonstrations import demonstrate, write_demonstration
-from sim.errors import EpisodeError, HouseError
-from sim.evaluation.parallel import ordered_map
-from sim.files import inside, write_atomically
-from sim.housegen.floor_plan.rooms import PlanKind
-from sim.housegen.furniture.item import Pool
-from sim.housegen.generator import GENERATOR_VERSION, HouseConfig
-from sim.interface import Action, CameraModel, ConfigError
-from sim.plans.episode import draw_goal_and_start
-from sim.plans.export import export_plans
-from sim.plans.sight import PlanCamera
-from sim.reading import Count, read_json
-from sim.sensors.camera import Camera
-from sim.twin.walks import search
+from sim.app import cli
+from sim.app.commands.houses.plans import house_of, name_of
+from sim.app.evaluation.parallel import ordered_map
+from sim.core.errors import EpisodeError, HouseError
+from sim.core.files import inside, write_atomically
+from sim.core.interface import Action, CameraModel, ConfigError
+from sim.core.reading import Count, read_json
+from sim.homes.housegen.floor_plan.rooms import PlanKind
+from sim.homes.housegen.furniture.item import Pool
+from sim.homes.housegen.generator import GENERATOR_VERSION, HouseConfig
+from sim.homes.plans.episode import draw_goal_and_start
+from sim.homes.plans.export import export_plans
+from sim.homes.plans.sight import PlanCamera
+from sim.renderer.camera import Camera
+from sim.training.cloned.demonstrations import demonstrate, write_demonstration
+from sim.training.plan_env.walks import search
 from sim.world.world import World
 
 PRINT_EVERY_S = 10.0

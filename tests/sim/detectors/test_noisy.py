@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim import run
-from sim.composition.options import RunOptions
+from sim.app.commands import run
+from sim.app.composition.options import RunOptions
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, Action, ConfigError
 from sim.detectors.confusions import CONFUSIONS
 from sim.detectors.noisy import Classification, LabelledObjects, NoisyConfig, NoisySegmenter
 from sim.env.objectnav import ObjectNavEnv
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, Action, ConfigError
 from tests.helpers.worlds import room, with_box
 
 COUNT = 6000

@@ -10,11 +10,12 @@ from pathlib import Path
 
 import pytest
 
+from sim.core.geometry.pose import Pose
 from sim.env.objectnav import ObjectNavEnv
-from sim.episodes.splits import Episode, write_split
-from sim.geometry.pose import Pose
-from sim.sensors.camera import Camera
-from sim.sensors.opengl import describe_gl
+from sim.episodes.episode import Episode
+from sim.episodes.splits import write_split
+from sim.renderer.camera import Camera
+from sim.renderer.opengl import describe_gl
 from sim.world.world import World
 from tests.helpers.worlds import room, with_box
 
@@ -67,7 +68,7 @@ def test_a_camera_without_colour_images_has_no_buffer_for_colour_or_shadows() ->
 MAPS = """
 import numpy as np
 
-from sim.geometry.grid import GridFrame
+from sim.core.geometry.grid import GridFrame
 from stubborn.mapping.navmap import NavMap
 from tests.sim.env.test_memory import resident_mb
 
@@ -117,10 +118,10 @@ def test_freed_layers_are_returned_though_small_blocks_between_them_live_on() ->
 SHREDS = """
 import numpy as np
 
-from sim.composition.options import RunOptions
-from sim.composition.environments import episodes_of
-from sim.composition.runner import EpisodeRunner
-from sim.composition.setup import resolve
+from sim.app.composition.options import RunOptions
+from sim.app.composition.environments import episodes_of
+from sim.app.composition.runner import EpisodeRunner
+from sim.app.composition.setup import resolve
 from tests.sim.env.test_memory import resident_mb
 
 options = RunOptions(agent="oracle", semantics="gt", only=("val_0000", "val_0030"))
@@ -146,8 +147,8 @@ def test_memory_freed_in_pieces_is_returned_before_the_next_episode() -> None:
 
 @pytest.mark.parametrize("options", ["semantics='gt'", "semantics='noisy'", "agent='random'", "agent='oracle'"])
 def test_a_worker_imports_no_library_that_it_does_not_need(options: str) -> None:
-    imports = "from sim.composition.options import RunOptions; from sim.composition.runner import EpisodeRunner"
-    imports += "; from sim.composition.setup import resolve"
+    imports = "from sim.app.composition.options import RunOptions; from sim.app.composition.runner import EpisodeRunner"
+    imports += "; from sim.app.composition.setup import resolve"
     runner = f"{imports}; runner = EpisodeRunner(resolve(RunOptions({options}))); runner.close()"
     heavy = ("torch", "sklearn", "ray", "rerun", "webdataset")
     code = f"{runner}; import sys; print(*[name for name in {heavy} if name in sys.modules])"

@@ -13,12 +13,13 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+from sim.core.errors import EpisodeError, HouseError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, CameraModel, ConfigError, RobotModel, SuccessRule
 from sim.env.objectnav import ObjectNavEnv
-from sim.episodes.splits import Episode, Split
-from sim.errors import EpisodeError, HouseError
-from sim.geometry.pose import Pose
-from sim.interface import Action, CameraModel, ConfigError, RobotModel, SuccessRule
-from sim.sensors.profiles import get_profile
+from sim.episodes.episode import Episode
+from sim.episodes.splits import Split
+from sim.renderer.profiles import get_profile
 from sim.task.config import TaskConfig
 from tests.helpers.worlds import room, with_box
 

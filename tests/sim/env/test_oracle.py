@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import pytest
 
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action
 from sim.env.oracle import Oracle
-from sim.geometry.pose import Pose
-from sim.interface import Action
 from sim.task.objectnav import Task
 from sim.world.world import World
 from tests.helpers.worlds import room, with_box, with_movable

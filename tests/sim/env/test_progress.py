@@ -9,9 +9,9 @@ import gymnasium
 import numpy as np
 import pytest
 
-from sim.geometry.pose import Pose
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, CameraModel, ConfigError
 from sim.gym import ENV_ID, ProgressReward
-from sim.interface import Action, CameraModel, ConfigError
 from tests.helpers.worlds import sofa_room
 
 SMALL = CameraModel(width_px=64, height_px=48)

@@ -14,12 +14,12 @@ from gymnasium.utils.env_checker import check_env
 
 import sim.gym
 import stubborn
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, CameraModel, ConfigError
 from sim.env.discrete import DiscreteActions, stopping_velocity
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.velocity import ObjectNavVelocityEnv
-from sim.geometry.pose import Pose
 from sim.houses.house import House
-from sim.interface import Action, CameraModel, ConfigError
 from sim.robot.config import DriveConfig, RobotConfig
 from sim.robot.velocity import Velocity
 from sim.task.metrics import TRAPPED_WINDOW_STEPS, stayed_near

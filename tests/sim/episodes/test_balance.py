@@ -8,9 +8,9 @@ import math
 
 import pytest
 
+from sim.core.interface import FORWARD_M, GOAL_CATEGORIES, MAX_STEPS
 from sim.episodes.recipes import EPISODE_RECIPES
 from sim.episodes.splits import Split, load_split
-from sim.interface import FORWARD_M, GOAL_CATEGORIES, MAX_STEPS
 
 SPLITS = {
     "val": (30, 1020), "test": (30, 1020), "large": (20, 600), "hazards": (15, 450), "train": (200, 2000),

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sim.core.errors import EpisodeError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action
 from sim.episodes.drawing import draw_start, sample_episode
-from sim.errors import EpisodeError
-from sim.geometry.pose import Pose
-from sim.interface import Action
 from sim.task.objectnav import Task
 from sim.world.world import World
 from tests.helpers.worlds import room, two_storeys, with_box

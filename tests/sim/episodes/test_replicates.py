@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from sim.core.geometry.pose import Pose
+from sim.episodes.episode import Episode
 from sim.episodes.replicates import MOVED_M, find_episode, replicate_number, with_replicates
-from sim.episodes.splits import Episode
-from sim.geometry.pose import Pose
 
 EPISODES = [Episode(f"val_{number:04d}", "val_00", "bed", Pose(1.0, 2.0, 0.5, 3.0), 4.0) for number in range(3)]
 

@@ -12,11 +12,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sim.core.errors import EpisodeError, HouseError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import ConfigError, wrap_angle
 from sim.episodes import habitat
-from sim.episodes.splits import Episode, house_files, house_sum, load_split, one_house, shipped_splits, write_split
-from sim.errors import EpisodeError, HouseError
-from sim.geometry.pose import Pose
-from sim.interface import ConfigError, wrap_angle
+from sim.episodes.episode import Episode
+from sim.episodes.splits import house_files, house_sum, load_split, one_house, shipped_splits, write_split
 from tests.helpers.worlds import room, with_box
 
 metres = st.floats(-50.0, 50.0)

@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim import run
+from sim.app.commands import run
+from sim.core.errors import HouseError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MPCAT40_ID, Action
 from sim.env.objectnav import ObjectNavEnv
-from sim.errors import HouseError
-from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.labels import ROBOT_PREFIX
 from sim.houses.load import load_house
-from sim.interface import MPCAT40_ID, Action
 from sim.task.ground_truth import GroundTruth
 from sim.world.freespace import FreeSpace
 from sim.world.world import World

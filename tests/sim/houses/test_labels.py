@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from sim.errors import HouseError
+from sim.core.errors import HouseError
+from sim.core.interface import MPCAT40, MPCAT40_ID
 from sim.gl import mujoco
 from sim.houses.labels import geoms_of, parse_label, read_labels, rendered_geoms
-from sim.interface import MPCAT40, MPCAT40_ID
 
 
 def compiled(worldbody: str, assets: str = ""):

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CameraModel
 from sim.env.scene import Scene
-from sim.geometry.pose import Pose
 from sim.houses.load import load_house
-from sim.interface import CameraModel
 from sim.robot.config import RobotConfig
 
 BARE = """<mujoco>{head}<worldbody>{lamp}

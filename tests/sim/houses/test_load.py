@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.errors import HouseError
+from sim.core.errors import HouseError
 from sim.gl import mujoco
 from sim.houses.house import Room, read_rooms
 from sim.houses.load import load_house

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.errors import HouseError
+from sim.core.errors import HouseError
 from sim.houses.load import load_house
 from sim.houses.mjcf import read_spec
 from sim.task.ground_truth import GroundTruth

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.commands.label import Args, _read
+from sim.app.commands.label import Args, _read
+from sim.core.interface import MPCAT40_ID
 from sim.houses.labels import read_labels
 from sim.houses.proposals import category_by_size, category_of_name, propose, rules_of, size_doubt
-from sim.interface import MPCAT40_ID
 from tests.helpers.foreign import write_scene
 
 NAMES = {

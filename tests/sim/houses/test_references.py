@@ -10,8 +10,8 @@ import cv2
 import numpy as np
 import pytest
 
-from sim import run
-from sim.errors import ConfigError, HouseError
+from sim.app.commands import run
+from sim.core.errors import ConfigError, HouseError
 from sim.houses.load import load_house
 from sim.houses.references import files_of
 from sim.robot.foreign import load_robot

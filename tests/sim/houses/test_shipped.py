@@ -15,20 +15,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CameraModel
+from sim.core.paths import assets_dir
 from sim.env.scene import Scene
 from sim.episodes import habitat
 from sim.episodes.drawing import sample_episode
+from sim.episodes.episode import Episode
 from sim.episodes.reachable_goals import find_reachable_goals
 from sim.episodes.recipes import DEFAULT_RECIPE, EPISODE_RECIPES, EpisodeRecipe
-from sim.episodes.splits import Episode, Split, load_split, one_house, shipped_splits
-from sim.geometry.pose import Pose
+from sim.episodes.splits import Split, load_split, one_house, shipped_splits
 from sim.gl import mujoco
-from sim.housegen.furniture.item import Pool
-from sim.housegen.generator import HouseConfig, generate_house
+from sim.homes.housegen.furniture.item import Pool
+from sim.homes.housegen.generator import HouseConfig, generate_house
 from sim.houses.labels import collidable_geoms, geoms_of, rendered_geoms
 from sim.houses.writing import house_text
-from sim.interface import CameraModel
-from sim.paths import assets_dir
 from sim.robot.config import RobotConfig
 from sim.world.check import check_house
 from tests.helpers.sampling import sample

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 from sim.robot.config import BodyConfig, DriveConfig, PhysicsConfig, RobotConfig, RobotFile, WheelConfig
 
 

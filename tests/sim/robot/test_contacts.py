@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from sim.geometry.pose import Pose
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action
 from sim.gl import mujoco
-from sim.interface import Action
 from sim.robot.config import Base, RobotConfig
 from sim.robot.drive import Motion
 from sim.world.world import World

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.geometry.pose import Pose
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CLIMB_M, FORWARD_M, TURN_RAD, Action, wrap_angle
 from sim.houses.house import House
-from sim.interface import CLIMB_M, FORWARD_M, TURN_RAD, Action, wrap_angle
 from sim.robot.config import Base, RobotConfig
 from sim.robot.drive import Motion
 from sim.robot.profile import Trapezoid

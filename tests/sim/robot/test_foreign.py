@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim import run
+from sim.app.commands import run
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, ConfigError
 from sim.env.objectnav import ObjectNavEnv
-from sim.geometry.pose import Pose
-from sim.interface import Action, ConfigError
 from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot, robot_sha256
 from sim.task.ground_truth import GroundTruth

@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from sim import run
-from sim.geometry.pose import Pose
+from sim.app.commands import run
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, ConfigError
 from sim.houses.labels import opacity
-from sim.interface import Action, ConfigError
 from sim.robot.foreign import absolute_robot, load_robot, robot_sha256
 from sim.robot.menagerie import ENTRIES, NOT_DIFFERENTIAL, SIDECARS
 from sim.world.world import World

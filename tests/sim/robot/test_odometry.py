@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, TURN_RAD, Action
+from sim.core.geometry.pose import Pose
+from sim.core.interface import FORWARD_M, TURN_RAD, Action
 from sim.robot.blocking import Blocking
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import DriveConfig, RobotConfig

@@ -9,7 +9,7 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sim.geometry.pose import Pose
+from sim.core.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.load import load_house
 from sim.robot.foreign import load_robot

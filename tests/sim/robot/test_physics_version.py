@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from sim.geometry.pose import Pose
-from sim.interface import Action
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action
 from sim.robot.conditions import Conditions
 from sim.robot.config import PHYSICS_VERSION
 from sim.world.world import World

@@ -8,8 +8,8 @@ import mujoco
 import numpy as np
 import pytest
 
+from sim.core.interface import ConfigError
 from sim.houses.mjcf import orient_by_quaternions
-from sim.interface import ConfigError
 from sim.robot.posing import pose_joints
 
 ARM = """

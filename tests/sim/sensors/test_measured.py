@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sim.core.geometry.pose import Pose
+from sim.core.interface import FORWARD_M, Action, CameraModel, ConfigError, reads_truth
 from sim.env.objectnav import ObjectNavEnv
-from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, Action, CameraModel, ConfigError, reads_truth
 from sim.robot.conditions import Conditions
 from sim.robot.velocity import Velocity
 from sim.sensors.actuation_noise import ActuationNoise

@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
+from sim.core.geometry.pose import Pose
+from sim.core.interface import FORWARD_M, SENSORS, Action, CameraModel, ConfigError, wrap_angle
 from sim.env.objectnav import ObjectNavEnv
-from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.labels import read_labels
-from sim.interface import FORWARD_M, SENSORS, Action, CameraModel, ConfigError, wrap_angle
+from sim.renderer.gloss import geom_gloss
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.sensors.actuation_noise import ActuationNoise
 from sim.sensors.depth_noise import DepthNoise, NoisyDepth
-from sim.sensors.gloss import geom_gloss
 from sim.sensors.noise import NOISE_PRESETS, NoiseConfig, SensorNoise, get_noise, noise_from_dict
 from sim.sensors.pose_noise import NoisyPose, PoseNoise
 from sim.sensors.random_fields import smooth_normal

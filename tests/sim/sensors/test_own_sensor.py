@@ -13,9 +13,9 @@ from gymnasium import spaces
 from gymnasium.utils.env_checker import check_env
 from numpy.typing import NDArray
 
+from sim.core.geometry.pose import Pose
+from sim.core.interface import POSE_SENSORS, ROBOT_SENSORS, SENSORS, Action, CameraModel, ConfigError, reads_truth
 from sim.env.objectnav import ObjectNavEnv
-from sim.geometry.pose import Pose
-from sim.interface import POSE_SENSORS, ROBOT_SENSORS, SENSORS, Action, CameraModel, ConfigError, reads_truth
 from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.sensor import NoiseSettings, SensorContext
 from sim.sensors.standard import STANDARD_SENSORS, DepthSensor, resolve_sensors

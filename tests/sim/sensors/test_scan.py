@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 import sim.gym  # registers the environment
-from sim.composition.options import RunOptions
-from sim.composition.setup import resolve
+from sim.app.commands.run import entry
+from sim.app.composition.options import RunOptions
+from sim.app.composition.setup import resolve
+from sim.core.geometry.pose import Pose
+from sim.core.interface import AgentSpec, CameraModel, ConfigError, reads_truth
 from sim.env.objectnav import ObjectNavEnv
-from sim.geometry.pose import Pose
 from sim.houses.house import House
-from sim.interface import AgentSpec, CameraModel, ConfigError, reads_truth
-from sim.run import entry
 from sim.sensors.scan import ScanConfig, ScanSensor
 from sim.sensors.scan_noise import NoisyScan, ScanNoise
 from tests.helpers.agents import make_spy

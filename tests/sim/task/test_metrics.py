@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.interface import MPCAT40_ID
+from sim.core.interface import MPCAT40_ID
 from sim.task.metrics import (
     EXPLORED_SHARE,
     TRAPPED_WINDOW_STEPS,

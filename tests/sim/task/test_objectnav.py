@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
+from sim.core.errors import EpisodeError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MPCAT40_ID, Action, ConfigError
 from sim.episodes.drawing import draw_start
-from sim.errors import EpisodeError
-from sim.geometry.pose import Pose
 from sim.gl import mujoco
-from sim.interface import MPCAT40_ID, Action, ConfigError
 from sim.task.config import TaskConfig
 from sim.task.ground_truth import GroundTruth
 from sim.task.objectnav import Task

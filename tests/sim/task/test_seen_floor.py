@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MPCAT40_ID, Action, CameraModel
 from sim.env.objectnav import ObjectNavEnv
-from sim.episodes.splits import Episode
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
+from sim.episodes.episode import Episode
 from sim.houses.house import House
-from sim.interface import MPCAT40_ID, Action, CameraModel
 from sim.task.seen_floor import SeenFloor
 from tests.helpers.worlds import room, two_storeys, with_box
 

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim.geometry.convex import lines_blocked
+from sim.core.geometry.convex import lines_blocked
+from sim.core.interface import CameraModel, SuccessRule
 from sim.gl import mujoco
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
-from sim.interface import CameraModel, SuccessRule
 from sim.task.ground_truth import GroundTruth
 from sim.task.success import GoalRegion, Surroundings, sight_blockers
 from sim.world.freespace import FreeSpace

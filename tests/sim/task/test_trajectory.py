@@ -11,8 +11,8 @@ from typing import IO
 import numpy as np
 import pytest
 
-from sim.geometry.pose import Pose
-from sim.interface import Action, ConfigError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, ConfigError
 from sim.robot.contacts import Contact
 from sim.robot.drive import Motion
 from sim.task.trajectory import Recorder, Trajectory, read_trajectory, trajectory_file, write_trajectory

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from sim.core.interface import RobotModel, SuccessRule
 from sim.houses.house import House
-from sim.interface import RobotModel, SuccessRule
 from sim.world.check import check_house
 from tests.helpers.worlds import room, with_box
 

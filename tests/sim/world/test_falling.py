@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from sim.errors import PhysicsError
-from sim.geometry.pose import Pose
+from sim.core.errors import PhysicsError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action
 from sim.gl import mujoco
 from sim.houses.house import House
-from sim.interface import Action
 from sim.robot.config import RobotConfig
 from sim.task.objectnav import Task
 from sim.world.world import World

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CLIMB_M, RobotModel, SuccessRule
 from sim.gl import mujoco
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
-from sim.interface import CLIMB_M, RobotModel, SuccessRule
 from sim.world.freespace import FreeSpace
 from sim.world.world import World
 from tests.helpers.worlds import open_floor, room, with_box, with_movable, with_post

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, Action
+from sim.core.geometry.pose import Pose
+from sim.core.interface import FORWARD_M, Action
 from sim.world.freespace import FreeSpace
 from sim.world.pose_search import PoseRoute, PoseSearch
 from tests.helpers.worlds import room

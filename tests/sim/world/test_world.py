@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.errors import EpisodeError, HouseError, PhysicsError
-from sim.geometry.pose import Pose
+from sim.core.errors import EpisodeError, HouseError, PhysicsError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MPCAT40_ID, Action, SuccessRule
 from sim.gl import mujoco
 from sim.houses.house import House
-from sim.interface import MPCAT40_ID, Action, SuccessRule
 from sim.robot.config import PhysicsConfig, RobotConfig
 from sim.world.world import World
 from tests.helpers.worlds import cluttered_room, open_floor, room, with_box, with_movable, with_post

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 import torch
 
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, Action, CameraModel, ConfigError, RobotModel
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, Action, CameraModel, ConfigError, RobotModel
+from sim.training.cloned.samples import LabelledSteps, Streams
 from stubborn.agents import make
 from stubborn.baselines.cloned import SHIPPED, ClonedAgent, ClonedConfig
-from stubborn.baselines.cloned_data import LabelledSteps, Streams
 from stubborn.baselines.cloned_input import (
     MOTION,
     NO_ACTION,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.interface import SuccessRule
+from sim.core.interface import SuccessRule
 from stubborn.detection.classifiers import Features
 from stubborn.detection.distances import StopDistances, TargetConfig
 from stubborn.detection.seeker import TargetSeeker

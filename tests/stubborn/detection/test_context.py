@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, ConfigError
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, ConfigError
+from sim.training.fits.context import fit, log_losses, surroundings
 from stubborn.detection.context import OBJECTS, SHIPPED, Context, content_of, read_context
-from stubborn.detection.context_fit import fit, log_losses, surroundings
 from tests.stubborn.detection.test_tracks import PICTURE, TABLE, VIEWS, look, of, tracked
 
 SINK, TOWEL, BED, PICTURE_ID = (OBJECTS.index(name) for name in ("sink", "towel", "bed", "picture"))

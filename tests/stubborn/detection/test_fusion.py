@@ -9,19 +9,10 @@ import numpy as np
 import pytest
 import torch
 
-from sim.interface import MPCAT40, ConfigError, SegmenterSpec
+from sim.core.interface import MPCAT40, ConfigError, SegmenterSpec
+from sim.training.fits.fusion import Sample, _Data, fit, judge, left_out, probabilities, samples_of, true_category
 from stubborn.detection.evidence import EvidenceConfig
 from stubborn.detection.fusion import FOLDER, IS_SURFACE, SURFACES, Fusion, fusion_for, read_fusion
-from stubborn.detection.fusion_fit import (
-    Sample,
-    _Data,
-    fit,
-    judge,
-    left_out,
-    probabilities,
-    samples_of,
-    true_category,
-)
 
 CHAIR, TABLE, WALL = (MPCAT40.index(name) - 1 for name in ("chair", "table", "wall"))
 CLASSES = len(MPCAT40) - 1

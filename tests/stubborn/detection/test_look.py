@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from sim.geometry.pose import Pose
-from sim.interface import MAX_STEPS, MPCAT40, ConfigError, SegmenterSpec, SuccessRule
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MAX_STEPS, MPCAT40, ConfigError, SegmenterSpec, SuccessRule
 from stubborn.detection.distances import StopDistances, TargetConfig
 from stubborn.detection.evidence import Evidence, EvidenceConfig
 from stubborn.detection.fusion import Fusion

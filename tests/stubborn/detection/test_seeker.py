@@ -3,9 +3,9 @@ import math
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame, Window
-from sim.geometry.pose import Pose
-from sim.interface import ConfigError, SegmenterSpec, SuccessRule
+from sim.core.geometry.grid import GridFrame, Window
+from sim.core.geometry.pose import Pose
+from sim.core.interface import ConfigError, SegmenterSpec, SuccessRule
 from stubborn.detection.approach import Approach
 from stubborn.detection.candidates import CandidateParts
 from stubborn.detection.classifiers import Features

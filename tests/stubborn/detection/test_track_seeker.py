@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.geometry.pose import Pose
-from sim.interface import (
+from sim.core.geometry.pose import Pose
+from sim.core.interface import (
     MAX_STEPS,
     MPCAT40_ID,
     Action,

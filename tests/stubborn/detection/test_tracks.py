@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import MPCAT40, MPCAT40_ID
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MPCAT40, MPCAT40_ID
 from stubborn.detection.evidence import Evidence, EvidenceConfig
 from stubborn.detection.fusion import SURFACES, Fusion
 from stubborn.detection.tracks import TrackConfig, Tracks

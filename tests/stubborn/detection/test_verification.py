@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from sklearn.naive_bayes import GaussianNB
 
-from sim.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
+from sim.core.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
+from sim.training.fits.verifier import fit, judge_by_category
 from stubborn.detection.classifiers import Features, NaiveBayes
 from stubborn.detection.verification import AcceptAll, FittedVerifier, verifier_for
-from stubborn.detection.verifier_fit import fit, judge_by_category
 
 IMPERFECT = SegmenterSpec()
 TRUE = SegmenterSpec(needs_verification=False)

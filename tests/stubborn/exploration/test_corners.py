@@ -4,8 +4,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sim.geometry.pose import Pose
-from sim.interface import Action, ConfigError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, ConfigError
 from stubborn.exploration.corners import CornerConfig, CornerExplorer, corner_xy_m
 from stubborn.exploration.explorer import Explorer
 from stubborn.mapping.navmap import CollisionLayer

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.interface import Action, CameraModel, RobotModel
+from sim.core.interface import Action, CameraModel, RobotModel
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.exploration.explorer import Exploration, Ground, run_explorer
 from stubborn.mapping.masks import distance_to

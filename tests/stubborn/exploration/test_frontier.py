@@ -3,9 +3,9 @@ import re
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame, Window
-from sim.geometry.pose import Pose
-from sim.interface import Action, ConfigError, RobotModel
+from sim.core.geometry.grid import GridFrame, Window
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action, ConfigError, RobotModel
 from stubborn import agents
 from stubborn.agent import StubbornAgent
 from stubborn.exploration.frontier import FrontierConfig, FrontierExplorer

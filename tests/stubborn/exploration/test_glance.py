@@ -4,9 +4,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import TURN_RAD, Action, CameraModel, ConfigError, wrap_angle
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import TURN_RAD, Action, CameraModel, ConfigError, wrap_angle
 from stubborn.exploration.glance import GlanceConfig, Glancer
 from stubborn.mapping.navmap import NavMap
 

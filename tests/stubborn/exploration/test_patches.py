@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, RobotModel
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, RobotModel
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.exploration.corners import CornerConfig, CornerExplorer
 from stubborn.exploration.explorer import Explorer

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 import torch
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES, ConfigError
 from stubborn.exploration.patches import LAYERS, patch_around
 from stubborn.exploration.poni import PoniConfig, PoniExplorer
 from stubborn.exploration.poni_net import FILES, MAPS, SHIPPED, PoniNet, PoniNetConfig, Predictor

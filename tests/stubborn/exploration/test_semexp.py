@@ -11,9 +11,9 @@ import pytest
 import torch
 from safetensors.torch import save_file
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES, ConfigError
 from stubborn.exploration.patches import patch_around
 from stubborn.exploration.semexp import SHIPPED, SemExpConfig, SemExpExplorer
 from stubborn.exploration.semexp_input import CELLS, GEOMETRY, GIBSON, PolicyInput, observe

@@ -8,9 +8,9 @@ import math
 import numpy as np
 import pytest
 
-from sim.geometry.grid import Window
-from sim.geometry.pose import Pose
-from sim.interface import ConfigError, RobotModel
+from sim.core.geometry.grid import Window
+from sim.core.geometry.pose import Pose
+from sim.core.interface import ConfigError, RobotModel
 from stubborn import agents
 from stubborn.agent import StubbornAgent
 from stubborn.exploration.frontiers import Frontiers

@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, Action
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import FORWARD_M, Action
 from sim.sensors.pose_noise import NoisyPose, PoseNoise
 from stubborn.mapping.collision_marks import (
     CollisionConfig,

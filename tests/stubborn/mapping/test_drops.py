@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import CameraModel, RobotModel
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CameraModel, RobotModel
 from stubborn.mapping.drops import DropConfig
 from stubborn.mapping.mapper import Mapper, MappingConfig
 from stubborn.mapping.navmap import NavMap

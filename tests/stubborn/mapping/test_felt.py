@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from sim.errors import ConfigError
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import RobotModel
+from sim.core.errors import ConfigError
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import RobotModel
 from stubborn import agents
 from stubborn.mapping.collision_marks import CollisionConfig, mark_collision, mark_visited
 from stubborn.mapping.felt import BOTH_LAYERS, FeelConfig, FeltSurfaces, contact_direction

@@ -3,9 +3,9 @@ import math
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import MPCAT40_ID, CameraModel, ConfigError, RobotModel, Scores
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MPCAT40_ID, CameraModel, ConfigError, RobotModel, Scores
 from stubborn.mapping.mapper import Mapper, MappingConfig, note_sighting
 from stubborn.mapping.navmap import NavMap
 from tests.helpers.gridworld import Box, GridWorld

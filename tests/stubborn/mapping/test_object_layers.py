@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import CameraModel, RobotModel, Scores
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CameraModel, RobotModel, Scores
 from stubborn.mapping.mapper import Mapper, MappingConfig
 from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.object_layers import LatestFrame

@@ -3,9 +3,9 @@ import math
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import CameraModel, ConfigError, RobotModel, Scores
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CameraModel, ConfigError, RobotModel, Scores
 from sim.sensors.depth_noise import NoisyDepth
 from sim.sensors.noise import get_noise
 from stubborn.mapping.mapper import Mapper, MappingConfig

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sim.geometry.fast_marching import travel_times
-from sim.geometry.grid import GridFrame
-from sim.geometry.pose import Pose
-from sim.interface import TURN_RAD, Action, ConfigError
+from sim.core.geometry.fast_marching import travel_times
+from sim.core.geometry.grid import GridFrame
+from sim.core.geometry.pose import Pose
+from sim.core.interface import TURN_RAD, Action, ConfigError
 from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import visited_ground
 from stubborn.planning.planner import Goal, Planner, PlanningConfig, Route

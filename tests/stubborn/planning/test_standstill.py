@@ -1,6 +1,6 @@
 import pytest
 
-from sim.errors import ConfigError
+from sim.core.errors import ConfigError
 from stubborn.planning.standstill import Standstill, StandstillConfig
 
 

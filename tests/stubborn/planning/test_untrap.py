@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from sim.interface import Action, ConfigError
+from sim.core.interface import Action, ConfigError
 from stubborn.planning.untrap import Untrap, UntrapConfig
 
 F, L, R = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_RIGHT

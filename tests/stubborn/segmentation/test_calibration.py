@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import torch
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 from stubborn.segmentation.calibration import Calibration, fit_calibration, fit_temperature
 from stubborn.segmentation.rednet import CLASSES
 

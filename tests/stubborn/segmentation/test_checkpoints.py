@@ -11,7 +11,7 @@ import pytest
 import safetensors.torch
 import torch
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 from stubborn.network_files import read_checkpoint, read_weights
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.interface import CameraModel, ConfigError
+from sim.core.interface import CameraModel, ConfigError
 from stubborn.segmentation import geometry
 from stubborn.segmentation.geometry import FORWARD, HEIGHT, INVERSE_DEPTH, RIGHT, UP, VALID, geometry_image
 from stubborn.segmentation.inputs import INPUTS

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import save_network
 from stubborn.segmentation.network import NetworkSegmenter

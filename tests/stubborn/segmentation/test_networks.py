@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import torch
 
-from sim.interface import CameraModel, ConfigError
+from sim.core.interface import CameraModel, ConfigError
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.inputs import INPUTS
 from stubborn.segmentation.network import NetworkSegmenter

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.composition import segmenters
+from sim.app.composition import segmenters
 from stubborn.segmentation import processor
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from sim.interface import ConfigError
+from sim.core.interface import ConfigError
 from stubborn.segmentation.rednet import COMPACT, PUBLISHED, RedNet, RedNetConfig, folded
 
 NAMES_AND_SHAPES = Path(__file__).with_name("rednet_state_dict.txt")

@@ -8,11 +8,11 @@ import sys
 import numpy as np
 import pytest
 
-from sim.datasets.views import sample_views
+from sim.core.interface import CameraModel
 from sim.env.scene import Scene
 from sim.episodes.splits import load_split
-from sim.interface import CameraModel
 from sim.robot.config import RobotConfig
+from sim.training.views.views import sample_views
 from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.network import NetworkSegmenter
 from stubborn.segmentation.networks import NETWORKS

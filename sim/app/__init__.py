@@ -1,0 +1,1 @@
+"""The application: composition of runs, evaluation, viewers, reports, submissions, bridges, and all commands."""

@@ -1,0 +1,176 @@
+"""Reads runs, checks that they have the same episodes, and lists the fields in which their configurations differ.
+
+Two agents that ran the same episodes differ less by chance than their separate intervals suggest: houses, goals and
+starts are the same. So differences are taken in each episode (`sim.app.evaluation.intervals.paired_difference`).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sim.app.analysis.tables import ResultTable
+from sim.app.evaluation.config_fields import ABSENT, Difference, differing_fields, field_text, is_same_file
+from sim.app.evaluation.results import WITHOUT_EFFECT, read_record, read_result_lines
+from sim.core.errors import ConfigError
+from sim.task.trajectory import read_trajectory, trajectory_file
+
+__all__ = [
+    "Line", "Run", "code_of", "config_differences", "differences_table", "differing_fields", "read_run",
+    "require_same_episodes",
+]  # fmt: skip
+
+Line = Mapping[str, Any]
+LETTERS = "ABCDEFGHIJKL"
+"""Names of the runs that are compared, the first one `A`."""
+SAME_PATH_M = 0.05
+"""Largest difference of the same shortest path measured by two versions of the code: one cell."""
+MOST_LACKING = 5
+"""A part of the configuration has a row for each field that not all runs have, up to this number of fields."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """The content of a run's folder."""
+
+    path: Path
+    config: Mapping[str, Any]
+    lines: Mapping[str, Line]
+    """Result lines by `episode_id`."""
+
+    def recorded(self, name: str) -> Any:
+        """Returns a field of config.json; raises ConfigError if a run of an older version does not have it."""
+        value = self.config.get(name)
+        if value is None:
+            raise ConfigError(f"'{self.path / 'config.json'}' has no field '{name}', which this command needs.")
+        return value
+
+
+def read_run(path: Path) -> Run:
+    """Returns the run in a folder.
+
+    Raises:
+        ConfigError: the folder has no run, or its files do not have the format of `stubborn run`.
+    """
+    config, results = path / "config.json", path / "results.jsonl"
+    for file in (config, results):
+        if not file.is_file():
+            raise ConfigError(f"'{path}' is not a run: it has no {file.name}.")
+    try:
+        record, lines = read_record(config), read_result_lines(results).values
+    except ConfigError as error:
+        raise ConfigError(f"'{path}' is not a run: {error}") from None
+    return Run(path, record, {line["episode_id"]: line for line in lines})
+
+
+def code_of(run: Run, episode_id: str) -> str:
+    """Returns the hash of the code that ran an episode (its trajectory's), or all hashes of the run ("a1 or b2")."""
+    file = trajectory_file(run.path, episode_id)
+    if file.is_file():
+        return str(read_trajectory(file).about.get("versions", {}).get("code", "unknown"))
+    return " or ".join(run.config.get("codes") or [str(run.config.get("versions", {}).get("code", "unknown"))])
+
+
+def config_differences(first: Run, second: Run) -> list[Difference]:
+    """Returns the fields of config.json in which two runs differ, without options that change no result."""
+    found = differing_fields(first.config, second.config)
+    return [
+        difference
+        for difference in found
+        if difference[0].partition(".")[0] not in WITHOUT_EFFECT
+        and not is_same_file(difference[0], first.config, second.config)
+    ]
+
+
+def differences_table(first: Run, *others: Run) -> ResultTable:
+    """Returns a table of the fields of config.json in which runs, A, B and so on, differ from the first one.
+
+    Two agents may have no field in common: many fields of one part that only some of the runs have are one row.
+    """
+    values: dict[str, list[str]] = {}
+    for number, other in enumerate(others, start=1):
+        for path, a, b in config_differences(first, other):
+            values.setdefault(path, [_short_text(a)] * (1 + len(others)))[number] = _short_text(b)
+    notes = () if values else ("The configurations are equal.",)
+    header = ("field", *LETTERS[: 1 + len(others)])
+    return ResultTable("fields", "Fields in which the runs differ", header, sorted(_counted(values).items()), notes)
+
+
+def _counted(values: Mapping[str, list[str]]) -> dict[str, list[str]]:
+    """Returns the rows of `differences_table` with the fields of each large part that not all runs have as one row."""
+    lacking: dict[str, list[str]] = {}
+    for path, texts in values.items():
+        if ABSENT.value in texts:
+            top, *inner = path.split(".")
+            lacking.setdefault(f"{top}.{inner[0]}" if top == "config" and inner else top, []).append(path)
+    rows = dict(values)
+    for part, paths in lacking.items():
+        if len(paths) > MOST_LACKING:
+            texts = [rows.pop(path) for path in paths]
+            had = [sum(text != ABSENT.value for text in of_run) for of_run in zip(*texts, strict=True)]
+            rows[f"{part}: fields of some runs only"] = [f"{count} fields" for count in had]
+    return rows
+
+
+def _short_text(value: Any) -> str:
+    """Returns a value as JSON; for an object that the other run does not have, only its number of fields."""
+    return f"{len(value)} fields" if isinstance(value, Mapping) else field_text(value)
+
+
+def require_same_episodes(first: Run, *others: Run) -> list[str]:
+    """Returns the ids of the episodes that all runs share, in the order of the first run.
+
+    Episodes sampled in one house (`stubborn run --house`) have the same ids for every seed. So house, goal and shortest
+    path must also be equal; the path to `SAME_PATH_M`, and only where neither episode ended with an error.
+
+    Raises:
+        ConfigError: a run is of another split than the first, shares no episode with it, or shares only ids of
+            episodes; or no episode is in all runs.
+    """
+    common = list(first.lines)
+    for other in others:
+        shared = set(_shared_episodes(first, other))
+        common = [episode_id for episode_id in common if episode_id in shared]
+    if not common:
+        raise ConfigError(f"No episode is in all of the {1 + len(others)} runs.")
+    return common
+
+
+def _shared_episodes(first: Run, second: Run) -> list[str]:
+    """Returns the episodes of two runs; see `require_same_episodes`."""
+    identities = [run.config.get("split_identity") or {} for run in (first, second)]
+    if identities[0] != identities[1]:
+        named = " and ".join(f"{i.get('name')} {i.get('version')} ({str(i.get('sha256'))[:8]})" for i in identities)
+        raise ConfigError(f"'{first.path}' and '{second.path}' were not run on the same episodes: {named}.")
+    common = [episode_id for episode_id in first.lines if episode_id in second.lines]
+    keys = ("house", "goal", "shortest_path") if _same_paths_expected(first, second) else ("house", "goal")
+    if not common:
+        raise ConfigError(f"'{first.path}' and '{second.path}' have no episode in common.")
+    for episode_id in common:
+        a, b = first.lines[episode_id], second.lines[episode_id]
+        for key in keys:
+            if not (_same_path(a, b) if key == "shortest_path" else a.get(key) == b.get(key)):
+                raise ConfigError(
+                    f"'{first.path}' and '{second.path}' were not run on the same episodes: '{episode_id}' has "
+                    f"{key} {json.dumps(a.get(key))} and {json.dumps(b.get(key))}."
+                )
+    return common
+
+
+def _same_paths_expected(first: Run, second: Run) -> bool:
+    """Returns False for runs with another success rule or robot, in which the same start has another shortest path."""
+    trees = [run.config.get("config", {}) for run in (first, second)]
+    drawn = [[run.config.get(key) for key in ("house", "seed", "start_deg")] for run in (first, second)]
+    same_starts = drawn[0][0] is None or drawn[0] == drawn[1]  # those of a split do not depend on the seed
+    differs = any(trees[0].get(part) != trees[1].get(part) for part in ("task", "robot", "camera"))
+    return not (same_starts and all(trees) and differs)  # a run without a tree is older than the choice of a rule
+
+
+def _same_path(first: Line, second: Line) -> bool:
+    if "error" in (first.get("end_reason"), second.get("end_reason")):  # the path may not have been measured
+        return True
+    a_m, b_m = first.get("shortest_path"), second.get("shortest_path")
+    return a_m == b_m if a_m is None or b_m is None else abs(a_m - b_m) <= SAME_PATH_M

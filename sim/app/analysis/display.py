@@ -1,0 +1,162 @@
+"""Prints the results of a run in the terminal; `sim.app.analysis.progress` reports its progress."""
+
+from __future__ import annotations
+
+import functools
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from sim.app.evaluation.results import SUMMARY_METRICS
+from sim.core import invocation
+from sim.core.errors import debug
+from sim.core.reading import printable
+
+Line = Mapping[str, Any]
+MOST_EPISODES_SHOWN = 20
+PLAIN_WIDTH = 120
+"""Columns of output that is not a terminal (a file, a pipe, a CI log)."""
+
+
+class PlainConsole(Console):
+    """A console for which text is text: brackets are not markup, and control characters are written as escapes."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(markup=False, emoji=False, **options)
+
+    def render_str(self, text: str, **options: Any) -> Text:
+        """Returns text for the terminal; every text that is printed and every cell of a table comes here."""
+        return super().render_str(printable(text), **options)
+
+
+def make_console() -> Console:
+    """Returns a console for the terminal, or for plain text that is wide enough for the tables."""
+    console = PlainConsole()
+    return console if console.is_terminal else PlainConsole(width=PLAIN_WIDTH)
+
+
+def print_where_to_look(
+    console: Console, out: Path, *, video: bool, failed: str | None = None, sharded: bool = False
+) -> None:
+    """Prints where the results of a run are, and the commands that show them.
+
+    Args:
+        console: prints.
+        out: folder of the run.
+        video: whether its episodes were filmed.
+        failed: ID of a failed episode of a split; None: there is none.
+        sharded: whether the run is a part of a larger one.
+    """
+    say = functools.partial(console.print, highlight=False, soft_wrap=True)
+    say(f"Results are in {out}: results.jsonl has a line for each episode, summary.json the table above.")
+    if video:
+        say(f"Videos are in {out}/videos.")
+    elif failed is not None:
+        whole = ", without --shard" if sharded else ""
+        say(f"Film a failure: the same command with --only {failed} --video --out ANOTHER_FOLDER{whole}.")
+    say(f"A page about this run: {invocation.command('report', out)}")
+    say(f"Watch an agent in the browser, or drive yourself: {invocation.command('web')}")
+
+
+def describe(line: Line) -> str:
+    """Returns one sentence about an episode."""
+    if line["success"]:
+        outcome = "found"
+    elif _is_error(line):
+        outcome = "ended with an error"
+    else:
+        outcome = f"not found ({line['end_reason']}, {line['failure']})"
+    goal, steps = line["goal"].replace("_", " "), counted(line["num_steps"], "step")
+    return f"{line['episode_id']}: {goal} {outcome} after {steps}, {line['wall_time_s']:.0f} s"
+
+
+def file_size(size_bytes: int) -> str:
+    """Returns the size of a file in the unit that fits it: "812 bytes", "43 kB", "1.2 MB"."""
+    if size_bytes < 1000:
+        return counted(size_bytes, "byte")
+    return f"{size_bytes / 1e3:.0f} kB" if size_bytes < 999_500 else f"{size_bytes / 1e6:.1f} MB"
+
+
+def counted(number: int, noun: str) -> str:
+    """Returns a number with its noun: "1 episode", "2 episodes"."""
+    return f"{number} {noun}" + "s" * (number != 1)
+
+
+def print_results(console: Console, lines: Sequence[Line], summary: Mapping[str, Any]) -> None:
+    """Prints the episodes if they are few, and the means with their intervals."""
+    if len(lines) <= MOST_EPISODES_SHOWN:
+        console.print(_episode_table(lines))
+    console.print(_summary_table(summary))
+    causes = Counter(_cause(line) for line in lines if _cause(line) is not None)
+    if causes:
+        console.print("Failed by " + ", ".join(f"{cause}: {count}" for cause, count in causes.most_common()))
+    for line in lines:
+        if line.get("error"):
+            console.print(f"error in {line['episode_id']}: {line['error']}", markup=False, soft_wrap=True)
+    if any(map(_is_error, lines)) and not debug():
+        console.print(
+            "--debug shows the traceback of an error; --retry-errors with the same --out runs these episodes again.",
+            highlight=False,
+            soft_wrap=True,
+        )
+
+
+def _is_error(line: Line) -> bool:
+    return line.get("end_reason") == "error"
+
+
+def _cause(line: Line) -> str | None:
+    """Returns the cause of a failure, `error` where the episode broke; None if none was recorded, as for a success.
+
+    `results.jsonl` has `misc` for an error, because the causes are those of the paper.
+    """
+    return "error" if _is_error(line) else line.get("failure")
+
+
+def _episode_table(lines: Sequence[Line]) -> Table:
+    table = Table(title="Episodes")
+    for name in ("episode", "goal"):
+        table.add_column(name)
+    table.add_column("success")
+    for name in ("SPL", "steps", "path m", "shortest m", "left m", "collisions", "steps/s"):
+        table.add_column(name, justify="right")
+    for line in sorted(lines, key=lambda line: line["episode_id"]):
+        table.add_row(
+            line["episode_id"],
+            line["goal"].replace("_", " "),
+            "yes" if line["success"] else f"no: {_cause(line)}",
+            _number(line["spl"]),
+            str(line["num_steps"]),
+            _number(line["path_length"]),
+            _number(line["shortest_path"]),
+            _number(line["distance_to_goal"]),
+            str(line["collisions"]),
+            _number(line["steps_per_s"], digits=1),
+        )
+    return table
+
+
+def _summary_table(summary: Mapping[str, Any]) -> Table:
+    caption = f"Intervals are over {summary['ci95_over']}."
+    if spread := summary.get("replicates"):
+        success, spl = (spread[metric]["std"] or 0.0 for metric in ("success", "spl"))
+        caption += f" Standard deviation over replicates: success {success:.3f}, SPL {spl:.3f}."
+    title = f"{counted(summary['episodes'], 'episode')} in {counted(summary['houses'], 'house')}"
+    table = Table(title=title, caption=caption)
+    table.add_column("metric")
+    table.add_column("mean", justify="right")
+    table.add_column("95 % interval", justify="right")
+    for metric in SUMMARY_METRICS:
+        low, high = summary[metric]["ci95"]
+        interval = "-" if low is None else f"[{_number(low, 3)}, {_number(high, 3)}]"
+        table.add_row(metric, _number(summary[metric]["mean"], 3), interval)
+    return table
+
+
+def _number(value: float | None, digits: int = 2) -> str:
+    return "-" if value is None else f"{value:.{digits}f}"

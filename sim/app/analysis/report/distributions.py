@@ -1,0 +1,159 @@
+"""Sorts episodes into bins: by shortest path and house size, SPL and time to first sight, confidence of stops."""
+
+from __future__ import annotations
+
+import bisect
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from sim.app.analysis.comparison import Line
+from sim.app.analysis.report.figures import Proportion, Runs, proportion_of
+
+NEVER = "never"
+SPL_LABELS = ("failed", *(f"{low / 10:g}-{(low + 1) / 10:g}" for low in range(10)))
+CONFIDENCE_BINS = 10
+
+
+@dataclass(frozen=True)
+class Bins:
+    """Half-open intervals of a number: edge i <= number < edge i + 1; the last one has no end."""
+
+    edges: tuple[float, ...]
+    unit: str
+    unknown: str
+    """Name of the bin of None."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the bins in order, `unknown` last."""
+        first, *inner, last = self.edges
+        middle = (f"{low:g} to {high:g} {self.unit}" for low, high in zip((first, *inner), (*inner, last), strict=True))
+        below, *others = middle
+        if first == 0.0:
+            below = f"under {self.edges[1]:g} {self.unit}"
+        return below, *others, f"{last:g} {self.unit} and more", self.unknown
+
+    def name(self, value: float | None) -> str:
+        """Returns the name of the bin of a number, which is at least the first edge."""
+        if value is None:
+            return self.unknown
+        return self.names[max(0, bisect.bisect_right(self.edges, value) - 1)]
+
+
+DISTANCES = Bins((0.0, 4.0, 8.0, 12.0, 16.0, 24.0, 40.0), "m", "no path")
+"""Bins of the shortest path."""
+HOUSE_SIZES = Bins((0.0, 60.0, 80.0, 100.0, 125.0, 150.0, 300.0, 500.0), "m²", "size unknown")
+"""Bins of the floor area of all rooms of a house."""
+FIRST_SIGHTS = Bins((0.0, 1.0, 10.0, 25.0, 50.0, 100.0, 200.0), "steps", NEVER)
+FIRST_SIGHT_LABELS = ("0", "1-9", "10-24", "25-49", "50-99", "100-199", "200 on", NEVER)
+"""Labels of the bins of `FIRST_SIGHTS`, which are whole numbers."""
+
+
+@dataclass(frozen=True)
+class Histogram:
+    """Shares of bins in the episodes of each run that have the number."""
+
+    labels: Sequence[str]
+    shares: Sequence[Sequence[Proportion]]
+    """Shares of each run, one for each label."""
+
+    @property
+    def top_percent(self) -> int:
+        """Returns the upper end of the axis of all pictures, a multiple of 20 above the intervals of all bars."""
+        highest = max((100.0 * s.interval[1] for shares in self.shares for s in shares if s.count), default=100.0)
+        return min(100, 20 * math.ceil(highest / 20.0))
+
+
+def spl_histogram(runs: Runs) -> Histogram:
+    """Returns the distribution of SPL: failures in a bin of their own, then tenths."""
+    return _histogram(runs, SPL_LABELS, _spl_bin)
+
+
+def first_sight_histogram(runs: Runs) -> Histogram:
+    """Returns the distribution of the steps to first sight, with episodes that never showed the goal as the last bin.
+
+    Lines of older versions, and of episodes that could not begin, do not count.
+    """
+    return _histogram(runs, FIRST_SIGHT_LABELS, _sight_bin)
+
+
+def _histogram(runs: Runs, labels: Sequence[str], bin_of: Callable[[Line], int | None]) -> Histogram:
+    shares = []
+    for lines in runs:
+        counted = [line for line in lines if bin_of(line) is not None]
+        bins = [bin_of(line) for line in counted]
+        shares.append([proportion_of([each == i for each in bins], counted) for i in range(len(labels))])
+    return Histogram(labels, shares)
+
+
+def _spl_bin(line: Line) -> int | None:
+    spl = line.get("spl")
+    if spl is None:
+        return None
+    return 1 + min(9, int(10.0 * spl)) if line["success"] and spl > 0.0 else 0
+
+
+def _sight_bin(line: Line) -> int | None:
+    if line.get("gt_explored") is None:
+        return None
+    step = line.get("first_seen_step")
+    if step is None:
+        return None if line["gt_explored"] else len(FIRST_SIGHT_LABELS) - 1
+    return FIRST_SIGHTS.names.index(FIRST_SIGHTS.name(float(step)))
+
+
+@dataclass(frozen=True)
+class StopBin:
+    """Stops with a confidence in one interval."""
+
+    low: float
+    high: float
+    confidence: float
+    """Mean of these stops."""
+    correct: Proportion
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """The agent's confidence at its stops against how many of them are correct."""
+
+    bins: Sequence[StopBin]
+    stops: int
+    """Episodes that ended with STOP."""
+    correct: Proportion
+    """Share of correct ones among the stops with a confidence."""
+    confidence: float
+    """Mean of the stops with a confidence; 0 without any."""
+
+    @property
+    def error(self) -> float:
+        """Expected calibration error: mean distance of confidence and share over the bins, weighted by their stops."""
+        distances = (abs(b.confidence - b.correct.mean) * b.correct.of for b in self.bins)
+        return sum(distances) / self.correct.of if self.correct.of else 0.0
+
+
+def calibration(lines: Sequence[Line]) -> Calibration:
+    """Returns the calibration of a run's stops; a stop is correct if the episode is a success."""
+    stops = [line for line in lines if line["end_reason"] == "stop"]
+    rated = [line for line in stops if _is_rated(line)]
+    bins = []
+    for i in range(CONFIDENCE_BINS):
+        some = [line for line in rated if min(CONFIDENCE_BINS - 1, int(line["stop_confidence"] * CONFIDENCE_BINS)) == i]
+        if some:
+            low, high = i / CONFIDENCE_BINS, (i + 1) / CONFIDENCE_BINS
+            bins.append(StopBin(low, high, _mean_confidence(some), _correct(some)))
+    return Calibration(bins, len(stops), _correct(rated), _mean_confidence(rated))
+
+
+def _is_rated(line: Line) -> bool:
+    confidence = line.get("stop_confidence")
+    return confidence is not None and 0.0 <= confidence <= 1.0
+
+
+def _mean_confidence(rated: Sequence[Line]) -> float:
+    return sum(float(line["stop_confidence"]) for line in rated) / len(rated) if rated else 0.0
+
+
+def _correct(rated: Sequence[Line]) -> Proportion:
+    return proportion_of([bool(line["success"]) for line in rated], rated)

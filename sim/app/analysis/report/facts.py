@@ -1,0 +1,135 @@
+"""Facts about a run at the top of a page: options, versions, the command, and what its folder lacks."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sim.app.analysis.comparison import Run
+from sim.app.analysis.report.drawings import Trajectories
+from sim.app.analysis.report.media import picture_of, video_of
+from sim.app.evaluation.parallel import Shard
+
+NO_DEFAULT = (
+    "agent", "explorer", "semantics", "weights", "verifier", "split", "house", "labels", "root", "robot", "goal",
+    "start_deg", "episodes", "shard", "seed_key",
+)  # fmt: skip
+"""Options of `stubborn run` that the command of a run names if they have a value."""
+DEFAULTS: Mapping[str, Any] = {
+    "verification": "naive-bayes", "seed": 0, "profile": "fast", "noise": "none", "workers": 1, "replicates": 1,
+}  # fmt: skip
+"""Options of `stubborn run` that the command of a run names if their value differs from this one."""
+FILES = ("record", "video", "mcap", "rerun_save")
+"""Options that write files of each episode."""
+
+
+@dataclass(frozen=True)
+class RunFacts:
+    """Facts about a run at the top of the page."""
+
+    label: str
+    """`A`, `B` and so on; "" for a single run."""
+    name: str
+    facts: Sequence[tuple[str, Any]]
+    command: str
+    notes: Sequence[str]
+    hint: str
+    """A sentence about what the run lacks, and how to get it; "" if it lacks nothing."""
+
+
+def facts_of(run: Run, label: str, trajectories: Trajectories, index: int) -> RunFacts:
+    """Returns the facts about a run, which is number `index` of the runs of the trajectories."""
+    config = run.config
+    split, versions = config.get("split_identity") or {}, config.get("versions", {})
+    codes = config.get("codes") or [versions.get("code", "unknown")]
+    facts = [
+        ("folder", run.path),
+        ("agent", config.get("agent")),
+        ("explorer", config.get("explorer")),
+        ("semantics", config.get("semantics")),
+        ("houses", f"{split.get('name')} {split.get('version')} ({str(split.get('sha256'))[:8]})"),
+        ("noise", config.get("noise")),
+        ("profile", config.get("profile")),
+        ("seed", config.get("seed")),
+        ("code", " or ".join(map(str, codes))),
+        ("renderer", versions.get("gl_renderer")),
+    ]
+    shown = [(name, value) for name, value in facts if value is not None]
+    return RunFacts(
+        label,
+        run.path.resolve().name,
+        shown,
+        command_of(config),
+        list(_notes(run, trajectories, index)),
+        _hint(run, trajectories, index),
+    )
+
+
+def command_of(config: Mapping[str, Any]) -> str:
+    """Returns the command of a run without `--out`."""
+    words, only = ["stubborn", "run"], config.get("only")
+    for key in (*NO_DEFAULT, *DEFAULTS):
+        value = config.get(key)
+        if value is None or value == DEFAULTS.get(key) or (key == "split" and config.get("house")):
+            continue
+        if key == "episodes" and only:
+            continue
+        if key == "episodes":  # config.json counts each replicate
+            value //= config.get("replicates") or 1
+        words += [f"--{key.replace('_', '-')}", str(value)]
+    if only:
+        words += ["--only", *map(str, only)]
+    if config.get("settings"):
+        words += ["--config", *(f"{path}={_setting(value)}" for path, value in config["settings"].items())]
+    return shlex.join([*words, *(f"--{name.replace('_', '-')}" for name in FILES if config.get(name))])
+
+
+def _setting(value: Any) -> str:
+    return value if isinstance(value, str) else json.dumps(value)
+
+
+def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:
+    """Yields sentences about what is missing in a run."""
+    wanted, count, out = run.config.get("episodes"), len(run.lines), run.path
+    if isinstance(wanted, int):
+        if shard := run.config.get("shard"):
+            wanted, out = len(Shard.parse(str(shard)).select(range(wanted))), run.path.parent
+        if count < wanted:
+            yield f"Not finished: {count} of {wanted} episodes have ended. The command with --out {out} runs the rest."
+    errors = sum(line.get("end_reason") == "error" for line in run.lines.values())
+    if errors:
+        yield f"{errors} of {count} episodes ended with an error; they count as failures and are listed below."
+    falls = sum(line.get("end_reason") == "fallen" for line in run.lines.values())
+    if falls:
+        yield f"In {falls} of {count} episodes the robot drove over an edge and fell."
+    if len(run.config.get("codes") or []) > 1:
+        yield "The episodes were run by more than one version of the code."
+    for name, option, count, of in _missing(run, trajectories, index):
+        if 0 < count < of:
+            yield f"{count} of {of} episodes have no {name} (they were run without {option})."
+
+
+def _hint(run: Run, trajectories: Trajectories, index: int) -> str:
+    """Returns a sentence about what no episode of the run has, and how to get it; "" if there is nothing."""
+    absent = [(name, option) for name, option, count, of in _missing(run, trajectories, index) if count == of > 0]
+    if not absent:
+        return ""
+    names, options = (
+        " and no ".join(name for name, _ in absent),
+        " and ".join(dict.fromkeys(option for _, option in absent)),
+    )
+    return f"There are no {names}. The command above with {options} and another --out runs the same episodes with them."
+
+
+def _missing(run: Run, trajectories: Trajectories, index: int) -> list[tuple[str, str, int, int]]:
+    """Returns for each kind of file its name, its option, and how many episodes lack it, among how many."""
+    ended = [i for i in trajectories if run.lines[i].get("end_reason") != "error"]
+    kinds = (
+        ("trajectories (plans with paths)", "--record", [trajectories[i][index] for i in ended]),
+        ("pictures of the end", "--record", [picture_of(run, i) for i in ended]),
+        ("videos", "--video", [video_of(run, i) for i in ended]),
+    )
+    return [(name, option, sum(each is None for each in of), len(of)) for name, option, of in kinds]

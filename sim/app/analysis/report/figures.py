@@ -1,0 +1,149 @@
+"""Computes the numbers of a report: means with intervals, groups of episodes, causes of failure, paired differences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sim.app.analysis.comparison import Line
+from sim.app.analysis.metrics import (
+    AREA,
+    AREA_PER_METRE,
+    COLLISIONS,
+    EXPLORED,
+    FIRST_SIGHT,
+    NEVER_SEEN,
+    SPL,
+    STEPS,
+    SUCCESS,
+    TRAPPED,
+    Metric,
+    episodes_of,
+    houses_of,
+)
+from sim.app.analysis.tables import Cell
+from sim.app.evaluation.intervals import estimate, paired_difference
+from sim.core.interface import GOAL_CATEGORIES
+from sim.task.explanations import MEANING, outcome
+from sim.task.failures import CAUSES
+
+METRICS = (
+    SUCCESS,
+    SPL,
+    Metric("soft SPL", "soft_spl", digits=3),
+    Metric("distance to goal, m", "distance_to_goal", digits=2),
+    EXPLORED,
+    NEVER_SEEN,
+    FIRST_SIGHT,
+    AREA,
+    AREA_PER_METRE,
+    TRAPPED,
+    COLLISIONS,
+    STEPS,
+    Metric("path, m", "path_length", digits=2),
+)
+"""Metrics by which runs are judged and compared."""
+
+
+@dataclass(frozen=True)
+class Proportion:
+    """The proportion of episodes with a property, with its 95 % interval; each replicate of an episode is a line."""
+
+    count: int
+    """Lines with the property."""
+    of: int
+    """Lines."""
+    mean: float
+    """The proportion over episodes; 0 without episodes."""
+    interval: tuple[float, float]
+
+    @property
+    def percent(self) -> float:
+        """The proportion in percent."""
+        return 100.0 * self.mean
+
+
+def proportion(values: Sequence[bool], houses: Sequence[str], episodes: Sequence[str] | None = None) -> Proportion:
+    """Returns the proportion of values that are true, with its interval over houses; see `estimate`."""
+    share = estimate(values, houses, episodes=episodes, most=1.0)
+    low, high = (limit if end is None else end for end, limit in ((share.low, 0.0), (share.high, 1.0)))
+    return Proportion(sum(values), len(values), share.mean or 0.0, (low, high))
+
+
+def proportion_of(values: Sequence[bool], lines: Sequence[Line]) -> Proportion:
+    """Returns the proportion of some lines with a property; replicates of an episode count once."""
+    return proportion(values, houses_of(lines), episodes_of(lines))
+
+
+@dataclass(frozen=True)
+class Group:
+    """A row of a table: a group of episodes."""
+
+    name: str
+    shares: Sequence[Proportion]
+    """One for each run."""
+    differences: Sequence[Cell]
+    """One for each run after the first: that run minus the first, in percent of the pairs."""
+    note: str = ""
+
+
+Runs = Sequence[Sequence[Line]]
+"""The lines of each run; all have the same episodes in the same order."""
+
+
+def groups(runs: Runs, key: str) -> list[Group]:
+    """Returns the success by goal category (in the order of the contract) or by house (by name)."""
+    names = [str(line[key]) for line in runs[0]]
+    order = [goal for goal in GOAL_CATEGORIES if goal in names]
+    return grouped(runs, names, [*order, *sorted(set(names).difference(order))])
+
+
+def grouped(runs: Runs, names: Sequence[str], order: Sequence[str]) -> list[Group]:
+    """Returns the success by group.
+
+    Args:
+        runs: the lines of each run.
+        names: the group of each episode.
+        order: the groups to return; those without an episode are left out.
+    """
+    found = []
+    for name in (name for name in order if name in names):
+        some = [[line for line, of in zip(lines, names, strict=True) if of == name] for lines in runs]
+        shares = [proportion_of([bool(line["success"]) for line in lines], lines) for lines in some]
+        found.append(Group(name, shares, differences(SUCCESS, some)))
+    return found
+
+
+def causes(runs: Runs) -> list[Group]:
+    """Returns the episodes that failed by each cause, the most frequent first; proportions are of all episodes."""
+    outcomes = [[outcome(line) for line in lines] for lines in runs]
+    houses, episodes = houses_of(runs[0]), episodes_of(runs[0])
+    known = {name for names in outcomes for name in names} - {"found"}
+    found = []
+    for cause in [*(cause for cause in CAUSES if cause in known), *sorted(known.difference(CAUSES))]:
+        failed = [[name == cause for name in names] for names in outcomes]
+        shares = [proportion_of(values, runs[0]) for values in failed]
+        compared = [paired_difference(failed[0], values, houses, episodes=episodes, most=1.0) for values in failed[1:]]
+        against = [Cell(each, percent=True, difference=True) for each in compared]
+        found.append(Group(cause, shares, against, MEANING.get(cause, _OTHER.get(cause, ""))))
+    return sorted(found, key=lambda group: -sum(share.count for share in group.shares))
+
+
+_OTHER = {"error": "The episode ended with an error.", "failed": "No cause was recorded."}
+
+
+def means(runs: Runs) -> list[tuple[Metric, list[Cell], list[Cell]]]:
+    """Returns for each metric its mean in each run, and the paired differences of the others from the first run."""
+    return [(metric, [metric.cell(lines) for lines in runs], differences(metric, runs)) for metric in METRICS]
+
+
+def differences(metric: Metric, runs: Runs) -> list[Cell]:
+    """Returns the paired difference of each run after the first: that run minus the first."""
+    return [metric.difference(runs[0], lines) for lines in runs[1:]]
+
+
+def interval_note(runs: Runs) -> str:
+    """Returns the sentence that says how the intervals of a report are made."""
+    if len(set(houses_of(runs[0]))) == 1:
+        return "95 % intervals. There is one house: they (*) are over its episodes, and say nothing about other houses."
+    return "95 % intervals over houses, by Student's t and Wilson's formula."

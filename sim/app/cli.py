@@ -1,0 +1,323 @@
+"""Builds command lines from dataclasses, and reports each error of a command in one line on stderr.
+
+`run` is the entry point of every command, including those in `tools`. Exit status 2 is an error that the user can
+correct: a wrong option, a broken file, a full disk. 130 and 143 are Ctrl-C and SIGTERM. `--debug`, which every command
+takes, shows the traceback as well.
+
+An option's range is declared with its type (`Seed`, `Count`, `Share`, ...), and is checked here; a file or folder that
+the command writes is an `OutFile` or `OutFolder`, and is refused before any work if it cannot be written.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import io
+import math
+import os
+import re
+import signal
+import sys
+import threading
+import time
+import traceback
+import types
+import typing
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Annotated, Any, NoReturn, TypeVar
+
+import tyro
+from msgspec import Meta
+
+from sim.core import invocation
+from sim.core.errors import ConfigError, ObjectNavError, debug, debugging
+from sim.core.files import require_writable
+from sim.core.option_types import (
+    Amount as Amount,
+)
+from sim.core.option_types import (
+    Count as Count,
+)
+from sim.core.option_types import (
+    NotNegative as NotNegative,
+)
+from sim.core.option_types import (
+    OutFile as OutFile,
+)
+from sim.core.option_types import (
+    OutFolder as OutFolder,
+)
+from sim.core.option_types import (
+    Positive as Positive,
+)
+from sim.core.option_types import (
+    Seed as Seed,
+)
+from sim.core.option_types import (
+    Share as Share,
+)
+from sim.core.option_types import (
+    Written,
+)
+from sim.core.reading import first_unprintable, printable, reason_of
+
+ArgsT = TypeVar("ArgsT")
+USAGE_ERRORS = (ObjectNavError,)
+"""Errors that the user can correct; they are printed in one line, without a traceback."""
+DEBUG_HELP = "Every command also takes --debug, which shows the traceback of an error."
+
+
+OnUnlessNo = Annotated[bool, tyro.conf.arg(help_behavior_hint="")]
+"""A switch that is on by default. Its option is `--no-NAME`, and its help text describes that option."""
+
+LAST_WORDS_S = 10.0
+"""Longest time in which threads and exit handlers may end after a command has returned."""
+
+
+class Terminated(KeyboardInterrupt):
+    """SIGTERM: ends the command like Ctrl-C, so that its workers end and its unfinished files are removed."""
+
+
+def chosen(text: str, names: Iterable[str], *, option: str) -> list[str]:
+    """Returns the names of a comma-separated option, in the order of `names`.
+
+    Raises:
+        ConfigError: a name is unknown or missing.
+    """
+    there_are, wanted = list(names), [name.strip() for name in text.split(",") if name.strip()]
+    if not wanted or not set(wanted) <= set(there_are):
+        raise ConfigError(f"{option} must be some of {','.join(there_are)}, got '{text}'.")
+    return [name for name in there_are if name in wanted]
+
+
+def run(
+    args_type: type[ArgsT],
+    main: Callable[[ArgsT], int],
+    argv: Sequence[str] | None = None,
+    *,
+    stopped: str = "Stopped.",
+) -> int:
+    """Parses the command line into `args_type` and returns the exit status of `main`, or that of its error.
+
+    Args:
+        args_type: dataclass of the options.
+        main: the command.
+        argv: the words of the command line; those of the process when None.
+        stopped: the message that is printed after Ctrl-C or SIGTERM.
+    """
+    words = list(sys.argv[1:] if argv is None else argv)
+    _print_any_text()
+    with debugging("--debug" in words), _sigterm_ends():
+        try:
+            args = parse(args_type, [word for word in words if word != "--debug"])
+            check(args)
+            return main(args)
+        except BrokenPipeError:  # the reader of the output has ended, as `head` does
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+            return 1
+        except USAGE_ERRORS as error:
+            return _refused(str(error))
+        except OSError as error:
+            names = " and ".join(f"'{name}'" for name in (error.filename, error.filename2) if name is not None)
+            return _refused(f"{names or 'A file'} cannot be read or written: {reason_of(error)}.")
+        except MemoryError:
+            return _refused("There is not enough memory for this.")
+        except KeyboardInterrupt as stop:
+            print(f"\n{stopped}", file=sys.stderr)
+            return 143 if isinstance(stop, Terminated) else 130
+
+
+def leave_soon(status: int) -> int:
+    """Ensures that the process ends within `LAST_WORDS_S`; returns its exit status.
+
+    Threads and exit handlers of a user's code could otherwise keep it running.
+    """
+
+    def leave() -> None:
+        time.sleep(LAST_WORDS_S)
+        os._exit(status)
+
+    with contextlib.suppress(OSError, ValueError):
+        sys.stdout.flush()
+    threading.Thread(target=leave, daemon=True, name="end").start()
+    return status
+
+
+def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:
+    """Returns the command line as an `args_type`.
+
+    Raises:
+        ConfigError: an option does not exist, or its value cannot be read or is not printable text.
+        SystemExit: status 0 after `--help`.
+    """
+    words = sys.argv[1:] if argv is None else argv
+    if (bad := first_unprintable(words)) is not None:
+        raise ConfigError(f"'{printable(bad)}' holds a control character or a byte that is not UTF-8; give plain text.")
+    messages = io.StringIO()
+    description = f"{(args_type.__doc__ or '').strip()}\n\n{DEBUG_HELP}"
+    try:
+        with contextlib.redirect_stderr(messages):
+            options = (tyro.conf.FlagCreatePairsOff,)
+            shown = _without_empty_defaults(args_type)
+            joined = _joined(args_type, words)
+            args = tyro.cli(shown, prog=invocation.program(), args=joined, description=description, config=options)
+            return args_type(**vars(args))
+    except SystemExit as stop:
+        if stop.code in (0, None):
+            raise
+        raise ConfigError(_message_in_box(messages.getvalue())) from None
+
+
+def _joined(args_type: type, words: Sequence[str]) -> list[str]:
+    """Returns the words of a command line in which the values of a repeated option follow its first name.
+
+    This is done for options that take several values, of which only the last ones would count otherwise.
+    """
+    hints = typing.get_type_hints(args_type)
+    several = {f"--{name.replace('_', '-')}" for name, hint in hints.items() if ... in typing.get_args(_bare(hint))}
+    current: list[str] = []
+    parts, of_option = [current], dict[str, list[str]]()
+    for word in words:
+        name, is_pair, value = word.partition("=")
+        name = name.replace("_", "-")
+        if name in of_option:
+            current = of_option[name]
+            current.extend([value] if is_pair else [])
+        elif word.startswith("--"):
+            current = [name, value] if name in several and is_pair else [word]
+            parts.append(current)
+            if name in several:
+                of_option[name] = current
+        else:
+            current.append(word)
+    return [word for part in parts for word in part]
+
+
+_POSITIONAL = typing.get_args(tyro.conf.Positional[Any])[1]
+"""The mark of positional arguments, which several commands require."""
+
+
+def _without_empty_defaults(args_type: type[ArgsT]) -> type[ArgsT]:
+    """Returns a dataclass with the same options, whose help text shows neither "(default: None)" nor "(default: )".
+
+    The help text of such an option describes what happens if it is not given.
+    """
+    hints = typing.get_type_hints(args_type, include_extras=True)
+    empty = [
+        field.name
+        for field in dataclasses.fields(args_type)  # type: ignore[arg-type]
+        if field.default in (None, ()) or _POSITIONAL in getattr(hints[field.name], "__metadata__", ())
+    ]
+    silent = {name: Annotated[hints[name], tyro.conf.arg(help_behavior_hint="")] for name in empty}
+    names = {"__annotations__": silent, "__doc__": args_type.__doc__, "__module__": args_type.__module__}
+    return typing.cast(type[ArgsT], type(args_type.__name__, (args_type,), names))
+
+
+def check(args: Any) -> None:
+    """Checks that options are in the ranges of their types, and that what the command writes can be written.
+
+    Raises:
+        ConfigError: an option is not; the message names it, its value and what is allowed.
+    """
+    hints = typing.get_type_hints(type(args), include_extras=True)
+    for field in dataclasses.fields(args):
+        _check_value(f"--{field.name.replace('_', '-')}", getattr(args, field.name), hints[field.name])
+
+
+def _check_value(name: str, value: Any, hint: Any) -> None:
+    """Raises ConfigError if a value is not in the range of its type."""
+    if value is None:
+        return
+    if dataclasses.is_dataclass(value):
+        for field in dataclasses.fields(value):
+            _check_value(f"{name}.{field.name.replace('_', '-')}", getattr(value, field.name), Any)
+        return
+    if isinstance(value, tuple):
+        inner = next(iter(typing.get_args(_bare(hint))), Any)
+        for each in value:
+            _check_value(name, each, inner)
+        return
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ConfigError(f"{name} must be a finite number, got {value}.")
+    for mark in _marks(hint):
+        if isinstance(mark, Written) and isinstance(value, Path):
+            require_writable(value, name=name, folder=mark.folder)
+        elif isinstance(mark, Meta) and not isinstance(value, Path):
+            _require_range(name, value, mark)
+
+
+def _require_range(name: str, value: float, mark: Meta) -> None:
+    """Raises ConfigError if a number is beyond the bounds of its type."""
+    bounds = (
+        ("at least", mark.ge, lambda low: value >= low),
+        ("more than", mark.gt, lambda low: value > low),
+        ("at most", mark.le, lambda high: value <= high),
+        ("less than", mark.lt, lambda high: value < high),
+    )
+    for words, bound, holds in bounds:
+        if bound is not None and not holds(bound):
+            raise ConfigError(f"{name} must be {words} {bound:g}, got {value}.")
+
+
+def _bare(hint: Any) -> Any:
+    """Returns a type without `Annotated` and `| None`."""
+    while True:
+        if typing.get_origin(hint) is Annotated:
+            hint = hint.__origin__
+        elif typing.get_origin(hint) in (typing.Union, types.UnionType):
+            hint = next(each for each in typing.get_args(hint) if each is not type(None))
+        else:
+            return hint
+
+
+def _marks(hint: Any) -> Iterator[Any]:
+    """Yields the marks of a type, also of one inside `| None`."""
+    if typing.get_origin(hint) is Annotated:
+        yield from hint.__metadata__
+        yield from _marks(hint.__origin__)
+    elif typing.get_origin(hint) in (typing.Union, types.UnionType):
+        for each in typing.get_args(hint):
+            yield from _marks(each)
+
+
+def _refused(message: str) -> int:
+    """Prints an error in one line, after its traceback with `--debug`; returns the exit status."""
+    if debug():
+        traceback.print_exc()
+    print(f"error: {printable(' '.join(message.split()))}", file=sys.stderr)
+    return 2
+
+
+@contextlib.contextmanager
+def _sigterm_ends() -> Iterator[None]:
+    """Has SIGTERM raise `Terminated`; only the main thread of a process can."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, _raise_terminated)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _raise_terminated(number: int, frame: types.FrameType | None) -> NoReturn:
+    raise Terminated
+
+
+def _print_any_text() -> None:
+    """Has text that the terminal's encoding does not know printed as escapes, in place of an error."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _message_in_box(box: str) -> str:
+    """Returns the message inside the frame that tyro prints around it."""
+    lines = [re.sub(r"^\W*│|│\W*$", "", line).strip() for line in box.splitlines()]
+    body = [
+        line for line in lines if line and not line.startswith(("╭", "╰", "For full helptext", "Argument helptext"))
+    ]
+    rule = next((i for i, line in enumerate(body) if set(line) <= {"─"}), len(body))
+    return " ".join(body[:rule]) or "The command line could not be read. Try --help."

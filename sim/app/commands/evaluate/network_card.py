@@ -1,0 +1,192 @@
+"""The model card of a network: what it is, how it was trained, and what `stubborn evaluate` measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Int64
+
+from sim.app.commands.evaluate.network_pictures import draw_confusion, draw_curves
+from sim.core.files import write_atomically
+from sim.core.interface import GOAL_CATEGORIES
+from sim.training.segmentation.breakdown import Breakdown
+from sim.training.segmentation.evaluation import Iou, Reliability
+from sim.training.segmentation.fused import VOXEL_M
+from sim.training.segmentation.options import Args
+from stubborn.segmentation.calibration import Calibration
+from stubborn.segmentation.networks import Network
+from stubborn.segmentation.unet import UNet
+
+ABOUT = """A {kind} ({parameters:,} parameters, {size_mb:.1f} MB) for images of {width} x {height} pixels and
+the categories of mpcat40. Its calibration was evaluated on the half of the houses to which it was not fitted. If the
+checkpoint was chosen by views of these houses as well, the mIoU is optimistic."""
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """The network that was evaluated."""
+
+    file: Path
+    model: Network
+    metadata: dict[str, Any]
+    threads: int
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The results of an evaluation."""
+
+    iou: Iou
+    """Results of the network's own logits."""
+    calibrated: Iou
+    """Results of calibrated logits, as the agent uses them; the fields below are of these too, except for `matrix`."""
+    matrix: Int64[np.ndarray, "classes classes"]
+    """Confusion matrix, see `sim.training.segmentation.evaluation.confusion`."""
+    breakdown: Breakdown
+    by_folder: dict[str, float]
+    """Calibrated mIoU over the goal categories of each folder of views."""
+    fused: tuple[Iou, Iou] | None
+    """Results of single views and of views fused in voxels, on the same pixels (`sim.training.segmentation.fused`)."""
+    views: int
+    before: Reliability
+    """Reliability without a calibration, on the houses to which the calibration was not fitted."""
+    after: Reliability
+    """Reliability with the network's calibration, on the same houses."""
+    calibration: Calibration
+    frame_ms: float
+
+
+def write_card(file: Path, network: Evaluated, measured: Measured, trainings: Sequence[Path]) -> None:
+    """Writes the model card and its pictures, `<name>_confusion.png` and, of some trainings, `<name>_curves.png`.
+
+    Raises:
+        ConfigError: matplotlib is not installed, or a folder holds no training.
+    """
+    confusion, curves = (file.with_name(f"{file.stem}_{name}.png") for name in ("confusion", "curves"))
+    draw_confusion(measured.matrix, confusion)
+    pictures = [f"![Confusion matrix]({confusion.name})"]
+    if trainings:
+        draw_curves(trainings, curves)
+        pictures.append(f"![Curves of the training]({curves.name})")
+    write_atomically(file, card_text(network, measured) + "\n" + "\n\n".join(pictures) + "\n")
+
+
+def card_text(network: Evaluated, measured: Measured) -> str:
+    """Returns the text of the model card, Markdown."""
+    absent = [name for name in GOAL_CATEGORIES if name not in measured.iou.by_category]
+    stages = list(training_stages(network.metadata))
+    return "\n".join(
+        [
+            *_about(network),
+            *_summary(network, measured, stages),
+            *training_commands(stages),
+            *_categories(measured),
+            *([f"Not in these views: {', '.join(absent)}.", ""] if absent else []),
+            *distances_and_sizes(measured.breakdown),
+            *_reliability(measured),
+        ]
+    )
+
+
+def _about(network: Evaluated) -> Iterable[str]:
+    px = int(network.metadata.get("block_px", 1))
+    yield f"# {network.file.name}\n"
+    yield ABOUT.format(
+        kind="U-Net" if isinstance(network.model, UNet) else "RedNet",
+        parameters=sum(tensor.numel() for tensor in network.model.parameters()),
+        size_mb=network.file.stat().st_size / 1e6,
+        width=640 // px,
+        height=480 // px,
+    )
+    yield ""
+
+
+def _summary(network: Evaluated, measured: Measured, stages: Sequence[dict[str, Any]]) -> Iterable[str]:
+    iou, own = measured.calibrated, measured.iou
+    yield "| | |\n|---|---|"
+    yield f"| mIoU, goal categories present, calibrated as agents use it | {iou.goals:.3f} |"
+    yield f"| mIoU, goal categories present, without calibration | {own.goals:.3f} |"
+    yield from (f"| mIoU, views `{name}` | {value:.3f} |" for name, value in measured.by_folder.items())
+    if measured.fused is not None:
+        single, fused = measured.fused
+        yield f"| mIoU, goal categories, pixels with depth: single views | {single.goals:.3f} |"
+        yield f"| the same, all views of a house fused in voxels of {100 * VOXEL_M:.0f} cm | {fused.goals:.3f} |"
+    yield f"| mIoU, all categories present | {iou.everything:.3f} |"
+    yield f"| pixel accuracy | {iou.accuracy:.3f} |"
+    yield f"| pixel accuracy without calibration | {own.accuracy:.3f} |"
+    yield f"| number of views | {measured.views} |"
+    yield f"| time per frame, {network.threads} thread{'s' * (network.threads != 1)} | {measured.frame_ms:.0f} ms |"
+    yield from (f"| training | {training_text(stage)} |" for stage in stages)
+    yield f"| calibration error without calibration | {measured.before.error:.3f} |"
+    yield f"| calibration error with calibration | {measured.after.error:.3f} |"
+    yield ""
+
+
+def training_text(stage: dict[str, Any]) -> str:
+    """Returns length, code and end of a training; `averaged` is written where its weights were averaged by hand."""
+    phrases = [f"{stage.get('step', '?')} steps", f"{stage.get('hours', '?')} h"]
+    phrases += [str(stage["code"])] if "code" in stage else []
+    phrases += ["then averaged with the weights before it"] if stage.get("averaged") else []
+    return ", ".join(phrases)
+
+
+def _categories(measured: Measured) -> Iterable[str]:
+    found = measured.breakdown.found_by_category()
+    yield "An object is a connected region of a category in a view; it is found if half of its pixels are right.\n"
+    yield "| category | IoU | IoU without calibration | objects | found |\n|---|--:|--:|--:|--:|"
+    for name in GOAL_CATEGORIES:
+        if name in measured.iou.by_category:
+            count, share = found.get(name, (0, float("nan")))
+            calibrated, own = (iou.by_category[name] for iou in (measured.calibrated, measured.iou))
+            yield f"| {name} | {calibrated:.3f} | {own:.3f} | {count} | {100 * share:.0f} % |"
+    yield ""
+
+
+def distances_and_sizes(breakdown: Breakdown) -> Iterable[str]:
+    """Yields tables of the results by distance and by the size of objects, Markdown."""
+    yield "| distance | mIoU | pixel accuracy |\n|---|--:|--:|"
+    for low, high, iou in breakdown.iou_by_distance():
+        yield f"| {low:g} to {high:g} m | {iou.goals:.3f} | {iou.accuracy:.3f} |"
+    yield "\nSize is the square root of an object's area in the image of 640 x 480 pixels.\n"
+    yield "| size | objects | found |\n|---|--:|--:|"
+    for low, high, count, share in breakdown.found_by_size():
+        yield f"| {low} to {high} px | {count} | {100 * share:.0f} % |"
+    yield ""
+
+
+def _reliability(measured: Measured) -> Iterable[str]:
+    yield "Share of correct pixels by the score of a goal category, before and after calibration:\n"
+    yield "| mean score | share correct | pixels | mean score | share correct | pixels |\n|---|---|---|---|---|---|"
+    for b, a in zip(measured.before.rows(), measured.after.rows(), strict=False):
+        yield f"| {b[1]:.2f} | {b[2]:.2f} | {b[0]} | {a[1]:.2f} | {a[2]:.2f} | {a[0]} |"
+    yield ""
+
+
+def training_stages(metadata: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yields the metadata of each training that led to a network, the first one first."""
+    if "started_from" in metadata:
+        yield from training_stages(metadata["started_from"])
+    yield metadata
+
+
+def training_commands(stages: Sequence[dict[str, Any]]) -> Iterator[str]:
+    """Yields the block with the command of each training, and a sentence if the command has options no more."""
+    yield "```sh"
+    yield from map(_command, stages)
+    yield "```\n"
+    if {key for stage in stages for key in stage.get("options", {})} - {each.name for each in fields(Args)}:
+        yield "Options that `stubborn train segmentation --help` does not list are those of earlier versions.\n"
+
+
+def _command(stage: dict[str, Any]) -> str:
+    """Returns the command of one training."""
+    options = (
+        f"--{key.replace('_', '-')} {' '.join(value) if isinstance(value, list) else value}"
+        for key, value in stage.get("options", {}).items()
+        if value
+    )
+    return " ".join(["stubborn train segmentation", *options])

@@ -1,0 +1,252 @@
+"""Imports houses one after the other into a folder that is a split, with progress, a report and pictures."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import itertools
+import json
+import sys
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, Generic, TypeVar
+
+import numpy as np
+from msgspec import Meta
+from rich.console import Console
+
+from sim.app import cli
+from sim.app.evaluation.parallel import ordered_map
+from sim.app.viewers.house_pictures import draw_top, draw_views, titled
+from sim.core.errors import ConfigError, ObjectNavError
+from sim.core.files import inside, write_atomically, write_picture
+from sim.core.reading import printable, read_json, sha256_of
+from sim.episodes.splits import LABELS_FILE, labels_of
+from sim.homes.importers.losses import added
+from sim.homes.importers.mesh_house import Collision, MeshConfig
+from sim.houses.load import load_house
+
+SourceT = TypeVar("SourceT")
+REPORT_FILE = "import.json"
+VERSION = 2
+"""Increased when the same source gives another house."""
+CHUNK = 64
+"""Houses that are in memory at a time."""
+PROGRESS_S = 5.0
+"""A line on the progress is printed about this often."""
+VIEWS = 8
+"""Least number of views of a house."""
+MOST_TYPES = 12
+"""Most types that a line of the result lists."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImportArgs:
+    """The options of every command that imports houses."""
+
+    out: cli.OutFolder
+    """Folder of the houses; created if missing."""
+    houses: cli.Count | None = None
+    """Import only the first houses."""
+    pictures: cli.Amount = 3
+    """Draw the first houses from above, and views of them."""
+    workers: cli.Count = 1
+    """Number of processes."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SceneArgs(ImportArgs):
+    """The options of commands that import MJCF scenes with files of their own."""
+
+    root: Path | None = None
+    """A folder whose files the houses may use in addition to their own folder."""
+    texture_px: Annotated[int, Meta(ge=16, le=8192)] = 1024
+    """Longest side of a texture; larger ones are reduced."""
+    pack: bool = False
+    """Copy all meshes and textures; by default, unchanged ones are hard links to the source's files if possible."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshArgs(ImportArgs):
+    """The options of commands that make houses of triangles."""
+
+    collision: Collision = "boxes"
+    """What collides: boxes of a grid, or convex parts by CoACD, which take much longer."""
+    triangles: cli.Count = 100_000
+    """About the largest number of visual triangles of a house."""
+    texture_px: cli.Count = 1024
+    """Longest side of a picture; larger ones are reduced."""
+
+    @property
+    def config(self) -> MeshConfig:
+        """The options of a house."""
+        return MeshConfig(collision=self.collision, triangles=self.triangles, texture_px=self.texture_px)
+
+
+@dataclass(frozen=True)
+class Work(Generic[SourceT]):
+    """A house to import."""
+
+    name: str
+    content: bytes
+    """What its result depends on, in addition to the options."""
+    source: SourceT
+    share: float = 0.0
+    """Share of the input that has been read up to this house; 0: unknown."""
+
+
+@dataclass(frozen=True)
+class Made:
+    """An imported house."""
+
+    report: Mapping[str, Any]
+    rules: Mapping[str, str] = field(default_factory=dict)
+    """Label rules that it needs."""
+
+
+@dataclass(frozen=True)
+class _Failed:
+    message: str
+
+
+def import_all(
+    works: Iterable[Work[SourceT]],
+    make: Callable[[SourceT], Made],
+    out: Path,
+    *,
+    total: int | None,
+    options: str,
+    pictures: int,
+    workers: int,
+) -> int:
+    """Imports houses and prints what happened; returns 1 if one could not be imported.
+
+    Args:
+        works: the houses.
+        make: writes a house into the folder; picklable.
+        out: the folder.
+        total: largest number of houses, for the time left; None: `Work.share` says it.
+        options: all that the result depends on, in addition to the houses.
+        pictures: number of houses that are drawn.
+        workers: number of processes.
+
+    Raises:
+        ConfigError: the folder has a report that another program wrote, or there is no house.
+    """
+    before = _before(out)
+    reports: dict[str, dict[str, Any]] = {}
+    rules: dict[str, str] = {}
+    failed = 0
+    began_s = said_s = time.monotonic()
+    for work, key, made in _run(works, make, out, before, options, workers):
+        if isinstance(made, _Failed):
+            failed += 1
+            print(f"{work.name}: left out: {printable(made.message)}", file=sys.stderr)
+        else:
+            reports[work.name] = {**made.report, "key": key, "rules": dict(made.rules)}
+            rules.update(made.rules)
+        if time.monotonic() - said_s > PROGRESS_S:
+            said_s = time.monotonic()
+            done = len(reports) + failed
+            share = max(work.share, done / total if total else 0.0)
+            left_s = round((said_s - began_s) * (1.0 / max(share, 1e-6) - 1.0))
+            print(f"{done} houses, about {left_s // 60} min {left_s % 60} s left.", flush=True)
+    if not reports and not failed:
+        raise ConfigError("There is no house to import.")
+    _write(out, before, reports, rules)
+    _print_result(Console(highlight=False, soft_wrap=True), list(reports.values()), failed, out)
+    for name in list(reports)[:pictures]:
+        _draw(out, name)
+    return int(failed > 0)
+
+
+def _run(
+    works: Iterable[Work[SourceT]], make: Callable[[SourceT], Made], out: Path, before: Mapping[str, Any], options: str,
+    workers: int,
+) -> Iterator[tuple[Work[SourceT], str, Made | _Failed]]:  # fmt: skip
+    """Yields each house with its key and its result; houses that are there already are not made again."""
+    todo = iter(works)
+    while chunk := list(itertools.islice(todo, CHUNK)):
+        keys = [
+            hashlib.sha256(f"{VERSION} {options} {work.name} ".encode() + work.content).hexdigest() for work in chunk
+        ]
+        there = [
+            before.get(work.name, {}).get("key") == key and (out / f"{work.name}.xml").is_file()
+            for work, key in zip(chunk, keys, strict=True)
+        ]
+        new = [work.source for work, done in zip(chunk, there, strict=True) if not done]
+        results = ordered_map(functools.partial(_tried, make), new, workers=workers) if new else iter(())
+        for work, key, done in zip(chunk, keys, there, strict=True):
+            yield work, key, _again(before[work.name]) if done else next(results)
+
+
+def file_works(files: Iterable[Path], used_by: Callable[[Path], Iterable[Path]]) -> Iterator[Work[Path]]:
+    """Yields the houses of files, each of which depends on its file and on those that `used_by` returns."""
+    for file in files:
+        used = [file, *used_by(file)] if file.is_file() else []
+        sums = [sha256_of(each, what="File") for each in used if each.is_file()]
+        yield Work(file.stem, " ".join(sums).encode(), file)
+
+
+def _tried(make: Callable[[SourceT], Made], source: SourceT) -> Made | _Failed:
+    try:
+        return make(source)
+    except ObjectNavError as error:
+        return _Failed(str(error))
+
+
+def _again(report: Mapping[str, Any]) -> Made:
+    """Returns the result of a house that was imported before."""
+    return Made({name: value for name, value in report.items() if name not in ("key", "rules")}, report["rules"])
+
+
+def _before(out: Path) -> dict[str, dict[str, Any]]:
+    """Returns the reports of houses that are in the folder, by name."""
+    file = out / REPORT_FILE
+    return read_json(file, dict[str, dict[str, Any]], what="Report of an import") if file.is_file() else {}
+
+
+def _write(
+    out: Path, before: Mapping[str, Any], reports: Mapping[str, Mapping[str, Any]], rules: Mapping[str, str]
+) -> None:
+    """Writes the report, with the houses of earlier imports, and the label rules."""
+    known = {**before, **reports}
+    write_atomically(out / REPORT_FILE, json.dumps(known, indent=1, ensure_ascii=False) + "\n")
+    if rules:
+        file = labels_of(out)
+        old = read_json(file, dict[str, str], what="Label rules") if file is not None else {}
+        # Rules for one name come before those for all names with other numbers.
+        both = dict(sorted({**old, **rules}.items(), key=lambda rule: r"\d" in rule[0]))
+        write_atomically(out / LABELS_FILE, json.dumps(both, indent=1, ensure_ascii=False) + "\n")
+
+
+def _print_result(console: Console, reports: Sequence[Mapping[str, Any]], failed: int, out: Path) -> None:
+    """Prints what was read and what was lost."""
+    total = added(reports)
+    rooms, area_m2 = (sum(report[name] for report in reports) for name in ("rooms", "area_m2"))
+    lines = [f"{len(reports)} houses with {rooms} rooms, {area_m2:.0f} m2, in {out}; {failed} could not be imported."]
+    found = "furniture" if total.boxes else "objects with a category"
+    for title, counts in ((found, total.furniture), ("labelled boxes", total.boxes), ("left out", total.left_out)):
+        most = ", ".join(f"{name} {count}" for name, count in counts.most_common(MOST_TYPES))
+        more = f" and {len(counts) - MOST_TYPES} more" if len(counts) > MOST_TYPES else ""
+        if counts:
+            lines.append(f"{title}: {sum(counts.values())} objects ({most}{more})")
+    lines += [f"{sentence} ({count} x)" for sentence, count in total.changes.most_common()]
+    if total.moved_m > 0.0:
+        lines.append(f"Objects were moved by at most {total.moved_m:.2f} m.")
+    lines.append(f"{REPORT_FILE} has the counts of each house.")
+    for line in lines:
+        console.print(line, markup=False)
+
+
+def _draw(out: Path, name: str) -> None:
+    """Draws a house from above, and views of it, next to it in `pictures`."""
+    house = load_house(out / f"{name}.xml", labels_path=labels_of(out))
+    folder = out / "pictures"
+    write_picture(inside(folder, f"{name}_top.png", what="name of a house"), titled(draw_top(house), name))
+    views = draw_views(house, 4, least=VIEWS)
+    if views is not None:
+        write_picture(inside(folder, f"{name}_views.png", what="name of a house"), np.ascontiguousarray(views))
+    print(f"Drew {folder / name}_top.png and _views.png.", flush=True)

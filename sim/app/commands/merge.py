@@ -1,0 +1,170 @@
+"""Merges several runs into one: the shards of `stubborn run --shard i/n`, or any runs with the same options.
+
+stubborn merge runs/big                       # runs/big/shard_*_of_* into runs/big
+stubborn merge runs/a runs/b --out runs/both
+
+Lines, trajectories, videos and recordings are copied, and the summary is computed from all lines. The command can be
+repeated, also while shards are still running: it adds new episodes. The merged folder is a run: `stubborn run` with the
+same options and this --out runs the missing episodes.
+"""
+
+from __future__ import annotations
+
+import json
+import urllib.parse
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import tyro
+
+from sim.app import cli
+from sim.app.analysis import display
+from sim.app.analysis.comparison import Line, Run, read_run
+from sim.app.evaluation.config_fields import differing_fields, field_text, is_same_file
+from sim.app.evaluation.results import NOT_COMPARED, RunDirectory, read_record
+from sim.app.evaluation.rollout import TIMES
+from sim.core.files import write_atomically
+from sim.core.interface import ConfigError
+from sim.core.reading import read_bytes
+
+SHARDS = "shard_*_of_*"
+MAX_FILE_BYTES = 4 << 30
+"""Largest file of an episode that is copied; videos are the largest."""
+COPIED = ("trajectories", "pictures", "videos", "rerun", "mcap")
+"""Folders of a run with files of single episodes."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Merge runs that have the same options."""
+
+    runs: tyro.conf.Positional[tuple[Path, ...]]
+    """Folders of runs; or one folder that holds shards."""
+    out: cli.OutFolder | None = None
+    """Folder of the merged run; by default the one folder given."""
+
+
+def main(args: Args) -> int:
+    """Merges the runs; returns 1 if episodes are missing or ended with an error."""
+    folders, out = sources(args)
+    runs = [read_run(folder) for folder in folders]
+    for run in runs[1:]:
+        require_same_options(runs[0], run)
+    lines = merged_lines(runs)
+    console = display.make_console()
+    merged = RunDirectory(out, merged_config(runs))
+    try:
+        existing, added = {line["episode_id"]: line for line in merged.lines}, set[str]()
+        for episode_id, line in lines.items():
+            before = existing.get(episode_id)
+            if before is None or (before["end_reason"] == "error" and before != line):  # a shard has run it again
+                merged.append(line)
+                added.add(episode_id)
+            elif line["end_reason"] != "error" and without_times(before) != without_times(line):
+                raise _conflict(episode_id, out, line)
+        for code in merged.config["codes"]:
+            merged.record_code(code)  # the folder may hold lines of an earlier merge
+        summary = merged.write_summary({"split": runs[0].recorded("split_identity")})
+        display.print_results(console, merged.lines, summary)
+    finally:
+        merged.close()
+    for run in runs:
+        copy_files(run, lines, added, out)
+    stored = read_record(out / "config.json")  # the folder may hold an earlier merge of other episodes
+    missing = max(stored["episodes"] - len(merged.lines), 0)
+    message = f"{len(merged.lines)} episodes of {len(runs)} runs, {missing} missing; results in {out}"
+    console.print(message, highlight=False, soft_wrap=True)
+    keys = list(dict.fromkeys(str(run.config["seed_key"]) for run in runs if run.config.get("seed_key")))
+    if len(keys) > 1:
+        console.print(f"The runs have different seed keys ({', '.join(keys)}); with --seed-key they share one.")
+    if lacking := sorted(set(stored.get("only") or ()) - {line["episode_id"] for line in merged.lines}):
+        console.print(f"Missing: {' '.join(lacking)}", highlight=False, soft_wrap=True)
+    return 1 if missing or summary["errors"] else 0
+
+
+def sources(args: Args) -> tuple[list[Path], Path]:
+    """Returns the folders to merge, and the folder of the merged run.
+
+    Raises:
+        ConfigError: there is nothing to merge, or no output folder.
+    """
+    if len(args.runs) == 1 and (shards := sorted(args.runs[0].glob(SHARDS))):
+        return shards, args.out or args.runs[0]
+    if args.out is None or not args.runs:
+        named = ", ".join(f"'{folder}'" for folder in args.runs) or "nothing"
+        raise ConfigError(f"Give one folder that holds {SHARDS}, or several runs and --out; got {named}.")
+    return list(args.runs), args.out
+
+
+def require_same_options(first: Run, other: Run) -> None:
+    """Raises ConfigError if two runs differ in an option that changes results."""
+    for path, a, b in differing_fields(first.config, other.config):
+        if path.partition(".")[0] not in NOT_COMPARED and not is_same_file(path, first.config, other.config):
+            raise ConfigError(
+                f"'{first.path}' has {path} = {field_text(a)}, '{other.path}' has {field_text(b)}: "
+                "runs with different options cannot be merged."
+            )
+
+
+def merged_lines(runs: Sequence[Run]) -> dict[str, Line]:
+    """Returns all lines by episode id, sorted; an episode of two runs counts once.
+
+    Raises:
+        ConfigError: the results of an episode differ between two runs.
+    """
+    lines: dict[str, Line] = {}
+    for run in runs:
+        for episode_id, line in run.lines.items():
+            first = lines.setdefault(episode_id, line)
+            if "error" in (first["end_reason"], line["end_reason"]):
+                lines[episode_id] = line if first["end_reason"] == "error" else first
+            elif without_times(first) != without_times(line):
+                raise _conflict(episode_id, run.path, lines[episode_id])
+    return dict(sorted(lines.items()))
+
+
+def without_times(line: Line) -> dict[str, Any]:
+    """Returns the entries of a line that are equal in two runs of the same episode."""
+    return {key: value for key, value in line.items() if key not in TIMES}
+
+
+def merged_config(runs: Sequence[Run]) -> dict[str, Any]:
+    """Returns the config of the merged run: without a shard, with the hashes of all code that ran episodes.
+
+    If all runs name their episodes (`--only`), the config names all of these.
+    """
+    versions = [run.config.get("versions", {}) for run in runs]
+    codes = [
+        code for run, of in zip(runs, versions, strict=True) for code in run.config.get("codes") or [of.get("code")]
+    ]
+    of_each = [set(run.config.get("only") or ()) for run in runs]
+    only = sorted(set.union(*of_each)) if all(of_each) else []
+    episodes = len(only) or max(run.recorded("episodes") for run in runs)
+    config = {**runs[0].config, "shard": None, "episodes": episodes, "codes": list(dict.fromkeys(codes))}
+    return config | ({"only": only} if any(of_each) else {})
+
+
+def copy_files(run: Run, lines: Mapping[str, Line], added: Set[str], out: Path) -> None:
+    """Copies the files of a run's episodes that the merged run lacks, or has of an earlier result.
+
+    Args:
+        run: one of the merged runs.
+        lines: the merged lines; an episode that ended otherwise in this run, with an error, is not copied.
+        added: episodes whose line is new in the merged run.
+        out: folder of the merged run.
+    """
+    for name in COPIED:
+        for file in sorted((run.path / name).glob("*")):
+            episode_id = urllib.parse.unquote(file.stem)
+            line, target = run.lines.get(episode_id), out / name / file.name
+            if line is None or without_times(line) != without_times(lines[episode_id]):
+                continue
+            if file.is_file() and (episode_id in added or not target.exists()):
+                write_atomically(target, read_bytes(file, what="File of a run", most=MAX_FILE_BYTES))
+
+
+def _conflict(episode_id: str, path: Path, line: Line) -> ConfigError:
+    other = json.dumps({key: line.get(key) for key in ("success", "num_steps", "end_reason")})
+    return ConfigError(f"'{path}' has another result of '{episode_id}' than another run, which has {other}.")

@@ -1,0 +1,321 @@
+"""The tables of the paper and of the splits, built from result lines: the runs that each table needs, and its rows.
+
+Every table has means with 95 % intervals over the episodes that all its runs have, and paired differences
+between runs. Intervals are over houses (`sim.app.evaluation.intervals`).
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from sim.app.analysis.comparison import Line
+from sim.app.analysis.metrics import (
+    AREA_PER_METRE,
+    COLLISIONS,
+    EXPLORED,
+    FIRST_SIGHT,
+    NEVER_SEEN,
+    SPL,
+    STEPS,
+    SUCCESS,
+    TRAPPED,
+    Metric,
+    episodes_of,
+    houses_of,
+)
+from sim.app.analysis.tables import Cell, ResultTable
+from sim.app.commands.reproduce.agent_setup import GROUND_TRUTH, AgentSetup
+from sim.app.evaluation.intervals import estimate, paired_difference
+from sim.app.evaluation.results import metric_value
+from sim.core.errors import ConfigError
+from sim.core.interface import GOAL_CATEGORIES
+from sim.task.failures import CAUSES
+from stubborn import agents
+from stubborn.detection.verification import ACCEPT_ALL
+
+Lines = Mapping[AgentSetup, Sequence[Line]]
+"""The lines of each setup, of the same episodes in the same order."""
+
+
+def ablation_rows(names: Iterable[str]) -> dict[str, str]:
+    """Returns the agent of each row, by Roman numeral; the last row is the whole agent, `stubborn`.
+
+    Args:
+        names: the agents of the ablation in order: stubborn-i, stubborn-ii, ...
+    """
+    rows = {name.rpartition("-")[2].upper(): name for name in names}
+    return {**rows, list(rows)[-1]: "stubborn"}  # its episodes also serve the other tables
+
+
+ABLATION = ablation_rows(agents.ABLATION)
+
+
+@dataclass(frozen=True)
+class PaperTable:
+    """One of the tables of the paper."""
+
+    agents: tuple[str, ...]
+    """The default agents (see `AgentSetup.named`); the others are compared with the first."""
+    semantics: str
+    """The default source of segmentation."""
+    build: Callable[[Lines, Sequence[AgentSetup]], list[ResultTable]]
+
+    def setups(self, agents: Sequence[str] = (), semantics: str | None = None) -> tuple[AgentSetup, ...]:
+        """Returns the setups whose runs the table needs."""
+        chosen = semantics or self.semantics
+        return tuple(AgentSetup.named(agent, chosen) for agent in agents or self.agents)
+
+
+def failures(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns Table I: causes of the failed episodes; `failure` of a line is one of `sim.task.failures.CAUSES`."""
+    rows: list[tuple[str, list[Cell | str]]] = []
+    for cause in CAUSES:
+        rows.append((cause, [_share_of_failures(cause, lines[setup]) for setup in setups]))
+    rows.append(("failed episodes", [_count_of_failures(lines[setup]) for setup in setups]))
+    rows.append(("success %", [SUCCESS.cell(lines[setup]) for setup in setups]))
+    header = ("cause", *(setup.label for setup in setups))
+    causes = ResultTable("failures", "Causes of failure, % of the failed episodes", header, rows)
+    pairs = _against_first(setups)
+    return [
+        causes,
+        ResultTable(
+            "failures_differences",
+            "Episodes that failed by each cause, difference in % of all episodes",
+            ("cause", *(f"{a.label} - {b.label}" for a, b in pairs)),
+            [(cause, [_failed_by(cause, lines[b], lines[a]) for a, b in pairs]) for cause in CAUSES],
+        ),
+    ]
+
+
+def ablation(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns Table III: the effect of each measure against collisions, by adding one measure per row."""
+    names = {agent: row for row, agent in ABLATION.items()}
+    metrics = (TRAPPED, EXPLORED, COLLISIONS, SPL, SUCCESS)
+    pairs = [(b, a) for a, b in itertools.pairwise(setups)]
+    if len(setups) > 2:
+        pairs.append((setups[-1], setups[0]))
+    title = f"Avoiding collisions, {setups[0].semantics} segmentation"
+    return _means_and_differences("ablation", title, lines, setups, pairs, metrics, names)
+
+
+def exploration(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns Table IV: how often the goal was seen, by category."""
+    rows: list[tuple[str, list[Cell | str]]] = [
+        (f"{goal} ({len(some[setups[0]])})", [EXPLORED.cell(some[setup]) for setup in setups])
+        for goal, some in _by_goal(lines)
+    ]
+    rows.append((f"all ({len(lines[setups[0]])})", [EXPLORED.cell(lines[setup]) for setup in setups]))
+    header = ("goal (episodes)", *(setup.name for setup in setups))
+    seen = ResultTable("exploration", "GT exploration, %: the goal covered 0.8 % of a frame", header, rows)
+    pairs = [(a, b) for i, b in enumerate(setups) for a in setups[:i]]
+    return [seen, _differences("exploration", lines, pairs, (EXPLORED, TRAPPED, COLLISIONS), {})]
+
+
+def controls(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns the figure of SemExp: success with the true semantics and goal, and with wrong ones."""
+    metrics = (SUCCESS, SPL, EXPLORED, FIRST_SIGHT)
+    title = f"SemExp and its controls, {setups[0].semantics} segmentation"
+    return _means_and_differences("controls", title, lines, setups, _against_first(setups), metrics, {})
+
+
+def categories(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns Table V: success by category, and the difference of the first setup to each other one."""
+    pairs = _against_first(setups)
+
+    def row(of: Lines) -> list[Cell | str]:
+        return [*(SUCCESS.cell(of[setup]) for setup in setups), *(SUCCESS.difference(of[b], of[a]) for a, b in pairs)]
+
+    rows = [(f"{goal} ({len(some[setups[0]])})", row(some)) for goal, some in _by_goal(lines)]
+    rows.append((f"all ({len(lines[setups[0]])})", row(lines)))
+    header = ("goal (episodes)", *(setup.name for setup in setups), *(_named(pair) for pair in pairs))
+    return [ResultTable("categories", f"Success, %, {setups[0].semantics} segmentation", header, rows)]
+
+
+def overall(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns Table VI: success and SPL of all setups, and the difference of the first to each other one."""
+    metrics = (SUCCESS, SPL, EXPLORED, COLLISIONS, STEPS)
+    return _means_and_differences("overall", "All agents", lines, setups, _against_first(setups), metrics, {})
+
+
+def verification(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns success, SPL and causes of failure with each method of verification."""
+    metrics = (SUCCESS, SPL, TRAPPED, STEPS)
+    title = f"Verification, {setups[0].semantics} segmentation"
+    pairs = _against_first(setups)
+    return _means_and_differences("verification", title, lines, setups, pairs, metrics, {}) + failures(lines, setups)
+
+
+def splits(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns the table of one split: success, collisions and exploration, and each setup minus the first one."""
+    metrics = (SUCCESS, SPL, COLLISIONS, TRAPPED, FIRST_SIGHT, NEVER_SEEN, AREA_PER_METRE)
+    pairs = [(other, first) for first, other in _against_first(setups)]
+    title = f"Agents, {setups[0].semantics} segmentation"
+    means, differences = _means_and_differences("splits", title, lines, setups, pairs, metrics, {})
+    rows = [
+        (name, [replace(cell, say_significant=True) if isinstance(cell, Cell) else cell for cell in cells])
+        for name, cells in differences.rows
+    ]
+    note = "Steps to first sight: restricted mean; an episode that never showed the goal counts with the step limit."
+    return [replace(means, notes=(note,)), replace(differences, rows=rows)]
+
+
+def explorers(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns the tables of `splits`, and one of medians of the time to first sight and their ratio to the first."""
+    first = lines[setups[0]]
+    rows: list[tuple[str, list[Cell | str]]] = [
+        (setup.label, [FIRST_SIGHT.median(lines[setup]), *_against(first, lines[setup])]) for setup in setups
+    ]
+    header = ("agent", "median", f"ratio to {setups[0].name}", "sooner", "later")
+    note = (
+        "Medians of the steps to first sight; an episode that never showed the goal counts with the step limit. Sooner "
+        "and later: episodes."
+    )
+    return [*splits(lines, setups), ResultTable("first_sight", "Time to first sight", header, rows, (note,))]
+
+
+UNVERIFIED = f"stubborn --verification {ACCEPT_ALL}"
+"""The paper's Single-Frame: the same map, and every candidate is accepted."""
+CONTROLS = ("semantics=shuffled", "goal=wrong", "semantics=none")
+"""The controls that show whether a learned explorer uses semantics and the goal (the paper's section on SemExp)."""
+TABLES: Mapping[str, PaperTable] = {
+    "failures": PaperTable(
+        ("stubborn", "semexp --verification none", "cloned", f"cloned --semantics {GROUND_TRUTH}"), "rednet", failures
+    ),
+    "ablation": PaperTable(tuple(ABLATION.values()), GROUND_TRUTH, ablation),
+    "exploration": PaperTable(
+        ("stubborn", "stubborn-i", "semexp", "stubborn-i --explorer semexp", "frontier-avoid"),
+        GROUND_TRUTH,
+        exploration,
+    ),
+    "controls": PaperTable(
+        ("semexp", *(f"semexp --config agent.explorer.{control}" for control in CONTROLS)), GROUND_TRUTH, controls
+    ),
+    "categories": PaperTable(("stubborn", UNVERIFIED), "rednet", categories),
+    "overall": PaperTable(
+        ("stubborn", UNVERIFIED, "stubborn-plus", "semexp --verification none", "poni", "cloned", "random", "oracle"),
+        "rednet",
+        overall,
+    ),
+    "verification": PaperTable(("stubborn", UNVERIFIED, "latest-frame"), "rednet", verification),
+    "splits": PaperTable(
+        ("stubborn", "frontier-avoid", "frontier", *list(ABLATION.values())[:-1], "oracle"), GROUND_TRUTH, splits
+    ),
+    "explorers": PaperTable(
+        (
+            "stubborn",
+            "frontier-avoid",
+            "frontier",
+            "stubborn --explorer tour",
+            "stubborn --explorer informed-tour",
+            "poni",
+            "semexp",
+            *(f"semexp --config agent.explorer.{control}" for control in CONTROLS),
+            "cloned",
+            "random",
+            "oracle",
+        ),
+        GROUND_TRUTH,
+        explorers,
+    ),
+}
+"""The tables by name."""
+PAPER_TABLES = tuple(name for name in TABLES if name not in ("verification", "splits", "explorers"))
+"""The tables that the paper has too; `controls` is its figure of SemExp."""
+
+
+def table_named(name: str) -> PaperTable:
+    """Returns the table with this name.
+
+    Raises:
+        ConfigError: there is no such table.
+    """
+    if name not in TABLES:
+        raise ConfigError(f"There is no table '{name}'. Available: {', '.join(TABLES)}.")
+    return TABLES[name]
+
+
+def _means_and_differences(
+    name: str,
+    title: str,
+    lines: Lines,
+    setups: Sequence[AgentSetup],
+    pairs: Sequence[tuple[AgentSetup, AgentSetup]],
+    metrics: Sequence[Metric],
+    names: Mapping[str, str],
+) -> list[ResultTable]:
+    labels = [f"{names[setup.agent]} {setup.agent}" if _has_own_name(setup, names) else setup.label for setup in setups]
+    cells = [[metric.cell(lines[setup]) for metric in metrics] for setup in setups]
+    rows = list(zip(labels, cells, strict=True))
+    means = ResultTable(name, title, ("agent", *(metric.title for metric in metrics)), rows)
+    return [means, _differences(name, lines, pairs, metrics, names)]
+
+
+def _differences(
+    name: str,
+    lines: Lines,
+    pairs: Iterable[tuple[AgentSetup, AgentSetup]],
+    metrics: Sequence[Metric],
+    names: Mapping[str, str],
+) -> ResultTable:
+    """Returns a table with one row per pair: the first minus the second, in each metric."""
+    rows = [
+        (
+            " - ".join(names[each.agent] if _has_own_name(each, names) else each.label for each in (a, b)),
+            [metric.difference(lines[b], lines[a]) for metric in metrics],
+        )
+        for a, b in pairs
+    ]
+    header = ("agents", *(metric.title for metric in metrics))
+    return ResultTable(f"{name}_differences", "Differences, paired by episode", header, rows)
+
+
+def _has_own_name(setup: AgentSetup, names: Mapping[str, str]) -> bool:
+    """Returns whether an agent is one of those that the table names, without further options."""
+    return setup.agent in names and not setup.variant
+
+
+def _against_first(setups: Sequence[AgentSetup]) -> list[tuple[AgentSetup, AgentSetup]]:
+    return [(setups[0], other) for other in setups[1:]]
+
+
+def _against(first: Sequence[Line], second: Sequence[Line]) -> list[Cell | str]:
+    """Returns the ratio of the median steps to first sight, and how many episodes second has sooner and later."""
+    if first is second:
+        return ["1", "", ""]
+    values = [[metric_value(line, FIRST_SIGHT.key) for line in lines] for lines in (first, second)]
+    changes = [b - a for a, b in zip(*values, strict=True) if a is not None and b is not None]
+    ratio = replace(FIRST_SIGHT.ratio_of_medians(first, second), say_significant=True)
+    return [ratio, str(sum(change < 0.0 for change in changes)), str(sum(change > 0.0 for change in changes))]
+
+
+def _named(pair: tuple[AgentSetup, AgentSetup]) -> str:
+    return f"{pair[0].name} - {pair[1].name}"
+
+
+def _count_of_failures(lines: Sequence[Line]) -> str:
+    return f"{sum(not line['success'] for line in lines)} of {len(lines)}"
+
+
+def _share_of_failures(cause: str, lines: Sequence[Line]) -> Cell:
+    """Returns the share of the failed episodes that failed by this cause."""
+    failed = [line for line in lines if not line["success"]]
+    found = [line["failure"] == cause for line in failed]
+    return Cell(estimate(found, houses_of(failed), episodes=episodes_of(failed), most=1.0), percent=True)
+
+
+def _failed_by(cause: str, first: Sequence[Line], second: Sequence[Line]) -> Cell:
+    """Returns the difference, second minus first, of the share of all episodes that failed by this cause."""
+    a, b = ([line["failure"] == cause for line in lines] for lines in (first, second))
+    found = paired_difference(a, b, houses_of(first), episodes=episodes_of(first), most=1.0)
+    return Cell(found, percent=True, difference=True)
+
+
+def _by_goal(lines: Lines) -> list[tuple[str, Lines]]:
+    """Returns the goals that occur, in the order of the contract, with their lines."""
+    parts = [
+        (goal, {setup: [line for line in of if line["goal"] == goal] for setup, of in lines.items()})
+        for goal in GOAL_CATEGORIES
+    ]
+    return [(goal, part) for goal, part in parts if all(part.values())]

@@ -1,0 +1,82 @@
+"""Run episodes: `stubborn run`, or `stubborn run --agent oracle --episodes 100 --workers 2`."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from sim.app import cli
+from sim.app.analysis import display
+from sim.app.composition.agents import SPECS
+from sim.app.composition.isolation import RUNNER, isolation_of
+from sim.app.composition.options import RunOptions
+from sim.app.evaluation.processes import started_early
+from sim.core.invocation import RUN_STOPPED
+from stubborn.agents import EXPLORERS
+
+Args = RunOptions
+"""The options of this command, under the name that every command has."""
+
+
+def main(options: RunOptions) -> int:
+    """Runs the episodes that the options ask for; returns the exit status."""
+    console = display.make_console()
+    if options.list_agents:
+        console.print(agent_table())
+        return 0
+    apart = isolation_of(options).needed and options.workers == 1 and options.executor == "local"
+    with started_early(RUNNER if apart else None):  # it imports its modules while this process reads the options
+        return _run(options, console)
+
+
+def _run(options: RunOptions, console: Console) -> int:
+    """Runs the episodes; returns the exit status."""
+    from sim.app.composition.environments import episodes_of  # these import MuJoCo, which a list does not need
+    from sim.app.composition.running import report_house, run_missing
+    from sim.app.composition.setup import resolve
+    from sim.app.evaluation.parallel import Shard
+
+    setup = resolve(options)
+    if options.house is None and options.split == "test":
+        print("The split test is for a last measurement: do not base choices on its results.", file=sys.stderr)
+    episodes, split = episodes_of(setup)
+    report_house(options, console)
+    out = options.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S")
+    count = len(episodes)
+    if options.shard is not None:
+        shard = Shard.parse(options.shard)
+        shard.require_own_numbers(out)
+        episodes, out = shard.select(episodes), out / shard.folder
+        if not episodes:
+            console.print(f"Shard {options.shard} holds none of the {display.counted(count, 'episode')}.")
+            return 0
+    setup = replace(setup, options=replace(options, episodes=count, out=out))
+    lines, summary = run_missing(setup, episodes, split, console)
+    display.print_results(console, lines, summary)
+    failures = (line["episode_id"] for line in lines if not line["success"] and options.house is None)
+    display.print_where_to_look(
+        console, out, video=options.video, failed=next(failures, None), sharded=options.shard is not None
+    )
+    return 1 if summary["errors"] else 0
+
+
+def agent_table() -> Table:
+    """Returns the table that `--list-agents` prints: agents with their descriptions, and the explorers."""
+    table = Table("agent", "description", box=None)
+    for name, spec in SPECS.items():
+        table.add_row(name, spec.description)
+    table.add_section()
+    table.add_row("--explorer", "for agents that take one: " + ", ".join(EXPLORERS))
+    return table
+
+
+def entry(argv: Sequence[str] | None = None) -> int:
+    """Runs the command line; returns its exit status."""
+    status = cli.run(RunOptions, main, argv, stopped=RUN_STOPPED)
+    return status if argv is not None else cli.leave_soon(status)

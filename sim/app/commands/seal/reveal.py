@@ -1,0 +1,77 @@
+"""Checks a revealed split against its seal; from a secret, the split is made again first.
+
+    stubborn seal reveal sealed2027.sealed.json --secret-file secret.txt --out sealed2027 --workers 4
+    stubborn seal reveal homes.sealed.json --split homes
+
+The organiser publishes the secret after the deadline. Everybody can then make the split, see that it is the one that
+was sealed, and verify the submissions on it: `stubborn verify FILE --split sealed2027`.
+"""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from sim.app import cli
+from sim.app.commands.seal.make import make_split, require_empty
+from sim.app.submissions.sealing import Seal, digest_of, other_versions, read_seal, read_secret, require_sealed
+from sim.core.errors import ConfigError
+from sim.episodes.splits import Split, load_split
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Check a revealed split against its seal."""
+
+    seal: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="SEAL")]
+    """The published file, NAME.sealed.json."""
+    split: Path | None = None
+    """Folder of the revealed split."""
+    secret_file: Path | None = None
+    """In its place: file with the revealed secret, from which the split is made."""
+    out: cli.OutFolder | None = None
+    """With --secret-file: folder of the split, which has the name in the seal."""
+    workers: cli.Count = 1
+    """Number of processes."""
+
+
+def main(args: Args) -> int:
+    """Checks the split and prints the outcome; returns the exit status."""
+    seal = read_seal(args.seal)
+    if (args.split is None) == (args.secret_file is None):
+        raise ConfigError("Give either --split FOLDER or --secret-file FILE.")
+    if args.split is None:
+        split = _made(args, seal)
+    else:
+        split = load_split(args.split)
+        require_sealed(split, seal)
+    print(f"'{split.name}' is the sealed split: {seal.houses} houses, {seal.episodes} episodes.")
+    if args.split is not None and seal.secret_sha256 is not None:
+        print("Only the secret (--secret-file) shows that its houses were drawn from it.")
+    return 0
+
+
+def _made(args: Args, seal: Seal) -> Split:
+    """Returns the split of the secret; one that is not the sealed one is removed."""
+    assert args.secret_file is not None
+    if seal.secret_sha256 is None:
+        raise ConfigError(f"'{args.seal}' is the seal of houses without a secret: give their folder, --split FOLDER.")
+    if args.out is None or args.out.resolve().name != seal.name:
+        raise ConfigError(f"With --secret-file, give --out with a folder named '{seal.name}', as the seal says.")
+    secret = read_secret(args.secret_file)
+    if digest_of(secret) != seal.secret_sha256:
+        raise ConfigError(f"The secret in '{args.secret_file}' is not the sealed one.")
+    require_empty(args.out)
+    for other in other_versions(seal):
+        print(f"Made with another version: {other}. The houses may differ.", flush=True)
+    try:
+        split = make_split(args.out, secret, houses=seal.houses, episode_count=seal.episodes, workers=args.workers)
+        require_sealed(split, seal)
+    except BaseException:  # Ctrl-C too
+        shutil.rmtree(args.out, ignore_errors=True)
+        raise
+    return split

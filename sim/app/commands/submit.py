@@ -1,0 +1,66 @@
+"""Packs a recorded run into one file, with which anybody can check its results (`stubborn verify`).
+
+    stubborn run --agent process:"python my_agent.py" --split val --episodes 200 --record --out runs/mine
+    stubborn submit runs/mine --name "My agent" --authors "A. Author" --out my_agent.json.gz
+
+The file holds the configuration and the versions of the run, the result line and the actions of each episode, and what
+the options say. It holds no code, no weights and no images.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from sim.app import cli
+from sim.app.analysis.comparison import read_run
+from sim.app.submissions.checks import truth_of
+from sim.app.submissions.contents import SUFFIX, write_submission
+from sim.app.submissions.leaderboard import LEAST_EPISODES
+from sim.app.submissions.packing import About, pack
+from sim.core.errors import ConfigError
+from sim.core.invocation import command
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Pack a recorded run into a submission."""
+
+    run: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="RUN")]
+    """Folder of a run that was made with --record."""
+    name: str
+    """Name of the row in a table: the method."""
+    authors: tuple[str, ...]
+    """Names of the authors."""
+    description: str = ""
+    """How the agent works, and what it was trained on, in one line of at most 2,000 letters."""
+    links: tuple[str, ...] = ()
+    """Addresses (https://...) of a paper or of code."""
+    out: cli.OutFile | None = None
+    """The file, NAME.json.gz; by default next to the run, with its name."""
+
+
+def main(args: Args) -> int:
+    """Writes the submission and prints what it declares; returns the exit status."""
+    out = args.out or args.run.resolve().with_name(args.run.resolve().name + SUFFIX)
+    if not out.name.endswith(SUFFIX):
+        raise ConfigError(f"--out '{out}' must end with {SUFFIX}.")
+    about = About(name=args.name, authors=args.authors, description=args.description, links=args.links)
+    submission = pack(read_run(args.run), about)
+    size = write_submission(out, submission)
+    inputs, count = submission.manifest.inputs, len(submission.episodes)
+    isolated = "in a process of its own" if inputs.isolated else "in the process of the simulator"
+    print(f"{out}: {count} episodes of {submission.manifest.split.name}, {size / 1000:.0f} KB.")
+    segmentation = submission.config_tree(where=str(out)).get("segmentation") or {}
+    semantics = inputs.semantics if segmentation.get("name") else "not used"
+    print(
+        f"Declared: agent '{inputs.agent}' {isolated}; semantics {semantics}; ground truth {truth_of(inputs)}; "
+        f"noise {inputs.noise}."
+    )
+    if count < LEAST_EPISODES:
+        print(f"A leaderboard shows submissions of {LEAST_EPISODES} episodes and more.")
+    print(f"Check it: {command('verify', out)}")
+    return 0

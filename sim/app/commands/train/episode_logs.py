@@ -1,0 +1,213 @@
+"""Logs of whole episodes to which parameters are fitted. A log is continued, and refused for other settings.
+
+A log is a folder with one line per episode. The same command continues it, and more episodes extend it, as long as
+split, code and detector are the same.
+"""
+
+from __future__ import annotations
+
+import functools
+import shlex
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sim.app import cli
+from sim.app.composition.segmenters import KINDS, detector_config, detector_record, find_segmentation
+from sim.app.evaluation.config_fields import differing_fields, field_text
+from sim.app.evaluation.executors import make_executor
+from sim.app.evaluation.own_code import hash_of_own
+from sim.app.evaluation.results import RunDirectory, read_result_lines
+from sim.app.evaluation.workers import RunnerSpec
+from sim.core.interface import ConfigError
+from sim.core.paths import assets_dir, code_hash
+from sim.core.reading import read_json
+from sim.episodes.episode import Episode
+from sim.episodes.splits import Split, load_split
+from sim.training.packages import require_packages
+
+BATCH = 100
+"""Number of episodes that are given to the workers together: a house is loaded once per batch, and a run that is cut
+short is still balanced."""
+COMPARED = ("semantics", "detector", "split_identity")
+"""Entries of the config of a log in which it must be equal when no episode is run."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LogOptions:
+    """The options that all commands with a log of episodes have in common."""
+
+    split: str
+    """A shipped split, or a folder with the same layout (`stubborn episodes`)."""
+    semantics: str = "rednet"
+    """The segmentation whose errors are learned: one of `stubborn run`, also your own, that needs verification."""
+    weights: Path | None = None
+    """With --semantics rednet: weights in place of the shipped ones."""
+    episodes: cli.Count = 100
+    """Number of episodes, the first of the split."""
+    max_steps: cli.Count = 300
+    """Steps of an episode."""
+    workers: cli.Count = 1
+    """Number of processes."""
+    minutes: cli.NotNegative | None = None
+    """Time limit of the episodes; 0 runs none."""
+    judge: bool = False
+    """Fit nothing; judge the existing parameters (--out) on these episodes."""
+    seed: cli.Seed = 0
+    """Seed of the episodes."""
+    shipped: bool = False
+    """In place of --out: write the parameters that ship for this kind of segmentation, or judge them."""
+    log: cli.OutFolder | None = None
+    """Folder of the log; None: a folder in runs, named after the command, --semantics and the split."""
+    out: cli.OutFile | None = None
+    """File of the parameters (JSON)."""
+
+    def command(self, name: str, episodes: int, *more: str) -> str:
+        """Returns the command that gives the same parameters, for the file that holds them.
+
+        It runs the same episodes if the log holds the first ones of the split; --minutes may have left some out.
+
+        Args:
+            name: the last word of the command.
+            episodes: number of episodes in the log, in place of --episodes.
+            more: words of further options.
+        """
+        words = ["--semantics", self.semantics]
+        words += [] if self.weights is None else ["--weights", str(self.weights)]
+        words += ["--split", self.split, "--episodes", str(episodes), "--max-steps", str(self.max_steps), *more]
+        words += ["--seed", str(self.seed), *(["--shipped"] if self.out is None else ["--out", str(self.out)])]
+        return f"stubborn train {name} {shlex.join(words)}"
+
+
+def checked_split(args: LogOptions) -> Split:
+    """Returns the split of the options.
+
+    Raises:
+        ConfigError: the segmentation is exact, the fit is on val or test or a copy of them, there is no such split, or
+            scikit-learn, which fits and judges, is not installed.
+    """
+    require_packages("sklearn")
+    if not find_segmentation(args.semantics, args.weights).spec.needs_verification:
+        kinds = [name for name, kind in KINDS.items() if kind.spec.needs_verification]
+        raise ConfigError(f"--semantics '{args.semantics}' makes no errors to learn. Available: {', '.join(kinds)}.")
+    split = load_split(args.split)
+    if not args.judge and (name := _shipped_for_judging().get(split.sha256)) is not None:
+        raise ConfigError(f"Nothing is fitted on '{name}'; use --judge there.")
+    return split
+
+
+@functools.cache
+def _shipped_for_judging() -> dict[str, str]:
+    """Returns the names of the shipped splits on which nothing is fitted, by checksum."""
+    return {load_split(assets_dir() / name).sha256: name for name in ("val", "test")}
+
+
+def parameters_file(args: LogOptions, folder: Path) -> Path:
+    """Returns the file of the parameters: --out, or with --shipped the shipped file of this kind of segmentation.
+
+    Raises:
+        ConfigError: neither option is given, or nothing ships for this segmentation.
+    """
+    if args.out is not None and args.shipped:
+        raise ConfigError("--out and --shipped exclude each other.")
+    if args.out is not None:
+        return args.out
+    if args.semantics not in KINDS:
+        raise ConfigError(f"--semantics '{args.semantics}' is your own: give --out FILE.")
+    if not args.shipped and not args.judge:
+        raise ConfigError("Give --out FILE for the parameters, or --shipped to replace those that ship.")
+    return folder / f"{args.semantics}.json"
+
+
+def default_log(command: str, args: LogOptions, split: Split) -> Path:
+    """Returns the folder of the log if --log is not given."""
+    return Path("runs") / f"{command}-{args.semantics.replace(':', '.')}-{split.name}"
+
+
+def lines_of(
+    args: LogOptions, split: Split, log: Path, line_type: type, runner: RunnerSpec, nothing: Mapping[str, Any]
+) -> list[dict[str, Any]]:
+    """Returns the lines of the first `args.episodes` episodes, by id; those that are not in the log yet are run now.
+
+    Args:
+        args: with 0 minutes, no episode is run, and the log is read even if its code or seed differs.
+        split: the split of `args`.
+        log: folder of the log.
+        line_type: the fields of a line.
+        runner: runs an episode and returns its line.
+        nothing: content of the line of an episode whose worker died.
+
+    Raises:
+        ConfigError: the log is of another split or of other segmentation.
+    """
+    if args.minutes == 0:
+        _require_log_of(log, log_config(args, split))
+        lines = read_result_lines(log / "results.jsonl", line_type).values
+    else:
+        run = RunDirectory(log, log_config(args, split), line_type)
+        try:
+            _run_episodes(args, split, run, runner, nothing)
+            lines = run.lines
+        finally:
+            run.discard_if_empty()
+            run.close()
+    wanted = {episode.episode_id for episode in split.episodes[: args.episodes]}
+    return sorted((line for line in lines if line["episode_id"] in wanted), key=lambda line: line["episode_id"])
+
+
+def _require_log_of(log: Path, wanted: Mapping[str, Any]) -> None:
+    """Raises ConfigError if a log is not of this split and segmentation."""
+    file = log / "config.json"
+    there = read_json(file, dict[str, Any], what="Config of a log") if file.is_file() else {}
+    for path, actual, asked in differing_fields(there, {key: wanted[key] for key in there if key in wanted}):
+        if path.partition(".")[0] in COMPARED and path != "detector.weights":  # the checksum of the weights counts
+            raise ConfigError(
+                f"Log '{log}' was made with {path} = {field_text(actual)}, this command has {field_text(asked)}; "
+                "take another --log, or the options of that log."
+            )
+
+
+def log_config(args: LogOptions, split: Split) -> dict[str, Any]:
+    """Returns the values that all lines of a log have in common; `RunDirectory` refuses to continue with others.
+
+    The hash of the code is that of the modules without fitted parameters, since the episodes do not use them.
+    """
+    return {
+        "semantics": args.semantics,
+        "detector": detector_record(detector_config(find_segmentation(args.semantics, args.weights), args.weights)),
+        "seed": args.seed,
+        "max_steps": args.max_steps,
+        "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
+        "code": code_hash(parameters=False) + _own_code(args.semantics),
+    }
+
+
+def _own_code(semantics: str) -> str:
+    """Returns "+" and a hash of the code of a user's segmentation; "" for those that ship."""
+    module, separator, _ = semantics.partition(":")
+    return f"+{hash_of_own((module,))}" if separator else ""
+
+
+def line_of(episode: Episode, steps: int, **found: Any) -> dict[str, Any]:
+    """Returns a line of a log; 0 steps: the episode failed."""
+    about = {"episode_id": episode.episode_id, "goal": episode.goal, "house": episode.house}
+    return about | {"steps": steps} | found
+
+
+def _run_episodes(
+    args: LogOptions, split: Split, run: RunDirectory, runner: RunnerSpec, nothing: Mapping[str, Any]
+) -> None:
+    """Runs the episodes that are not in the log yet, until the time is up."""
+    done = {line["episode_id"] for line in run.lines}
+    todo = [episode for episode in split.episodes[: args.episodes] if episode.episode_id not in done]
+    print(f"{len(done)} episodes are in the log {run.path}, {len(todo)} are run now", flush=True)
+    until_s = time.monotonic() + 60.0 * args.minutes if args.minutes is not None else float("inf")
+    executor = make_executor("local", workers=args.workers)
+    for batch in (todo[first : first + BATCH] for first in range(0, len(todo), BATCH)):
+        for line in executor.run(runner, batch, on_death=lambda episode, _: line_of(episode, 0, **nothing)):
+            run.append(line)
+            print(f"[{len(run.lines)}/{len(todo) + len(done)}] {line['episode_id']}", flush=True)
+            if time.monotonic() > until_s:
+                return

@@ -1,0 +1,233 @@
+"""Fits the verifier of a kind of segmentation to candidates that the agent finds in houses of the train split.
+
+    stubborn train verifier --semantics noisy --split train --episodes 2000 --workers 2 --out runs/verifier.json
+    stubborn train verifier --semantics noisy --split val --episodes 200 --judge
+
+The agent runs without stopping. Each candidate that it would verify is logged with its four features, the truth
+(whether a STOP there would succeed) and the robot's position; the agent then continues as if it had rejected the
+candidate. Candidates that are verified from too far away to stop are not logged, since a STOP there always fails.
+After such a rejection, the agent finds the rest of the object again. Therefore, of the true candidates of an episode
+that the robot judged from places within 2 m of each other, only the first counts; the same holds for false candidates.
+
+The log has one line per episode. The same command continues it, and more episodes extend it, as long as split, modules
+and detector are the same. --minutes 0 runs no episode and fits the existing log, even if older code wrote it.
+
+Then the verifier is fitted and written as JSON with the counts and its quality on houses left out
+(`sim.training.fits.verifier`).
+Houses of val and test are for --judge only.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from sim.app import cli
+from sim.app.commands.train.episode_logs import (
+    LogOptions,
+    checked_split,
+    default_log,
+    line_of,
+    lines_of,
+    parameters_file,
+)
+from sim.app.composition.segmenters import find_segmentation, make_segmenter
+from sim.app.evaluation.rollout import episode_seed
+from sim.app.evaluation.workers import RunnerSpec
+from sim.core.errors import EpisodeError, PhysicsError
+from sim.core.files import write_atomically
+from sim.core.interface import Action, ConfigError
+from sim.core.reading import Count as ReadCount
+from sim.core.reading import Name, Number
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.episode import Episode
+from sim.episodes.splits import Split
+from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.detection.classifiers import Features
+from stubborn.detection.distances import TargetConfig
+from stubborn.detection.verification import FOLDER, NAIVE_BAYES, FittedVerifier
+
+NEVER = 1_000_000
+"""A step that no episode reaches."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args(LogOptions):
+    """Log candidates that the agent finds, then fit a verifier to them."""
+
+    split: str = "train"
+    """A shipped split, or a folder with the same layout (`stubborn episodes`)."""
+    semantics: str = "noisy"
+    """The segmentation whose errors are learned: one of `stubborn run`, also your own, that needs verification."""
+    episodes: cli.Count = 400
+    """Number of episodes, the first of the split."""
+    max_steps: cli.Count = 200
+    """Steps of an episode; an agent never verifies what it first finds after step 200."""
+    least_of_either: cli.Count = 20
+    """A category with fewer true or fewer false candidates uses the pooled naive Bayes."""
+
+
+class CandidateLine(msgspec.Struct):
+    """A line of the log."""
+
+    episode_id: Name
+    goal: Name
+    house: Name
+    steps: ReadCount
+    candidates: list[tuple[Number, Number, Number, Number, Number, Number, Number]]
+
+
+class RecordingVerifier:
+    """A verifier that rejects every candidate and records it with the truth.
+
+    Candidates that are verified from too far away to stop (`Approach.near_enough` is False) are not recorded: a STOP
+    fails there at a true instance too, which would be recorded as a false candidate.
+    """
+
+    may_refuse = True
+
+    def __init__(self, env: ObjectNavEnv) -> None:
+        self._env = env
+        self.agent: StubbornAgent | None = None
+        """The agent that asks; None: every candidate is recorded."""
+        self.candidates: list[list[float]] = []
+        """Features; 1 where a STOP would have succeeded, else 0; the robot's x and y in metres."""
+
+    def accepts(self, goal: str, features: Features) -> bool:
+        """Records the candidate and returns False."""
+        approach = None if self.agent is None else self.agent.approach
+        if approach is not None and not approach.near_enough:
+            return False
+        world, task = self._env.scene.world, self._env.scene.task
+        x_m, y_m, floor_z_m = world.pose.x_m, world.pose.y_m, world.pose.floor_z_m
+        truth = task.truth.succeeds_now(goal, x_m, y_m, floor_z_m)
+        self.candidates.append([round(float(value), 4) for value in (*features, truth, x_m, y_m)])
+        return False
+
+    def would_accept(self, goal: str, features: Features) -> bool:
+        """Returns False and records nothing, so that the nearest candidate is visited first."""
+        return False
+
+
+def main(args: Args) -> int:
+    """Runs the episodes, then fits and writes, or judges; returns the exit status."""
+    if args.least_of_either < 2:
+        raise ConfigError(f"--least-of-either must be at least 2, got {args.least_of_either}.")
+    split = checked_split(args)
+    from sim.training.fits.verifier import fit  # it imports scikit-learn
+
+    file = parameters_file(args, FOLDER)
+    lines = candidates_of(args, split)
+    if args.judge:
+        print(judgement(lines, file))
+        return 0
+    about = {"name": split.name, "version": split.version}
+    command = args.command("verifier", len(lines), "--least-of-either", str(args.least_of_either))
+    given = {"semantics": args.semantics, "command": command, "split": about}
+    content = given | fit(lines, args.least_of_either)
+    write_atomically(file, json.dumps(content, indent=1, allow_nan=False) + "\n")
+    report(content)
+    print(f"written: {file}")
+    return 0
+
+
+def candidates_of(args: Args, split: Split) -> list[dict[str, Any]]:
+    """Returns the lines of the first `args.episodes` episodes; those that are not in the log yet are run now."""
+    log = args.log or default_log("verifier", args, split)
+    runner = RunnerSpec(f"{__name__}:{CandidateRunner.__name__}", args)  # a script is `__main__` in its workers too
+    return lines_of(args, split, log, CandidateLine, runner, {"candidates": []})
+
+
+class CandidateRunner:
+    """A runner of `sim.app.evaluation.workers` whose agent records candidates."""
+
+    def __init__(self, args: Args) -> None:
+        self._seed = args.seed
+        spec = find_segmentation(args.semantics, args.weights).spec
+        self._env = ObjectNavEnv(
+            split=args.split, sensors=("depth", *spec.sensors), truth=spec.truth, max_steps=args.max_steps
+        )
+        self._recorder = RecordingVerifier(self._env)
+        self._agent = self._recorder.agent = StubbornAgent(
+            camera=self._env.camera_model,
+            robot=self._env.robot_model,
+            success=self._env.success_rule,
+            segmenter=make_segmenter(args.semantics, self._env, args.weights),
+            verifier=self._recorder,
+            config=AgentConfig(target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER)),
+        )
+
+    def run(self, episode: Episode) -> dict[str, Any]:
+        """Runs one episode to its last step, or until it fails; returns its line."""
+        self._recorder.candidates = []
+        seed = episode_seed(self._seed, episode.episode_id)
+        try:
+            observation, _ = self._env.reset(seed=seed, options={"episode": episode})
+            self._agent.reset(episode.goal, seed)
+            ended = False
+            while not ended:
+                action = self._agent.act(observation)
+                if action == Action.STOP:  # cannot happen: every candidate is rejected
+                    break
+                observation, _, terminated, truncated, _ = self._env.step(action)
+                ended = terminated or truncated
+            steps = self._env.scene.task.num_steps
+        except (EpisodeError, PhysicsError):
+            steps = 0
+        return line_of(episode, steps, candidates=self._recorder.candidates)
+
+    def close(self) -> None:
+        """Frees the renderers."""
+        self._env.close()
+
+
+def report(content: Mapping[str, Any]) -> None:
+    """Prints the counts, and the quality of each method on houses left out."""
+    print(f"{content['episodes']} episodes")
+    own = content["methods"]["naive-bayes"]["categories"]
+    for goal, pair in content["candidates"].items():
+        pooled = "" if goal in own else "  (pooled)"
+        print(f"  {goal:18s} {pair['true']:5d} true {pair['false']:5d} false{pooled}")
+    for method, fitted in content["methods"].items():
+        left_out = dict(fitted["left_out"])
+        rows = left_out.pop("by_probability")
+        print(f"{method}, on houses left out: " + ", ".join(f"{key} {value}" for key, value in left_out.items()))
+        for row in rows:
+            print("  " + ", ".join(f"{key} {value}" for key, value in row.items()))
+
+
+def judgement(lines: Sequence[Mapping[str, Any]], file: Path) -> str:
+    """Returns Markdown tables: the candidates of each category, before and after verification, and the calibration."""
+    from sim.training.fits.verifier import judge_by_category
+
+    header = (
+        "method", "goal", "true", "false", "mean P", "Brier score",
+        "precision before", "precision after", "true accepted", "false rejected",
+    )  # fmt: skip
+    rows = _table_head(header)
+    bins = _table_head(("method", "P from", "to", "candidates", "mean P", "true"))
+    for goal, found in judge_by_category(lines, FittedVerifier.read(file)).items():
+        true = round(found["precision_before"] * found["candidates"])
+        mean = sum(each["candidates"] * each["mean_probability"] for each in found["by_probability"])
+        keys = ("brier", "precision_before", "precision", "true_accepted", "false_rejected")
+        shares = (mean / found["candidates"], *(found[key] for key in keys))
+        cells = " | ".join("-" if share is None else f"{share:.2f}" for share in shares)
+        rows.append(f"| {NAIVE_BAYES} | {goal} | {true} | {found['candidates'] - true} | {cells} |")
+        bins += [_bin_row(NAIVE_BAYES, each) for each in found["by_probability"] if goal == "all"]
+    return "\n".join([*rows, "", *bins])
+
+
+def _table_head(titles: Sequence[str]) -> list[str]:
+    return [f"| {' | '.join(titles)} |", "|---" * len(titles) + "|"]
+
+
+def _bin_row(method: str, one: Mapping[str, Any]) -> str:
+    return (
+        f"| {method} | {one['from']} | {one['to']} | {one['candidates']} | {one['mean_probability']:.2f} | "
+        f"{one['true_share']:.2f} |"
+    )

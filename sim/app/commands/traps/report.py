@@ -1,0 +1,241 @@
+"""Reports which agent escapes from which trap: a table (terminal, Markdown, CSV) and pictures of the paths.
+
+    stubborn traps report --out runs/traps
+
+    stubborn traps report --split contact-val --agents oracle stubborn --out runs/contact
+
+Each agent runs every trap from the start headings of the split. The same command continues an interrupted run, with the
+same split and --max-steps only (`config.json`). A picture shows the trap from above with the robot's true path (blue)
+and the contacts that stopped it (red), and the agent's map at the end.
+Traps of families also get curves with intervals and a picture of each family (`sim.app.commands.traps.family_report`).
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+from collections.abc import Iterator, Sequence, Set
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from sim.app import cli
+from sim.app.analysis import display
+from sim.app.commands.traps.family_report import facts_of, family_grid, require_matplotlib, write_family_report
+from sim.app.commands.traps.grid import grid, markdown_of, table_of
+from sim.app.commands.traps.picture import draw_trial
+from sim.app.commands.traps.trial import Trial, run_trial
+from sim.app.composition.agents import build_agent, find_agent
+from sim.app.composition.options import RunOptions
+from sim.app.composition.record import code_of
+from sim.app.evaluation.config_fields import differing_fields, field_text
+from sim.core.files import open_to_grow, write_atomically, write_together
+from sim.core.files import write_picture as save_picture
+from sim.core.interface import Agent, ConfigError
+from sim.core.reading import Count as ReadCount
+from sim.core.reading import Name, Number, read_json, read_lines
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.episode import Episode
+from sim.episodes.splits import Split, load_split
+from sim.robot.config import PHYSICS_VERSION
+from stubborn.agent import StubbornAgent
+from stubborn.detection.verification import AcceptAll
+from stubborn.drawing import map_painter
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+
+DEFAULT_AGENTS = ("oracle", "stubborn-i", "stubborn-ii", "stubborn-iii", "stubborn-iv", "stubborn-v")
+COLUMNS: tuple[str, ...] = (
+    "trap", "episode_id", "agent", "escaped", "steps", "steps_in_trap", "collisions", "trapped", "spl",
+    "forward_mean_m", "deepest_mm", "fell",
+)  # fmt: skip
+"""Columns of the CSV, which has one row for each episode."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Report which agent escapes from which trap: a table, and pictures of the paths."""
+
+    out: cli.OutFolder
+    """Folder for config.json, results.jsonl, traps.csv, traps.md and pictures/; for traps of families also tables and
+    curves."""
+    split: str = "traps"
+    """The traps: a shipped split, or a folder of yours with episodes (`stubborn episodes --recipe traps`)."""
+    agents: tuple[str, ...] = DEFAULT_AGENTS
+    """Agents of `stubborn run`, also your own as package.module:NAME."""
+    traps: tuple[str, ...] = ()
+    """Names of scenes; all if not given. A wrong name lists them."""
+    headings: cli.Count = 3
+    """Number of start headings of each trap."""
+    max_steps: cli.Count = 500
+    """Largest number of actions of an episode."""
+    pictures: cli.OnUnlessNo = True
+    """Do not draw paths and families; by default, the path of every episode in which the agent did not escape is drawn,
+    and for traps of no family that of the first heading."""
+
+
+def main(args: Args) -> int:
+    """Runs the missing episodes, then writes the table."""
+    console = display.make_console()
+    split = load_split(args.split)
+    episodes, facts = wanted(split, args), facts_of(split)
+    if facts:
+        require_matplotlib()
+    for name in args.agents:
+        find_agent(name)  # a wrong name is refused before anything is written
+    write_or_compare_config(args, split)
+    results = args.out / "results.jsonl"
+    found = read_lines(results, Row, what="Results")
+    if found.torn:
+        console.print(found.torn, markup=False)
+        os.truncate(results, found.whole_bytes)
+    ids = {episode.episode_id for episode in episodes}
+    rows = [row for row in found.values if row["episode_id"] in ids]
+    for name in args.agents:
+        done = {row["episode_id"] for row in rows if row["agent"] == name}
+        for trial in run_trials(args, name, episodes, done):
+            rows.append(row_of(trial))
+            with open_to_grow(results, "a") as file:
+                file.write(json.dumps(rows[-1]) + "\n")
+            outcome = "escaped" if trial.escaped else "stuck"
+            console.print(f"{name} {trial.episode_id}: {outcome} after {len(trial.motions)} steps")
+    write_together({args.out / "traps.csv": as_csv(rows), args.out / "traps.md": markdown_of(*grid(rows))})
+    write_family_report(args.out, rows, args.split, facts, pictures=args.pictures)
+    if facts:
+        of_families = [row for row in rows if row["trap"] in facts]
+        console.print(table_of("successes (95 % interval)", *family_grid(of_families, facts)))
+    else:
+        console.print(table_of("successes (steps in the trap, collisions: medians)", *grid(rows)))
+    return 0
+
+
+def write_or_compare_config(args: Args, split: Split) -> None:
+    """Writes `config.json`, or compares it where there are results.
+
+    Raises:
+        ConfigError: the results are of another split, version of the physics, --max-steps or code of a user's agent.
+    """
+    file = args.out / "config.json"
+    own = {name: code_of(RunOptions(agent=name)).partition("+")[2] for name in args.agents}
+    config: dict[str, Any] = {
+        "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
+        "physics": PHYSICS_VERSION,
+        "max_steps": args.max_steps,
+        "own_code": {name: code for name, code in own.items() if code},
+    }
+    if (args.out / "results.jsonl").exists():
+        before = read_json(file, dict[str, Any], what="Config") if file.exists() else {}
+        known = before.get("own_code", {})
+        of_known = {name: config["own_code"].get(name, code) for name, code in known.items()}
+        for path, was, now in differing_fields(before | {"own_code": known}, config | {"own_code": of_known}):
+            raise ConfigError(
+                f"--out '{args.out}' holds results with {path} = {field_text(was)}, this command has "
+                f"{field_text(now)}; choose another folder."
+            )
+        config["own_code"] = known | config["own_code"]
+    write_atomically(file, json.dumps(config, indent=2) + "\n")
+
+
+class Row(msgspec.Struct):
+    """A line of results.jsonl."""
+
+    trap: Name
+    episode_id: Name
+    agent: Name
+    escaped: bool
+    steps: ReadCount
+    steps_in_trap: ReadCount
+    collisions: ReadCount
+    trapped: bool
+    spl: Number
+    forward_mean_m: Number | None
+    deepest_mm: Number
+    fell: bool = False
+
+
+def run_trials(args: Args, name: str, episodes: Sequence[Episode], done: Set[str]) -> Iterator[Trial]:
+    """Runs an agent in the episodes that are not done, and draws the pictures."""
+    spec = find_agent(name)
+    truth = ("semantic",) if spec.uses_segmentation else ()
+    sensors = tuple(dict.fromkeys((*spec.sensors, *truth)))
+    env = ObjectNavEnv(split=args.split, sensors=sensors, max_steps=args.max_steps)
+    try:
+        agent = make_agent(name, env)
+        others = {
+            each.house: each.episode_id for each in reversed(episodes) if env.split.sidecar(each.house).trap is None
+        }
+        for episode in episodes:
+            if episode.episode_id in done:
+                continue
+            trial = run_trial(env, agent, name, episode)
+            if args.pictures and (others.get(episode.house) == episode.episode_id or not trial.escaped):
+                write_picture(args.out / "pictures", env, agent, trial)
+            yield trial
+    finally:
+        env.close()
+
+
+def write_picture(folder: Path, env: ObjectNavEnv, agent: Agent, trial: Trial) -> None:
+    """Writes the picture of a trial."""
+    belief = map_painter.draw_map(agent, whole=True) if isinstance(agent, StubbornAgent) else None
+    agent_name = trial.agent.replace(":", "-")  # of package.module:NAME; Windows cannot store a colon
+    path = folder / f"{trial.episode_id}_{agent_name}.png"
+    save_picture(path, draw_trial(env, trial, belief))
+
+
+def make_agent(name: str, env: ObjectNavEnv) -> Agent:
+    """Returns the agent of a name, with ground-truth segmentation.
+
+    Raises:
+        ConfigError: there is no such agent.
+    """
+    spec = find_agent(name)
+    return build_agent(name, spec, env, segmenter=GroundTruthSegmenter(), verifier=AcceptAll(), config=spec.config)
+
+
+def wanted(split: Split, args: Args) -> list[Episode]:
+    """Returns the episodes to run, trap by trap.
+
+    Raises:
+        ConfigError: a name of a trap is unknown.
+    """
+    unknown = sorted(set(args.traps) - set(split.houses))
+    if unknown:
+        raise ConfigError(f"No trap '{unknown[0]}'. Available: {', '.join(split.houses)}.")
+    of_trap: dict[str, list[Episode]] = {}
+    for episode in split.episodes:
+        if not args.traps or episode.house in args.traps:
+            of_trap.setdefault(episode.house, []).append(episode)
+    return [episode for episodes in of_trap.values() for episode in episodes[: args.headings]]
+
+
+def row_of(trial: Trial) -> dict[str, Any]:
+    """Returns one episode as a row of the CSV."""
+    forwards_m = trial.forwards_m
+    return {
+        "trap": trial.trap,
+        "episode_id": trial.episode_id,
+        "agent": trial.agent,
+        "escaped": trial.escaped,
+        "steps": len(trial.motions),
+        "steps_in_trap": trial.steps_in_trap,
+        "collisions": int(trial.metrics["collisions"]),
+        "trapped": bool(trial.metrics["trapped"]),
+        "spl": round(float(trial.metrics["spl"]), 3),
+        "forward_mean_m": round(float(np.mean(forwards_m)), 4) if forwards_m else None,
+        "deepest_mm": round(1000 * trial.deepest_m, 2),
+        "fell": trial.metrics["end_reason"] == "fallen",
+    }
+
+
+def as_csv(rows: Sequence[dict[str, Any]]) -> str:
+    """Returns all rows as CSV text."""
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, COLUMNS)
+    writer.writeheader()
+    writer.writerows(rows)
+    return stream.getvalue()

@@ -1,0 +1,112 @@
+"""Runs one agent in one trap and records every step, for `stubborn traps report` and `tests/traps`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from sim.app.evaluation.rollout import episode_seed
+from sim.core.interface import Action, Agent
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.episode import Episode
+from sim.gl import mujoco
+from sim.robot.body import PREFIX
+from sim.robot.contacts import Contact
+from sim.robot.drive import Motion
+
+
+@dataclass
+class Trial:
+    """The record of one episode; positions are in world coordinates, metres."""
+
+    trap: str
+    episode_id: str
+    agent: str
+    metrics: dict[str, Any] = field(default_factory=dict)
+    """Metrics of the task at the end."""
+    positions_m: list[tuple[float, float]] = field(default_factory=list)
+    """Positions of the robot's centre, the start first."""
+    yaws_rad: list[float] = field(default_factory=list)
+    motions: list[Motion] = field(default_factory=list)
+    deepest_m: float = 0.0
+    """Largest penetration of the hull into anything, over all physics steps."""
+    steps_in_trap: int = 0
+    """Actions that began in the trap's zone."""
+
+    @property
+    def escaped(self) -> bool:
+        """Returns whether the goal was found; every trap is on the path to it."""
+        return bool(self.metrics["success"])
+
+    @property
+    def forwards_m(self) -> list[float]:
+        """Displacement of each forward action."""
+        return [motion.displacement_m for motion in self.motions if motion.action == Action.MOVE_FORWARD]
+
+    @property
+    def stops(self) -> list[tuple[int, Contact]]:
+        """Step and contact of every contact that stopped a motion."""
+        return [(i, contact) for i, motion in enumerate(self.motions) for contact in motion.contacts if contact.stopped]
+
+
+class DeepestContact:
+    """A MuJoCo control callback that records the largest penetration of the robot's hull over all physics steps."""
+
+    def __init__(self, hull_geoms: frozenset[int]) -> None:
+        self._hull = hull_geoms
+        self.depth_m = 0.0
+
+    def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        """Updates `depth_m`; MuJoCo calls this in each step."""
+        if data.ncon <= 2:
+            return
+        depths_m = data.contact.includemargin - data.contact.dist
+        for pair, depth_m in zip(data.contact.geom.tolist(), depths_m.tolist(), strict=True):
+            if not self._hull.isdisjoint(pair):
+                self.depth_m = max(self.depth_m, depth_m)
+
+
+def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode, *, seed: int = 0) -> Trial:
+    """Runs one episode of a trap to its end.
+
+    Raises:
+        PhysicsError: the robot fell or tipped over, or the simulation diverged.
+    """
+    trial = Trial(episode.house, episode.episode_id, name)
+    seed = episode_seed(seed, episode.episode_id)
+    observation, info = env.reset(seed=seed, options={"episode": episode})
+    agent.reset(episode.goal, seed)
+    zone = env.split.sidecar(episode.house).zone_m
+    world = env.scene.world
+    hull = frozenset(world.model.geom(f"{PREFIX}{part}_hull").id for part in ("lower", "upper"))
+    deepest = DeepestContact(hull)
+    mujoco.set_mjcb_control(deepest)
+    try:
+        done = False
+        while not done:
+            _record_pose(trial, env)
+            trial.steps_in_trap += zone is not None and _inside(zone, trial.positions_m[-1])
+            observation, _, terminated, truncated, info = env.step(Action(agent.act(observation)))
+            assert env.motion is not None
+            trial.motions.append(env.motion)
+            done = terminated or truncated
+    finally:
+        mujoco.set_mjcb_control(None)
+    _record_pose(trial, env)
+    trial.deepest_m, trial.metrics = deepest.depth_m, info
+    return trial
+
+
+def _record_pose(trial: Trial, env: ObjectNavEnv) -> None:
+    """Appends the pose of the robot to the record."""
+    pose = env.scene.world.pose
+    trial.positions_m.append((pose.x_m, pose.y_m))
+    trial.yaws_rad.append(pose.yaw_rad)
+
+
+def _inside(zone: tuple[float, float, float, float], place_m: tuple[float, float]) -> bool:
+    """Returns whether a point lies in a zone x0, y0, x1, y1."""
+    x0, y0, x1, y1 = zone
+    return bool(np.all([x0 <= place_m[0] <= x1, y0 <= place_m[1] <= y1]))

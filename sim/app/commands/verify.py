@@ -1,0 +1,153 @@
+"""Replays the actions of a submission in physics, without its agent, and says for each episode whether it holds.
+
+    stubborn verify my_agent.json.gz --workers 4
+
+Success, SPL, distances, collisions and the length of the path are recomputed for every episode; for one episode in ten,
+drawn at random, the true frames are rendered too, for the first sight of the goal and the area seen. An episode is
+
+- equal: every number is that of the replay;
+- within tolerance: lengths differ by at most --tolerance-m, because another kind of processor or library rounds
+  differently and contacts amplify it;
+- different: the result does not come from these actions in this house with this robot.
+
+A replay proves what the actions achieve. It does not prove how the agent chose them: what it observed is declared.
+Exit status: 0 if no episode is different, 1 if one is, 2 if the file is refused.
+"""
+
+from __future__ import annotations
+
+import json
+import secrets
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Annotated, Any
+
+import tyro
+
+from sim.app import cli
+from sim.app.analysis.metrics import SPL, SUCCESS
+from sim.app.composition.agents import SPECS
+from sim.app.submissions.checks import truth_of
+from sim.app.submissions.leaderboard import results_of
+from sim.app.submissions.report import report_of
+from sim.app.submissions.verdicts import TOLERANCE_M, Verdict
+from sim.app.submissions.verification import FRAMES, Checked, Choices, check, counts, verdicts
+from sim.core.files import write_atomically
+from sim.core.paths import processor
+from sim.core.reading import printable
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Replay the actions in a submission, and check its results."""
+
+    file: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="FILE")]
+    """The submission, written by `stubborn submit`."""
+    split: Path | None = None
+    """Folder of its split; by default the shipped split of the same name."""
+    frames: cli.Share = FRAMES
+    """Share of the episodes whose true frames are rendered."""
+    draw_seed: cli.Seed | None = None
+    """Draws these episodes; by default a new number, which is printed."""
+    tolerance_m: cli.Positive = TOLERANCE_M
+    """Largest difference of lengths in metres, for files from another kind of processor."""
+    workers: cli.Count = 1
+    """Number of processes."""
+    nonstandard: bool = False
+    """Replay also a run with another robot, camera, task or noise than the standard ones."""
+    report: cli.OutFile | None = None
+    """JSON file for the outcome, which `stubborn leaderboard` reads."""
+
+
+def main(args: Args) -> int:
+    """Verifies the file, prints every episode and a summary; returns the exit status."""
+    choices = Choices(
+        split=args.split,
+        frames=args.frames,
+        draw_seed=secrets.randbits(32) if args.draw_seed is None else args.draw_seed,
+        tolerance_m=args.tolerance_m,
+        workers=args.workers,
+        nonstandard=args.nonstandard,
+    )
+    report = verify(args.file, choices)
+    if args.report is not None:
+        write_atomically(args.report, json.dumps(report, indent=2) + "\n")
+    return int(report["different"] > 0)
+
+
+def verify(file: Path, choices: Choices) -> dict[str, Any]:
+    """Verifies a submission, prints the outcome, and returns it (`sim.app.submissions.report`)."""
+    checked = check(file, choices, truth_of_agents())
+    for line in _head(checked):
+        print(printable(line), flush=True)
+    found: list[Verdict] = []
+    seconds, total = 0.0, len(checked.submission.episodes)
+    for verdict, took_s in verdicts(checked, choices):
+        found.append(verdict)
+        print(printable(f"[{len(found)}/{total}] {_line(verdict)}"), flush=True)
+        seconds += took_s
+    report = report_of(checked, choices, found, seconds)
+    for line in _summary(checked, choices, found, seconds):
+        print(printable(line))
+    return report
+
+
+def truth_of_agents() -> Mapping[str, bool]:
+    """Returns whether each agent that ships uses ground truth."""
+    return {name: spec.uses_ground_truth for name, spec in SPECS.items()}
+
+
+def _head(checked: Checked) -> Iterator[str]:
+    manifest = checked.submission.manifest
+    split = manifest.split
+    yield (
+        f"'{manifest.name}' by {', '.join(manifest.authors) or 'nobody named'}: {checked.covers} of {split.name} "
+        f"{split.version} ({split.sha256[:12]}), seed {manifest.seed}, physics {manifest.physics}."
+    )
+    here = {"processor": processor(), **{name: version(name) for name in ("mujoco", "numpy")}}
+    for name, value in here.items():
+        if manifest.versions.get(name) != value:
+            yield f"Made with {name} {manifest.versions.get(name)}, replayed with {value}: lengths may differ a little."
+    for change in checked.changes:
+        yield f"Not the standard: {change}."
+
+
+def _line(verdict: Verdict) -> str:
+    frames = ", frames too" if verdict.framed else ""
+    return f"{verdict.episode_id}: {verdict.judgement}{frames}{': ' + verdict.text if verdict.text else ''}."
+
+
+def _summary(checked: Checked, choices: Choices, found: list[Verdict], seconds: float) -> Iterator[str]:
+    """Yields the lines after the episodes."""
+    count, inputs = counts(found), checked.submission.manifest.inputs
+    framed = sum(verdict.framed for verdict in found)
+    each = ", ".join(
+        f"{count[name]} {name}" for name in ("equal", "within tolerance", "different", "error") if count[name]
+    )
+    yield (
+        f"{len(found)} episodes: {each}. Frames of {framed} were rendered (--draw-seed {choices.draw_seed}). "
+        f"{_speed(len(found) - count['error'], seconds)}"
+    )
+    lines = results_of(checked.submission)
+    yield f"Success {SUCCESS.cell(lines).text()} %, SPL {SPL.cell(lines).text()} (95 % intervals)."
+    if count["different"]:
+        yield (
+            f"NOT VERIFIED: {count['different']} episodes are different. A tolerance repairs neither success nor "
+            "collisions; ask the authors to run these episodes again."
+        )
+    elif count["error"] == len(found):
+        yield "Nothing was verified: all episodes ended with an error."
+    else:
+        rest = f" {count['error']} episodes ended with an error and have no actions." if count["error"] else ""
+        yield f"Verified: these actions lead to these results.{rest}"
+    yield (
+        f"Declared, and proved by no replay: agent '{inputs.agent}'"
+        f"{' in a process of its own' if inputs.isolated else ', not in a process of its own'}; ground truth "
+        f"{truth_of(inputs)}; sensors {', '.join(inputs.sensors) or 'none'}."
+    )
+
+
+def _speed(episodes: int, seconds: float) -> str:
+    return f"{3600.0 * episodes / seconds:,.0f} episodes an hour a core." if seconds > 0.0 else "Nothing was replayed."

@@ -1,0 +1,174 @@
+"""Watch an agent, or drive the robot, in the browser: run `stubborn web` and open the address that it prints.
+
+On a machine without a display, forward the port: `ssh -L 8008:127.0.0.1:8008 MACHINE`, and open
+http://127.0.0.1:8008 on your own machine.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import logging
+import socket
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from msgspec import Meta
+
+from sim.app import cli
+from sim.app.analysis import display
+from sim.core import invocation
+from sim.core.errors import ConfigError, debug
+from sim.core.reading import printable
+
+if TYPE_CHECKING:
+    from sim.app.web.choices import Offer
+
+HERE = frozenset(("127.0.0.1", "localhost", "::1"))
+"""Names by which this machine addresses itself."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Watch an agent, or drive the robot, in the browser."""
+
+    port: Annotated[int, Meta(ge=0, le=65535)] = 8008
+    """Port of the page; 0 takes a free one."""
+    host: str = "127.0.0.1"
+    """Address to listen on. Every person with access to it can see and drive the robot: there is no password."""
+    name: tuple[str, ...] = ()
+    """Further names or addresses under which browsers reach this machine; needed with --host 0.0.0.0."""
+    agent: tuple[str, ...] = ()
+    """Your agents, as package.module:NAME; the page offers them in addition to those of --list-agents."""
+    explorer: tuple[str, ...] = ()
+    """Your explorers, as package.module:NAME."""
+    semantics: tuple[str, ...] = ()
+    """Your segmentations."""
+    split: tuple[str, ...] = ()
+    """Further splits: folders laid out like one."""
+    house: tuple[Path, ...] = ()
+    """House files, in which episodes are drawn."""
+    labels: Path | None = None
+    """With --house: a JSON file {"regex over names": "category"} for houses that have other names."""
+    root: Path | None = None
+    """With --house: another folder whose files the houses may use, in addition to their own folder."""
+    weights: Path | None = None
+    """Your network in place of the shipped one, for segmentation by rednet."""
+    robot: str | None = None
+    """Replaces the default robot: an MJCF file with its sidecar next to it, or menagerie:NAME (docs/worlds.md)."""
+    seed: cli.Seed = 0
+    """Seed of agents, noise and, with --house, starts and goals."""
+    profile: str = "fast"
+    """Rendering quality: fast or good."""
+    noise: str = "none"
+    """Noise of sensors and drive: none, realsense or harsh."""
+    config: tuple[str, ...] = ()
+    """FIELD=VALUE ...: fields of the configuration, as for a run."""
+    config_file: Path | None = None
+    """A TOML or JSON file of such fields; --config is applied after it."""
+    runs: Path = Path("runs")
+    """Folder of the runs that the page shows; episodes that users drive are recorded there as well."""
+
+
+def main(args: Args) -> int:
+    """Serves the page until it is interrupted; returns the exit status."""
+    missing = [name for name in ("starlette", "uvicorn", "websockets") if importlib.util.find_spec(name) is None]
+    if missing:
+        raise ConfigError(f"{invocation.program()} needs {', '.join(missing)}: pip install -e '.[web]'.")
+    listening = _listen(args.host, args.port)  # before the imports, which take seconds
+    import uvicorn
+
+    from sim.app.web.choices import Choices
+    from sim.app.web.driven import DrivenRuns
+    from sim.app.web.runs import Runs
+    from sim.app.web.server import MAX_MESSAGE_BYTES, Hub, make_app
+
+    choices, folder = Choices(offer(args)), args.runs.absolute()
+
+    port = listening.getsockname()[1]
+    hosts = HERE | {args.host, *args.name} - {"0.0.0.0", "::"}
+    app = make_app(Hub(DrivenRuns(folder)), choices, Runs(folder), hosts=hosts)
+    config = uvicorn.Config(
+        app, log_level="warning", access_log=False, ws_max_size=MAX_MESSAGE_BYTES, timeout_graceful_shutdown=1
+    )
+    for handler in (*logging.getLogger("uvicorn").handlers, logging.lastResort):  # of all loggers, uvicorn's and others
+        if handler is not None:
+            handler.addFilter(in_one_line)
+    names = sorted(hosts - HERE) or ["127.0.0.1"]
+    addresses = ", ".join(f"http://{f'[{name}]' if ':' in name else name}:{port}" for name in names)
+    display.make_console().print(
+        f"Open {addresses} in a browser. Ctrl-C ends the server.", highlight=False, soft_wrap=True
+    )
+    sys.stdout.flush()
+    with contextlib.suppress(KeyboardInterrupt):
+        uvicorn.Server(config).run(sockets=[listening])
+    return 0
+
+
+def in_one_line(record: logging.LogRecord) -> bool:
+    """Replaces the traceback of a log record by the error, unless --debug is given: any client could fill the log."""
+    if record.exc_info and not debug():
+        error = record.exc_info[1]
+        line = " ".join(f"{record.getMessage()} {type(error).__name__}: {error}".split())
+        record.msg, record.args, record.exc_info, record.exc_text = printable(line), (), None, None
+    return True
+
+
+def offer(args: Args) -> Offer:
+    """Returns the parts that the page offers in addition to those that ship.
+
+    Raises:
+        ConfigError: an option contradicts another, or its file or name does not exist.
+    """
+    from sim.app.composition.options import RunOptions
+    from sim.app.composition.setup import resolve
+    from sim.app.web.choices import Offer
+    from sim.robot.foreign import absolute_robot
+
+    if len({file.stem for file in args.house}) < len(args.house):
+        raise ConfigError("--house: two files have the same name; give each house another one.")
+    for_houses = args.labels, args.root
+    if not args.house and for_houses != (None, None):
+        raise ConfigError("--labels and --root need --house.")
+    same = ("weights", "seed", "profile", "noise", "config", "config_file")
+    values = {name: _absolute(getattr(args, name)) for name in same}
+    options = RunOptions(robot=None if args.robot is None else absolute_robot(args.robot), **values)
+    resolve(replace(options, config=(), config_file=None))  # fields of agents depend on the agent
+    return Offer(
+        agents=args.agent,
+        explorers=args.explorer,
+        semantics=args.semantics,
+        splits=args.split,
+        houses=tuple(map(_absolute, args.house)),
+        options=replace(options, labels=_absolute(args.labels), root=_absolute(args.root)),
+    )
+
+
+def _absolute(value: Any) -> Any:
+    """Returns a path as an absolute path, because agents may change the current folder; other values are unchanged."""
+    return value.absolute() if isinstance(value, Path) else value
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    """Returns a listening socket.
+
+    Raises:
+        ConfigError: the address is not one of this machine, or the port is in use.
+    """
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        listening = socket.socket(family, kind, protocol)
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listening.bind(address)
+        listening.listen()
+    except OSError as error:
+        raise ConfigError(f"Cannot listen on {host}, port {port}: {error.strerror or error}.") from None
+    return listening
+
+
+def entry(argv: Sequence[str] | None = None) -> int:
+    """Runs the command line; returns its exit status."""
+    return cli.run(Args, main, argv)

@@ -1,0 +1,186 @@
+"""Finds agents by name: those of `stubborn`, the oracle of `sim`, and your own.
+
+Your own are named `package.module:NAME`, `habitat:package.module:CLASS` if they have Habitat's interface, or
+`process:COMMAND` if they run in another process.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import inspect
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, cast
+
+from sim.app.bridges.process_command import is_process
+from sim.app.composition.imports import import_attribute
+from sim.app.composition.isolation import HABITAT
+from sim.app.evaluation.own_code import place_of, text_of
+from sim.app.evaluation.watch import FACTORY_S, is_stop, marked
+from sim.core.errors import AgentError, ConfigError, ObjectNavError
+from sim.core.interface import Agent, AgentFactory, AgentSpec, Segmenter
+from stubborn import agents
+from stubborn.agent import AgentConfig
+from stubborn.detection.verification import Verifier
+from stubborn.exploration.explorer import ExplorerConfig
+
+if TYPE_CHECKING:  # a list of the agents needs neither MuJoCo nor OpenGL
+    from sim.env.objectnav import ObjectNavEnv
+
+
+def _make_oracle(*, truth: ObjectNavEnv, **_: Any) -> Agent:
+    from sim.env.oracle import Oracle
+
+    return Oracle(truth)
+
+
+SPECS: Mapping[str, AgentSpec] = MappingProxyType(
+    {
+        **agents.SPECS,
+        "oracle": AgentSpec(
+            make=_make_oracle,
+            description="follows the true shortest path; an upper bound",
+            sensors=(),
+            uses_segmentation=False,
+            uses_ground_truth=True,
+        ),
+    }
+)
+"""The agents that `--agent` takes by name."""
+EXPLORERS: Mapping[str, ExplorerConfig] = agents.EXPLORERS
+"""The explorers that `--explorer` takes by name."""
+
+
+def find_agent(name: str) -> AgentSpec:
+    """Returns the specification of an agent.
+
+    Args:
+        name: one of `SPECS`, or `package.module:NAME`, where NAME is an `AgentSpec` or a factory. A plain factory
+            declares nothing, so that its agent gets RGB and depth and no ground truth; the same holds for
+            `process:COMMAND`. After `habitat:`, NAME is a class, a factory or an `AgentSpec` of agents with Habitat's
+            interface (`sim.app.bridges.habitat.agents`).
+
+    Raises:
+        ConfigError: the name is unknown.
+    """
+    if name in SPECS:
+        return SPECS[name]
+    if name.startswith(HABITAT):
+        return _find_habitat_agent(name)
+    if is_process(name):
+        from sim.app.bridges.process import process_spec
+
+        return process_spec(name)
+    module_name, separator, attribute = name.partition(":")
+    if not separator or not attribute:
+        near = difflib.get_close_matches(name, SPECS, n=1)
+        hint = f" Did you mean '{near[0]}'?" if near else ""
+        raise ConfigError(
+            f"Unknown agent '{name}'.{hint} Available: {', '.join(SPECS)}, or your own as package.module:NAME, "
+            "habitat:package.module:CLASS, or in a process of its own as process:COMMAND."
+        )
+    found = import_attribute(name, module_name, attribute)
+    if isinstance(found, AgentSpec):
+        return found
+    if not callable(found):
+        raise ConfigError(f"Agent '{name}' must be an AgentSpec or a factory, got {type(found).__name__}.")
+    return AgentSpec(make=cast(AgentFactory, found), description=(inspect.getdoc(found) or "").partition("\n")[0])
+
+
+def _find_habitat_agent(name: str) -> AgentSpec:
+    """Returns the specification of an agent with Habitat's interface; see `find_agent`."""
+    from sim.app.bridges.habitat import agents as bridge
+    from sim.app.bridges.habitat import stand_in
+
+    module_name, _, attribute = name.removeprefix(HABITAT).partition(":")
+    if not module_name or not attribute:
+        raise ConfigError(f"--agent '{name}' must have the form habitat:package.module:CLASS.")
+    stand_in.install()
+    with bridge.own_command_line():
+        found = import_attribute(name, module_name, attribute, explain=stand_in.lacking)
+    return bridge.spec_of(name, found)
+
+
+def notes_on(name: str) -> tuple[str, ...]:
+    """Returns sentences about an agent after `find_agent`; a run prints them in its header."""
+    if not name.startswith(HABITAT):
+        return ()
+    from sim.app.bridges.habitat import stand_in
+
+    return (stand_in.NOTE,) if stand_in.installed() else ()
+
+
+def find_explorer(name: str) -> ExplorerConfig:
+    """Returns the configuration of an explorer, whose `make` builds it.
+
+    Args:
+        name: one of `stubborn.agents.EXPLORERS`, or `package.module:NAME`, where NAME is such a configuration.
+
+    Raises:
+        ConfigError: there is no such explorer.
+    """
+    if name in agents.EXPLORERS:
+        return agents.EXPLORERS[name]
+    module_name, separator, attribute = name.partition(":")
+    if not separator or not attribute:
+        raise ConfigError(
+            f"Unknown --explorer '{name}'. Available: {', '.join(agents.EXPLORERS)}, or your own as "
+            "package.module:NAME."
+        )
+    found = import_attribute(name, module_name, attribute)
+    if not dataclasses.is_dataclass(found) or isinstance(found, type) or not isinstance(found, ExplorerConfig):
+        raise ConfigError(f"--explorer '{name}' must be a dataclass object with a method make(camera).")
+    return found
+
+
+def takes_explorer(spec: AgentSpec) -> bool:
+    """Returns whether an agent explores with the explorer that `--explorer` names."""
+    return isinstance(spec.config, AgentConfig)
+
+
+def build_agent(
+    name: str,
+    spec: AgentSpec,
+    env: ObjectNavEnv,
+    *,
+    segmenter: Segmenter,
+    verifier: Verifier,
+    config: Any,
+    step_timeout_s: float = 0.0,
+) -> Agent:
+    """Returns a new agent for an environment; `step_timeout_s` limits the time of its calls (0: no limit).
+
+    Raises:
+        ConfigError: the factory does not take the arguments of `sim.core.interface.AgentFactory`.
+    """
+    parts: dict[str, Any] = {
+        "camera": env.camera_model,
+        "robot": env.robot_model,
+        "success": env.success_rule,
+        "segmenter": segmenter,
+        "verifier": verifier,
+        "config": config,
+    }
+    if spec.uses_ground_truth:
+        parts["truth"] = env
+    try:
+        with marked(f"Agent '{name}', its factory", FACTORY_S):
+            return spec.build(name, max_steps=env.task_config.max_steps, step_timeout_s=step_timeout_s, **parts)
+    except BaseException as error:
+        if isinstance(error, ConfigError) and _resets_without_arguments(spec.make):
+            raise ConfigError(
+                f"{error} An agent with Habitat's interface is given as --agent habitat:{name}."
+            ) from None
+        if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
+            raise
+        reason = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
+        raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error
+
+
+def _resets_without_arguments(factory: Any) -> bool:
+    """Returns whether a class has the methods of a Habitat agent, `reset()` and `act(observations)`."""
+    if not inspect.isclass(factory) or not callable(getattr(factory, "act", None)):
+        return False
+    reset = getattr(factory, "reset", None)
+    return inspect.isfunction(reset) and len(inspect.signature(reset).parameters) == 1

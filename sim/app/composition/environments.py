@@ -1,0 +1,152 @@
+"""The environment of a run, and its episodes."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from sim.app.composition.options import RunOptions
+from sim.app.composition.setup import Setup
+from sim.core.errors import ConfigError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.episode import Episode
+from sim.episodes.replicates import with_replicates
+from sim.episodes.splits import Split
+from sim.sensors.noise import get_noise
+from sim.sensors.sensor import Sensor
+
+
+def make_env(setup: Setup, *, sensors: tuple[str | Sensor, ...], truth: tuple[str, ...] = ()) -> ObjectNavEnv:
+    """Returns the environment of a run.
+
+    Args:
+        setup: of the run.
+        sensors: sensors in the observation.
+        truth: further images, without noise, that are rendered.
+    """
+    options, config = setup.options, setup.config
+    return ObjectNavEnv(
+        split=options.split,
+        house=options.house,
+        labels=options.labels,
+        root=options.root,
+        goal=options.goal if options.house is not None else None,
+        start=setup.start,
+        sensors=sensors,
+        truth=truth,
+        profile=config.profile,
+        noise=config.noise,
+        robot=config.robot,
+        camera=config.camera,
+        scan=config.scan,
+        task=config.task,
+    )
+
+
+def episodes_of(setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
+    """Returns the episodes of a run, and what identifies the split or house they come from.
+
+    Raises:
+        ConfigError, EpisodeError, HouseError: the split, house, goal or start does not exist.
+    """
+    options = setup.options
+    env = make_env(setup, sensors=())
+    try:
+        split = env.split
+        if options.house is None:
+            known = known_goals(setup)
+            split_of_agent = replace(split, episodes=tuple(e for e in split.episodes if e.goal in known))
+            if not split_of_agent.episodes:
+                raise ConfigError(
+                    f"Split '{split.name}' has no episode with a goal that the agent knows: {', '.join(known)}."
+                )
+            choose = _named_episodes if options.only else _first_episodes
+            episodes = choose(split_of_agent, options)
+        else:
+            episodes = drawn_episodes(env, setup)
+    finally:
+        env.close()
+    episodes = with_replicates(episodes, options.replicates)
+    return episodes, {"name": split.name, "version": split.version, "sha256": split.sha256}
+
+
+def known_goals(setup: Setup) -> tuple[str, ...]:
+    """Returns the goal categories that the agent of a run knows; it gets no other episodes."""
+    return GOAL_CATEGORIES if setup.spec.goals is None else setup.spec.goals(setup.config.agent)
+
+
+MAX_REPEATS = 60
+"""Number of consecutive draws without a new episode after which the search for further ones ends."""
+
+
+def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
+    """Returns new episodes in the only house of a run; without noise they are all different.
+
+    Raises:
+        ConfigError: there are too few different episodes: start and goal are fixed, or few goals can be reached.
+    """
+    options, (house,) = setup.options, env.split.houses
+    known = known_goals(setup)
+    repeats = setup.config.noise != get_noise("none") or bool(env.split.sidecar(house).noise)
+    found: dict[tuple[str, Pose] | int, Episode] = {}
+    i = last = 0
+    while len(found) < options.episodes and i - last <= MAX_REPEATS:
+        episode = env.draw_episode(np.random.default_rng([options.seed, i]), episode_id=f"{house}_{len(found):04d}")
+        key = i if repeats else (episode.goal, episode.start)
+        i += 1
+        if episode.goal in known and key not in found:
+            found[key], last = episode, i
+    if not found:
+        raise ConfigError(f"House '{house}' has no episode with a goal that the agent knows: {', '.join(known)}.")
+    if len(found) < options.episodes:
+        raise ConfigError(
+            f"House '{house}' has {len(found)} different episode{'' if len(found) == 1 else 's'} with this start and "
+            f"goal, and {options.episodes} were asked for (--episodes, by default {RunOptions.episodes}); give "
+            f"--episodes {len(found)}, or --noise."
+        )
+    return list(found.values())
+
+
+def _named_episodes(split: Split, options: RunOptions) -> list[Episode]:
+    """Returns the episodes that the option `only` names, in the order of the split.
+
+    Raises:
+        ConfigError: the split has no such episode, or it has another goal than the one that the options name.
+    """
+    of_goal = [episode for episode in split.episodes if options.goal in (None, episode.goal)]
+    ids = [episode.episode_id for episode in of_goal]
+    for name in options.only:
+        if name not in ids:
+            near = difflib.get_close_matches(name, ids, n=1)
+            hint = f" Did you mean '{near[0]}'?" if near else ""
+            with_goal = f" with goal '{options.goal}'" if options.goal else ""
+            raise ConfigError(f"--only '{name}': split '{split.name}' has no such episode{with_goal}.{hint}")
+    return [episode for episode in of_goal if episode.episode_id in options.only]
+
+
+def _first_episodes(split: Split, options: RunOptions) -> list[Episode]:
+    """Returns the first episodes of a split, as many as the options ask for, with their goal if they name one.
+
+    Raises:
+        ConfigError: the split has fewer episodes, or no episode with this goal.
+    """
+    goals = [goal for goal in GOAL_CATEGORIES if any(episode.goal == goal for episode in split.episodes)]
+    if options.goal is not None and options.goal not in goals:
+        near = difflib.get_close_matches(options.goal, goals, n=1)
+        hint = f" Did you mean '{near[0]}'?" if near else ""
+        raise ConfigError(
+            f"--goal '{options.goal}': split '{split.name}' has no such episode.{hint} It has: {', '.join(goals)}."
+        )
+    episodes = [episode for episode in split.episodes if options.goal in (None, episode.goal)]
+    if options.episodes > len(episodes):
+        with_goal = f" with goal '{options.goal}'" if options.goal else ""
+        raise ConfigError(
+            f"Split '{split.name}' has {len(episodes)} episodes{with_goal}, and {options.episodes} were asked for "
+            f"(--episodes, by default {RunOptions.episodes}); give --episodes {len(episodes)}."
+        )
+    return episodes[: options.episodes]

@@ -1,0 +1,98 @@
+"""Imports the users' objects that options name as `package.module:NAME`."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+from sim.app.evaluation.own_code import place_of, text_of
+from sim.app.evaluation.watch import FACTORY_S, is_stop
+from sim.core.errors import ConfigError
+
+
+class _TooLong(BaseException):
+    """An import took longer than the limit; it is not an `Exception`, which handlers in the module could catch."""
+
+    def __init__(self, limit_s: float) -> None:
+        super().__init__(f"the import did not end within {limit_s:g} s")
+
+
+@contextlib.contextmanager
+def _limited(limit_s: float) -> Iterator[None]:
+    """Raises `_TooLong` in the `with` block after `limit_s`; only in the main thread, where Python handles signals."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise _TooLong(limit_s)
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, limit_s)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def _require_unhidden() -> None:
+    """Raises ConfigError if the current folder has modules that would hide this project's in spawned workers."""
+    ours = Path(__file__).resolve().parents[3]
+    for name in ("sim", "stubborn"):
+        for file in (Path(f"{name}.py"), Path(name) / "__init__.py"):
+            if file.is_file() and file.resolve() != ours / file:
+                raise ConfigError(
+                    f"Your '{file}' in the current folder would hide the package '{name}' of this project; rename it, "
+                    "or run the command in another folder."
+                )
+
+
+def import_attribute(
+    name: str, module_name: str, attribute: str, explain: Callable[[BaseException], str | None] = lambda error: None
+) -> Any:
+    """Returns an object of a module that is in the current folder or on the path.
+
+    Args:
+        name: as the user gave it, for messages.
+        module_name: dotted name of the module.
+        attribute: name of the object.
+        explain: returns a sentence about an error of the import if it knows the cause, else None.
+
+    Raises:
+        ConfigError: the module cannot be imported, its import does not end within two minutes, or it has no such name.
+    """
+    if "" not in sys.path:
+        _require_unhidden()
+        sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
+    folder = os.getcwd()
+    try:
+        with _limited(FACTORY_S):
+            module = importlib.import_module(module_name)
+    except ModuleNotFoundError as error:
+        if error.name is None or f"{module_name}.".startswith(f"{error.name}."):
+            reason = f"no module '{error.name}' can be imported from here."
+        else:
+            reason = f"it imports '{error.name}', which is not installed{place_of(error, below=__file__)}."
+        reason = explain(error) or reason
+        raise ConfigError(f"'{name}': {reason}") from None
+    except BaseException as error:  # the user's code
+        if is_stop(error):
+            raise
+        place = "" if isinstance(error, SyntaxError) else place_of(error, below=__file__)  # its text names the line
+        reason = explain(error) or f"{type(error).__name__}: {text_of(error)}{place}"
+        raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {reason}") from error
+    finally:
+        os.chdir(folder)  # the options' paths are relative to it
+    try:
+        return vars(module)[attribute]
+    except KeyError:
+        raise ConfigError(f"'{name}': module '{module_name}' has no '{attribute}'.") from None

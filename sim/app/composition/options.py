@@ -1,0 +1,113 @@
+"""The options of `stubborn run`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from sim.app import cli
+from sim.core.errors import ConfigError
+from sim.core.geometry.pose import Pose
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunOptions:
+    """Let an agent look for objects in apartments, and write the results to a folder."""
+
+    agent: str = "stubborn"
+    """The agent: a name of --list-agents, or your own as package.module:NAME (an AgentSpec or a factory),
+    habitat:package.module:CLASS (with Habitat's interface), or in another process as process:COMMAND."""
+    explorer: str | None = None
+    """The explorer of agents that take one: a name of --list-agents, or your own as package.module:NAME."""
+    semantics: str = "rednet"
+    """Source of segmentation: rednet, noisy (ground truth with the errors of a network), gt (ground truth), or your own
+    as package.module:NAME."""
+    weights: Path | None = None
+    """With --semantics rednet: your network in place of the shipped one."""
+    verification: str = "naive-bayes"
+    """Method that verifies candidates: naive-bayes (the paper's) or none."""
+    verifier: Path | None = None
+    """Parameters of verification (`stubborn train verifier`) in place of those shipped for this segmentation."""
+    split: str = "val"
+    """A shipped split, or a folder laid out like one."""
+    house: Path | None = None
+    """One MJCF file in place of a split."""
+    labels: Path | None = None
+    """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
+    root: Path | None = None
+    """With --house: another folder whose files the house may use, in addition to its own folder."""
+    robot: str | None = None
+    """Replaces the default robot: an MJCF file with its sidecar next to it, or menagerie:NAME (docs/worlds.md)."""
+    goal: str | None = None
+    """Only this goal category."""
+    start_deg: str | None = None
+    """With --house: the start pose "X Y YAW" in metres and degrees."""
+    episodes: cli.Count = 5
+    """The first N episodes of the split; with --house, N episodes are sampled."""
+    replicates: cli.Count = 1
+    """Runs of each episode: the first from its start, the others from starts 1 cm away, to see what chance does."""
+    only: tuple[str, ...] = ()
+    """IDs of the episodes of the split to run, in place of the first N: for example a failure that you want to film."""
+    seed: cli.Seed = 0
+    """Seed of agents, noise and, with --house, starts and goals."""
+    seed_key: str | None = None
+    """Key with which agents' seeds are computed from --seed; by default a new one for each run, kept in config.json."""
+    workers: cli.Count = 1
+    """Number of processes, on this machine or over the cluster."""
+    executor: str = "local"
+    """Executor of the episodes: local processes, or ray (extra `ray`), a cluster of machines with the same code."""
+    address: str | None = None
+    """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine belongs to."""
+    shard: str | None = None
+    """i/n, from 1/n to n/n: every n-th episode from the i-th on, into <out>/shard_i_of_n; see `stubborn merge`."""
+    step_timeout: cli.NotNegative | None = None
+    """Longest time of a call of the agent, seconds; a longer call ends its episode as an error. By default it is 600,
+    and your own code runs in a separate process. 0: no limit, and with one worker all code runs in this process."""
+    profile: str = "fast"
+    """Rendering quality: fast or good."""
+    noise: str = "none"
+    """Noise of sensors and drive: none, realsense or harsh."""
+    config: tuple[str, ...] = ()
+    """FIELD=VALUE ...: fields of the configuration, for example task.max_steps=300 agent.planning.dilation_m=0.1."""
+    config_file: Path | None = None
+    """A TOML or JSON file of such fields; --config is applied after it."""
+    out: cli.OutFolder | None = None
+    """Folder of the results (runs/<time>); an existing run there is resumed."""
+    record: bool = False
+    """Write a compact trajectory of each episode (`sim.task.trajectory.read_trajectory`) and its last picture."""
+    video: bool = False
+    """Write an MP4 of each episode to <out>/videos."""
+    view: bool = False
+    """Show the episodes in MuJoCo's viewer while they run."""
+    rerun: bool = False
+    """Stream poses, images, points and map to the Rerun viewer (extra `rerun`)."""
+    rerun_save: bool = False
+    """Write a Rerun file of each episode to <out>/rerun (extra `rerun`)."""
+    mcap: bool = False
+    """Write ROS 2 messages of each episode to an MCAP file in <out>/mcap (extra `ros`)."""
+    retry_errors: bool = False
+    """Run the episodes again that ended with an error in an earlier start of this run."""
+    keep_results: bool = False
+    """Resume although the code of your agent has changed, and keep the results of the earlier code."""
+    list_agents: bool = False
+    """Print the agents with a description of each, and exit."""
+
+
+def start_pose(start_deg: str | None) -> Pose | None:
+    """Returns the pose in the text "X Y YAW" (metres and degrees); None for None.
+
+    Raises:
+        ConfigError: the text does not hold three finite numbers.
+    """
+    if start_deg is None:
+        return None
+    try:
+        x_m, y_m, yaw_deg = (float(word) for word in start_deg.split())
+    except ValueError:
+        raise ConfigError(
+            f'--start-deg must be three numbers "X Y YAW" in metres and degrees, got "{start_deg}".'
+        ) from None
+    if not all(math.isfinite(value) for value in (x_m, y_m, yaw_deg)):
+        raise ConfigError(f'--start-deg must be finite, got "{start_deg}".')
+    return Pose(x_m, y_m, math.radians(yaw_deg))

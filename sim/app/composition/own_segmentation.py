@@ -1,0 +1,221 @@
+"""Users' segmentations (`--semantics package.module:NAME`): each result is checked, so that errors name their cause."""
+
+from __future__ import annotations
+
+import inspect
+import operator
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.app.composition.imports import import_attribute
+from sim.app.evaluation.own_code import place_of, text_of
+from sim.app.evaluation.watch import is_stop
+from sim.core.errors import AgentError, ConfigError, ObjectNavError
+from sim.core.interface import (
+    MPCAT40,
+    MPCAT40_ID,
+    POSE_SENSORS,
+    CameraModel,
+    Observation,
+    Scores,
+    SegmentationSpec,
+    SegmenterSpec,
+)
+
+if TYPE_CHECKING:
+    from sim.env.objectnav import ObjectNavEnv
+
+_METHODS = ("scores", "posteriors", "categories")
+
+
+def load_specification(name: str) -> SegmentationSpec:
+    """Returns the specification of a user's segmentation.
+
+    Args:
+        name: `package.module:NAME`, where NAME is a `SegmentationSpec` or a factory. A factory, such as a class, may
+            have an attribute `spec`, a `SegmenterSpec`, which is its declaration; without it, it reads `rgb` and
+            `depth`.
+
+    Raises:
+        ConfigError: there is no such module or name, or its object has another type.
+    """
+    module_name, _, attribute = name.partition(":")
+    found = import_attribute(name, module_name, attribute)
+    if isinstance(found, SegmentationSpec):
+        return found
+    if not callable(found):
+        raise ConfigError(f"--semantics '{name}' must be a SegmentationSpec or a factory, got {type(found).__name__}.")
+    declared = getattr(found, "spec", None)
+    description = (inspect.getdoc(found) or "").partition("\n")[0]
+    if isinstance(declared, SegmenterSpec):
+        return SegmentationSpec(make=found, spec=declared, description=description)
+    return SegmentationSpec(make=found, description=description)
+
+
+def make_own(name: str, own: SegmentationSpec, env: ObjectNavEnv, config: Any) -> OwnSegmenter:
+    """Returns the segmenter of a specification for an environment.
+
+    Raises:
+        ConfigError: the factory failed, or its object has neither `scores` nor `posteriors`.
+    """
+    given: dict[str, Any] = {"camera": env.camera_model, "config": config}
+    if own.spec.truth:
+        given["truth"] = env
+    return built(name, own, given)
+
+
+def built(name: str, own: SegmentationSpec, given: Mapping[str, Any]) -> OwnSegmenter:
+    """Returns the segmenter that a factory builds; it gets those of the given arguments that it takes.
+
+    Raises:
+        ConfigError: as `make_own`.
+    """
+    try:
+        parameters = inspect.signature(own.make).parameters
+        takes_all = any(each.kind is inspect.Parameter.VAR_KEYWORD for each in parameters.values())
+        segmenter = own.make(**{key: value for key, value in given.items() if takes_all or key in parameters})
+    except BaseException as error:
+        if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
+            raise
+        reason = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
+        raise ConfigError(f"Segmentation '{name}' cannot be built: {reason}") from error
+    if not any(callable(getattr(segmenter, method, None)) for method in _METHODS[:2]):
+        raise ConfigError(f"Segmentation '{name}': {type(segmenter).__name__} has no method scores or posteriors.")
+    return OwnSegmenter(name, segmenter, own.spec, given["camera"])
+
+
+class OwnSegmenter:
+    """A user's segmenter with its declaration: it gets only the sensors that it declares, and its results are checked.
+
+    Each result of a frame is computed once, so that viewers change nothing. If the segmenter has no methods of its own
+    for scores or categories, they are computed from the posteriors.
+    """
+
+    def __init__(self, name: str, segmenter: Any, spec: SegmenterSpec, camera: CameraModel) -> None:
+        self.spec = spec
+        self._name, self._inner = name, segmenter
+        self._methods = {name for name in _METHODS if callable(getattr(segmenter, name, None))}
+        self._shape = camera.height_px, camera.width_px
+        names = [each if isinstance(each, str) else each.name for each in spec.sensors]
+        self._reads = frozenset(("depth", *names, *POSE_SENSORS))
+        self._arrays: tuple[NDArray, ...] = ()
+        """Arrays of the present frame: they identify it, because an agent may put them into another dictionary."""
+        self._done: dict[str, Any] = {}
+        """Results of the present frame by method and goal."""
+
+    @property
+    def names(self) -> bool:
+        """True: it names the category of each pixel."""
+        return not self._methods.isdisjoint(_METHODS[1:])
+
+    def scores(self, observation: Observation, goal: str) -> Scores:
+        """Returns the scores of one frame, float32 (h, w) at any whole fraction of the image's resolution.
+
+        Raises:
+            AgentError: the user's code failed, or returned another type, shape or range.
+        """
+        return self._once(observation, f"scores {goal}", lambda seen: self._scores(observation, seen, goal))
+
+    def posteriors(self, observation: Observation) -> NDArray[np.float32]:
+        """Returns the posteriors of one frame, float32 (40, h, w), at any whole fraction of the image's resolution.
+
+        Raises:
+            AgentError: the user's code failed, returned another type, shape or range, or has no method `posteriors`.
+        """
+        return self._once(observation, "posteriors", self._posteriors)
+
+    def categories(self, observation: Observation) -> NDArray[np.uint8] | None:
+        """Returns the mpcat40 id of each pixel, uint8 (h, w); None: the user's segmenter does not compute them.
+
+        Raises:
+            AgentError: as `posteriors`.
+        """
+        return self._once(observation, "categories", lambda seen: self._categories(observation, seen))
+
+    def _once(self, observation: Observation, key: str, compute: Callable[[Observation], Any]) -> Any:
+        """Returns a result of a frame; it is computed at the first request, from the sensors that are declared."""
+        arrays = tuple(observation.values())
+        if len(arrays) != len(self._arrays) or any(map(operator.is_not, arrays, self._arrays)):
+            self._arrays, self._done = arrays, {}
+        if key not in self._done:
+            seen = {name: value for name, value in observation.items() if name in self._reads}
+            self._done[key] = compute(seen)
+        return self._done[key]
+
+    def _scores(self, observation: Observation, seen: Observation, goal: str) -> Scores:
+        if "scores" not in self._methods:
+            return scores_of(self.posteriors(observation), goal)
+        given = self._ask("scores", lambda: tuple(np.asarray(each) for each in self._inner.scores(seen, goal)))
+        if len(given) != 2 or given[0].shape != given[1].shape:
+            shapes = ", ".join(str(each.shape) for each in given)
+            self._refuse("scores", f"arrays of shapes {shapes}; it returns Scores(target, best_other), both (h, w)")
+        target, best_other = (self._checked("scores", each, ()) for each in given)
+        return Scores(target, best_other)
+
+    def _posteriors(self, seen: Observation) -> NDArray[np.float32]:
+        if "posteriors" not in self._methods:
+            raise AgentError(
+                f"Segmentation '{self._name}' has no method posteriors, which this agent reads in addition to scores."
+            )
+        given = self._ask("posteriors", lambda: np.asarray(self._inner.posteriors(seen)))
+        return self._checked("posteriors", given, (len(MPCAT40) - 1,))
+
+    def _categories(self, observation: Observation, seen: Observation) -> NDArray[np.uint8] | None:
+        if "categories" not in self._methods:
+            if "posteriors" not in self._methods:
+                return None
+            posteriors = self.posteriors(observation)
+            named = (posteriors.argmax(axis=0) + 1).astype(np.uint8)
+            return np.where(posteriors.max(axis=0) > 0.0, named, np.uint8(0))
+        given = self._ask("categories", lambda: np.asarray(self._inner.categories(seen)))
+        self._require_shape("categories", given, ())
+        if given.dtype.kind not in "iu" or not 0 <= given.min() <= given.max() < len(MPCAT40):
+            self._refuse("categories", f"an array of {given.dtype}; it holds mpcat40 ids, integers from 0 to 40")
+        return given.astype(np.uint8)
+
+    def _checked(self, method: str, given: NDArray, before: tuple[int, ...]) -> NDArray[np.float32]:
+        """Returns an array (*before, h, w) as float32 after a check of shape and range."""
+        self._require_shape(method, given, before)
+        if given.dtype.kind not in "fiub":
+            self._refuse(method, f"an array of {given.dtype}; it is float32")
+        low, high = float(given.min()), float(given.max())
+        if not (low >= -1e-3 and high <= 1.001):  # also for nan
+            self._refuse(method, f"numbers from {low:g} to {high:g}; they are probabilities in [0, 1]")
+        return np.clip(given, 0.0, 1.0).astype(np.float32, copy=False)
+
+    def _require_shape(self, method: str, given: NDArray, before: tuple[int, ...]) -> None:
+        """Raises AgentError unless an array is (*before, h, w), with h x w the image's or a whole fraction of it."""
+        height, width = self._shape
+        rows, cols = given.shape[-2:] if given.ndim >= 2 else (0, 0)
+        if given.shape[:-2] != before or not rows or not cols or height % rows or height // rows * cols != width:
+            wanted = ", ".join(map(str, (*before, "h", "w")))
+            self._refuse(
+                method,
+                f"an array of shape {given.shape}; it is ({wanted}) with h x w the image's {height} x {width} or a "
+                "whole fraction of it",
+            )
+
+    def _ask(self, method: str, call: Callable[[], Any]) -> Any:
+        try:
+            return call()
+        except BaseException as error:
+            if is_stop(error):
+                raise
+            reason = f"{type(error).__name__}: {text_of(error)}"
+            place = place_of(error, below=__file__)
+            raise AgentError(f"Segmentation '{self._name}', {method}: {reason}{place}") from error
+
+    def _refuse(self, method: str, what: str) -> NoReturn:
+        raise AgentError(f"Segmentation '{self._name}': {method} returned {what}.")
+
+
+def scores_of(posteriors: NDArray[np.float32], goal: str) -> Scores:
+    """Returns the scores of a goal category, (h, w) each, from posteriors (40, h, w)."""
+    channel = MPCAT40_ID[goal] - 1
+    others = np.maximum(
+        posteriors[:channel].max(axis=0, initial=0.0), posteriors[channel + 1 :].max(axis=0, initial=0.0)
+    )
+    return Scores(posteriors[channel].copy(), others)

@@ -1,0 +1,121 @@
+"""Builds what a run records: `config.json`, versions, and the part of a result line that identifies its episode."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from sim.app.bridges.process_command import files_of, is_file, is_process
+from sim.app.composition.isolation import own_modules
+from sim.app.composition.options import RunOptions
+from sim.app.composition.segmenters import NetworkConfig, file_sha256, precision_of
+from sim.app.composition.setup import Setup
+from sim.app.evaluation.own_code import hash_of_own
+from sim.app.evaluation.rollout import broken_metrics
+from sim.core.configuration import as_json
+from sim.core.paths import code_hash, processor
+from sim.episodes.episode import Episode
+from sim.renderer.opengl import describe_gl
+from sim.robot.config import PHYSICS_VERSION
+from sim.robot.foreign import robot_sha256
+
+NOT_RECORDED = ("list_agents", "retry_errors", "keep_results", "step_timeout", "config", "config_file")
+"""Options that the tree itself records, or that start no run."""
+
+
+def record_of(setup: Setup, split: dict[str, Any]) -> dict[str, Any]:
+    """Returns the content of `config.json`: options, configuration tree, checksums of files, split and versions."""
+    flat = {name: value for name, value in as_json(setup.options).items() if name not in NOT_RECORDED}
+    return flat | {
+        "settings": as_json(setup.settings),
+        "config": as_json(setup.config),
+        "physics": PHYSICS_VERSION,
+        "segmentation": _segmentation_of(setup),
+        "files_sha256": _checksums(setup),
+        "split_identity": split,
+        "versions": versions(setup.options),
+    }
+
+
+def versions(options: RunOptions) -> dict[str, str]:
+    """Returns the versions that a result depends on: packages, processor, GL renderer, and `code_of`."""
+    packages = ("stubborn-objectnav", "mujoco", "numpy")
+    here = {"processor": processor(), "gl_renderer": describe_gl(), "code": code_of(options)}
+    return {name: version(name) for name in packages} | here
+
+
+def code_of(options: RunOptions) -> str:
+    """Returns a hash of the code of a run, such as "3353e768d2c2".
+
+    If an agent, explorer or segmentation is a user's, "+" and a hash of its modules follow, which must be imported
+    already. For an agent in a process of its own, it is a hash of the files that its command names and of the modules
+    that they import from their folder.
+    """
+    own = hash_of_own(own_modules(options), files_of(options.agent) if is_process(options.agent) else ())
+    return f"{code_hash()}+{own}" if own else code_hash()
+
+
+def _checksums(setup: Setup) -> dict[str, str]:
+    """Returns the SHA-256 of the user's or shipped files that the result depends on."""
+    found, config = {}, setup.config
+    if isinstance(config.detector, NetworkConfig):
+        found["weights"] = file_sha256(config.detector.weights)
+    else:
+        found |= {name: file_sha256(file) for name, file in _files_in(config.detector, "detector")}
+    if config.verification.parameters is not None:
+        found["verifier"] = file_sha256(config.verification.parameters)
+    if setup.options.robot is not None:
+        found["robot"] = robot_sha256(setup.options.robot)
+    return found | {name: file_sha256(file) for name, file in _files_in(config.agent, "agent")}
+
+
+def _segmentation_of(setup: Setup) -> dict[str, Any]:
+    """Returns the name of the segmentation that the agent acts on and, if `--semantics` names it, its declaration."""
+    if not setup.spec.uses_segmentation:
+        return {"name": setup.segmentation_name or None}
+    spec, verified = setup.segmentation.spec, not setup.borrowed_parameters
+    declared = as_json(replace(spec, sensors=tuple(x if isinstance(x, str) else x.name for x in spec.sensors)))
+    found = {"name": setup.segmentation_name, **declared, "has_fitted_parameters": verified}
+    precision = precision_of(setup.config.detector)
+    return found if precision is None else found | {"precision": precision}
+
+
+def _files_in(tree: Any, name: str) -> Iterator[tuple[str, Path]]:
+    """Yields path and file of each field of a configuration that names a file, such as weights of an explorer."""
+    if is_dataclass(tree) and not isinstance(tree, type):
+        for field in fields(tree):
+            yield from _files_in(getattr(tree, field.name), f"{name}.{field.name}")
+    elif isinstance(tree, (str, Path)) and Path(tree).suffix and is_file(Path(tree)):
+        yield name, Path(tree)
+
+
+_UNKNOWN = (
+    "distance_to_goal", "trapped", "gt_explored", "first_seen_step", "steps_to_first_sight", "area_seen_m2",
+    "area_per_metre", "stop_confidence", "stop_target_xy_m", "stop_target_to_goal_m", "stop_target_category",
+)  # fmt: skip
+"""Entries that are null in the line of an episode that could not be run to its end."""
+
+
+def error_line(setup: Setup, episode: Episode, error: str) -> dict[str, Any]:
+    """Returns the result line of an episode that could not be run to its end."""
+    counts = dict.fromkeys(("num_steps", "collisions", "touches"), 0)
+    amounts = dict.fromkeys(("path_length", "simulated_s", "wall_time_s", "steps_per_s"), 0.0)
+    found = {**dict.fromkeys(_UNKNOWN), **counts, **amounts, "shortest_path": episode.shortest_path_m}
+    return identity_of(setup, episode) | found | broken_metrics(error)
+
+
+def identity_of(setup: Setup, episode: Episode) -> dict[str, Any]:
+    """Returns the part of a result line that names episode, agent and segmentation."""
+    return {
+        "episode_id": episode.episode_id,
+        "house": episode.house,
+        "goal": episode.goal,
+        "agent": setup.options.agent,
+        "uses_ground_truth": setup.uses_ground_truth,
+        "isolated": is_process(setup.options.agent),
+        "semantics": setup.options.semantics,
+        "seed": setup.options.seed,
+    }

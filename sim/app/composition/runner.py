@@ -1,0 +1,141 @@
+"""Runs the episodes of a worker process with one environment and one agent."""
+
+from __future__ import annotations
+
+import contextlib
+import traceback
+from dataclasses import dataclass
+from typing import Any
+
+from sim.app.composition.agents import build_agent
+from sim.app.composition.environments import make_env
+from sim.app.composition.isolation import step_limit_s
+from sim.app.composition.perception import AskedSegmenter, seen_by
+from sim.app.composition.record import error_line, identity_of, versions
+from sim.app.composition.segmenters import NoSegmentation
+from sim.app.composition.setup import Setup
+from sim.app.evaluation.last_view import write_last_view
+from sim.app.evaluation.own_code import text_of
+from sim.app.evaluation.rollout import agent_seed, episode_seed, play_episode, record_episode
+from sim.app.evaluation.watch import is_stop
+from sim.app.viewers import selection
+from sim.app.viewers.viewer import VIEWER_IMAGES, MapPainter, SeesFrames
+from sim.core.errors import ConfigError, ObjectNavError, RenderError, debug
+from sim.core.interface import Agent, Closable
+from sim.env.memory import give_large_blocks_pages_of_their_own, return_freed_memory
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.episode import Episode
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The environment of a run with the agent that acts in it."""
+
+    env: ObjectNavEnv
+    agent: Agent
+    seen: SeesFrames | None
+    """The segmentation that the agent acts on, if viewers need it; None: it has none."""
+    painter: MapPainter | None
+    """Draws the agent's map; None: it has none."""
+
+
+def build_parts(setup: Setup, *, watched: bool) -> Parts:
+    """Returns environment and agent of a run.
+
+    Args:
+        setup: the setup of the run.
+        watched: whether viewers need all images.
+    """
+    spec, config = setup.spec, setup.config
+    env = make_env(setup, sensors=setup.sensors, truth=setup.truth + VIEWER_IMAGES * watched)
+    segmenter = setup.segmentation.make(env, config.detector) if spec.uses_segmentation else None
+    if segmenter is not None and watched:
+        segmenter = AskedSegmenter(segmenter, setup.segmentation_name)
+    agent = build_agent(
+        setup.options.agent,
+        spec,
+        env,
+        segmenter=segmenter or NoSegmentation(),
+        verifier=setup.verifier,
+        config=config.agent,
+        step_timeout_s=step_limit_s(setup.options),
+    )
+    return Parts(env, agent, seen_by(setup, agent, segmenter), spec.painter(agent) if spec.painter else None)
+
+
+class EpisodeRunner:
+    """Runs episodes in one process; see `sim.app.evaluation.workers`."""
+
+    def __init__(self, setup: Setup) -> None:
+        give_large_blocks_pages_of_their_own()
+        setup = self._setup = setup.with_absolute_paths()  # the agent may change the folder of the process
+        options = self._options = setup.options
+        parts = build_parts(setup, watched=selection.any_selected(options))
+        self._env, self._agent = parts.env, parts.agent
+        setup.require_planned(self._env.split)
+        self._house = ""
+        self._viewers = selection.make(options, parts.painter, parts.seen)
+        self._about = {
+            "profile": options.profile,
+            "noise": options.noise,
+            "split": {"name": self._env.split.name, "version": self._env.split.version},
+            "versions": versions(options),
+        }
+
+    def run(self, episode: Episode) -> dict[str, Any]:
+        """Runs one episode and returns its result line."""
+        return_freed_memory()
+        options = self._options
+        try:
+            self._require_same_house(episode.house)
+            metrics = play_episode(
+                self._env,
+                self._agent,
+                episode,
+                seed=episode_seed(options.seed, episode.episode_id),
+                seed_of_agent=agent_seed(options.seed, episode.episode_id, options.seed_key or ""),
+                viewers=self._viewers,
+                name=options.agent,
+            )
+        except (ConfigError, RenderError, OSError):  # concerns every episode: an option, OpenGL, the disk
+            raise
+        except BaseException as error:  # one bad house, start or agent does not end a run of many
+            if is_stop(error):
+                raise
+            return self._broken(episode, error)
+        line = identity_of(self._setup, episode) | metrics
+        if self._options.record and self._options.out is not None:
+            record_episode(self._env, self._options.out, line, self._about)
+        filmed = self._options.record or self._options.video
+        if filmed and self._options.out is not None and line["end_reason"] != "error":
+            write_last_view(self._env, self._options.out, line["episode_id"])
+        return line
+
+    def _require_same_house(self, house: str) -> None:
+        """Raises HouseError if a file of a house has changed since the run was planned.
+
+        The files are checked each time that the house is loaded.
+        """
+        if house != self._house:
+            self._env.split.require_unchanged(house)
+            self._house = house
+
+    def _broken(self, episode: Episode, error: BaseException) -> dict[str, Any]:
+        """Returns the line of an episode that raised an error; unfinished recordings are discarded."""
+        if debug():
+            traceback.print_exc()
+        for viewer in self._viewers:
+            viewer.close()
+        reason = text_of(error)
+        if not isinstance(error, ObjectNavError):
+            reason = f"{type(error).__name__}: {reason} (unexpected; --debug shows where)"
+        return error_line(self._setup, episode, reason)
+
+    def close(self) -> None:
+        """Frees the renderers and the agent; viewers discard an unfinished recording."""
+        for viewer in self._viewers:
+            viewer.close()
+        if isinstance(self._agent, Closable):
+            with contextlib.suppress(Exception):  # of the user's code
+                self._agent.close()
+        self._env.close()

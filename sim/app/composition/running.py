@@ -1,0 +1,138 @@
+"""Runs the episodes of a run that its folder does not hold yet, and writes their lines."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+from rich.console import Console
+
+from sim.app.analysis import display
+from sim.app.analysis.progress import ProgressReport
+from sim.app.composition.agents import notes_on
+from sim.app.composition.isolation import RUNNER, isolation_of
+from sim.app.composition.options import RunOptions
+from sim.app.composition.record import error_line, record_of
+from sim.app.composition.seed_key import seed_key_of
+from sim.app.composition.setup import Setup
+from sim.app.evaluation.executors import make_executor
+from sim.app.evaluation.results import RunDirectory
+from sim.app.evaluation.workers import RunnerSpec
+from sim.core.geometry.compiling import choose_cache, must_compile
+from sim.episodes.episode import Episode
+from sim.episodes.replicates import with_replicates
+from sim.episodes.splits import load_split
+from sim.houses.load import load_house
+
+
+def run_missing(
+    setup: Setup, episodes: Sequence[Episode], split: dict[str, Any], console: Console
+) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+    """Runs the episodes that the folder of the run, `--out`, does not hold yet.
+
+    Args:
+        setup: of the run; the folder may hold a run with the same options, except for the number of episodes.
+        episodes: those of `episodes_of`, or some of them.
+        split: identity of their source, from `episodes_of`.
+        console: for progress.
+
+    Returns:
+        All lines of the folder, and their summary.
+
+    Raises:
+        ConfigError: the folder cannot be written, or holds a run with another configuration.
+    """
+    options = replace(setup.options, seed_key=seed_key_of(setup.options))
+    assert options.out is not None
+    setup = replace(setup, options=options, planned=split.get("sha256"))
+    executor = make_executor(
+        options.executor, workers=options.workers, address=options.address, isolation=isolation_of(options)
+    )
+    record = record_of(setup, split)
+    run, code = RunDirectory(options.out, record), record["versions"]["code"]
+    try:
+        if run.healed:
+            console.print(run.healed)
+        _require_own_lines(options, run, episodes)
+        again = run.errors([episode.episode_id for episode in episodes]) if options.retry_errors else set()
+        done = {line["episode_id"] for line in run.lines} - again
+        if not options.keep_results:
+            run.require_own_code(code, done)
+        if options.retry_errors:
+            console.print(f"{len(again)} episodes that ended with an error are run again.")
+        todo = [episode for episode in episodes if episode.episode_id not in done]
+        named = setup.segmentation_name
+        segmentation = f" with segmentation by {named}" if named else ""
+        console.print(
+            f"{options.agent}{segmentation}, {display.counted(len(episodes), 'episode')} of {split['name']} "
+            f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
+        )
+        for note in notes_on(options.agent):
+            console.print(note, highlight=False, soft_wrap=True)
+        for note in filter(None, (setup.borrowed_parameters, setup.missing_calibration)):
+            console.print(note, highlight=False, markup=False, soft_wrap=True)
+        _report_resumed(run, len(episodes), len(todo), code, console)
+        if todo and must_compile():
+            console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
+            if (cache := choose_cache()) is not None:
+                console.print(f"Neither the installation nor a home folder can be written: {cache} keeps the result.")
+        spec = RunnerSpec(f"{RUNNER}:EpisodeRunner", setup)
+        progress = ProgressReport(console, total=len(todo), max_steps=setup.config.task.max_steps)
+
+        def lost(episode: Episode, reason: str) -> dict[str, Any]:
+            return error_line(setup, episode, reason)
+
+        def written() -> Iterator[dict[str, Any]]:
+            for line in executor.run(spec, todo, on_death=lost, on_start=progress.started):
+                run.append(line)  # before anything is printed, because printing may fail
+                yield line
+
+        for _ in progress.over(written()) if todo else ():
+            pass
+        return run.lines, run.write_summary({"split": split})
+    finally:
+        run.discard_if_empty()
+        run.close()
+
+
+def _require_own_lines(options: RunOptions, run: RunDirectory, episodes: Sequence[Episode]) -> None:
+    """Raises ConfigError if the folder holds a line of another split, or one that contradicts its episode."""
+    known = {episode.episode_id: (episode.house, episode.goal) for episode in episodes}
+    others = [line for line in run.lines if line["episode_id"] not in known]
+    if others and options.house is None:  # of the same split, but not asked for now
+        every = with_replicates(load_split(options.split).episodes, options.replicates)
+        known |= {each.episode_id: (each.house, each.goal) for each in every}
+    elif options.house is not None:
+        stem = re.escape(options.house.stem)
+        drawn = (line for line in others if re.fullmatch(rf"{stem}_\d{{4,}}(~\d+)?", line["episode_id"]))
+        known |= {line["episode_id"]: (options.house.stem, options.goal or line["goal"]) for line in drawn}
+    run.require_of(known)
+
+
+def report_house(options: RunOptions, console: Console) -> None:
+    """Prints what was left out of a house with `--labels`, and what has no label."""
+    if options.house is not None and options.labels is not None:
+        for note in load_house(options.house, labels_path=options.labels, root=options.root).notes:
+            console.print(f"House '{options.house.stem}': {note}", highlight=False, markup=False, soft_wrap=True)
+
+
+def _report_resumed(run: RunDirectory, total: int, todo: int, code: str, console: Console) -> None:
+    """Prints how many episodes the folder holds already, and whether other code ran them."""
+    if todo < total:
+        console.print(f"{total - todo} of them exist already, {todo} remain.")
+    for name, (before, now) in (run.other_versions() if 0 < todo < total else {}).items():
+        console.print(
+            f"The run began with {name} {before}; these episodes run with {now}, and their results may differ.",
+            highlight=False,
+            markup=False,
+            soft_wrap=True,
+        )
+    others = run.record_code(code) if todo else []
+    if others:
+        console.print(
+            f"The existing episodes were run by other code ({', '.join(others)}) than these ({code}).",
+            highlight=False,
+            soft_wrap=True,
+        )

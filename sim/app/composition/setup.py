@@ -1,0 +1,305 @@
+"""Builds the `Setup` of a run from its options. Every name is looked up here, once, and never again later.
+
+Environment, agent, viewers, results and workers are made from the setup (`sim.app.composition.runner`, `record`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+from sim.app.bridges.process_command import BridgeConfig
+from sim.app.composition.agents import find_agent, find_explorer, takes_explorer
+from sim.app.composition.checks import check_options
+from sim.app.composition.options import RunOptions, start_pose
+from sim.app.composition.segmenters import (
+    NetworkConfig,
+    SegmentationKind,
+    detector_config,
+    find_segmentation,
+    is_calibrated,
+)
+from sim.core.configuration import parse_assignments, read_settings, with_fields
+from sim.core.errors import ConfigError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import TRUE_IMAGES, AgentSpec, CameraModel
+from sim.core.invocation import command
+from sim.episodes.splits import Split
+from sim.renderer.profiles import RenderProfile, get_profile
+from sim.robot.config import RobotConfig
+from sim.robot.foreign import load_robot
+from sim.sensors.noise import NoiseConfig, get_noise
+from sim.sensors.scan import ScanConfig
+from sim.sensors.sensor import Sensor
+from sim.task.config import TaskConfig
+from stubborn.detection.verification import (
+    ACCEPT_ALL,
+    DEFAULT_KIND,
+    FittedVerifier,
+    Verifier,
+    has_parameters,
+    verifier_for,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class VerificationConfig:
+    """Selects how the agent verifies a candidate before it stops."""
+
+    method: str = "naive-bayes"
+    """`naive-bayes` (the paper's) or `none`."""
+    parameters: Path | None = None
+    """File of fitted parameters; None takes those shipped for the kind of segmentation."""
+    least_probability: float | None = None
+    """A candidate is accepted when it is true with a higher probability than this; None: that of the fit, which the
+    configuration of a run holds in its place."""
+
+    def __post_init__(self) -> None:
+        if self.least_probability is not None and not 0.0 <= self.least_probability < 1.0:
+            raise ConfigError(f"VerificationConfig.least_probability must lie in [0, 1), got {self.least_probability}.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunConfig:
+    """The tree that `config.json` records under "config" and whose fields `--config FIELD=VALUE` sets."""
+
+    agent: Any
+    """Configuration of the agent (`AgentSpec.config`); None: it has none."""
+    detector: Any
+    """Configuration of the segmentation (`SegmentationKind.config`); None: it has none."""
+    verification: VerificationConfig
+    robot: RobotConfig
+    camera: CameraModel
+    sensors: tuple[str, ...]
+    """Sensors in the agent's observation, by name: those that agent and segmentation declare."""
+    scan: ScanConfig
+    """The lidar of the sensor `scan`."""
+    profile: RenderProfile
+    noise: NoiseConfig
+    task: TaskConfig
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setup:
+    """Everything that determines the results of a run except episode and seed, looked up once from its options.
+
+    A worker gets it as its options and resolves them again in its own process: agents of users cannot be copied.
+    """
+
+    options: RunOptions
+    spec: AgentSpec
+    """The agent that `options.agent` names."""
+    segmentation: SegmentationKind
+    """The segmentation that `options.semantics` names."""
+    config: RunConfig
+    settings: Mapping[str, Any]
+    """Path and value of each field that the settings file or `--config` sets."""
+    verifier: Verifier
+    start: Pose | None
+    """With `--house`, the start of every episode; None: starts are sampled."""
+    planned: str | None = None
+    """Checksum of the split or house from which the episodes were planned; None: it is not checked."""
+
+    def __reduce__(self) -> tuple[Callable[..., Setup], tuple[Any, ...]]:
+        """Pickles the setup as its options."""
+        return _resolve_planned, (self.options, self.planned)
+
+    def with_absolute_paths(self) -> Setup:
+        """Returns this setup with absolute paths, which stay valid if the current folder changes."""
+        options = self.options
+        named = {name: getattr(options, name) for name in ("out", "house", "labels", "root")}
+        paths = {name: path.absolute() for name, path in named.items() if path is not None}
+        robot = self.config.robot
+        if robot.file is not None:
+            robot = replace(robot, file=replace(robot.file, path=robot.file.path.absolute()))
+        return replace(self, options=replace(options, **paths), config=replace(self.config, robot=robot))
+
+    def require_planned(self, split: Split) -> None:
+        """Raises ConfigError if a split is not the one from which the episodes were planned."""
+        if self.planned not in (None, split.sha256):
+            raise ConfigError(
+                f"The houses or episodes of '{split.name}' have changed since this run was planned; start it again."
+            )
+
+    @property
+    def sensors(self) -> tuple[str | Sensor, ...]:
+        """The sensors of the observation: the agent's own objects, and names of standard sensors."""
+        own = {each.name: each for each in _own_sensors(self.spec, self.segmentation)}
+        return tuple(own.get(name, name) for name in self.config.sensors)
+
+    @property
+    def truth(self) -> tuple[str, ...]:
+        """The true images that the agent's segmentation reads in the environment."""
+        return self.segmentation.spec.truth if self.spec.uses_segmentation else ()
+
+    @property
+    def uses_ground_truth(self) -> bool:
+        """True: the agent, one of its sensors or a user's segmentation declares ground truth.
+
+        The segmentations that ship do not count here, because `semantics` names them.
+        """
+        own = self.segmentation.own if self.spec.uses_segmentation else None
+        return self.spec.uses_ground_truth or (own is not None and own.spec.uses_ground_truth)
+
+    @property
+    def segmentation_name(self) -> str:
+        """Name of the segmentation that the agent acts on, as it is shown to users; "" if it has none."""
+        if not self.spec.uses_segmentation:
+            return self.spec.own_segmentation
+        return "ground truth" if self.options.semantics == "gt" else self.options.semantics
+
+    @property
+    def borrowed_parameters(self) -> str:
+        """A sentence if no parameters are fitted to this kind of segmentation, so that others are used; else ""."""
+        spec, chosen = self.segmentation.spec, self.config.verification
+        if not self.spec.uses_segmentation or not spec.needs_verification or has_parameters(spec.kind):
+            return ""
+        if chosen.parameters is not None or chosen.method == ACCEPT_ALL:
+            return ""
+        return (
+            f"No parameters are fitted to segmentation of kind '{spec.kind}': verification and fusion use those of "
+            f"'{DEFAULT_KIND}' (`{command('train', 'verifier')}` and `{command('train', 'fusion')}` fit your own)."
+        )
+
+    @property
+    def missing_calibration(self) -> str:
+        """A sentence if the network's weights have no calibration; else ""."""
+        detector = self.config.detector
+        if not (self.spec.uses_segmentation and isinstance(detector, NetworkConfig)):
+            return ""
+        if detector.temperature is not None or is_calibrated(detector.weights):
+            return ""
+        return (
+            f"The scores of '{detector.weights}' are not calibrated; verification and fusion misjudge them: "
+            f"`{command('evaluate')} --calibrate` fits and stores a calibration."
+        )
+
+
+def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
+    """Returns the setup of a run: presets by name, then the settings file, then `--config`.
+
+    Args:
+        options: of the run.
+        spec: the agent's specification; None: that of `options.agent`.
+
+    Raises:
+        ConfigError: options contradict each other, a name does not exist, or a value is not allowed.
+    """
+    check_options(options)
+    segmentation = find_segmentation(options.semantics, options.weights)
+    spec = spec or find_agent(options.agent)
+    settings = {} if options.config_file is None else read_settings(options.config_file)
+    settings |= parse_assignments(options.config)
+    config = with_fields(_presets(options, spec, segmentation), settings)
+    if isinstance(spec.config, BridgeConfig):  # its code cannot declare sensors: --config sensors=... does
+        spec = replace(spec, sensors=config.sensors, uses_ground_truth="semantic" in config.sensors)
+    verifier = _verifier(options, segmentation, config.verification)
+    config = replace(config, verification=_with_least_probability(config.verification, verifier))
+    _check_sensors(options, spec, segmentation, config.sensors)
+    return Setup(
+        options=options,
+        spec=spec,
+        segmentation=segmentation,
+        config=config,
+        settings=settings,
+        verifier=verifier,
+        start=start_pose(options.start_deg),
+    )
+
+
+def _resolve_planned(options: RunOptions, planned: str | None) -> Setup:
+    return replace(resolve(options), planned=planned)
+
+
+def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind) -> RunConfig:
+    """Returns the configuration tree before the user's settings."""
+    robot, camera = (RobotConfig(), CameraModel()) if options.robot is None else load_robot(options.robot)
+    return RunConfig(
+        agent=_agent_config(options, spec),
+        detector=detector_config(segmentation, options.weights),
+        verification=VerificationConfig(method=options.verification, parameters=options.verifier),
+        robot=robot,
+        camera=camera,
+        sensors=_sensor_names(spec, segmentation),
+        scan=ScanConfig(),
+        profile=get_profile(options.profile),
+        noise=get_noise(options.noise),
+        task=TaskConfig(),
+    )
+
+
+def _agent_config(options: RunOptions, spec: AgentSpec) -> Any:
+    """Returns the default configuration of the agent, with the explorer of `--explorer`."""
+    if options.explorer is None:
+        return spec.config
+    explorer = find_explorer(options.explorer)
+    if not takes_explorer(spec):
+        raise ConfigError(f"--explorer: agent '{options.agent}' takes no explorer.")
+    return replace(spec.config, explorer=explorer)
+
+
+def _sensor_names(spec: AgentSpec, segmentation: SegmentationKind) -> tuple[str, ...]:
+    """Returns the names of the sensors that an agent and its segmentation declare."""
+    read = (*spec.sensors, *(("depth", *segmentation.spec.sensors) if spec.uses_segmentation else ()))
+    return tuple(dict.fromkeys(each if isinstance(each, str) else each.name for each in read))
+
+
+def _own_sensors(spec: AgentSpec, segmentation: SegmentationKind) -> list[Sensor]:
+    """Returns the sensors of an agent and of its segmentation that are objects, and not names of standard sensors."""
+    read = (*spec.sensors, *(segmentation.spec.sensors if spec.uses_segmentation else ()))
+    return [each for each in read if not isinstance(each, str)]
+
+
+def _check_sensors(
+    options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind, sensors: tuple[str, ...]
+) -> None:
+    """Raises ConfigError if a sensor is missing, or shows the truth to an agent that does not declare it."""
+    missing = [name for name in _sensor_names(spec, segmentation) if name not in sensors]
+    if missing:
+        raise ConfigError(f"sensors: agent '{options.agent}' with {options.semantics} needs {', '.join(missing)}.")
+    own = _own_sensors(spec, segmentation)
+    for each in own:
+        same_name = [other for other in own if other.name == each.name and other is not each]
+        if same_name and same_name[0] != each:
+            raise ConfigError(f"Agent '{options.agent}' and {options.semantics} have two sensors named '{each.name}'.")
+        if not spec.uses_ground_truth and each in spec.sensors and _noise_reads_truth(each):
+            raise ConfigError(
+                f"sensors: the noise of '{each.name}' reads ground truth, and agent '{options.agent}' does not declare "
+                "uses_ground_truth."
+            )
+    if "semantic" in segmentation.spec.sensors and segmentation.own is not None and not spec.uses_ground_truth:
+        raise ConfigError(
+            f"--semantics '{options.semantics}': the sensor 'semantic' is ground truth; declare truth=('semantic',), "
+            "and read it in the environment that the factory gets as `truth`."
+        )
+    if "semantic" in sensors and not spec.uses_ground_truth:
+        raise ConfigError(
+            f"sensors: 'semantic' is ground truth, and agent '{options.agent}' does not declare uses_ground_truth."
+        )
+
+
+def _noise_reads_truth(sensor: Sensor) -> bool:
+    """Returns whether the noise of a sensor is of a user's class and declares true images."""
+    shipped = {type(getattr(NoiseConfig(), each.name)) for each in fields(NoiseConfig)}
+    if sensor.noise is None or type(sensor.noise) in shipped:
+        return False
+    model = sensor.noise.model(CameraModel())
+    return model is not None and not TRUE_IMAGES.isdisjoint(model.images)
+
+
+def _verifier(options: RunOptions, segmentation: SegmentationKind, config: VerificationConfig) -> Verifier:
+    """Returns the verifier of a run; raises ConfigError if there are no such parameters, or no such method."""
+    verifier = verifier_for(segmentation.spec, config.parameters, config.method)
+    if isinstance(verifier, FittedVerifier) and config.least_probability is not None:
+        return replace(verifier, least_probability=config.least_probability)
+    return verifier
+
+
+def _with_least_probability(config: VerificationConfig, verifier: Verifier) -> VerificationConfig:
+    """Returns the configuration with the probability that a candidate needs; that of the fit where none is set."""
+    if config.least_probability is not None:
+        return config
+    fitted = verifier if isinstance(verifier, FittedVerifier) else FittedVerifier
+    return replace(config, least_probability=fitted.least_probability)

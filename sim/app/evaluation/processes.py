@@ -1,0 +1,283 @@
+"""Runs work items in spawned processes of this machine, and ends those that hang or lose their parent."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import importlib
+import io
+import multiprocessing as mp
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from typing import Any
+
+from sim.app.evaluation.watch import TICK_S, Calls, watched_as
+from sim.app.evaluation.workers import ItemRunner, ItemT, OnStart, RunnerSpec, WorkerLost, run_here, run_in_pool
+
+LAST_WORDS_S = 5.0
+"""Longest time in which a process may end with its threads and exit handlers; then it is killed."""
+_PR_SET_PDEATHSIG = 1  # sys/prctl.h
+
+
+@dataclass(frozen=True)
+class Isolation:
+    """Whether items need a process other than this one, and how long a call of the agent may take there."""
+
+    needed: bool = False
+    """True: a single worker is a process of its own, too, which can crash or hang without harm to this process."""
+    limit_s: float = 0.0
+    """Longest time of a call of the agent (`sim.app.evaluation.watch`); 0: no limit."""
+
+
+@dataclass(frozen=True)
+class Processes:
+    """Runs items in processes of this machine, which are spawned, because OpenGL does not survive a fork."""
+
+    workers: int = 1
+    """Number of processes; 1: items are run in this process, unless `isolation` needs another."""
+    isolation: Isolation = Isolation()
+
+    def run(
+        self,
+        spec: RunnerSpec,
+        items: Sequence[ItemT],
+        *,
+        on_death: Callable[[ItemT, str], Any],
+        on_start: OnStart[ItemT] | None = None,
+    ) -> Iterator[Any]:
+        """See `Executor`."""
+        if self.workers == 1 and not self.isolation.needed:
+            yield from run_here(spec, items, on_start=on_start)
+        else:
+            threads = max(1, _processors() // self.workers)
+            pool = ProcessPool(spec, threads=threads, limit_s=self.isolation.limit_s)
+            yield from run_in_pool(pool, items, max_workers=self.workers, on_death=on_death, on_start=on_start)
+
+
+class _Process:
+    """A spawned process with a pipe to it; see `sim.app.evaluation.workers.Worker`.
+
+    Args:
+        threads: see `ProcessPool`.
+        preload: a module that the process imports at its start.
+    """
+
+    def __init__(self, *, threads: int, preload: str) -> None:
+        context = mp.get_context("spawn")
+        self.connection, child_connection = context.Pipe()
+        self.calls = Calls(context, limit_s=0.0)
+        from_main_thread = threading.current_thread() is threading.main_thread()
+        args = (child_connection, self.calls, preload, from_main_thread)
+        self.process = context.Process(target=_worker_main, args=args, daemon=True)
+        with _environment(OMP_NUM_THREADS=str(threads)):  # libraries read this variable when they are imported
+            self.process.start()
+        self.busy = True
+        self.loss = ""
+        """The reason why this process was killed; "" if it was not."""
+        child_connection.close()
+
+    def begin(self, spec: RunnerSpec, *, limit_s: float) -> None:
+        """Sends the process the specification of its runner; it then reports that it is ready."""
+        self.calls.limit_s = limit_s
+        self.calls.rest()
+        self.connection.send(spec)
+
+    def send(self, item: Any) -> None:
+        self.busy = True
+        self.calls.rest()
+        with contextlib.suppress(OSError):  # the process died while it was idle: `receive` finds the pipe closed
+            self.connection.send(item)
+
+    def steps(self) -> int:
+        return self.calls.step_count[0]
+
+    def receive(self) -> Any:
+        try:
+            if self.loss:  # the process was killed, but a process that it forked may keep the pipe open
+                raise EOFError
+            message = self.connection.recv()
+        except Exception:  # the pipe was closed, or a user's code wrote to it
+            where, killed = self.calls.where, self.loss
+            self.end(within_s=LAST_WORDS_S)
+            at = f"{where}: its process" if where else "The process of the worker"
+            loss = killed or f"{at} ended with status {self.process.exitcode}"
+            raise WorkerLost(loss, final=bool(killed)) from None
+        self.busy = False
+        return message
+
+    def is_overdue(self) -> bool:
+        """Kills the process if it has shown no activity for too long; returns whether it was killed."""
+        self.loss = self.loss or (self.calls.overdue() if self.busy else "")
+        if self.loss:
+            self.process.kill()
+        return bool(self.loss)
+
+    def end(self, *, within_s: float) -> None:
+        """Waits for the end of the process, and kills it if its threads and exit handlers do not return."""
+        self.process.join(within_s)
+        if self.process.is_alive():
+            self.process.kill()
+            self.process.join()
+        self.connection.close()
+
+
+_spare: _Process | None = None
+"""A process that was started before its work is known; None: there is none."""
+
+
+@contextlib.contextmanager
+def started_early(preload: str | None) -> Iterator[None]:
+    """Starts one process, which imports a module and is then used by a `ProcessPool` inside the `with` block.
+
+    Args:
+        preload: the module that it imports; None: no process is started.
+    """
+    global _spare
+    _spare = None if preload is None else _Process(threads=_processors(), preload=preload)
+    try:
+        yield
+    finally:
+        unused, _spare = _spare, None
+        if unused is not None:
+            unused.end(within_s=0.0)
+
+
+class ProcessPool:
+    """Starts and stops processes of this machine; see `sim.app.evaluation.workers.WorkerPool`.
+
+    Args:
+        spec: how each process builds its runner.
+        threads: number of threads of NumPy and PyTorch in each process, unless `OMP_NUM_THREADS` is set. Without a
+            limit each process would use all processors, and the processes would wait for each other.
+        limit_s: longest time of a call of the agent; 0: no limit.
+    """
+
+    def __init__(self, spec: RunnerSpec, *, threads: int = 1, limit_s: float = 0.0) -> None:
+        self._spec = spec
+        self._threads = threads
+        self._limit_s = limit_s
+
+    def start(self) -> _Process:
+        """Spawns one process, or takes the one that was started early."""
+        global _spare
+        early, _spare = _spare if self._threads == _processors() else None, None
+        started = early or _Process(threads=self._threads, preload=self._spec.entry.partition(":")[0])
+        with contextlib.suppress(OSError):  # the process died: `receive` finds the pipe closed
+            started.begin(self._spec, limit_s=self._limit_s)
+        return started
+
+    def wait(self, workers: Sequence[_Process]) -> list[_Process]:
+        """Returns the workers that sent a message, closed their pipe, or were killed because they were too slow."""
+        while True:
+            ready = wait([worker.connection for worker in workers], TICK_S if self._limit_s else None)
+            if found := [worker for worker in workers if worker.connection in ready or worker.is_overdue()]:
+                return found
+
+    def stop(self, workers: Sequence[_Process]) -> None:
+        """Terminates busy workers and lets idle ones exit, which may hold a renderer; kills those that do not end."""
+        for worker in workers:
+            worker.process.terminate() if worker.busy else worker.send(None)
+        until_s = time.monotonic() + LAST_WORDS_S
+        for worker in workers:
+            worker.end(within_s=max(0.0, until_s - time.monotonic()))
+
+
+class Supervisor:
+    """Runs items in one process of its own, for the actor of a cluster; see `sim.app.evaluation.workers.ItemRunner`.
+
+    Args:
+        spec: how the process builds its runner.
+        limit_s: longest time of a call of the agent; 0: no limit.
+    """
+
+    def __init__(self, spec: RunnerSpec, *, limit_s: float) -> None:
+        self._pool = ProcessPool(spec, limit_s=limit_s)
+        self._process: _Process | None = None
+
+    def run(self, item: Any) -> Any:
+        """Returns the item's line, the exception that it raised, or a `WorkerLost` if the process ended."""
+        try:
+            if self._process is None:
+                self._process = self._pool.start()
+                self._answer(self._process)
+            self._process.send(item)
+            return self._answer(self._process)
+        except WorkerLost as loss:
+            self._process = None
+            return loss
+
+    def close(self) -> None:
+        """Ends the process."""
+        if self._process is not None:
+            self._pool.stop([self._process])
+            self._process = None
+
+    def _answer(self, process: _Process) -> Any:
+        self._pool.wait([process])
+        return process.receive()
+
+
+def _processors() -> int:
+    """Returns the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextlib.contextmanager
+def _environment(**defaults: str) -> Iterator[None]:
+    """Adds variables that are not set to the environment of the processes started inside the block."""
+    added = [name for name in defaults if name not in os.environ]
+    os.environ.update({name: defaults[name] for name in added})
+    try:
+        yield
+    finally:
+        for name in added:
+            del os.environ[name]
+
+
+def _end_with_parent(*, by_kernel: bool) -> None:
+    """Ends this worker as soon as the process that started it has ended, even in the middle of an episode.
+
+    A thread waits for that end. A worker that was stopped (SIGSTOP) runs no thread; on Linux the kernel kills it.
+
+    Args:
+        by_kernel: whether the kernel may kill the worker. It does so as soon as the thread that started it has ended.
+    """
+    if by_kernel:
+        with contextlib.suppress(OSError, AttributeError):  # not Linux
+            ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    parent = mp.parent_process()
+
+    def watch() -> None:
+        if parent is not None:
+            wait([parent.sentinel])
+            os._exit(1)
+
+    threading.Thread(target=watch, daemon=True, name="parent").start()
+
+
+def _worker_main(connection: Connection, calls: Calls, preload: str, from_main_thread: bool) -> None:
+    """Reports that the worker is ready and runs items until None arrives or the parent process has ended."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes; the parent process ends the workers
+    _end_with_parent(by_kernel=from_main_thread)
+    watched_as(calls)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(line_buffering=True)  # an agent's output is not lost if the process is killed
+    with contextlib.suppress(Exception):  # `ItemRunner` reports the error
+        importlib.import_module(preload)
+    runner: ItemRunner | None = None
+    try:
+        runner = ItemRunner(connection.recv())
+        connection.send(None)
+        while (item := connection.recv()) is not None:
+            connection.send(runner.run(item))
+    except (EOFError, OSError):
+        return
+    finally:
+        if runner is not None:
+            runner.close()

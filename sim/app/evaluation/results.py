@@ -1,0 +1,496 @@
+"""The files of a run: `config.json`, `results.jsonl` (one line per episode) and `summary.json`.
+
+One process writes each line to the disk as its episode ends. A killed run leaves at most one incomplete line, the last,
+which is removed when the run is resumed.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import hashlib
+import json
+import math
+import os
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Annotated, Any, Literal
+
+import msgspec
+
+from sim.app.evaluation.config_fields import ABSENT, differing_fields, field_text, is_same_file
+from sim.app.evaluation.intervals import estimate, replicate_spread
+from sim.core.errors import ConfigError
+from sim.core.files import open_to_grow, write_atomically
+from sim.core.reading import (  # fmt: skip
+    MAX_LINES_BYTES,
+    Count,
+    Lines,
+    Name,
+    Number,
+    Seed,
+    convert,
+    read_bytes,
+    read_json,
+    read_lines,
+    reason_of,
+    sha256_of,
+)
+from sim.episodes.replicates import episode_of, replicate_number
+
+SUMMARY_METRICS = (
+    "success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "never_seen", "steps_to_first_sight",
+    "area_seen_m2", "area_per_metre", "trapped", "collisions",
+)  # fmt: skip
+"""Metrics (`metric_value`) that the summary averages."""
+OF_ERRORS = ("success", "spl", "soft_spl")
+"""Metrics in which an episode that ended with an error counts."""
+AT_MOST_ONE = frozenset({"success", "spl", "soft_spl", "gt_explored", "never_seen", "trapped"})
+"""Metrics between 0 and 1."""
+OVER_HOUSES, OVER_ONE_HOUSE = "houses", "the episodes of the one house"
+"""The units over which the intervals of a summary are taken."""
+PLACEMENT_OPTIONS = ("executor", "address", "shard")
+"""Options that say where episodes are run; they change no result."""
+VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save", "mcap")
+"""Options that start viewers; they change no result."""
+WITHOUT_EFFECT = frozenset({"workers", "out", "record", "seed_key", *PLACEMENT_OPTIONS, *VIEWER_OPTIONS})
+"""Entries of the config that change no result, or that are random in each run (`seed_key`)."""
+NOT_COMPARED = WITHOUT_EFFECT | {"versions", "codes", "episodes", "only", "settings", "segmentation"}
+"""Entries of the config in which a resumed run may differ; with more episodes it runs the additional ones.
+
+`settings` are the assignments of the command line; only the tree that results from them, `config`, has to be equal.
+`segmentation` follows from `semantics` and the code.
+"""
+
+
+IDENTITY = ("agent", "semantics", "seed")
+"""Keys that a line and the config of its run have in common, with equal values."""
+Measured = Number | bool | None
+
+
+class ResultLine(msgspec.Struct):
+    """The fields of a line of `results.jsonl` that are read; fields that older versions do not write have a default."""
+
+    episode_id: Name
+    house: Name
+    goal: Name
+    end_reason: Literal["stop", "max_steps", "fallen", "error"]
+    success: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] | bool
+    agent: str = ""
+    semantics: str = ""
+    seed: Seed = 0
+    failure: str | None = None
+    error: str | None = None
+    spl: Measured = None
+    soft_spl: Measured = None
+    distance_to_goal: Measured = None
+    num_steps: Count | None = None
+    path_length: Measured = None
+    shortest_path: Measured = None
+    collisions: Measured = None
+    gt_explored: Measured = None
+    first_seen_step: Measured = None
+    steps_to_first_sight: Measured = None
+    area_seen_m2: Measured = None
+    area_per_metre: float | None = None  # not bounded: older runs divided by path lengths near 0
+    trapped: Measured = None
+    simulated_s: Measured = None
+    stop_confidence: Measured = None
+    stop_target_xy_m: tuple[Number, Number] | None = None
+    stop_target_to_goal_m: Measured = None
+    stop_target_category: str | None = None
+    wall_time_s: Measured = None
+    steps_per_s: Measured = None
+
+
+_NOT_WRITTEN = {
+    name: None
+    for name in ResultLine.__struct_fields__[-len(ResultLine.__struct_defaults__) :]
+    if name not in (*IDENTITY, "error")
+}
+"""Fields that a line may lack, which readers then find as None."""
+
+
+class SplitIdentity(msgspec.Struct):
+    """The fields that identify the source of a run's episodes."""
+
+    name: Name
+    version: str = ""
+    sha256: str = ""
+
+
+class RunRecord(msgspec.Struct):
+    """The parts of `config.json` that are read; a run of an older version may lack any of them."""
+
+    agent: str | None = None
+    semantics: str | None = None
+    split: str | None = None
+    house: str | None = None
+    labels: str | None = None
+    root: str | None = None
+    robot: str | None = None
+    weights: str | None = None
+    goal: str | None = None
+    noise: str | None = None
+    seed: Seed | None = None
+    seed_key: str | None = None
+    episodes: Count | None = None
+    split_identity: SplitIdentity | None = None
+    versions: dict[str, str] = {}
+    codes: list[str] | None = None
+    config: dict[str, Any] = {}
+    physics: Count | None = None
+    files_sha256: dict[str, str] = {}
+
+
+@dataclass
+class RunDirectory:
+    """The folder of one run, locked against a second writer while it is open."""
+
+    path: Path
+    config: Mapping[str, Any]
+    line_type: type = ResultLine
+    """Type of the lines."""
+
+    def __post_init__(self) -> None:
+        self.path = self.path.absolute()  # an agent may change the current folder
+        self._file = self.path / "results.jsonl"
+        existed = self.path.exists()
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            self._lock: IO[bytes] = open_to_grow(self.path / ".lock", "ab")
+        except OSError as error:
+            raise ConfigError(f"Cannot write to --out '{self.path}': {reason_of(error)}.") from None
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise ConfigError(f"Another process is writing to --out '{self.path}'.") from None
+        self._folder_existed, self._made_config = existed, False
+        self.healed = ""
+        """A sentence on an incomplete last line that was removed; "" if every line was complete."""
+        try:
+            self._write_or_compare_config()
+            self.lines: list[dict[str, Any]] = self._read_and_heal()
+            self._places = {line["episode_id"]: place for place, line in enumerate(self.lines)}
+            self._open(self._content())
+        except BaseException:
+            self._lock.close()
+            raise
+
+    def discard_if_empty(self) -> None:
+        """Removes what this process made if no line was written, so that the next start may have other options."""
+        if self.lines or not self._made_config:
+            return
+        for file in ("config.json", "results.jsonl", "summary.json", ".lock"):
+            (self.path / file).unlink(missing_ok=True)
+        for folder in (self.path / "videos", *(() if self._folder_existed else (self.path,))):
+            with contextlib.suppress(OSError):  # it does not exist, or holds other files
+                folder.rmdir()
+
+    def errors(self, episode_ids: Collection[str]) -> set[str]:
+        """Returns the ids of the given episodes whose line is an error; `append` replaces such a line."""
+        return {line["episode_id"] for line in self.lines if line.get("end_reason") == "error"} & set(episode_ids)
+
+    def require_own_code(self, code: str, kept: Collection[str]) -> None:
+        """Raises ConfigError if the user's code has changed since it ran the episodes that are kept.
+
+        Args:
+            code: a hash of this project's code, "+" and a hash of the user's code; without "+" there is no user's code.
+            kept: ids of the episodes.
+        """
+        if not kept:
+            return
+        existing = read_record(self.path / "config.json")
+        codes = existing.get("codes") or [existing.get("versions", {}).get("code", "")]
+        before = [each.partition("+")[2] for each in codes if each]
+        now = code.partition("+")[2]
+        if now and all(before) and before and now not in before:
+            number = f"{len(kept)} episode" + "s" * (len(kept) != 1)
+            raise ConfigError(
+                f"Your code ({self.config.get('agent')}) has changed since it ran {number} in --out '{self.path}' "
+                f"(code {before[-1]}, now {now}). To run all episodes with the new code, give another --out; to keep "
+                "these results and run only the missing episodes with the new code, add --keep-results."
+            )
+
+    def require_of(self, episodes: Mapping[str, tuple[str, str]]) -> None:
+        """Raises ConfigError if a line belongs to no episode, or to one with another house or goal.
+
+        Args:
+            episodes: house and goal by id.
+        """
+        for number, line in enumerate(self.lines, start=1):
+            where = f"Results '{self.path / 'results.jsonl'}', line {number}"
+            house, goal = episodes.get(line["episode_id"], (None, None))
+            if house is None:
+                raise ConfigError(
+                    f"{where}: '{line['episode_id']}' is not an episode of this run; choose another folder."
+                )
+            for key, wanted in (("house", house), ("goal", goal)):
+                if line[key] != wanted:
+                    raise ConfigError(f"{where}: {key} is '{line[key]}', but '{wanted}' in the episode of this run.")
+
+    def _read_and_heal(self) -> list[dict[str, Any]]:
+        """Returns the lines of earlier processes; an incomplete last line is cut off the file."""
+        file = self.path / "results.jsonl"
+        found = read_result_lines(file, self.line_type)
+        for number, line in enumerate(found.values, start=1):
+            for key in IDENTITY:
+                if key in line and key in self.config and line[key] != self.config[key]:
+                    raise ConfigError(
+                        f"Results '{file}', line {number}: {key} is {field_text(line[key])}, but this run has "
+                        f"{field_text(self.config[key])}; choose another folder."
+                    )
+        if found.torn:
+            self.healed = found.torn
+            with open_to_grow(file, "r+b") as stream:
+                stream.truncate(found.whole_bytes)
+        return found.values
+
+    def append(self, line: Mapping[str, Any]) -> None:
+        """Writes one result line and syncs it to disk; it replaces the line of an earlier error in the same episode.
+
+        Raises:
+            ConfigError: another program removed or changed the results.
+        """
+        self._require_untouched(new=str(line["episode_id"]))
+        line, place = dict(line), self._places.get(line["episode_id"])
+        if place is None or self.lines[place].get("end_reason") != "error":
+            self._places[line["episode_id"]] = len(self.lines)
+            self.lines.append(line)
+            self._write(_as_bytes(line))
+        else:
+            self.lines[place] = line
+            self._results.close()
+            content = b"".join(map(_as_bytes, self.lines))
+            write_atomically(self._file, content, sync=True)
+            self._open(content)
+        self._require_untouched(new="")
+
+    def _content(self) -> bytes:
+        """Returns the content of the file of results; empty if it does not exist."""
+        return read_bytes(self._file, what="Results", most=MAX_LINES_BYTES) if self._file.exists() else b""
+
+    def _open(self, content: bytes) -> None:
+        """Opens the file of results to append lines; `content` is its content so far."""
+        self._results = open_to_grow(self._file)
+        self._bytes, self._digest = len(content), hashlib.sha256(content)
+
+    def _write(self, content: bytes) -> None:
+        self._results.write(content)
+        self._results.flush()
+        os.fsync(self._results.fileno())
+        self._bytes += len(content)
+        self._digest.update(content)
+
+    def _require_untouched(self, *, new: str = "", content: bool = False) -> None:
+        """Raises ConfigError if the results on the disk are not those that this process wrote.
+
+        Args:
+            new: id of the episode whose line will be written; "": none.
+            content: whether to compare the content, and not only the size.
+        """
+        try:
+            size = self._file.stat().st_size
+            same = size == self._bytes
+            if same and content:
+                same = sha256_of(self._file, what="Results") == self._digest.hexdigest()
+            found = f"was changed by another program: it has {size} bytes, and this run wrote {self._bytes}"
+        except (OSError, ConfigError):
+            same, found = False, "was removed by another program"
+        if not same:
+            ids = [line["episode_id"] for line in self.lines] + [new] * bool(new)
+            named = f"'{ids[0]}' to '{ids[-1]}'" if len(ids) > 1 else "".join(f"'{each}'" for each in ids)
+            raise ConfigError(
+                f"While the run wrote to it, '{self._file}' {found}. The results of {len(ids)} episodes are lost or "
+                f"may be damaged ({named}); run them again with another --out."
+            )
+
+    def record_code(self, code: str) -> list[str]:
+        """Adds a hash of the code to `codes` in config.json: it runs the episodes from here on.
+
+        Returns:
+            the other hashes, of the code that ran the existing lines, the oldest first.
+        """
+        file = self.path / "config.json"
+        existing = read_record(file)
+        first_code = existing.get("versions", {}).get("code", "unknown")
+        codes = existing.get("codes", [first_code]) if self.lines else []
+        if code not in codes:
+            codes = [*codes, code]
+        if codes != existing.get("codes"):
+            _write_json(file, existing | {"codes": codes})
+        return [other for other in codes if other != code]
+
+    def other_versions(self) -> dict[str, tuple[str, str]]:
+        """Returns the versions that have changed since the run began, except that of the code.
+
+        The values are the earlier and the present version for each name.
+        """
+        before, now = read_record(self.path / "config.json").get("versions", {}), self.config.get("versions", {})
+        return {
+            name: (before[name], now[name])
+            for name in now
+            if name != "code" and before.get(name, now[name]) != now[name]
+        }
+
+    def write_summary(self, extra: Mapping[str, Any]) -> dict[str, Any]:
+        """Averages all lines, writes `summary.json` and returns its content.
+
+        Raises:
+            ConfigError: another program removed or changed the results.
+        """
+        self._require_untouched(content=True)
+        summary = {**extra, **summarise(self.lines)}
+        _write_json(self.path / "summary.json", summary)
+        return summary
+
+    def close(self) -> None:
+        """Closes the files and releases the folder."""
+        self._results.close()
+        self._lock.close()
+
+    def _require_same_physics(self, existing: Mapping[str, Any], config: Mapping[str, Any]) -> None:
+        """Raises ConfigError where the run was made with another version of the physics; the first wrote none."""
+        before, now = existing.get("physics") or 1, config.get("physics")
+        if now is not None and before != now:
+            raise ConfigError(
+                f"--out '{self.path}' holds a run of physics version {before}, this program has version {now}: the "
+                "robot moves differently, so that the run cannot be resumed; choose another folder."
+            )
+
+    def _write_or_compare_config(self) -> None:
+        file = self.path / "config.json"
+        config = json.loads(json.dumps(dict(self.config)))
+        if not file.exists():
+            if (self.path / "results.jsonl").exists():
+                raise ConfigError(f"--out '{self.path}' has results but no config.json; choose another folder.")
+            self._made_config = True
+            _write_json(file, config)  # it is on the disk before the first line
+            return
+        existing = read_record(file)
+        self._require_same_physics(existing, config)
+        for path, before, now in differing_fields(existing, config):
+            unset = all(value is None or value is ABSENT for value in (before, now))
+            if path.partition(".")[0] not in NOT_COMPARED and not unset and not is_same_file(path, existing, config):
+                version = existing.get("versions", {}).get("stubborn-objectnav")
+                older = version != config.get("versions", {}).get("stubborn-objectnav") and version is not None
+                raise ConfigError(
+                    f"--out '{self.path}' holds a run{f' of version {version}' if older else ''} with "
+                    f"{path} = {field_text(before)}, this run has {field_text(now)}; choose another folder, or resume "
+                    "the run with the same options."
+                )
+        changed = {}
+        if existing.get("seed_key") is None and config.get("seed_key") is not None:
+            changed["seed_key"] = config["seed_key"]  # a run of version 0.1 has none
+        if (config.get("episodes") or 0) > (existing.get("episodes") or 0):
+            changed["episodes"] = config["episodes"]
+        before, now = (list(record.get("only") or ()) for record in (existing, config))
+        if before and not set(now) <= set(before):
+            changed["only"] = sorted({*before, *now})
+            changed["episodes"] = len(changed["only"])
+        elif before and not now:
+            changed["only"] = []
+        if changed:
+            _write_json(file, existing | changed)
+
+
+def metric_value(line: Mapping[str, Any], metric: str) -> float | None:
+    """Returns a metric of a result line; None if the line, for example of an older version, does not have it.
+
+    An episode that ended with an error is a failure, whose success and SPL are 0. It has no other metric: it did not
+    run to its end, so that it has too few steps, collisions and metres.
+
+    `never_seen` is 1 - `gt_explored`. It belongs to `steps_to_first_sight`, whose value is `max_steps` in an episode
+    that never showed the goal: the mean is the restricted mean time to first sight.
+    """
+    value = line.get("gt_explored" if metric == "never_seen" else metric)
+    if value is None or (line.get("end_reason") == "error" and metric not in OF_ERRORS):
+        return None
+    return 1.0 - float(value) if metric == "never_seen" else float(value)
+
+
+def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """Returns the number of episodes and, for each of `SUMMARY_METRICS`, the mean and its 95 % interval.
+
+    Intervals are over houses (`sim.app.evaluation.intervals`); `ci95_over` says so, and says when one house leaves only
+    its episodes. `failures` counts the failed lines by cause (`sim.task.failures`), the most frequent first. Episodes
+    whose value is null do not count for that metric. An episode with replicates (`--replicates`) counts once, with
+    their mean; `replicates` then has the means of each replicate and their standard deviation (`replicate_spread`).
+    """
+    lines = list(lines)
+    houses = [str(line["house"]) for line in lines]
+    episodes = [episode_of(line["episode_id"]) for line in lines]
+    summary: dict[str, Any] = {
+        "episodes": len(set(episodes)),
+        "errors": sum(line["end_reason"] == "error" for line in lines),
+        "falls": sum(line["end_reason"] == "fallen" for line in lines),
+        "houses": len(set(houses)),
+        "ci95_over": OVER_ONE_HOUSE if len(set(houses)) == 1 else OVER_HOUSES,
+    }
+    for metric in SUMMARY_METRICS:
+        values = [metric_value(line, metric) for line in lines]
+        value = estimate(values, houses, episodes=episodes, most=1.0 if metric in AT_MOST_ONE else math.inf)
+        summary[metric] = {"mean": value.mean, "ci95": [value.low, value.high]}
+    summary |= _replicates(lines, episodes)
+    causes = Counter(line["failure"] for line in lines if line.get("failure") is not None)
+    summary["failures"] = dict(causes.most_common())
+    return summary
+
+
+def _replicates(lines: Sequence[Mapping[str, Any]], episodes: Sequence[str]) -> dict[str, Any]:
+    """Returns, under `replicates`, the mean of each replicate of all episodes and their spread; {} without any."""
+    numbers = [replicate_number(line["episode_id"]) for line in lines]
+    if len(set(numbers)) < 2:
+        return {}
+    found = {}
+    for metric in ("success", "spl"):
+        values = [metric_value(line, metric) for line in lines]
+        each = [
+            [v for v, of in zip(values, numbers, strict=True) if of == number and v is not None]
+            for number in sorted(set(numbers))
+        ]
+        means = [sum(of_number) / len(of_number) if of_number else None for of_number in each]
+        found[metric] = {"means": means, "std": replicate_spread(values, episodes)}
+    return {"replicates": found}
+
+
+def _as_bytes(line: Mapping[str, Any]) -> bytes:
+    return (json.dumps(line, allow_nan=False) + "\n").encode()
+
+
+def _write_json(file: Path, content: Mapping[str, Any]) -> None:
+    write_atomically(file, json.dumps(content, indent=2, allow_nan=False) + "\n", sync=True)
+
+
+def read_record(file: Path) -> dict[str, Any]:
+    """Returns the content of a `config.json`.
+
+    Raises:
+        ConfigError: it cannot be read, or a field has another type.
+    """
+    content = read_json(file, dict[str, Any], what="Config")
+    convert(content, RunRecord, where=f"Config '{file}'")
+    return content
+
+
+def read_result_lines(file: Path, line_type: type = ResultLine) -> Lines:
+    """Returns the lines of a `results.jsonl`; no line where there is no such file.
+
+    Raises:
+        ConfigError: a line before the last is broken, or an episode has two lines.
+    """
+    found = read_lines(file, line_type, what="Results")
+    if line_type is ResultLine:
+        found = found._replace(values=[_NOT_WRITTEN | line for line in found.values])
+    first: dict[str, int] = {}
+    for number, line in enumerate(found.values, start=1):
+        before = first.setdefault(line["episode_id"], number)
+        if before != number:
+            same = "the same" if line == found.values[before - 1] else "another"
+            raise ConfigError(
+                f"Results '{file}', line {number}: episode '{line['episode_id']}' has {same} result in line {before}; "
+                "remove one of the lines."
+            )
+    return found

@@ -1,0 +1,180 @@
+"""Checks of a submission against itself and against its split, before anything is replayed.
+
+A contradiction is refused by one sentence. What passes is consistent; whether it is true is for the replay to say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import msgspec
+
+from sim.app.submissions.contents import Entry, Inputs, Result, Submission
+from sim.app.submissions.setting import Setting
+from sim.core.errors import ConfigError
+from sim.core.interface import TRUE_IMAGES, Action
+from sim.core.reading import convert
+from sim.episodes.episode import Episode
+from sim.episodes.replicates import find_episode, replicate_number, with_replicates
+from sim.episodes.splits import Split
+from sim.robot.config import PHYSICS_VERSION
+from sim.task import metrics
+
+Truth = Literal["none", "noisy", "yes"]
+"""Whether ground truth reached the agent: `noisy` is the true segmentation with the errors of a simulated detector."""
+STOP = str(int(Action.STOP))
+ROUNDING = 1e-6
+"""Largest error of a recorded SPL."""
+
+
+class _Tree(msgspec.Struct):
+    sensors: tuple[str, ...] = ()
+
+
+class _Segmentation(msgspec.Struct):
+    name: str | None = None
+    truth: tuple[str, ...] | None = None
+
+
+class _Recorded(msgspec.Struct):
+    """What a configuration says about the inputs of its agent."""
+
+    agent: str
+    semantics: str
+    seed: int
+    config: _Tree
+    segmentation: _Segmentation | None = None
+
+
+def require_consistent(
+    submission: Submission, config: Mapping[str, Any], setting: Setting, split: Split, *, where: str
+) -> None:
+    """Raises ConfigError where a submission contradicts itself, its split, or this version of the simulator.
+
+    Args:
+        submission: from a file.
+        config: its configuration.
+        setting: its setting.
+        split: the split on which it will be replayed.
+        where: names the file for the error message.
+    """
+    _require_same_physics(submission, where)
+    _require_same_split(submission, split, where)
+    _require_declared(submission, config, setting, where)
+    known = {episode.episode_id: episode for episode in split.episodes}
+    for entry in submission.episodes:
+        episode_id = entry.result.episode_id
+        episode = find_episode(known, episode_id)
+        if episode is None:
+            raise ConfigError(f"{where}, episode '{episode_id}': the split '{split.name}' has no such episode.")
+        _require_entry(entry, episode, submission, setting, f"{where}, episode '{episode_id}'")
+
+
+def truth_of(inputs: Inputs) -> Truth:
+    """Returns whether ground truth reached the agent, as the authors declare it."""
+    if inputs.uses_ground_truth or inputs.semantics == "gt":
+        return "yes"
+    return "noisy" if inputs.semantics == "noisy" else "none"
+
+
+def coverage(submission: Submission, split: Split) -> tuple[bool, str]:
+    """Returns whether the episodes are the first ones of the split, and which they are as text.
+
+    The order of a split is balanced over houses and goals, so that its first N episodes are no choice of the authors.
+    Of each episode there must be as many replicates, numbered from 0.
+    """
+    there = {entry.result.episode_id for entry in submission.episodes}
+    replicates, total = 1 + max(map(replicate_number, there)), len(split.episodes)
+    count = len(there) // replicates
+    each = f", {replicates} replicates of each" if replicates > 1 else ""
+    if there != {episode.episode_id for episode in with_replicates(split.episodes[:count], replicates)}:
+        return False, f"{len(there)} of {total} episodes, chosen by the authors"
+    return True, f"all {total} episodes{each}" if count == total else f"the first {count} of {total} episodes{each}"
+
+
+def _require_same_physics(submission: Submission, where: str) -> None:
+    recorded = submission.manifest.physics
+    if recorded != PHYSICS_VERSION:
+        raise ConfigError(
+            f"{where} was made with physics of version {recorded}, this is version {PHYSICS_VERSION}: its actions lead "
+            "elsewhere here; verify it with the release that it was made with, or run the agent again."
+        )
+
+
+def _require_same_split(submission: Submission, split: Split, where: str) -> None:
+    made_on = submission.manifest.split
+    if (made_on.version, made_on.sha256) != (split.version, split.sha256):
+        raise ConfigError(
+            f"{where} was made on the split '{made_on.name}' {made_on.version} with sha256 {made_on.sha256[:12]}, and "
+            f"'{split.name}' {split.version} here has {split.sha256[:12]}; name the folder of its split with --split."
+        )
+
+
+def _require_declared(submission: Submission, config: Mapping[str, Any], setting: Setting, where: str) -> None:
+    """Raises ConfigError where the declared inputs are not those of the configuration or of the result lines."""
+    inputs, found = submission.manifest.inputs, convert(dict(config), _Recorded, where=f"{where}, field 'config'")
+    recorded = {
+        "agent": found.agent,
+        "semantics": found.semantics,
+        "noise": setting.noise_name,
+        "sensors": found.config.sensors,
+    }
+    for name, value in recorded.items():
+        declared = getattr(inputs, name)
+        if declared != value:
+            raise ConfigError(f"{where} declares {name} {declared!r}, and its configuration has {value!r}.")
+    if inputs.isolated != inputs.agent.startswith("process:"):
+        raise ConfigError(f"{where} declares isolated {inputs.isolated} for the agent '{inputs.agent}'.")
+    segmentation = found.segmentation or _Segmentation()
+    true_images = TRUE_IMAGES & {*inputs.sensors, *(segmentation.truth or ())}
+    if segmentation.name == "ground truth":
+        true_images |= {"semantic"}
+    if true_images and truth_of(inputs) == "none":
+        raise ConfigError(
+            f"{where} declares no ground truth, and its configuration gives the agent '{min(true_images)}', which is."
+        )
+    if found.seed != submission.manifest.seed:
+        raise ConfigError(f"{where}: the seed is {submission.manifest.seed}, in its configuration {found.seed}.")
+
+
+def _require_entry(entry: Entry, known: Episode, submission: Submission, setting: Setting, where: str) -> None:
+    """Raises ConfigError where an episode is not one of the split, or its actions cannot be those of its result."""
+    result, inputs, actions = entry.result, submission.manifest.inputs, entry.actions
+    declared = {
+        "house": known.house, "goal": known.goal, "agent": inputs.agent, "semantics": inputs.semantics,
+        "seed": submission.manifest.seed, "uses_ground_truth": inputs.uses_ground_truth, "isolated": inputs.isolated,
+    }  # fmt: skip
+    for name, value in declared.items():
+        if getattr(result, name) != value:
+            of = "the split" if name in ("house", "goal") else "the manifest"
+            raise ConfigError(f"{where}: its result has {name} {getattr(result, name)!r}, {of} has {value!r}.")
+    if result.end_reason == "error":
+        if result.success or result.spl or result.soft_spl:
+            raise ConfigError(f"{where} ended with an error and cannot be a success.")
+        if actions:
+            raise ConfigError(f"{where} ended with an error and is not replayed; it cannot have actions.")
+        return
+    if result.num_steps != len(actions):
+        raise ConfigError(f"{where} has {len(actions)} actions, and its result counts {result.num_steps}.")
+    if len(actions) > setting.task.max_steps:
+        raise ConfigError(f"{where} has {len(actions)} actions; the task allows {setting.task.max_steps}.")
+    if STOP in actions[:-1]:
+        raise ConfigError(f"{where} has actions after STOP, which ends an episode.")
+    _require_coherent(result, actions, where)
+
+
+def _require_coherent(result: Result, actions: str, where: str) -> None:
+    """Raises ConfigError where the numbers of a result contradict each other."""
+    stopped = actions.endswith(STOP)
+    if stopped != (result.end_reason == "stop"):
+        last = "is STOP" if stopped else "is not STOP"
+        raise ConfigError(f"{where} ended with '{result.end_reason}', and its last action {last}.")
+    if result.success and not stopped:
+        raise ConfigError(f"{where} is a success without STOP.")
+    if bool(result.success) != (result.failure is None):
+        raise ConfigError(f"{where} has success {result.success:g} and the cause of failure '{result.failure}'.")
+    wanted = metrics.spl(bool(result.success), result.shortest_path, result.path_length or 0.0)
+    spl = result.spl or 0.0
+    if not abs(spl - wanted) <= ROUNDING:
+        raise ConfigError(f"{where} has spl {spl:.6g}; its success, shortest_path and path_length give {wanted:.6g}.")

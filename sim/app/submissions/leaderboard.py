@@ -1,0 +1,176 @@
+"""The table of a leaderboard: a row for each verified submission of a folder.
+
+FOLDER/submissions/NAME.json.gz     one file for each row, as `stubborn submit` writes it
+FOLDER/reports/NAME.json            the outcome of its verification
+FOLDER/table.md, FOLDER/table.csv   written by `stubborn leaderboard`
+"""
+
+from __future__ import annotations
+
+import csv
+import html
+import io
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from sim.app.analysis.metrics import COLLISIONS, SPL, SUCCESS, episodes_of
+from sim.app.analysis.tables import ResultTable
+from sim.app.submissions.checks import truth_of
+from sim.app.submissions.contents import SUFFIX, Submission
+from sim.app.submissions.report import Report
+from sim.core.errors import ConfigError
+from sim.robot.config import PHYSICS_VERSION
+
+LEAST_EPISODES = 50
+"""Least number of episodes of a row; replicates do not count. In 20, the interval of a success of 65 % is 42 points."""
+SUBMISSIONS, REPORTS = "submissions", "reports"
+HEADER = (
+    "row", "authors", "ground truth (declared)", "own process (declared)", "noise", "episodes", "success %", "SPL",
+    "collisions", "verified",
+)  # fmt: skip
+
+CSV_COLUMNS = (
+    "split", "version", "split_sha256", "name", "authors", "links", "agent", "ground_truth_declared",
+    "own_process_declared", "noise", "episodes", "success", "success_low", "success_high", "spl", "spl_low", "spl_high",
+    "collisions", "collisions_low", "collisions_high", "verified", "file",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Row:
+    """One submission of a leaderboard with the outcome of its verification."""
+
+    file: Path
+    submission: Submission
+    report: Report
+
+    @property
+    def episodes(self) -> int:
+        """The number of episodes; replicates are not counted."""
+        return len(set(episodes_of(results_of(self.submission))))
+
+    @property
+    def refusal(self) -> str:
+        """The reason why this is no row of the table; "": it is one."""
+        if self.report.different:
+            return f"{self.report.different} episodes are different in the replay"
+        if not self.report.is_first:
+            return "its episodes were chosen by the authors; the first ones of the split are allowed"
+        if self.episodes < LEAST_EPISODES:
+            return f"it has {self.episodes} episodes; a row needs {LEAST_EPISODES}"
+        if self.report.nonstandard:
+            return f"not the standard: {self.report.nonstandard[0]}"
+        inputs = self.submission.manifest.inputs
+        if ":" in inputs.agent and not inputs.isolated:
+            return "its agent did not run in a process of its own (--agent process:COMMAND)"
+        return ""
+
+
+def submission_files(folder: Path) -> list[Path]:
+    """Returns the files of the submissions in a folder of a leaderboard, by name.
+
+    Raises:
+        ConfigError: there is none.
+    """
+    files = sorted((folder / SUBMISSIONS).glob(f"*{SUFFIX}"))
+    if not files:
+        raise ConfigError(f"'{folder / SUBMISSIONS}' holds no submission (*{SUFFIX}); `stubborn submit` writes one.")
+    return files
+
+
+def report_file(folder: Path, submission: Path) -> Path:
+    """Returns the file of the report on a submission."""
+    return folder / REPORTS / f"{submission.name.removesuffix(SUFFIX)}.json"
+
+
+def is_current(report: Report, sha256: str) -> bool:
+    """Returns whether a report is that of this file, by this version of the physics."""
+    return report.sha256 == sha256 and report.physics == PHYSICS_VERSION
+
+
+def tables(rows: Sequence[Row]) -> list[ResultTable]:
+    """Returns a table for each split; rows with less ground truth come first, then those with more success."""
+    found = []
+    by_split: dict[tuple[str, str, str], list[Row]] = {}
+    for row in (each for each in rows if not each.refusal):
+        by_split.setdefault(_split(row), []).append(row)
+    for (name, version, sha256), members in sorted(by_split.items()):
+        title = f"{plain(name)} {plain(version)} ({sha256[:12]})"
+        ordered = sorted(members, key=_rank)
+        found.append(ResultTable(name, title, HEADER, [(_name(row), _cells(row)) for row in ordered], NOTES))
+    return found
+
+
+NOTES = (
+    "Verified: every row's actions were replayed, and lead to its success, SPL and collisions; an episode that ended "
+    "with an error counts as a failure, without collisions. Intervals of 95 % are over houses. Authors, ground truth "
+    "and own process are what the authors declare.",
+)
+
+
+def csv_of(rows: Sequence[Row]) -> str:
+    """Returns the rows as CSV; shares are not in percent."""
+    stream = io.StringIO()
+    writer = csv.writer(stream)
+    writer.writerow(CSV_COLUMNS)
+    for row in sorted((each for each in rows if not each.refusal), key=lambda each: (_split(each), _rank(each))):
+        manifest, lines = row.submission.manifest, results_of(row.submission)
+        estimates = [metric.cell(lines).estimate for metric in (SUCCESS, SPL, COLLISIONS)]
+        numbers = (n for each in estimates for n in (each.mean, each.low, each.high))
+        writer.writerow([
+            *_split(row), manifest.name, "; ".join(manifest.authors), " ".join(manifest.links), manifest.inputs.agent,
+            truth_of(manifest.inputs), "yes" if manifest.inputs.isolated else "no", manifest.inputs.noise, row.episodes,
+            *("" if n is None else round(n, 6) for n in numbers), _verified(row), row.file.name,
+        ])  # fmt: skip
+    return stream.getvalue()
+
+
+def results_of(submission: Submission) -> list[dict[str, Any]]:
+    """Returns the result lines of a submission."""
+    return [msgspec.structs.asdict(entry.result) for entry in submission.episodes]
+
+
+def _cells(row: Row) -> list[Any]:
+    manifest, lines = row.submission.manifest, results_of(row.submission)
+    return [
+        plain(", ".join(manifest.authors)),
+        truth_of(manifest.inputs),
+        "yes" if manifest.inputs.isolated else "no",
+        plain(manifest.inputs.noise),
+        str(row.episodes),
+        *(metric.cell(lines) for metric in (SUCCESS, SPL, COLLISIONS)),
+        _verified(row),
+    ]
+
+
+def _verified(row: Row) -> str:
+    exactly = "equal" if not row.report.within_tolerance else f"to {100 * row.report.tolerance_m:g} cm"
+    errors = row.report.errors
+    return f"{exactly}, {errors} of {row.report.episodes} ended with an error" if errors else exactly
+
+
+def _split(row: Row) -> tuple[str, str, str]:
+    split = row.submission.manifest.split
+    return split.name, split.version, split.sha256
+
+
+def _name(row: Row) -> str:
+    manifest = row.submission.manifest
+    text = plain(manifest.name)
+    return f"[{text}]({manifest.links[0]})" if manifest.links else text
+
+
+def _rank(row: Row) -> tuple[int, str, float, str]:
+    inputs, lines = row.submission.manifest.inputs, results_of(row.submission)
+    success = sum(float(line["success"]) for line in lines) / len(lines)
+    return ("none", "noisy", "yes").index(truth_of(inputs)), inputs.noise, -success, row.file.name
+
+
+def plain(text: str) -> str:
+    """Returns text of somebody else for a Markdown page, where it is shown as it is: no link, HTML or emphasis."""
+    return re.sub(r"([\\`*_\[\]()!#~])", r"\\\1", html.escape(text, quote=False))

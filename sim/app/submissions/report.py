@@ -1,0 +1,64 @@
+"""The outcome of a verification as JSON, which the leaderboard reads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import msgspec
+
+from sim.app.submissions.verdicts import Verdict
+from sim.app.submissions.verification import Checked, Choices, counts
+from sim.core.paths import processor
+from sim.core.reading import Count, Number, read_json
+from sim.robot.config import PHYSICS_VERSION
+
+
+class Report(msgspec.Struct):
+    """The fields of a report that are read."""
+
+    sha256: Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{64}\Z")]
+    """Of the submission."""
+    physics: Count
+    episodes: Count
+    equal: Count
+    within_tolerance: Count
+    different: Count
+    errors: Count
+    """Episodes that ended with an error: they count as failures, and have no actions to replay."""
+    frames: Count
+    is_first: bool
+    nonstandard: Annotated[tuple[str, ...], msgspec.Meta(max_length=1000)]
+    tolerance_m: Number
+
+
+def report_of(checked: Checked, choices: Choices, found: Sequence[Verdict], seconds: float) -> dict[str, Any]:
+    """Returns the outcome of a verification; `seconds` of processor time were needed."""
+    count = counts(found)
+    return {
+        "sha256": checked.sha256,
+        "physics": PHYSICS_VERSION,
+        "episodes": len(found),
+        "equal": count["equal"],
+        "within_tolerance": count["within tolerance"],
+        "different": count["different"],
+        "errors": count["error"],
+        "frames": sum(verdict.framed for verdict in found),
+        "is_first": checked.is_first,
+        "nonstandard": list(checked.changes),
+        "tolerance_m": choices.tolerance_m,
+        "draw_seed": choices.draw_seed,
+        "processor": processor(),
+        "seconds": round(seconds, 1),
+        "remarks": [f"{each.episode_id}: {each.judgement}: {each.text}" for each in found if each.text],
+    }
+
+
+def read_report(file: Path) -> Report:
+    """Returns the report in a file.
+
+    Raises:
+        ConfigError: it cannot be read, or has another form.
+    """
+    return read_json(file, Report, what="Report")

@@ -1,0 +1,117 @@
+"""Compares the results in a submission with those of its replay, and says what a difference means."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from sim.app.submissions.contents import PLACE_EVERY, Entry
+from sim.app.submissions.replay import Replay
+
+Judgement = Literal["equal", "within tolerance", "different", "error"]
+TOLERANCE_M = 0.01
+"""Other processors and libraries round differently; contacts amplify that, to millimetres in an episode."""
+ROUNDING = 1e-9
+"""Numbers this near are equal: JSON keeps all digits of a number."""
+EXACT = ("success", "num_steps", "end_reason", "collisions", "touches", "trapped")
+LENGTHS = ("shortest_path", "path_length", "distance_to_goal")
+"""Metres; they may differ by the tolerance."""
+SHARES = ("spl", "soft_spl")
+"""Ratios of lengths; they may differ by the tolerance over the shortest path."""
+SEEN_EXACT = ("gt_explored", "failure")
+"""Metrics of rendered frames."""
+SEEN_STEPS, SEEN_AREA = "first_seen_step", "area_seen_m2"
+STEPS_OF_RENDERER = 1
+"""Other OpenGL renderers draw edges of a pixel differently, which can shift the first sight by one frame ..."""
+AREA_OF_RENDERER = 0.01
+"""... and the seen area by this share."""
+LEAST_PATH_M = 0.5
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The judgement on one episode."""
+
+    episode_id: str
+    judgement: Judgement
+    framed: bool
+    text: str
+    """What differs and what that means; "" for an equal episode."""
+    largest: float
+    """Largest difference of a length, metres."""
+
+
+def judge(entry: Entry, replay: Replay | None, *, tolerance_m: float = TOLERANCE_M) -> Verdict:
+    """Returns the judgement on an episode.
+
+    Args:
+        entry: of the submission.
+        replay: of its actions; None: it ended with an error and was not replayed.
+        tolerance_m: largest difference of lengths.
+    """
+    episode_id = entry.result.episode_id
+    if replay is None:
+        return Verdict(episode_id, "error", False, "it ended with an error: a failure, which is not replayed", 0.0)
+    if replay.fault:
+        text = f"{replay.fault}. The result does not come from these actions in this episode"
+        return Verdict(episode_id, "different", replay.framed, text, math.inf)
+    differing, largest, near = _differences(entry, replay, tolerance_m)
+    if differing:
+        text = f"{'; '.join(differing)}. {_meaning(entry, replay, tolerance_m)}"
+        return Verdict(episode_id, "different", replay.framed, text, largest)
+    if near:
+        return Verdict(episode_id, "within tolerance", replay.framed, "; ".join(near), largest)
+    return Verdict(episode_id, "equal", replay.framed, "", 0.0)
+
+
+def _differences(entry: Entry, replay: Replay, tolerance_m: float) -> tuple[list[str], float, list[str]]:
+    """Returns the differences beyond the tolerance, the largest difference in metres, and those within it."""
+    differing, near, largest = [], [], 0.0
+    shortest_m = max(_number(replay.metrics["shortest_path"]), LEAST_PATH_M)
+    allowed = dict.fromkeys(EXACT, 0.0) | dict.fromkeys(LENGTHS, tolerance_m)
+    allowed |= dict.fromkeys(SHARES, tolerance_m / shortest_m)
+    if replay.framed:
+        area = AREA_OF_RENDERER * _number(replay.metrics[SEEN_AREA])
+        allowed |= dict.fromkeys(SEEN_EXACT, 0.0) | {SEEN_STEPS: STEPS_OF_RENDERER, SEEN_AREA: area}
+    for name, most in allowed.items():
+        there, here = getattr(entry.result, name), replay.metrics[name]
+        off = _off(there, here)
+        if name in LENGTHS and math.isfinite(off):
+            largest = max(largest, off)
+        if off > ROUNDING:
+            (differing if off > max(most, ROUNDING) else near).append(
+                f"{name} {_text(there)}, in the replay {_text(here)}"
+            )
+    return differing, largest, near
+
+
+def _meaning(entry: Entry, replay: Replay, tolerance_m: float) -> str:
+    """Returns a sentence on the likely reason of a difference."""
+    if len(entry.places_m) == len(replay.places_m):
+        off = [math.dist(a, b) for a, b in zip(entry.places_m, replay.places_m, strict=True)]
+        apart = next((number for number, each in enumerate(off) if each > tolerance_m + 1e-4), None)
+        if apart is None:
+            return "The actions lead along the recorded path, so the result itself was changed or computed otherwise"
+        step = min((apart + 1) * PLACE_EVERY, len(entry.actions))
+        return (
+            f"The replay leaves the recorded path before action {step}, by {off[apart]:.2f} m: other actions, another "
+            "robot, house, seed or noise, or another kind of processor"
+        )
+    return "The recorded path has another number of places than the actions: one of them was changed"
+
+
+def _off(there: Any, here: Any) -> float:
+    """Returns how far apart two values are; infinity where one is missing or they are no numbers."""
+    if isinstance(there, (bool, int, float)) and isinstance(here, (bool, int, float)):
+        off = abs(float(there) - float(here))
+        return off if math.isfinite(off) else math.inf
+    return 0.0 if there == here else math.inf
+
+
+def _number(value: Any) -> float:
+    return float(value) if isinstance(value, (int, float)) and math.isfinite(value) else 0.0
+
+
+def _text(value: Any) -> str:
+    return f"{value:.4f}".rstrip("0").rstrip(".") if isinstance(value, float) else str(value)

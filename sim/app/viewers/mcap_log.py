@@ -1,0 +1,208 @@
+"""`--mcap`: writes each episode as an MCAP file of standard ROS 2 messages (https://mcap.dev), the extra `ros`.
+
+============================  ===========================  ========================================================
+topic                         type                         content, once before each action
+============================  ===========================  ========================================================
+/camera/image_raw             sensor_msgs/Image            colour as the agent saw it, `rgb8`
+/camera/depth/image_raw       sensor_msgs/Image            depth in millimetres, `16UC1`
+/camera/camera_info           sensor_msgs/CameraInfo       intrinsics of both
+/scan                         sensor_msgs/LaserScan        the lidar
+/odom                         nav_msgs/Odometry            pose by `gps` and `compass`, with their noise
+/tf                           tf2_msgs/TFMessage           all frames (`sim.app.viewers.ros.messages`)
+/cmd_vel                      geometry_msgs/Twist          the velocity that the action aims at
+/map                          nav_msgs/OccupancyGrid       the true floor plan of the storey, when it is entered
+============================  ===========================  ========================================================
+
+An image or scan that the agent does not observe is the true one. Times are simulated. Metadata `episode` and `result`
+hold the identity and the result of the episode as JSON. Each episode has its file `<out>/mcap/<episode_id>.mcap`.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import urllib.parse
+from collections.abc import Mapping
+from pathlib import Path
+from typing import IO, Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.app.viewers.ros import messages
+from sim.app.viewers.ros.definitions import definition
+from sim.app.viewers.viewer import Moment
+from sim.core.errors import ConfigError
+from sim.core.files import part_file
+from sim.core.geometry.pose import Pose
+from sim.core.interface import SCAN, Action
+from sim.env.objectnav import ObjectNavEnv
+from sim.sensors.scan import ScanSensor
+from sim.sensors.sensor import SensorContext
+from sim.world.freespace import FreeSpace
+
+FOLDER = "mcap"
+TOPICS: Mapping[str, str] = {
+    "/camera/image_raw": "sensor_msgs/Image",
+    "/camera/depth/image_raw": "sensor_msgs/Image",
+    "/camera/camera_info": "sensor_msgs/CameraInfo",
+    "/scan": "sensor_msgs/LaserScan",
+    "/odom": "nav_msgs/Odometry",
+    "/tf": "tf2_msgs/TFMessage",
+    "/cmd_vel": "geometry_msgs/Twist",
+    "/map": "nav_msgs/OccupancyGrid",
+}
+
+
+def require_mcap() -> None:
+    """Raises ConfigError where the writer of MCAP files is not installed."""
+    if importlib.util.find_spec("mcap_ros2") is None:
+        raise ConfigError(
+            "--mcap needs the package mcap-ros2-support, an extra: pip install 'stubborn-objectnav[ros]'."
+        )
+
+
+def mcap_file(run: Path, episode_id: str) -> Path:
+    """Returns the recording of an episode; characters that a file name may not hold are written as %xx."""
+    return run / FOLDER / f"{urllib.parse.quote(episode_id, safe=' ')}.mcap"
+
+
+class RosMessages:
+    """Writes messages by topic to one MCAP file.
+
+    Args:
+        stream: the file, open for writing.
+    """
+
+    def __init__(self, stream: IO[bytes]) -> None:
+        from mcap_ros2.writer import Writer
+
+        self._writer = Writer(stream)
+        types = {name: name.replace("/", "/msg/") for name in TOPICS.values()}
+        self._schemas = {name: self._writer.register_msgdef(types[name], definition(name)) for name in types}
+
+    def write(self, topic: str, time_s: float, message: messages.Message) -> None:
+        """Writes one message at a simulated time."""
+        self._writer.write_message(topic, self._schemas[TOPICS[topic]], message, round(time_s * 1e9))
+
+    def describe(self, name: str, content: Mapping[str, Any]) -> None:
+        """Writes metadata: a name, and JSON values by key."""
+        self._writer.add_metadata(name, {key: json.dumps(value) for key, value in content.items()})
+
+    def finish(self) -> None:
+        """Writes the index of the file."""
+        self._writer.finish()
+
+
+class McapLog:
+    """A viewer that records each episode as ROS 2 messages (`sim.app.viewers.viewer.Viewer`).
+
+    Args:
+        run: folder of the run.
+    """
+
+    def __init__(self, run: Path) -> None:
+        self._run = run
+        self._stream: IO[bytes] | None = None
+        self._part = Path()
+        self._floor_z_m: float | None = None
+        """Floor of the storey whose map was written last."""
+
+    def begin(self, env: ObjectNavEnv) -> None:
+        """Starts the episode's file."""
+        self.close()
+        episode = env.episode
+        self._env, self._floor_z_m = env, None
+        self._part = part_file(mcap_file(self._run, episode.episode_id), what="recording")
+        self._stream = self._part.open("wb")
+        self._out = RosMessages(self._stream)
+        scans = [each for each in env.sensors if isinstance(each, ScanSensor)]
+        self._scan = scans[0] if scans else ScanSensor(config=env.scan_config)
+        about = {"episode_id": episode.episode_id, "house": episode.house, "goal": episode.goal}
+        self._out.describe("episode", about)
+
+    def decided(self, moment: Moment) -> None:
+        """Writes what the agent saw, where it was and what it does."""
+        env, out = self._env, self._out
+        world, time_s = env.scene.world, float(env.scene.world.data.time)
+        true, believed = world.pose, _believed(moment)
+        self._write_map(time_s, true.floor_z_m)
+        tree = messages.transforms(
+            time_s,
+            true,
+            believed,
+            camera=env.camera_model,
+            camera_forward_m=env.robot_model.camera_forward_m,
+            laser_height_m=self._scan.config.height_m,
+        )
+        out.write("/tf", time_s, tree)
+        out.write("/odom", time_s, messages.odometry(time_s, believed))
+        out.write("/camera/image_raw", time_s, messages.colour_image(time_s, moment.seen("rgb")))
+        out.write(
+            "/camera/depth/image_raw", time_s, messages.depth_image(time_s, moment.seen("depth"), env.camera_model)
+        )
+        out.write("/camera/camera_info", time_s, messages.camera_info(time_s, env.camera_model))
+        out.write("/scan", time_s, messages.laser_scan(time_s, self._scan_at(moment), self._scan.config))
+        out.write("/cmd_vel", time_s, self._command(moment.action))
+
+    def moved(self, info: Mapping[str, Any]) -> None:
+        """Does nothing: the next decision shows the outcome."""
+
+    def end(self, line: Mapping[str, Any]) -> None:
+        """Writes the result and completes the file."""
+        assert self._stream is not None
+        self._out.describe("result", line)
+        self._out.finish()
+        self._stream.close()
+        self._stream = None
+        self._part.replace(mcap_file(self._run, self._env.episode.episode_id))
+
+    def close(self) -> None:
+        """Discards the recording of an unfinished episode."""
+        if self._stream is not None:
+            self._stream.close()
+            self._stream = None
+            self._part.unlink(missing_ok=True)
+
+    def _write_map(self, time_s: float, floor_z_m: float) -> None:
+        """Writes the floor plan of the storey that the robot is on, if it is another one than before."""
+        if floor_z_m == self._floor_z_m:
+            return
+        self._floor_z_m = floor_z_m
+        space = self._env.scene.task.truth.space(floor_z_m)
+        grid = messages.occupancy_grid(time_s, space.frame, *_occupied_and_free(space), floor_z_m)
+        self._out.write("/map", time_s, grid)
+
+    def _scan_at(self, moment: Moment) -> NDArray[np.float32]:
+        """Returns the scan that the agent observed, or the true one."""
+        if SCAN in moment.observation:
+            return moment.observation[SCAN]
+        world = self._env.scene.world
+        return self._scan.read(SensorContext(self._scan, {}, pose=world.pose, model=world.model, data=world.data))
+
+    def _command(self, action: Action) -> messages.Message:
+        """Returns the velocity that the drive aims at in an action."""
+        drive = self._env.robot_config.drive
+        turn = {Action.TURN_LEFT: drive.turn_speed_rad_s, Action.TURN_RIGHT: -drive.turn_speed_rad_s}
+        return messages.twist(drive.speed_m_s if action == Action.MOVE_FORWARD else 0.0, turn.get(action, 0.0))
+
+
+def _believed(moment: Moment) -> Pose:
+    """Returns the pose in the start frame that the agent observed."""
+    x_m, y_m = moment.observation["gps"].tolist()
+    return Pose(x_m, y_m, float(moment.observation["compass"][0]))
+
+
+def _occupied_and_free(space: FreeSpace) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Returns the masks (rows, cols) of obstacles, and of the floor that the robot's body can cover."""
+    frame = space.frame
+    occupied = np.zeros(frame.shape, np.bool_)
+    for polygon in space.obstacles:
+        window = frame.index_of(polygon.bounds_m)
+        x, y = frame.axes(window)
+        centres = np.stack(np.broadcast_arrays(x[None, :], y[:, None]), axis=-1).reshape(-1, 2)
+        occupied[window] |= polygon.contains(centres).reshape(len(y), len(x))
+    radius = round(space.radius_m / frame.cell_m)
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))
+    return occupied, cv2.dilate(space.free.astype(np.uint8), disc).astype(np.bool_)

@@ -1,0 +1,246 @@
+"""Lists what users can choose on the page: the parts that ship, and those with which the server was started."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+
+from sim.app.composition.agents import EXPLORERS, SPECS, find_agent, find_explorer, takes_explorer
+from sim.app.composition.driven import HUMAN_NAME
+from sim.app.composition.options import RunOptions
+from sim.app.composition.segmenters import KINDS, NetworkConfig, find_segmentation
+from sim.app.web.controls import Driver, EpisodeRequest
+from sim.core import invocation
+from sim.core.errors import ConfigError, HouseError
+from sim.core.interface import GOAL_CATEGORIES
+from sim.core.reading import convert
+from sim.episodes.splits import HOUSE_SUFFIXES, load_split, one_house, shipped_splits
+from sim.houses.labels import read_labels
+
+NOT_OFFERED = ("test", "large-test", "hazards-test", "contact-test", "contact-heldout")
+"""Splits that are kept for a last measurement; the page offers them only if `--split` names them."""
+FIRST = ("val", "large", "hazards", "traps", "contact-val")
+"""The splits that the page lists first."""
+Goals = Mapping[str, Mapping[str, list[str]]]
+"""The ids of the episodes by house and goal; the lists of a house file are empty, because its episodes are drawn."""
+_PLAIN_TEXT = re.compile(r"[\w-]*")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Offer:
+    """The parts with which the server was started, in addition to those that ship."""
+
+    agents: tuple[str, ...] = ()
+    explorers: tuple[str, ...] = ()
+    semantics: tuple[str, ...] = ()
+    splits: tuple[str, ...] = ()
+    houses: tuple[Path, ...] = ()
+    options: RunOptions = field(default_factory=RunOptions)
+    """Options that every episode gets, for example weights, robot and noise."""
+
+
+class Choices:
+    """The houses with their goals and episodes, and the agents, explorers and segmentations that users can choose."""
+
+    def __init__(self, offer: Offer) -> None:
+        """Reads everything that can be chosen, once.
+
+        Raises:
+            ConfigError, HouseError: an agent, explorer, segmentation, split or house cannot be found or read.
+        """
+        self._options = offer.options
+        self._agents = {**SPECS, **{name: find_agent(name) for name in offer.agents}}
+        self._explorers = {**EXPLORERS, **{name: find_explorer(name) for name in offer.explorers}}
+        self._semantics = {**KINDS, **{name: find_segmentation(name, None) for name in offer.semantics}}
+        self._splits: dict[str, Goals] = {_split_name(name): _goals_of_split(name) for name in offer.splits}
+        self._houses = {str(file): file for file in offer.houses}
+        self._splits |= {name: _goals_of_house(file, offer.options) for name, file in self._houses.items()}
+        others = [name for name in shipped_splits() if name not in (*NOT_OFFERED, *self._splits)]
+        others.sort(key=lambda name: (FIRST.index(name) if name in FIRST else len(FIRST), name))
+        self._splits |= {name: _goals_of_split(name) for name in others}
+        self._first = {
+            "split": next(iter(self._splits)),
+            "agent": (*offer.agents, offer.options.agent)[0],
+            "explorer": (*offer.explorers, "")[0],
+            "semantics": (*offer.semantics, offer.options.semantics)[0],
+        }
+
+    def as_json(self) -> dict[str, Any]:
+        """Returns everything that can be chosen, as JSON types."""
+        return {
+            "splits": self._splits,
+            "agents": {
+                name: {
+                    "description": spec.description,
+                    "segmentation": spec.uses_segmentation,
+                    "explorer": takes_explorer(spec),
+                }
+                for name, spec in self._agents.items()
+            },
+            "explorers": list(self._explorers),
+            "semantics": {name: kind.description for name, kind in self._semantics.items()},
+            "first": self._first,
+            "run_command": invocation.command("run", "--video"),
+        }
+
+    def request(self, message: Mapping[str, Any]) -> EpisodeRequest:
+        """Returns the request that a message of the page describes.
+
+        Raises:
+            ConfigError: a part of it cannot be chosen.
+        """
+        asked = convert(message, _Start, where="The message")
+        return self._request(asked, self._options)
+
+    def again(self, record: Mapping[str, Any], line: Mapping[str, Any], driver: Driver) -> EpisodeRequest:
+        """Returns a request for an episode of a finished run, with the agent, seed and settings of that run.
+
+        Args:
+            record: the run's `config.json`.
+            line: the episode's result line.
+            driver: the agent or a person, who drives the robot first.
+
+        Raises:
+            ConfigError: the server was started without a part of the run, or a field of the record is missing.
+        """
+        by_person = str(record.get("agent")).partition("+")[0] == HUMAN_NAME
+        file = record.get("house")
+        asked = {
+            "split": str(Path(file).absolute()) if file else _split_name(str(record.get("split"))),
+            "house": line["house"],
+            "goal": line["goal"],
+            "agent": "stubborn" if by_person else record.get("agent"),
+            "semantics": record.get("semantics"),
+            "explorer": record.get("explorer") or "",
+            "episode": line["episode_id"],
+            "driver": driver,
+        }
+        options = replace(self._options, config=_settings(record, self._options.config), config_file=None)
+        for name in ("seed", "seed_key", "noise", "profile", "verification"):
+            if record.get(name) is not None:
+                options = replace(options, **{name: record[name]})
+        request = self._request(convert(asked, _Start, where="The run's config.json"), options)
+        if file:  # the episodes are drawn again, so that all options on which they depend must be those of the run
+            drawn = convert(dict(record), _Drawn, where="The run's config.json")
+            request = replace(request, options=replace(request.options, **msgspec.structs.asdict(drawn)))
+        return replace(request, record=record)
+
+    def _request(self, asked: _Start, options: RunOptions) -> EpisodeRequest:
+        """Returns a request; raises ConfigError if a part of it is not offered."""
+        is_house = Path(asked.split).suffix.lower() in HOUSE_SUFFIXES
+        self._require("house" if is_house else "split", asked.split, self._splits)
+        self._require("agent", asked.agent, self._agents)
+        self._require("semantics", asked.semantics, self._semantics)
+        if asked.explorer:
+            self._require("explorer", asked.explorer, self._explorers)
+        houses = self._splits[asked.split]
+        house, goal = asked.house, asked.goal
+        if asked.episode and asked.split not in self._houses:
+            house, goal = _place_of(asked.episode, houses, asked.split)
+        if goal not in houses.get(house, {}):
+            raise ConfigError(f"There is no '{goal}' in house '{house}' of '{asked.split}'.")
+        options = replace(options, agent=asked.agent, semantics=asked.semantics, explorer=asked.explorer or None)
+        if asked.split in self._houses:
+            options = replace(options, house=self._houses[asked.split], goal=goal)
+        else:
+            options = replace(options, split=asked.split, labels=None, root=None)
+        if not isinstance(self._semantics[asked.semantics].config, NetworkConfig):
+            options = replace(options, weights=None)
+        return EpisodeRequest(
+            split=asked.split,
+            house=house,
+            goal=goal,
+            agent=asked.agent,
+            semantics=asked.semantics,
+            explorer=asked.explorer,
+            episode_id=asked.episode or None,
+            driver=asked.driver,
+            options=options,
+        )
+
+    @staticmethod
+    def _require(option: str, name: str, offered: Mapping[str, Any]) -> None:
+        if name not in offered:
+            command = invocation.command("web", f"--{option}", name)
+            raise ConfigError(f"This page does not offer --{option} '{name}'. Start the server with it: {command}")
+
+
+class _Start(msgspec.Struct):
+    """A message of the page that requests an episode."""
+
+    split: str
+    house: str
+    goal: str
+    agent: str
+    semantics: str
+    explorer: str = ""
+    episode: str = ""
+    driver: Literal["agent", "person"] = "agent"
+
+
+class _Drawn(msgspec.Struct):
+    """The options of a run in one house on which its episodes depend."""
+
+    episodes: int
+    goal: str | None = None
+    start_deg: str | None = None
+
+
+def _split_name(name: str) -> str:
+    """Returns the name of a shipped split, or the absolute path of a folder."""
+    return name if name in shipped_splits() else str(Path(name).absolute())
+
+
+def _goals_of_split(name: str) -> Goals:
+    goals: dict[str, dict[str, list[str]]] = {}
+    for episode in load_split(name).episodes:
+        goals.setdefault(episode.house, {}).setdefault(episode.goal, []).append(episode.episode_id)
+    return {house: dict(sorted(found.items())) for house, found in sorted(goals.items())}
+
+
+def _goals_of_house(file: Path, options: RunOptions) -> Goals:
+    """Returns the goals in a house file: the one that its sidecar fixes, else all categories that the house has."""
+    split = one_house(file, labels=options.labels, root=options.root)
+    house = split.load_house(file.stem)
+    fixed = split.sidecar(file.stem).goal
+    found = read_labels(house.spec.copy().compile(), rules=house.rules).categories()
+    goals = [goal for goal in GOAL_CATEGORIES if goal in found and fixed in (None, goal)]
+    if not goals:
+        raise HouseError(f"House '{file}' has no object of a goal category to look for.")
+    return {file.stem: {goal: [] for goal in sorted(goals)}}
+
+
+def _place_of(episode_id: str, houses: Goals, split: str) -> tuple[str, str]:
+    """Returns house and goal of an episode."""
+    for house, goals in houses.items():
+        for goal, ids in goals.items():
+            if episode_id in ids:
+                return house, goal
+    raise ConfigError(f"Split '{split}' has no episode '{episode_id}'.")
+
+
+def _settings(record: Mapping[str, Any], own: Iterable[str]) -> tuple[str, ...]:
+    """Returns the settings of a run in the form of `--config`.
+
+    Args:
+        record: the run's `config.json`.
+        own: the server's assignments. They replace those settings of the run that may name files, because a record
+            must not choose files.
+    """
+    settings = record.get("settings")
+    settings = settings if isinstance(settings, dict) else {}
+    plain = [f"{path}={json.dumps(value)}" for path, value in settings.items() if _is_plain(value)]
+    files = [path for path, value in settings.items() if not _is_plain(value)]
+    return (*plain, *(assignment for assignment in own if assignment.partition("=")[0] in files))
+
+
+def _is_plain(value: Any) -> bool:
+    if isinstance(value, list):
+        return all(map(_is_plain, value))
+    return not isinstance(value, dict) and (not isinstance(value, str) or _PLAIN_TEXT.fullmatch(value) is not None)

@@ -1,0 +1,224 @@
+"""Lists the finished runs in a folder, and opens their reports, pictures and videos.
+
+Files are found by the names in the results, never by a path in a request. Links that lead out of the folder of the runs
+are refused, and only plain files are opened.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, BinaryIO, NamedTuple
+
+from sim.app.analysis.comparison import Line, Run, differences_table, require_same_episodes
+from sim.app.analysis.metrics import episodes_of
+from sim.app.analysis.report.figures import METRICS
+from sim.app.analysis.tables import Cell, ResultTable
+from sim.app.evaluation.last_view import picture_file
+from sim.app.evaluation.results import read_record, read_result_lines
+from sim.app.viewers.video import video_file
+from sim.core import invocation
+from sim.core.errors import ConfigError
+from sim.core.reading import open_plain, printable
+
+MOST_RUNS = 100
+"""Largest number of runs that are listed, the newest ones."""
+REPORT = "report.html"
+_FILES: Mapping[str, Callable[[Path, str], Path]] = {"pictures": picture_file, "videos": video_file}
+"""Functions that return the path of an episode's file to which a report links, by the file's folder."""
+_COLUMNS = (
+    "episode_id", "house", "goal", "agent", "success", "spl", "num_steps", "collisions", "failure", "end_reason",
+)  # fmt: skip
+
+
+class _Read(NamedTuple):
+    """A run that was read, and the times and sizes of its files at that time."""
+
+    state: tuple[tuple[int, int], ...]
+    run: Run
+
+
+class Runs:
+    """The finished runs in one folder. A run is named by its folder, with escapes for bytes that are not UTF-8."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._read: dict[Path, _Read] = {}
+
+    def as_json(self) -> list[dict[str, Any]]:
+        """Returns the runs, the newest first; a run whose files are broken is listed with the reason."""
+        return [self._about(changed_ns, folder) for changed_ns, folder in self._newest()]
+
+    def episodes(self, name: str) -> list[dict[str, Any]]:
+        """Returns the result lines of a run, and whether each has a video.
+
+        Raises:
+            ConfigError: there is no such run, or it cannot be read.
+        """
+        run = self.run(name)
+        return [
+            {key: line.get(key) for key in _COLUMNS} | {"video": self._there(video_file(run.path, each))}
+            for each, line in run.lines.items()
+        ]
+
+    def run(self, name: str) -> Run:
+        """Returns a run.
+
+        Raises:
+            ConfigError: there is no such run, or its files cannot be read.
+        """
+        return self._content(self._folder_of(name))
+
+    def line(self, name: str, episode_id: str) -> tuple[Run, Line]:
+        """Returns a run and the result line of one of its episodes.
+
+        Raises:
+            ConfigError: there is no such run or episode.
+        """
+        run = self.run(name)
+        if episode_id not in run.lines:
+            raise ConfigError(f"Run '{name}' has no episode '{episode_id}'.")
+        return run, run.lines[episode_id]
+
+    def video(self, name: str, episode_id: str) -> BinaryIO:
+        """Returns the video of an episode, open for reading.
+
+        Raises:
+            ConfigError: it does not exist.
+        """
+        run = self.run(name)
+        if episode_id in run.lines:
+            file = video_file(run.path, episode_id)
+            if self._there(file):
+                return self._open(file)
+        raise ConfigError(f"Run '{name}' has no video of '{episode_id}'.")
+
+    def linked(self, name: str, kind: str, file_name: str) -> BinaryIO:
+        """Returns a picture or a video to which the report of a run links, open for reading.
+
+        Args:
+            name: name of the run.
+            kind: the folder of the file, `pictures` or `videos`.
+            file_name: name of the file in that folder.
+
+        Raises:
+            ConfigError: no episode of the run has such a file.
+        """
+        run = self.run(name)
+        for episode_id in run.lines if kind in _FILES else ():
+            file = _FILES[kind](run.path, episode_id)
+            if file.name == file_name and self._there(file):
+                return self._open(file)
+        raise ConfigError(f"Run '{name}' has no file '{file_name}' in '{kind}'.")
+
+    def report(self, name: str) -> BinaryIO:
+        """Returns the report of a run, open for reading.
+
+        Raises:
+            ConfigError: it does not exist.
+        """
+        file = self._folder_of(name) / REPORT
+        if not self._there(file):
+            raise ConfigError(f"Run '{name}' has no report; {invocation.command('report', file.parent)} makes it.")
+        return self._open(file)
+
+    def comparison(self, first: str, second: str) -> list[dict[str, Any]]:
+        """Returns the paired differences of two runs, and the fields in which their configurations differ, as tables.
+
+        Raises:
+            ConfigError: there are no such runs, or they share no episode.
+        """
+        a, b = self.run(first), self.run(second)
+        common = require_same_episodes(a, b)
+        lines = [[of.lines[each] for each in common] for of in (a, b)]
+        rows = [
+            (metric.title, [metric.cell(lines[0]), metric.cell(lines[1]), metric.difference(lines[0], lines[1])])
+            for metric in METRICS
+        ]
+        title = f"B - A, paired over {len(set(episodes_of(lines[0])))} episodes of both"
+        means = ResultTable("comparison", title, ("metric", f"A: {first}", f"B: {second}", "B - A"), rows)
+        return [_table_as_json(table) for table in (means, differences_table(a, b))]
+
+    def _newest(self) -> list[tuple[int, Path]]:
+        return sorted(self._found(), reverse=True)[:MOST_RUNS]
+
+    def _found(self) -> Iterator[tuple[int, Path]]:
+        """Yields the folders that hold results, with the time of the last line, nanoseconds since 1970."""
+        try:
+            entries = list(os.scandir(self._folder))
+        except OSError:  # there are no runs yet
+            return
+        for entry in entries:
+            file = Path(entry.path) / "results.jsonl"
+            try:
+                is_report = (Path(entry.path) / "traps.csv").exists()  # of traps: with results, but no run
+                if entry.is_dir(follow_symlinks=False) and not is_report and self._there(file):
+                    yield file.stat().st_mtime_ns, Path(entry.path)
+            except OSError:  # it has just been removed
+                continue
+
+    def _folder_of(self, name: str) -> Path:
+        for _, folder in self._found():
+            if printable(folder.name) == name:
+                return folder
+        raise ConfigError(f"There is no run '{name}'.")
+
+    def _about(self, changed_ns: int, folder: Path) -> dict[str, Any]:
+        about = {"name": printable(folder.name), "changed_s": changed_ns / 1e9}
+        try:
+            run = self._content(folder)
+        except ConfigError as error:
+            return about | {"broken": printable(str(error))}
+        lines, record = run.lines.values(), run.config
+        return about | {
+            "agent": record.get("agent"),
+            "semantics": record.get("semantics"),
+            "explorer": record.get("explorer"),
+            "split": (record.get("split_identity") or {}).get("name"),
+            "episodes": len(lines),
+            "found": sum(bool(line.get("success")) for line in lines),
+            "errors": sum(line.get("end_reason") == "error" for line in lines),
+            "spl": sum(float(line.get("spl") or 0.0) for line in lines) / max(1, len(lines)),
+            "report": self._there(folder / REPORT),
+        }
+
+    def _content(self, folder: Path) -> Run:
+        """Returns the run in a folder; it is read again only when its files have changed."""
+        config, results = folder / "config.json", folder / "results.jsonl"
+        for file in (config, results):
+            if not self._there(file):
+                raise ConfigError(f"'{folder.name}' has no plain file {file.name} in the folder of the runs.")
+        try:
+            state = tuple((file.stat().st_mtime_ns, file.stat().st_size) for file in (config, results))
+        except OSError as error:
+            raise ConfigError(f"'{folder.name}' cannot be read: {error.strerror}.") from None
+        known = self._read.get(folder)
+        if known is not None and known.state == state:
+            return known.run
+        lines = read_result_lines(results).values
+        run = Run(folder, read_record(config), {line["episode_id"]: line for line in lines})
+        self._read[folder] = _Read(state, run)
+        while len(self._read) > MOST_RUNS:
+            self._read.pop(next(iter(self._read)), None)
+        return run
+
+    def _there(self, file: Path) -> bool:
+        """Returns whether a plain file exists and no link leads out of the folder of the runs."""
+        try:
+            return file.is_file() and file.resolve().is_relative_to(self._folder.resolve())
+        except (OSError, ValueError, RuntimeError):  # a name that is too long, a loop of links
+            return False
+
+    @staticmethod
+    def _open(file: Path) -> BinaryIO:
+        return open_plain(file, what="File of a run")
+
+
+def _table_as_json(table: ResultTable) -> dict[str, Any]:
+    """Returns a table as JSON types; a cell is its text and its verdict."""
+    rows = [
+        [label, *({"text": cell.text(), "verdict": cell.verdict} if isinstance(cell, Cell) else cell for cell in cells)]
+        for label, cells in table.rows
+    ]
+    return {"title": table.title, "header": list(table.header), "rows": rows, "notes": list(table.footnotes)}

@@ -1,0 +1,1 @@
+"""The contract of agent and simulator: interface, poses and grids, reading of files, errors, configuration."""

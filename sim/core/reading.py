@@ -1,0 +1,454 @@
+"""Reads files that users, other programs or earlier runs wrote: it checks types and sizes, and names each fault.
+
+The types are those of msgspec: a `msgspec.Struct` names the fields that a file must have and their types, and the
+aliases below bound numbers and names. JSON has no NaN and no infinity here, nesting and size are limited, and a
+message names the file, the line, the field, what was found and what is wanted.
+"""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import gzip
+import hashlib
+import itertools
+import json
+import os
+import re
+import stat
+import struct
+import tarfile
+import unicodedata
+import zipfile
+import zlib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Annotated, Any, BinaryIO, NamedTuple, TypeVar
+
+import msgspec
+import numpy as np
+from msgspec import Meta
+from numpy.typing import NDArray
+
+from sim.core.errors import ConfigError, ObjectNavError
+
+T = TypeVar("T")
+MAX_BYTES = 64 << 20
+"""Largest JSON file that is read, also after decompression; the largest that ships has 0.3 MB."""
+MAX_LINES_BYTES = 512 << 20
+"""Largest file of lines (`results.jsonl`): about 700,000 episodes."""
+MAX_PIXELS = 64_000_000
+"""Pixels of the largest image that is decoded."""
+MAX_TAR_HEADER_BYTES = 2048
+"""Largest extended header of a member of a tar file; the time of `tarfile` grows with the square of its size."""
+_TAR_EXTENSIONS = (
+    tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE, tarfile.GNUTYPE_LONGNAME, tarfile.GNUTYPE_LONGLINK
+)  # fmt: skip
+_MARKS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF32_LE, "utf-32-le"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+"""The byte order marks that Windows programs write, with the encoding that follows."""
+
+Metres = Annotated[float, Meta(ge=-10_000.0, le=10_000.0)]
+"""A coordinate or a length."""
+Number = Annotated[float, Meta(ge=-1e12, le=1e12)]
+"""Any other measured number."""
+Count = Annotated[int, Meta(ge=0, le=10**12)]
+Seed = Annotated[int, Meta(ge=0, le=2**63 - 1)]
+Name = Annotated[str, Meta(min_length=1, max_length=1000, pattern=r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*\Z")]
+"""An id or a name: text without control characters, which a terminal would interpret."""
+
+
+class Lines(NamedTuple):
+    """The lines of a file that grows while it is written."""
+
+    values: list[dict[str, Any]]
+    whole_bytes: int
+    """Length of the complete lines."""
+    torn: str
+    """A sentence on an incomplete last line, which was left out; "" if every line is complete."""
+
+
+def open_plain(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> BinaryIO:
+    """Returns a plain file, open for reading. It refuses a pipe, a device or a folder, and does not wait for a pipe.
+
+    Every file that a user or data names is opened by this function.
+
+    Args:
+        file: the file.
+        what: kind of the file for the error message, for example "Episode file".
+        error: class of the error.
+
+    Raises:
+        ObjectNavError: of class `error`; the file does not exist, cannot be opened or is not a plain file.
+    """
+    try:
+        return _open_plain(file)
+    except (OSError, ValueError) as fault:
+        raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+
+
+def _open_plain(file: Path) -> BinaryIO:
+    """Returns a plain file, open for reading; raises OSError or ValueError."""
+    # Without O_NONBLOCK, opening a pipe waits for a writer. A plain file does not have that flag.
+    handle = os.open(file, os.O_RDONLY | os.O_CLOEXEC | getattr(os, "O_NONBLOCK", 0))
+    if not stat.S_ISREG(os.fstat(handle).st_mode):
+        os.close(handle)
+        raise OSError("it is not a plain file")
+    return os.fdopen(handle, "rb")
+
+
+def read_bytes(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError, most: int = MAX_BYTES) -> bytes:
+    """Returns the content of a file.
+
+    Args:
+        file: the file.
+        what: kind of the file for the error message, for example "Episode file".
+        error: class of the error.
+        most: largest number of bytes.
+
+    Raises:
+        ObjectNavError: of class `error`; the file does not exist, cannot be read or is too large.
+    """
+    with open_plain(file, what=what, error=error) as stream:
+        try:
+            content = stream.read(most + 1)
+        except OSError as fault:
+            raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+    if len(content) > most:
+        raise error(f"{what} '{file}' is too large: at most {most >> 20} MB are read.")
+    return content
+
+
+def read_text(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError, most: int = MAX_BYTES) -> str:
+    """Returns the text of a file in UTF-8, or in the encoding of its byte order mark, as lines that end with "\\n".
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read, is too large or is not text in this encoding.
+    """
+    content = read_bytes(file, what=what, error=error, most=most)
+    try:
+        text = without_mark(content).decode("utf-8")
+    except UnicodeError as fault:
+        raise error(f"{what} '{file}' is not text in UTF-8: {reason_of(fault)}.") from None
+    return text.replace("\r\n", "\n")
+
+
+def read_csv(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> list[dict[str, str]]:
+    """Returns the rows of a CSV file by the names of its columns; the missing fields of a short row are "".
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read or is not a table.
+    """
+    try:
+        table = csv.DictReader(read_text(file, what=what, error=error).splitlines(), restval="", restkey="")
+        return [{key: value for key, value in row.items() if key} for row in table]
+    except csv.Error as fault:
+        raise error(f"{what} '{file}' is not a table: {reason_of(fault)}.") from None
+
+
+def sha256_of(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> str:
+    """Returns the SHA-256 of a file of any size, hexadecimal.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read.
+    """
+    digest = hashlib.sha256()
+    with open_plain(file, what=what, error=error) as stream:
+        try:
+            while block := stream.read(1 << 20):
+                digest.update(block)
+        except OSError as fault:
+            raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+    return digest.hexdigest()
+
+
+def without_mark(content: bytes) -> bytes:
+    """Returns a text as UTF-8 without a byte order mark; text with the mark of UTF-16 is converted.
+
+    Raises:
+        UnicodeError: the text is not in the encoding of its mark.
+    """
+    for mark, encoding in _MARKS:
+        if content.startswith(mark):
+            rest = content[len(mark) :]
+            return rest if encoding == "utf-8" else rest.decode(encoding).encode("utf-8")
+    return content
+
+
+class PlainMember(tarfile.TarInfo):
+    """A member of a tar file: `tarfile.open(..., tarinfo=PlainMember)` refuses large extended headers unread."""
+
+    @classmethod
+    def frombuf(cls, buf: bytes | bytearray, encoding: str, errors: str) -> PlainMember:
+        """Returns the member of a header of 512 bytes.
+
+        Raises:
+            tarfile.TarError: it is not a header, or announces an extended header of more than `MAX_TAR_HEADER_BYTES`.
+        """
+        member = super().frombuf(buf, encoding, errors)
+        if member.type in _TAR_EXTENSIONS and member.size > MAX_TAR_HEADER_BYTES:
+            raise tarfile.ReadError(f"it has an extended header of {member.size} bytes")
+        return member
+
+
+def read_json(file: Path, kind: type[T] | Any, *, what: str, error: type[ObjectNavError] = ConfigError) -> T:
+    """Returns the content of a JSON file as the declared type.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read or has other content.
+    """
+    return parse_json(read_bytes(file, what=what, error=error), kind, where=f"{what} '{file}'", error=error)
+
+
+def read_gzip_json(file: Path, kind: type[T] | Any, *, what: str, error: type[ObjectNavError] = ConfigError) -> T:
+    """Returns the content of a gzipped JSON file as the declared type.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read, expands to more than `MAX_BYTES`, or has other
+            content.
+    """
+    with open_plain(file, what=what, error=error) as packed:
+        try:
+            content = gzip.GzipFile(fileobj=packed).read(MAX_BYTES + 1)
+        except (OSError, EOFError, zlib.error, struct.error, ValueError) as fault:
+            raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+    if len(content) > MAX_BYTES:
+        raise error(f"{what} '{file}' expands to more than {MAX_BYTES >> 20} MB.")
+    return parse_json(content, kind, where=f"{what} '{file}'", error=error)
+
+
+def read_lines(file: Path, kind: type, *, what: str, error: type[ObjectNavError] = ConfigError) -> Lines:
+    """Returns the JSON objects of a file with one per line, each checked against a type; all their fields are kept.
+
+    A process that is killed can leave a last line without its end; some file systems leave a last line of zero bytes
+    after a power failure. Such a line is left out and described in `Lines.torn`.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read, or a line before the last is broken.
+    """
+    if not file.exists():
+        return Lines([], 0, "")
+    content = read_bytes(file, what=what, error=error, most=MAX_LINES_BYTES)
+    whole = content[: content.rfind(b"\n") + 1]
+    rest = content[len(whole) :]
+    values = []
+    for number, line in enumerate(whole.splitlines(), start=1):
+        where = f"{what} '{file}', line {number}"
+        value = parse_json(_without_lone_surrogates(line), dict[str, Any], where=where, error=error)
+        convert(value, kind, where=where, error=error)
+        values.append(value)
+    torn = f"{what} '{file}': the incomplete line {len(values) + 1} was dropped ({len(rest)} bytes)." if rest else ""
+    return Lines(values, len(whole), torn)
+
+
+class TextLine(NamedTuple):
+    """A line of a file."""
+
+    number: int
+    """From 1."""
+    text: bytes
+    share: float
+    """Share of the file, as it lies on the disk, that has been read up to here, in (0, 1]."""
+
+
+def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> Iterator[TextLine]:
+    """Yields the lines of a file, which may be gzipped; empty lines are left out.
+
+    The file is read line by line, so that it may be of any size; a line has at most `MAX_BYTES`.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read, or a line is too long.
+    """
+    with open_plain(file, what=what, error=error) as packed:
+        zipped = packed.read(2) == b"\x1f\x8b"
+        size = max(1, packed.seek(0, os.SEEK_END))
+        packed.seek(0)
+        stream = gzip.GzipFile(fileobj=packed) if zipped else packed
+        for number in itertools.count(1):
+            try:
+                line = stream.readline(MAX_BYTES + 1)
+            except (OSError, EOFError, zlib.error, struct.error, ValueError) as fault:
+                raise error(f"{what} '{file}', line {number} cannot be read: {reason_of(fault)}.") from None
+            if len(line) > MAX_BYTES:
+                raise error(f"{what} '{file}', line {number} is longer than {MAX_BYTES >> 20} MB.")
+            if not line:
+                return
+            if line.strip():
+                yield TextLine(number, line, min(1.0, packed.tell() / size))
+
+
+def parse_json(
+    content: bytes | str, kind: type[T] | Any, *, where: str, error: type[ObjectNavError] = ConfigError
+) -> T:
+    """Returns JSON text as the declared type.
+
+    Args:
+        content: the text.
+        kind: any type that msgspec knows.
+        where: the file and line for the error message.
+        error: class of the error.
+
+    Raises:
+        ObjectNavError: of class `error`; the text is not JSON, nested too deeply, or of another type.
+    """
+    try:
+        return msgspec.json.decode(without_mark(content) if isinstance(content, bytes) else content, type=kind)
+    except msgspec.ValidationError as fault:
+        raise error(f"{where}{_fault(fault)}") from None
+    except RecursionError:
+        raise error(f"{where} is nested too deeply.") from None
+    except (msgspec.DecodeError, UnicodeError) as fault:
+        raw = content if isinstance(content, bytes) else content.encode(errors="replace")
+        empty = not raw.strip(b"\0 \n\r\t")
+        raise error(f"{where} is {'empty' if empty else f'not JSON: {fault}'}.") from None
+
+
+def convert(
+    value: Any, kind: type[T] | Any, *, where: str, error: type[ObjectNavError] = ConfigError, strict: bool = True
+) -> T:
+    """Returns a value of JSON's types as the declared type.
+
+    Args:
+        value: the value.
+        kind: any type that msgspec knows.
+        where: the file and line for the error message.
+        error: class of the error.
+        strict: False: numbers that are written as text, as in CSV, are allowed, too.
+
+    Raises:
+        ObjectNavError: of class `error`; it is of another type.
+    """
+    try:
+        return msgspec.convert(value, kind, strict=strict)
+    except (msgspec.ValidationError, OverflowError) as fault:
+        raise error(f"{where}{_fault(fault)}") from None
+    except RecursionError:
+        raise error(f"{where} is nested too deeply.") from None
+
+
+def require_small_zip(file: Path, *, what: str, most: int, error: type[ObjectNavError] = ConfigError) -> None:
+    """Raises an error if a file is not a zip file (`.npz`, a PyTorch file), or expands to more than `most` bytes."""
+    with open_plain(file, what=what, error=error) as stream:
+        try:
+            size = sum(member.file_size for member in zipfile.ZipFile(stream).infolist())
+        except (OSError, ValueError, zipfile.BadZipFile, NotImplementedError, struct.error) as fault:
+            raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+    if size > most:
+        raise error(f"{what} '{file}' expands to {size >> 20} MB; at most {most >> 20} MB are read.")
+
+
+def read_npz(
+    file: Path,
+    names: Iterable[str] | None = None,
+    *,
+    what: str,
+    most_bytes: int,
+    error: type[ObjectNavError] = ConfigError,
+) -> dict[str, NDArray[Any]]:
+    """Returns the arrays of an `.npz` file by name; pickled objects are refused.
+
+    Args:
+        file: the file.
+        names: the arrays to read, all of which the file must have; None: all arrays of the file.
+        what: kind of the file for the error message, for example "trajectory".
+        most_bytes: largest size of all its arrays together.
+        error: class of the error.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read, is damaged or too large, or lacks an array.
+    """
+    try:
+        with _open_plain(file) as stream, zipfile.ZipFile(stream) as archive:
+            size = sum(member.file_size for member in archive.infolist())
+            if size > most_bytes:
+                raise ValueError(f"it expands to {size >> 20} MB; at most {most_bytes >> 20} MB are read")
+            there = [name.removesuffix(".npy") for name in archive.namelist() if name.endswith(".npy")]
+            wanted = there if names is None else list(names)
+            missing = next((name for name in wanted if name not in there), None)
+            if missing is not None:
+                raise ValueError(f"it has no '{missing}'")
+            return {name: _read_member(archive, name) for name in wanted}
+    except Exception as fault:  # damaged files raise many kinds of errors in zipfile and NumPy
+        raise error(f"'{file}' is not a {what}: {reason_of(fault)}.") from None
+
+
+def image_size_px(content: bytes) -> tuple[int, int] | None:
+    """Returns width and height of a PNG or JPEG image from its header; None if it is neither."""
+    if content[:8] == b"\x89PNG\r\n\x1a\n" and len(content) >= 24:
+        width, height = struct.unpack(">II", content[16:24])
+        return width, height
+    position = 2
+    while content[:2] == b"\xff\xd8" and position + 9 <= len(content) and content[position] == 0xFF:
+        while position + 10 <= len(content) and content[position + 1] == 0xFF:
+            position += 1  # a marker may follow any number of fill bytes
+        marker, length = content[position + 1], int.from_bytes(content[position + 2 : position + 4], "big")
+        if marker == 0x01 or 0xD0 <= marker <= 0xD7:  # these markers have no length
+            position += 2
+            continue
+        if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
+            height, width = struct.unpack(">HH", content[position + 5 : position + 9])
+            return width, height
+        position += 2 + max(length, 1)
+    return None
+
+
+def require_small_image(content: bytes, *, where: str, error: type[ObjectNavError] = ConfigError) -> None:
+    """Raises an error if an image is not a PNG or JPEG, or has more than `MAX_PIXELS` pixels."""
+    size = image_size_px(content)
+    if size is None:
+        raise error(f"{where} is neither a PNG nor a JPEG image.")
+    if size[0] * size[1] > MAX_PIXELS:
+        raise error(f"{where} has {size[0]} x {size[1]} pixels; at most {MAX_PIXELS // 1_000_000} million are allowed.")
+
+
+def printable(text: str) -> str:
+    """Returns text in which control characters and lone surrogates are written as escapes, for a terminal."""
+    return "".join(
+        letter if letter in "\n\t" or unicodedata.category(letter) not in ("Cc", "Cs", "Zl", "Zp") else _escape(letter)
+        for letter in text
+    )
+
+
+def first_unprintable(words: Iterable[str]) -> str | None:
+    """Returns the first word with a control character or a byte that is not UTF-8, or None."""
+    return next((word for word in words if printable(word) != word or "\n" in word or "\t" in word), None)
+
+
+def reason_of(fault: Exception) -> str:
+    """Returns the reason of an error in a few words: the operating system's text, else the error's message."""
+    if isinstance(fault, OSError) and fault.strerror:
+        return fault.strerror
+    return " ".join(str(fault).split()).rstrip(".") or type(fault).__name__
+
+
+def _without_lone_surrogates(line: bytes) -> bytes:
+    """Returns a line of JSON that UTF-8 can hold: version 0.1 wrote error texts with halves of surrogate pairs."""
+    if b"\\ud" not in line.lower():
+        return line
+    try:
+        return json.dumps(json.loads(line), ensure_ascii=False).encode("utf-8", errors="replace")
+    except (ValueError, RecursionError):
+        return line  # the parser reports the fault
+
+
+def _read_member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
+    """Returns one array of an open `.npz` file."""
+    with archive.open(f"{name}.npy") as stream:
+        return np.lib.format.read_array(stream, allow_pickle=False)
+
+
+def _escape(letter: str) -> str:
+    return letter.encode("unicode_escape", errors="backslashreplace").decode("ascii")
+
+
+def _fault(fault: Exception) -> str:
+    """Returns msgspec's message with the field before it: ", field 'episodes[...].goal': expected str, got int."."""
+    message, _, path = str(fault).replace("`", "").partition(" - at ")
+    path = re.sub(r"^(?:key in )?\$\.?", "", path)
+    field = f", field '{path}'" if path else ""
+    begins_with_word = re.match(r"[A-Z][a-z]*\b", message)  # a name such as SemExpConfig keeps its capital
+    return f"{field}: {message[0].lower() + message[1:] if begins_with_word else message}".rstrip(".") + "."

@@ -1,0 +1,36 @@
+"""One episode: a house, a goal and a start pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sim.core.errors import EpisodeError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import GOAL_CATEGORIES
+
+FARTHEST_M = 10_000.0
+"""Largest coordinate of a start."""
+
+
+@dataclass(frozen=True)
+class Episode:
+    """One episode: the robot starts at a pose in a house and searches for an instance of a category."""
+
+    episode_id: str
+    house: str
+    """Name of the house within its split."""
+    goal: str
+    start: Pose
+    shortest_path_m: float | None = None
+    """Recorded geodesic distance from the start to the nearest place where a STOP succeeds; None: unknown."""
+
+    def __post_init__(self) -> None:
+        if self.goal not in GOAL_CATEGORIES:
+            raise EpisodeError(f"Unknown goal '{self.goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
+        require_start(self.start)
+
+
+def require_start(start: Pose) -> None:
+    """Raises EpisodeError if a number of a start is NaN, infinite or larger than `FARTHEST_M`."""
+    if not all(abs(value) <= FARTHEST_M for value in (start.x_m, start.y_m, start.yaw_rad, start.floor_z_m)):
+        raise EpisodeError(f"The start {start} is not allowed: finite numbers of at most {FARTHEST_M:g} are.")

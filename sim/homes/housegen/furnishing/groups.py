@@ -1,0 +1,158 @@
+"""Furniture that belongs together: a bed and its nightstands, a table and its chairs, a desk and what is on it.
+
+Each function puts its group into a room and returns its main item, or None where the room has no position for it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
+from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
+from sim.homes.housegen.furnishing.placement.floor import put_against_wall, put_partly_under
+from sim.homes.housegen.furnishing.placement.free_standing import put_in_middle
+from sim.homes.housegen.furnishing.placement.on_walls import hang_from_ceiling
+from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
+from sim.homes.housegen.furnishing.steps import hang_above, lay_rug, place, place_beside, place_in_front, put_on_top
+from sim.homes.housegen.furniture.item import Item
+
+Seat = tuple[float, float, float]
+"""x, y where a chair meets the table's edge, in the table's frame, and the heading of its front."""
+
+
+def bed_group(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> Placement | None:
+    """Places a bed with its head to a wall, nightstands with lamps, perhaps a bench, a rug and a picture."""
+    bed = _place_bed(layout, source, large=large)
+    if bed is None:
+        return None
+    _place_nightstands(layout, source, bed)
+    if source.chance(0.5):
+        bench = source.make("seating", "plain")
+        if bench is not None and bench.size_m[1] <= bed.item.size_m[1] + 0.1:
+            place_in_front(layout, bed, bench, 0.05, facing=False)
+    if source.chance(0.95 if layout.inner.area_m2 > 13 else 0.6):
+        size_m = (1.7, 2.4) if layout.inner.area_m2 > 13 else None
+        x, y = bed.to_world(0.25 * bed.item.size_m[0] + 0.15, 0.0)
+        if not lay_rug(layout, source, x, y, bed.placed.yaw_rad, size_m=size_m):
+            lay_rug(layout, source, x, y, bed.placed.yaw_rad + math.pi / 2)
+    if source.chance(0.5):
+        hang_above(layout, source, bed, "picture")
+    return bed
+
+
+def _place_bed(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> Placement | None:
+    """Places a bed against a wall, a narrower one where a wide one does not fit, with less and less wall next to it."""
+    widths_m = (source.pick((1.4, 1.6, 1.8)), 1.2, 0.9) if large else (0.9, 0.9, 1.2)
+    for width_m in widths_m:
+        item = source.make("bed", width_m=width_m)
+        if item is None:
+            return None
+        for beside_m in (0.55, 0.3, 0.0):
+            along = "middle" if beside_m else "any"
+            bed = put_against_wall(layout, source.rng, item, along=along, front_m=0.6, beside_m=beside_m)
+            if bed is not None:
+                return bed
+    return None
+
+
+def _place_nightstands(layout: RoomLayout, source: FurnitureSource, bed: Placement) -> None:
+    """Places a nightstand on either side of a bed."""
+    uses = ("chest_of_drawers", "nightstand") if source.chance(0.5) else ("table", "nightstand", "side")
+    item = source.make(*uses)
+    if item is None:
+        return
+    for towards in (1.0, -1.0):
+        if source.chance(0.95):
+            nightstand = place_beside(layout, bed, item, towards)
+            if nightstand is not None:
+                put_on_top(layout, source, nightstand, ("lighting", "objects"), (0.75, 0.4))
+
+
+def dining_group(
+    layout: RoomLayout, source: FurnitureSource, *, around_m: float = 0.75, near: tuple[float, float] | None = None
+) -> Placement | None:
+    """Places a table with chairs at its sides, a lamp above it and perhaps a rug under it."""
+    chair = source.make("chair", "dining")
+    for width_m, least in ((None, 0.65), (1.3, 0.7), (0.85, 0.0)):
+        hints: dict[str, Any] = {"width_m": width_m} if width_m else {}
+        item = source.make("table", "dining", **hints)
+        if item is None or chair is None:
+            return None
+        seats = _seats(source, item, chair)
+        half = chair.size_m[1] / 2
+        spots = [(x - 0.2 * math.cos(turn), y - 0.2 * math.sin(turn), half) for x, y, turn in seats]
+        table = put_in_middle(layout, source.rng, item, spots, around_m=around_m, least=least, apart_m=0.3, near=near)
+        if table is not None:
+            break
+    else:
+        return None
+    for seat in seats:
+        _put_chair(layout, source, table, chair, seat)
+    put_on_top(layout, source, table, ("objects", "plant", "objects"), (0.6, 0.25, 0.3))
+    lamp = source.make("lighting", "ceiling")
+    if lamp is not None and lamp.mount == "ceiling":
+        hang_from_ceiling(layout, lamp, table.placed.x_m, table.placed.y_m)
+    if layout.kind != "kitchen" and source.chance(0.4):
+        size_m = (1.9, 2.6) if layout.inner.area_m2 > 12 else None
+        lay_rug(layout, source, table.placed.x_m, table.placed.y_m, table.placed.yaw_rad, size_m=size_m)
+    return table
+
+
+def breakfast_group(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
+    """Places a small table against a wall with chairs at its free sides."""
+    chair = source.make("chair", "dining")
+    table = place(layout, source, "table", "dining", front_m=0.6, width_m=0.95, depth_m=0.7)
+    if chair is None or table is None:
+        return None
+    layout.release_zones(table)
+    depth, width = table.item.size_m[:2]
+    for seat in ((0.0, width / 2, -math.pi / 2), (0.0, -width / 2, math.pi / 2), (depth / 2, 0.0, math.pi)):
+        _put_chair(layout, source, table, chair, seat)
+    put_on_top(layout, source, table, ("objects", "plant"), (0.6, 0.25))
+    return table
+
+
+def _seats(source: FurnitureSource, table: Item, chair: Item) -> list[Seat]:
+    """Returns seats along the long sides, also at the ends of a long table; one at each side of a square table."""
+    depth, width = table.size_m[:2]
+    if abs(depth - width) < 0.15:
+        quarters = (0.0, math.pi / 2, math.pi, -math.pi / 2)
+        return [(math.cos(a) * depth / 2, math.sin(a) * depth / 2, a + math.pi) for a in quarters]
+    seats: list[Seat] = []
+    count = max(1, min(4, int((width - 0.25) / (chair.size_m[1] + 0.14))))
+    for n in range(count):
+        y = (n - 0.5 * (count - 1)) * (width - 0.2) / count
+        seats += [(depth / 2, y, math.pi), (-depth / 2, y, 0.0)]
+    if width > 1.7 and source.chance(0.5):
+        seats += [(0.0, width / 2, -math.pi / 2), (0.0, -width / 2, math.pi / 2)]
+    return seats
+
+
+def _put_chair(layout: RoomLayout, source: FurnitureSource, table: Placement, chair: Item, seat: Seat) -> None:
+    """Puts a chair at its seat, a little under the table, sometimes slightly turned."""
+    x, y, turn = seat
+    out_m = chair.size_m[0] / 2 - 0.14
+    place_xy = table.to_world(x - out_m * math.cos(turn), y - out_m * math.sin(turn))
+    askew_rad = source.uniform(-0.12, 0.12) if source.chance(0.4) else 0.0
+    put_partly_under(layout, chair, table, *place_xy, table.placed.yaw_rad + turn + askew_rad)
+
+
+def desk_group(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
+    """Places a desk against a wall with a chair, a monitor, a lamp and objects."""
+    desk = place(layout, source, "table", "desk", front_m=0.85)
+    if desk is None:
+        return None
+    layout.release_zones(desk)
+    chair = source.make("chair", "office") or source.make("chair", "dining")
+    if chair is not None:
+        x, y = desk.to_world(desk.item.size_m[0] / 2 + chair.size_m[0] / 2 - 0.15, 0.0)
+        put_partly_under(layout, chair, desk, x, y, desk.placed.yaw_rad + math.pi + source.uniform(-0.2, 0.2))
+    for n in range(3):
+        monitor = source.make("tv_monitor", "monitor", fresh=n > 0)
+        if monitor is None or monitor.mount != "top":
+            break
+        if put_on_surface(layout, source.rng, desk, monitor, face=0.0, back=True):
+            break
+    put_on_top(layout, source, desk, ("lighting", "objects", "objects", "plant"), (0.6, 0.5, 0.3, 0.2))
+    return desk

@@ -1,0 +1,96 @@
+"""The walls of one room with their openings, and the positions along them at which an item can be placed."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from sim.homes.housegen.floor_plan.rectangles import INWARD_YAW_RAD, SIDES, Interval, Rect, Side, subtract
+from sim.homes.housegen.furnishing.placement.records import Placement, floor_placement
+from sim.homes.housegen.furniture.item import Item
+from sim.homes.housegen.structure.openings import Opening
+
+Along = Literal["any", "middle", "corner"]
+"""Preferred position along a wall: anywhere, as near its middle as possible, or in a corner."""
+WALL_GAP_M = 0.016
+"""Distance between furniture and wall: room for the baseboard."""
+LOW_M = 0.9
+"""Furniture lower than this may stand in front of any window."""
+
+
+class RoomWalls:
+    """The four inner wall surfaces of a room, and the openings in them."""
+
+    def __init__(self, inner: Rect) -> None:
+        self.inner = inner
+        self._openings: dict[Side, list[Opening]] = {side: [] for side in SIDES}
+
+    def add_opening(self, side: Side, opening: Opening) -> None:
+        """Adds an opening to a wall."""
+        self._openings[side].append(opening)
+
+    def windows(self) -> list[tuple[Side, Opening]]:
+        """Returns the room's windows and the sides they are on."""
+        return [(side, hole) for side in SIDES for hole in self._openings[side] if hole.kind == "window"]
+
+    def free_stretches(self, side: Side) -> list[Interval]:
+        """Returns the parts of a side that have no door and no passage."""
+        holes = [hole.span for hole in self._openings[side] if hole.kind != "window"]
+        return subtract(self.inner.span(side), holes, 0.05)
+
+    def longest_stretch_m(self, side: Side) -> float:
+        """Returns the length of the longest part of a side without a door."""
+        return max((hi - lo for lo, hi in self.free_stretches(side)), default=0.0)
+
+    def positions(
+        self, rng: np.random.Generator, side: Side, width_m: float, along: Along, beside_m: float
+    ) -> list[float]:
+        """Returns positions along a side for the centre of an item of this width, the best ones first.
+
+        `beside_m` of wall on either side of the item stay free where the wall is long enough.
+        """
+        centre = 0.5 * sum(self.inner.span(side))
+        scored: list[tuple[float, float]] = []
+        for lo, hi in self.free_stretches(side):
+            a, b = lo + width_m / 2 + beside_m, hi - width_m / 2 - beside_m
+            if b < a:
+                a, b = lo + width_m / 2, hi - width_m / 2
+                if b < a:
+                    continue
+            count = max(1, min(24, int((b - a) / 0.1) + 1))
+            for at in np.linspace(a, b, count) if count > 1 else [0.5 * (a + b)]:
+                score = {"middle": abs(at - centre), "corner": min(at - lo, hi - at), "any": 0.0}[along]
+                scored.append((score + float(rng.uniform(0.0, 0.4 if along != "any" else 1.0)), float(at)))
+        return [at for _, at in sorted(scored)]
+
+    def point(self, side: Side, at: float, inward_m: float) -> tuple[float, float]:
+        """Returns the point at a position along a side, `inward_m` into the room."""
+        sign = 1.0 if side in ("east", "north") else -1.0
+        line = self.inner.line(side) - sign * inward_m
+        return (line, at) if side in ("east", "west") else (at, line)
+
+    def placement(self, item: Item, side: Side, at: float, gap_m: float = WALL_GAP_M) -> Placement:
+        """Returns the placement of a floor item with its back to a wall and its centre at a position along it."""
+        x, y = self.point(side, at, item.size_m[0] / 2 + gap_m)
+        return floor_placement(item, x, y, INWARD_YAW_RAD[side], side)
+
+    def hides_window(self, placement: Placement) -> bool:
+        """Returns whether an item against a wall would stand in front of a window and is too high for that."""
+        assert placement.side is not None
+        lo, hi = placement.rect.span(placement.side)
+        return any(
+            hole.kind == "window"
+            and placement.item.size_m[2] > max(hole.bottom_m, LOW_M) + 0.05
+            and hi > hole.span[0] - 0.02
+            and lo < hole.span[1] + 0.02
+            for hole in self._openings[placement.side]
+        )
+
+    def meets_opening(self, side: Side, span: Interval, bottom_m: float, top_m: float) -> bool:
+        """Returns whether a part of a wall overlaps an opening or its frame."""
+        return any(
+            span[1] > hole.span[0] - 0.09 and span[0] < hole.span[1] + 0.09
+            and top_m > hole.bottom_m - 0.06 and bottom_m < hole.top_m + 0.09
+            for hole in self._openings[side]
+        )  # fmt: skip

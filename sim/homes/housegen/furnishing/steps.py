@@ -1,0 +1,170 @@
+"""Single steps of furnishing: choose an item for a use and put it somewhere in a room.
+
+Each step returns the placement, or None (False) where the pool has no such item or the room has no position for it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from sim.homes.housegen.floor_plan.rectangles import Side
+from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
+from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
+from sim.homes.housegen.furnishing.placement.floor import find_row_start, lay_flat, put_against_wall, put_at, put_near
+from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
+from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
+from sim.homes.housegen.furnishing.placement.walls import Along
+from sim.homes.housegen.furniture.item import Item
+
+RUNNER_M = 1.0
+"""Rugs narrower than this are runners."""
+AISLE_M = 0.75
+"""Floor kept free in front of worktops and appliances."""
+ROW_GAP_M = 0.004
+_TOP_USES = {
+    "dining": ("table",), "desk": ("office",), "coffee": ("low", "top"), "media": ("media",),
+    "dresser": ("dresser", "top"),
+    "nightstand": ("bedside",), "side": ("low", "bedside"), "console": ("entry", "top"), "bookcase": ("shelf",),
+    "sideboard": ("top", "shelf", "media"),
+}  # fmt: skip
+"""Uses of small objects on the top of an item, by the use of the item."""
+_WALL_USES = {"mirror": ("wall",), "towel": ("rail",)}
+"""Uses of categories that also have styles which stand on the floor."""
+
+
+def place(
+    layout: RoomLayout, source: FurnitureSource, category: str, *uses: str, along: Along = "any", front_m: float = 0.6,
+    tries: int = 2, **hints: Any,
+) -> Placement | None:  # fmt: skip
+    """Places an item against a wall; tries another style when the first one does not fit.
+
+    A home without clutter has no objects.
+    """
+    if category == "objects" and source.clutter <= 0.0:
+        return None
+    for n in range(tries):
+        item = source.make(category, *uses, fresh=n > 0, **hints)
+        if item is None:
+            return None
+        if item.mount == "wall":
+            found = hang_on_wall(layout, source.rng, item, along=along)
+        else:
+            found = put_against_wall(layout, source.rng, item, along=along, front_m=front_m)
+        if found is not None:
+            return found
+    return None
+
+
+def hang(
+    layout: RoomLayout, source: FurnitureSource, category: str, *uses: str, sides: Sequence[Side] | None = None
+) -> Placement | None:
+    """Hangs an item on one of the walls given, tried in this order, or on any wall."""
+    item = source.make(category, *(uses or _WALL_USES.get(category, ())))
+    if item is None or item.mount != "wall":
+        return None
+    return hang_on_wall(layout, source.rng, item, sides=sides, over_floor=category == "clothes")
+
+
+def hang_above(layout: RoomLayout, source: FurnitureSource, host: Placement, category: str) -> Placement | None:
+    """Hangs an item on the wall right above an item that stands against it."""
+    item = source.make(category, *_WALL_USES.get(category, ()))
+    if item is None or item.mount != "wall" or host.side is None:
+        return None
+    bottom_m = max(item.mount_height_m, host.item.size_m[2] + 0.15)
+    lo, hi = host.rect.span(host.side)
+    return hang_on_wall(layout, source.rng, item, sides=[host.side], at=0.5 * (lo + hi), bottom_m=bottom_m)
+
+
+def place_beside(
+    layout: RoomLayout, host: Placement, item: Item, towards: float, gap_m: float = 0.05
+) -> Placement | None:
+    """Places an item next to another one at the same wall: `towards` is +1 or -1 along the side."""
+    if host.side is None:
+        return None
+    lo, hi = host.rect.span(host.side)
+    reach_m = item.size_m[1] / 2 + gap_m
+    placement = layout.walls.placement(item, host.side, hi + reach_m if towards > 0 else lo - reach_m)
+    return placement if layout.try_put(placement) else None
+
+
+def place_in_front(layout: RoomLayout, host: Placement, item: Item, gap_m: float, *, facing: bool) -> Placement | None:
+    """Places an item in front of another one, turned towards it (`facing`) or in the same direction."""
+    x, y = host.to_world(host.item.size_m[0] / 2 + gap_m + item.size_m[0] / 2, 0.0)
+    yaw = host.placed.yaw_rad
+    return put_at(layout, item, x, y, yaw + math.pi if facing else yaw)
+
+
+def lay_rug(
+    layout: RoomLayout,
+    source: FurnitureSource,
+    x_m: float,
+    y_m: float,
+    yaw_rad: float,
+    *,
+    runner: bool | None = None,
+    size_m: tuple[float, float] | None = None,
+) -> bool:
+    """Lays a rug on the floor: a runner if `runner`, a wide rug if it is False, either one if it is None.
+
+    `size_m` is its depth and width. Returns False where none fits there.
+    """
+    hints: dict[str, Any] = {"depth_m": size_m[0], "width_m": size_m[1]} if size_m else {}
+    for n in range(3):
+        rug = source.make("floor", "rug", fresh=n > 0, **hints)
+        if rug is None:
+            return False
+        if (runner is None or runner == (min(rug.size_m[:2]) < RUNNER_M)) and lay_flat(layout, rug, x_m, y_m, yaw_rad):
+            return True
+    return False
+
+
+def put_on_top(
+    layout: RoomLayout, source: FurnitureSource, host: Placement, categories: Sequence[str], chances: Sequence[float]
+) -> None:
+    """Puts small items on an item, each with its own probability, which also depends on the clutter."""
+    uses = {
+        "lighting": ("table",),
+        "objects": (source.pick(top_uses(layout, source, host)), "top"),
+        "plant": ("table", "small", "top"),
+        "appliances": ("microwave",),
+    }
+    for category, probability in zip(categories, chances, strict=True):
+        if source.clutter_chance(probability):
+            item = source.make(category, *uses[category])
+            if item is not None and item.mount == "top":
+                put_on_surface(layout, source.rng, host, item)
+
+
+def top_uses(layout: RoomLayout, source: FurnitureSource, host: Placement) -> tuple[str, ...]:
+    """Returns the uses of small objects that suit the top of an item in a room."""
+    if layout.kind == "bathroom":
+        return ("bath",)
+    uses = source.uses_of(host.item)
+    if host.item.category == "counter" or (layout.kind == "kitchen" and "dining" not in uses):
+        return ("kitchen",)
+    for use, fitting in _TOP_USES.items():
+        if use in uses:
+            return fitting
+    return ("entry", "top") if layout.kind == "hallway" else ("top", "shelf")
+
+
+def place_row(
+    layout: RoomLayout, source: FurnitureSource, items: Sequence[Item], side: Side, *, front_m: float = AISLE_M
+) -> list[Placement]:
+    """Places items side by side along a wall, in this order or in reverse; an empty list where not all fit."""
+    forwards, backwards = list(items), list(reversed(items))
+    for order in (forwards, backwards) if source.chance(0.5) else (backwards, forwards):
+        at = find_row_start(layout, order, side, front_m, ROW_GAP_M) if order else None
+        if at is None:
+            continue
+        placed = []
+        for item in order:
+            found = put_near(layout, item, side, at + item.size_m[1] / 2, front_m=front_m, slide_m=0.0)
+            if found is not None:
+                placed.append(found)
+            at += item.size_m[1] + ROW_GAP_M
+        if placed:
+            return placed
+    return []

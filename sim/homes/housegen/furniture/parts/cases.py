@@ -1,0 +1,147 @@
+"""Tops and bodies of tables and cabinets, worktops with their sink and hob, and objects on shelves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sim.homes.housegen.furniture.item import Look, MeshShape
+from sim.homes.housegen.furniture.parts.looks import glass_edge, tinted_glass
+from sim.homes.housegen.furniture.parts.spans import BOTH_SIDES, footprint
+from sim.homes.housegen.furniture.shapes import hoop, named_mesh
+from sim.homes.housegen.furniture.workbench import Range, Workbench
+
+GLASS_EDGE_M = 0.008
+"""Width of the opaque edge of a glass top, which is a pixel or more at 3 m."""
+
+
+def slab(w: Workbench, depth: float, width: float, z: Range, look: Look) -> tuple[Range, Range]:
+    """Adds a rectangular top on which objects may stand, and returns its x and y ranges.
+
+    A top of glass gets a visible tint and an opaque edge, as thick glass has.
+    """
+    x, y = footprint(depth, width)
+    if look.rgba[3] < 1.0:
+        look = tinted_glass(look)
+        rim = (z[0] - 0.001, z[1] + 0.001)
+        for end in BOTH_SIDES:
+            a, b = sorted((end * 0.5 * depth, end * (0.5 * depth - GLASS_EDGE_M)))
+            w.box((a, b), y, rim, glass_edge(look), solid=False)
+            a, b = sorted((end * 0.5 * width, end * (0.5 * width - GLASS_EDGE_M)))
+            w.box((x[0] + GLASS_EDGE_M, x[1] - GLASS_EDGE_M), (a, b), rim, glass_edge(look), solid=False)
+    w.box(x, y, z, look)
+    w.top((x[0] + 0.05, x[1] - 0.05), (y[0] + 0.05, y[1] - 0.05), z[1])
+    return x, y
+
+
+def round_top(w: Workbench, radius: float, z: Range, look: Look) -> None:
+    """Adds a round top on which objects may stand; one of glass is tinted and has an opaque edge."""
+    if look.rgba[3] < 1.0:
+        look = tinted_glass(look)
+        edge = hoop(radius + 0.001, GLASS_EDGE_M, z[1] - z[0] + 0.002)
+        w.mesh(edge, (0.0, 0.0, 0.5 * (z[0] + z[1])), glass_edge(look), solid=False)
+    w.cylinder((0.0, 0.0), z, radius, look)
+    half = 0.65 * radius
+    w.top((-half, half), (-half, half), z[1])
+
+
+def top_surface(w: Workbench, x: Range, y: Range, z: float) -> None:
+    """Declares the top of a case, 4 cm inside its edges, as a surface on which objects may stand."""
+    w.top((x[0] + 0.04, x[1] - 0.04), (y[0] + 0.04, y[1] - 0.04), z)
+
+
+def case(w: Workbench, depth: float, width: float, z: Range, look: Look, *, foot: float = 0.0) -> tuple[float, Range]:
+    """Adds a closed body on which objects may stand, on a dark plinth of height `foot`.
+
+    Returns:
+        The x of its front plane and its y range.
+    """
+    x, y = footprint(depth, width)
+    w.box(x, y, z, look)
+    if foot:
+        w.box((x[0] + 0.02, x[1] - 0.05), (y[0] + 0.02, y[1] - 0.02), (z[0] - foot, z[0]), w.look("dark"))
+    w.top((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.05, y[1] - 0.05), z[1])
+    return x[1], y
+
+
+def open_case(w: Workbench, x: Range, y: Range, z: Range, board: float, look: Look, *, back: bool = True) -> None:
+    """Adds the boards of a box that is open in front, and also behind without `back`."""
+    for edge in (y[0], y[1] - board):
+        w.box(x, (edge, edge + board), z, look)
+    for low in (z[0], z[1] - board):
+        w.box(x, (y[0] + board, y[1] - board), (low, low + board), look)
+    if back:
+        w.box((x[0], x[0] + 0.012), (y[0] + board, y[1] - board), (z[0] + board, z[1] - board), look)
+
+
+def prism(outline: Sequence[tuple[float, float]], height: float) -> MeshShape:
+    """Returns an upright prism from z = 0; its star-shaped outline runs counter-clockwise seen from above."""
+    n = len(outline)
+    points = np.asarray(outline, dtype=np.float64)
+    ring = np.vstack([points, points.mean(axis=0)])
+    vertices = np.vstack([np.column_stack([ring, np.full(n + 1, z)]) for z in (0.0, height)])
+    faces = []
+    for i in range(n):
+        j, up = (i + 1) % n, n + 1
+        faces += [(i, j, up + j), (i, up + j, up + i), (n, j, i), (up + n, up + i, up + j)]
+    return named_mesh("prism", vertices, faces)
+
+
+def shelf_objects(w: Workbench, x: Range, y: Range, z: float, count: int, room: float) -> None:
+    """Adds a row of up to `count` books, boxes, bowls and vases to a shelf with `room` metres of free height."""
+    each = (y[1] - y[0]) / count
+    for i in range(count):
+        at, tallest = y[0] + (i + 0.5) * each, min(0.8 * room, 0.24)
+        half = min(0.42 * each, 0.09)
+        middle = 0.5 * (x[0] + x[1])
+        kind = w.choice(("book", "pot", "ceramic", "cardboard", "none"))
+        if kind in ("book", "cardboard"):
+            deep = min(0.1, 0.35 * (x[1] - x[0]))
+            high = z + w.length(0.5, 0.95) * tallest
+            w.box((middle - deep, middle + deep), (at - half, at + half), (z, high), w.new_look(kind), solid=False)
+        elif kind != "none":
+            w.cylinder((middle, at), (z, z + w.length(0.3, 0.8) * tallest), 0.8 * half, w.new_look(kind), solid=False)
+
+
+def worktop(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: tuple[Range, Range] | None) -> None:
+    """Adds a slab, if asked with a rectangular hole, given as x and y ranges, for a sink."""
+    if hole is None:
+        w.box(x, y, z, look)
+        return
+    (hx0, hx1), (hy0, hy1) = hole
+    w.box(x, (y[0], hy0), z, look)
+    w.box(x, (hy1, y[1]), z, look)
+    w.box((x[0], hx0), (hy0, hy1), z, look)
+    w.box((hx1, x[1]), (hy0, hy1), z, look)
+
+
+def worktop_fittings(w: Workbench, y: Range, z: float) -> tuple[tuple[Range, Range] | None, list[Range]]:
+    """Adds a sink and a hob to a worktop whose upper face is at z; hints `with_sink`, `with_hob`.
+
+    Returns:
+        The x and y ranges of the sink's hole, or None, and the y ranges that stay free.
+    """
+    width, taken, hole, sink_y = y[1] - y[0], [], None, None
+    if width >= 0.75 and w.flag("with_sink", 0.35):
+        sink_y = w.length(y[0] + 0.38, y[1] - 0.38) if width > 1.0 else 0.5 * (y[0] + y[1])
+        w.put(w.make("sink", use="inset"), (0.0, sink_y, z - 0.18))
+        hole = ((-0.20, 0.20), (sink_y - 0.24, sink_y + 0.24))
+        taken.append((sink_y - 0.30, sink_y + 0.30))
+    if width > 1.3 and w.flag("with_hob", 0.25):
+        places = [p for p in (y[0] + 0.36, y[1] - 0.36) if sink_y is None or abs(p - sink_y) > 0.62]
+        if places:
+            place = w.choice(places)
+            w.put(w.make("appliances", use="hob"), (0.0, place, z))
+            taken.append((place - 0.32, place + 0.32))
+    return hole, _free_ranges(y, taken)
+
+
+def _free_ranges(y: Range, taken: Sequence[Range]) -> list[Range]:
+    """Returns the parts of a range outside the taken ones that are longer than 0.25 m."""
+    free, start = [], y[0]
+    for low, high in sorted(taken):
+        free.append((start, low))
+        start = high
+    free.append((start, y[1]))
+    return [r for r in free if r[1] - r[0] > 0.25]

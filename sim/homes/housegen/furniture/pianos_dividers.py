@@ -1,0 +1,115 @@
+"""Furniture that belongs to no other category: pianos and room dividers.
+
+Usual retail dimensions: pianos 1.10-1.28 m high and 1.42-1.52 m wide, screens 1.60-1.80 m high.
+"""
+
+from __future__ import annotations
+
+import math
+
+from sim.homes.housegen.furniture.catalogue import Style
+from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.shapes import chamfered_box
+from sim.homes.housegen.furniture.workbench import Workbench
+
+
+def digital_piano(w: Workbench) -> None:
+    """Builds a keyboard on crossed legs with a music rest."""
+    half, dark, metal = 0.5 * w.length(1.20, 1.35), w.look("dark"), w.look("metal")
+    w.mesh(chamfered_box((0.32, 2 * half, 0.12), 0.02), (0.0, 0.0, 0.74), dark)
+    w.box((0.0, 0.145), (-half + 0.06, half - 0.06), (0.795, 0.806), w.look("ceramic"), solid=False)
+    w.box((0.0, 0.08), (-half + 0.08, half - 0.08), (0.80, 0.814), w.look("char"), solid=False)
+    w.box((-0.10, -0.08), (-0.28, 0.28), (0.79, 1.0), dark, tilt=-0.25, solid=False)
+    for side in BOTH_SIDES:
+        y = side * (half - 0.22)
+        w.bar((-0.02, y - side * 0.28, 0.02), (-0.02, y + side * 0.10, 0.69), 0.04, 0.04, metal)
+        w.bar((0.03, y + side * 0.10, 0.02), (0.03, y - side * 0.28, 0.69), 0.04, 0.04, metal)
+        for dy in (-0.28, 0.10):
+            w.box((-0.17, 0.17), (y + side * dy - 0.02, y + side * dy + 0.02), (0.0, 0.035), metal)
+
+
+def upright_piano(w: Workbench) -> None:
+    """Builds an upright piano with keys, a music desk and pedals."""
+    high, half, look = (
+        w.length(1.10, 1.28),
+        0.5 * w.length(1.42, 1.52),
+        w.look("dark") if w.chance(0.5) else w.look("wood"),
+    )
+    w.box((-0.30, 0.02), (-half, half), (0.05, high), look)
+    w.box((-0.31, 0.05), (-half - 0.01, half + 0.01), (high, high + 0.025), look)
+    w.box((0.02, 0.28), (-half, half), (0.58, 0.72), look)
+    for side in BOTH_SIDES:
+        c = side * (half - 0.03)
+        w.box((-0.30, 0.30), (c - 0.03, c + 0.03), (0.0, 0.06), look)
+        w.box((0.22, 0.28), (c - 0.03, c + 0.03), (0.05, 0.60), look)
+    w.box((0.11, 0.27), (-half + 0.08, half - 0.08), (0.72, 0.735), w.look("ceramic"), solid=False)
+    w.box((0.11, 0.20), (-half + 0.10, half - 0.10), (0.735, 0.745), w.look("char"), solid=False)
+    w.box((0.02, 0.05), (-0.40, 0.40), (0.86, 1.04), look, tilt=-0.25, solid=False)
+    for y in (-0.1, 0.0, 0.1):
+        w.box((0.02, 0.14), (y - 0.015, y + 0.015), (0.05, 0.065), w.look("brass"), solid=False)
+    w.top((-0.25, 0.0), (-half + 0.1, half - 0.1), high + 0.025)
+
+
+def folding_screen(w: Workbench) -> None:
+    """Builds a room divider of three or four panels in zigzag."""
+    panels, each, high = w.whole(3, 4), w.length(0.42, 0.50), w.length(1.65, 1.80)
+    wood, cloth = w.look("wood"), w.look("curtain")
+    fold = 0.35
+    run = each * math.cos(fold)
+    for i in range(panels):
+        sign = 1 if i % 2 == 0 else -1
+        c = (i + 0.5 - 0.5 * panels) * run
+        dx, dy = -math.sin(sign * fold), math.cos(sign * fold)
+        w.box(
+            (-0.008, 0.008),
+            (c - 0.5 * each + 0.02, c + 0.5 * each - 0.02),
+            (0.10, high - 0.03),
+            cloth,
+            turn=sign * fold,
+        )
+        for t in (-0.5 * each + 0.015, 0.5 * each - 0.015):
+            w.box(
+                (t * dx - 0.014, t * dx + 0.014),
+                (c + t * dy - 0.014, c + t * dy + 0.014),
+                (0.0, high),
+                wood,
+                turn=sign * fold,
+            )
+        for z in (0.10, high - 0.03):
+            w.box(
+                (-0.012, 0.012),
+                (c - 0.5 * each + 0.02, c + 0.5 * each - 0.02),
+                (z - 0.02, z + 0.02),
+                wood,
+                turn=sign * fold,
+            )
+
+
+def shoji_screen(w: Workbench) -> None:
+    """Builds a room divider of four upright lattice panels of wood and paper in zigzag."""
+    panels, each, high, fold = 4, w.length(0.40, 0.46), w.length(1.60, 1.75), 0.30
+    wood, paper = w.look("wood"), w.look("paper")
+    run = each * math.cos(fold)
+    for i in range(panels):
+        sign = 1 if i % 2 == 0 else -1
+        c = (i + 0.5 - 0.5 * panels) * run
+        dx, dy = -math.sin(sign * fold), math.cos(sign * fold)
+        w.box((-0.004, 0.004), (c - 0.5 * each, c + 0.5 * each), (0.05, high - 0.02), paper, turn=sign * fold)
+        for t in (-0.5 * each + 0.012, 0.0, 0.5 * each - 0.012):
+            w.box(
+                (t * dx - 0.011, t * dx + 0.011),
+                (c + t * dy - 0.011, c + t * dy + 0.011),
+                (0.0 if t else 0.05, high),
+                wood,
+                turn=sign * fold,
+            )
+        for z in (0.05, 0.36 * high, 0.68 * high, high - 0.03):
+            w.box((-0.010, 0.010), (c - 0.5 * each, c + 0.5 * each), (z, z + 0.03), wood, turn=sign * fold)
+
+
+STYLES = (
+    Style("furniture", "digital_piano", "heldout", digital_piano, ("piano",)),
+    Style("furniture", "upright_piano", "train", upright_piano, ("piano",)),
+    Style("furniture", "folding_screen", "train", folding_screen, ("screen",)),
+    Style("furniture", "shoji_screen", "heldout", shoji_screen, ("screen",)),
+)

@@ -1,0 +1,189 @@
+"""Sinks: free-standing, wall-hung, inset in a worktop, or on a washstand.
+
+Sizes follow Neufert, Architects' Data, and Panero & Zelnik, Human Dimension and Interior Space: washbasins
+0.40-0.70 m wide, 0.35-0.52 m deep, rim 0.80-0.90 m high; kitchen bowls about 0.40 x 0.48 m, 0.18 m deep.
+"""
+
+from __future__ import annotations
+
+from sim.homes.housegen.furniture import parts
+from sim.homes.housegen.furniture.catalogue import Style
+from sim.homes.housegen.furniture.item import Look
+from sim.homes.housegen.furniture.parts import BOTH_SIDES
+from sim.homes.housegen.furniture.shapes import Ring, loft
+from sim.homes.housegen.furniture.workbench import Workbench
+
+
+def _bowl(
+    w: Workbench,
+    rx: float,
+    ry: float,
+    high: float,
+    look: Look,
+    at: tuple[float, float, float],
+    *,
+    power: float = 2.0,
+    foot: float = 0.6,
+) -> None:
+    """Adds a hollow bowl that stands on `at` and opens upwards."""
+    rings = [
+        Ring(0.0, foot * rx, foot * ry, power=power),
+        Ring(0.55 * high, 0.92 * rx, 0.92 * ry, power=power),
+        Ring(high, rx, ry, power=power),
+        Ring(high, rx - 0.022, ry - 0.022, power=power),
+        Ring(0.55 * high, 0.80 * rx, 0.80 * ry, power=power),
+        Ring(0.18 * high, 0.35 * rx, 0.35 * ry, power=power),
+    ]
+    w.mesh(loft(rings, 16), at, look)
+    w.cylinder((at[0], at[1]), (at[2] + 0.17 * high, at[2] + 0.2 * high), 0.022, w.look("chrome"), solid=False)
+
+
+def pedestal_sink(w: Workbench) -> None:
+    """Builds a basin on a column."""
+    width, depth, rim = w.width(0.50, 0.62), w.depth(0.42, 0.50), w.length(0.82, 0.86)
+    white = w.look("ceramic")
+    _bowl(w, 0.5 * depth, 0.5 * width, 0.19, white, (0.0, 0.0, rim - 0.19), power=2.8, foot=0.5)
+    w.box((-0.5 * depth, -0.5 * depth + 0.09), (-0.42 * width, 0.42 * width), (rim - 0.10, rim + 0.012), white)
+    w.mesh(
+        loft(
+            [
+                Ring(0.0, 0.12, 0.14, -0.04),
+                Ring(0.05, 0.09, 0.11, -0.04),
+                Ring(0.5, 0.07, 0.09, -0.04),
+                Ring(rim - 0.15, 0.11, 0.14, -0.02),
+            ],
+            12,
+            hull=True,
+        ),
+        (0.0, 0.0, 0.0),
+        white,
+    )
+    parts.mixer_tap(w, (-0.5 * depth + 0.05, 0.0, rim + 0.012), 0.11, 0.10, w.look("chrome"))
+
+
+def wall_basin(w: Workbench) -> None:
+    """Builds a rectangular basin hung on the wall with a bottle trap below."""
+    width, depth = w.width(0.45, 0.65), w.depth(0.36, 0.46)
+    w.mount_height_m = 0.56
+    white, chrome, z = w.look("ceramic"), w.look("chrome"), 0.28
+    parts.basin(w, (0.10, depth), (-0.5 * width, 0.5 * width), z, 0.13, 0.022, white)
+    w.box((0.0, 0.10), (-0.5 * width, 0.5 * width), (z - 0.13, z), white)
+    w.rod((0.24, 0.0, 0.05), (0.24, 0.0, z - 0.12), 0.018, chrome, solid=False)
+    w.cylinder((0.24, 0.0), (0.0, 0.08), 0.035, chrome, solid=False)
+    w.rod((0.0, 0.0, 0.06), (0.24, 0.0, 0.06), 0.015, chrome, solid=False)
+    parts.mixer_tap(w, (0.05, 0.0, z), 0.11, 0.11, chrome)
+
+
+def inset_steel(w: Workbench) -> None:
+    """Builds a steel kitchen bowl for a worktop. Its origin is at the surface of the worktop; it extends below."""
+    steel = w.look("steel")
+    parts.basin(w, (-0.20, 0.20), (-0.24, 0.24), 0.18, 0.18, 0.012, steel)
+    w.box((-0.215, 0.215), (-0.255, -0.238), (0.178, 0.184), steel, solid=False)
+    w.box((-0.215, 0.215), (0.238, 0.255), (0.178, 0.184), steel, solid=False)
+    w.box((-0.215, -0.198), (-0.255, 0.255), (0.178, 0.184), steel, solid=False)
+    w.box((0.198, 0.215), (-0.255, 0.255), (0.178, 0.184), steel, solid=False)
+    w.cylinder((0.0, 0.0), (0.010, 0.016), 0.03, w.look("dark"), solid=False)
+    parts.mixer_tap(w, (-0.207, 0.0, 0.18), 0.20, 0.26, w.look("chrome"))
+
+
+def vessel_round(w: Workbench) -> None:
+    """Builds a round bowl that stands on a washstand."""
+    r = w.length(0.19, 0.22)
+    _bowl(w, r, r, 0.13, w.look("ceramic"), (0.0, 0.0, 0.0))
+    parts.mixer_tap(w, (-r - 0.02, 0.0, 0.0), 0.16, 0.24, w.look("chrome"))
+
+
+def vessel_square(w: Workbench) -> None:
+    """Builds a shallow rectangular bowl that stands on a washstand."""
+    half = 0.5 * w.length(0.44, 0.52)
+    parts.basin(w, (-0.17, 0.17), (-half, half), 0.12, 0.12, 0.02, w.look("ceramic"))
+    parts.mixer_tap(w, (-0.20, 0.0, 0.0), 0.15, 0.22, w.look("chrome"))
+    w.cylinder((0.0, 0.0), (0.019, 0.024), 0.022, w.look("chrome"), solid=False)
+
+
+def console_sink(w: Workbench) -> None:
+    """Builds an oval basin in a slab on four metal legs with a rail."""
+    width, depth, rim = w.width(0.60, 0.75), w.depth(0.45, 0.52), w.length(0.82, 0.87)
+    metal, white = w.look("chrome"), w.look("ceramic")
+    x, y = parts.footprint(depth, width)
+    parts.basin(w, (x[0] + 0.09, x[1]), y, rim, 0.12, 0.05, white)
+    w.box((x[0], x[0] + 0.09), y, (rim - 0.06, rim), white)
+    w.legs((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (0.0, rim - 0.06), 0.025, metal, round_=True)
+    for side in BOTH_SIDES:
+        w.rod(
+            (x[0] + 0.03, side * (0.5 * width - 0.03), 0.28),
+            (x[1] - 0.03, side * (0.5 * width - 0.03), 0.28),
+            0.008,
+            metal,
+        )
+    parts.mixer_tap(w, (x[0] + 0.045, 0.0, rim), 0.13, 0.12, metal)
+
+
+def inset_stone(w: Workbench) -> None:
+    """Builds a deep stone kitchen bowl for a worktop."""
+    stone = w.look("char")
+    parts.basin(w, (-0.20, 0.20), (-0.24, 0.24), 0.18, 0.18, 0.03, stone)
+    w.cylinder((0.0, 0.0), (0.028, 0.034), 0.03, w.look("steel"), solid=False)
+    parts.mixer_tap(w, (-0.19, 0.06, 0.18), 0.20, 0.30, w.look("brass"))
+
+
+def utility(w: Workbench) -> None:
+    """Builds a deep laundry tub of plastic on a steel stand."""
+    half, rim = 0.5 * w.width(0.50, 0.60), w.length(0.84, 0.88)
+    depth, white, metal = w.depth(0.46, 0.52), w.look("ceramic"), w.look("metal")
+    x = (-0.5 * depth, 0.5 * depth)
+    parts.basin(w, x, (-half, half), rim, 0.34, 0.03, white)
+    w.legs((x[0] + 0.02, x[1] - 0.02), (-half + 0.02, half - 0.02), (0.0, rim - 0.33), 0.03, metal)
+    for side in BOTH_SIDES:
+        w.box(
+            (x[0] + 0.03, x[1] - 0.03),
+            (side * (half - 0.035) - 0.01, side * (half - 0.035) + 0.01),
+            (0.16, 0.19),
+            metal,
+        )
+    w.cylinder((0.0, 0.0), (rim - 0.42, rim - 0.33), 0.025, w.look("dark"), solid=False)
+    w.box((x[0] - 0.02, x[0] + 0.01), (-half, half), (rim - 0.02, rim + 0.12), white)
+    parts.mixer_tap(w, (x[0] + 0.02, 0.0, rim + 0.02), 0.20, 0.12, w.look("chrome"))
+
+
+def trough(w: Workbench) -> None:
+    """Builds a wide stone wash trough on two brackets, with two taps from the wall."""
+    width, depth = w.width(0.85, 1.10), w.depth(0.42, 0.48)
+    w.mount_height_m = 0.62
+    stone, brass = w.look("stone"), w.look("brass")
+    parts.basin(w, (0.0, depth), (-0.5 * width, 0.5 * width), 0.22, 0.14, 0.04, stone)
+    for side in BOTH_SIDES:
+        y = side * 0.36 * width
+        w.box((0.0, 0.03), (y - 0.02, y + 0.02), (0.0, 0.08), w.look("iron"))
+        w.bar((0.015, y, 0.02), (depth - 0.10, y, 0.08), 0.03, 0.02, w.look("iron"))
+        w.rod((0.0, side * 0.22 * width, 0.34), (0.17, side * 0.22 * width, 0.34), 0.012, brass, solid=False)
+        w.rod((0.16, side * 0.22 * width, 0.35), (0.16, side * 0.22 * width, 0.30), 0.012, brass, solid=False)
+        w.rod(
+            (0.0, side * 0.22 * width + 0.07, 0.34), (0.04, side * 0.22 * width + 0.07, 0.34), 0.022, brass, solid=False
+        )
+
+
+def double_steel(w: Workbench) -> None:
+    """Builds one steel plate with a large and a small bowl."""
+    steel = w.look("steel")
+    parts.basin(w, (-0.20, 0.20), (-0.24, 0.05), 0.18, 0.18, 0.012, steel)
+    parts.basin(w, (-0.20, 0.20), (0.05, 0.24), 0.18, 0.14, 0.012, steel)
+    w.box((-0.215, -0.195), (-0.255, 0.255), (0.178, 0.185), steel, solid=False)
+    w.box((0.195, 0.215), (-0.255, 0.255), (0.178, 0.185), steel, solid=False)
+    for side in BOTH_SIDES:
+        w.box((-0.215, 0.215), (side * 0.246 - 0.009, side * 0.246 + 0.009), (0.178, 0.185), steel, solid=False)
+    parts.mixer_tap(w, (-0.205, 0.05, 0.18), 0.20, 0.24, w.look("chrome"))
+
+
+STYLES = (
+    Style("sink", "pedestal", "train", pedestal_sink, ("standing",)),
+    Style("sink", "wall_basin", "train", wall_basin, ("standing",), "wall"),
+    Style("sink", "inset_steel", "train", inset_steel, ("inset",), "top"),
+    Style("sink", "vessel_round", "train", vessel_round, ("vessel",), "top"),
+    Style("sink", "vessel_square", "heldout", vessel_square, ("vessel",), "top"),
+    Style("sink", "console", "heldout", console_sink, ("standing",)),
+    Style("sink", "inset_stone", "heldout", inset_stone, ("inset",), "top"),
+    Style("sink", "utility", "train", utility, ("standing",)),
+    Style("sink", "double_steel", "train", double_steel, ("inset",), "top"),
+    Style("sink", "trough", "heldout", trough, ("standing",), "wall"),
+)

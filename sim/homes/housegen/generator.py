@@ -1,0 +1,370 @@
+"""Generates a furnished home from a seed: floor plan, openings, structure, furniture, lights, and their check.
+
+Everything is drawn from one random generator, seeded by the seed, the pool and the number of the try, so that the same
+seed and version give the same bytes of XML. A try whose rooms do not fit, or whose check finds a fault, is rejected;
+the number of tries is limited and reported.
+"""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from sim.core.errors import ConfigError, HouseError
+from sim.gl import mujoco
+from sim.homes.housegen.config import POOL_STREAM, HouseConfig
+from sim.homes.housegen.floor_plan import FloorPlan, PlanError, draw_floor_plan
+from sim.homes.housegen.floor_plan.rooms import PLAN_AREA_M2, PLAN_KINDS, PlanKind, draw_plan_kind
+from sim.homes.housegen.furnishing import FurnishError, furnish
+from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
+from sim.homes.housegen.furnishing.placement import RoomLayout
+from sim.homes.housegen.furnishing.placement.surfaces import supports_items
+from sim.homes.housegen.furniture import CATALOGUE
+from sim.homes.housegen.furniture.catalogue import Catalogue
+from sim.homes.housegen.furniture.item import Item
+from sim.homes.housegen.ground import lay_ground
+from sim.homes.housegen.hazards import PlacedHazard, draw_hazards
+from sim.homes.housegen.mjcf.builder import HouseBuilder
+from sim.homes.housegen.mjcf.merging import Assembler
+from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
+from sim.homes.housegen.structure.building import build_structure
+from sim.homes.housegen.structure.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
+from sim.homes.housegen.surfaces.lighting import DAYLIGHT, draw_lamps
+from sim.homes.housegen.surfaces.structure_looks import draw_structure_looks
+from sim.homes.housegen.upper_storey import Stairs, UpperStorey, draw_stairs, draw_upper_storey, lifted
+from sim.houses.writing import house_text
+from sim.world.check import check_house
+
+GENERATOR_VERSION = 5
+"""Increased whenever the same seed gives another house; the effect of `HouseConfig.exact` is recorded separately."""
+MAX_TRIES = 12
+MAX_REASONS = 3
+"""Largest number of reasons in the error message of a seed that gives no house."""
+MAX_AREA_ERROR = 0.05
+"""Largest relative difference between the requested floor area and that of the rooms."""
+DRAWN_AREAS = (0.92, 1.1)
+"""Range of the areas for which plans are drawn until one has the requested area, relative to it."""
+MAX_PLAN_TRIES = 60
+MAX_STAIRS_TRIES = 12
+"""Plans that are drawn until an upper storey of enough rooms fits on one; each takes about 20 ms."""
+MAX_BYTES = 395_000
+"""Largest size of the file of a house of up to `USUAL_M2`."""
+USUAL_M2, BYTES_PER_M2 = 230.0, 1_400
+"""Floor area from which the file may be larger, and by how much for each square metre."""
+THINNED_SHARES = (1.0, 0.3)
+"""Shares of the small objects that stay; the second is tried where the file is too large in spite of all joining."""
+SAFETY = 1.6
+"""Factor by which the estimate of saved bytes must exceed the bytes to save: it counts joined geoms too high."""
+MAX_EXCESS = 1.08
+"""A file that is too large by more than this factor does not become small enough with fewer small objects."""
+STOREYS_BYTES, MAX_STOREYS_BYTES = 1.4, 1_300_000
+"""The file of a house with two storeys may be larger by this factor, up to this size."""
+BYTES_PER_GEOM = (200, 130, 100, 80, 50)
+"""Bytes by which the file may grow for each geom saved; the next value is tried where the file is too large."""
+
+
+@dataclass(frozen=True)
+class GeneratedHouse:
+    """A house that passed its check."""
+
+    spec: mujoco.MjSpec
+    plan: FloorPlan
+    geoms: int
+    tries: int
+    rejects: tuple[str, ...]
+    """The reason why each earlier try was rejected."""
+    styles: Mapping[str, str] = field(default_factory=dict)
+    """Name of the style of each piece of furniture, by the label of its instance (`chair_03`)."""
+
+
+def generate(
+    seed: int, config: HouseConfig | None = None, *, catalogue: Catalogue = CATALOGUE, **fields: Any
+) -> mujoco.MjSpec:
+    """Returns the specification of a new home; the same seed and version give the same bytes of `to_xml()`.
+
+    `generate(7, kind="flat", rooms=("gym",))` is short for `generate(7, HouseConfig(kind="flat", rooms=("gym",)))`.
+    `sim.write_house` writes the home into a folder.
+
+    Args:
+        seed: any whole number from 0 on.
+        config: requirements; a field that is None is drawn from the seed.
+        catalogue: the styles of furniture that may be drawn.
+        **fields: fields of `HouseConfig`, which replace those of `config`.
+
+    Raises:
+        ConfigError: a field does not exist, or a value is not allowed.
+        HouseError: no try within the bound gave a house without a fault.
+    """
+    unknown = sorted(set(fields) - {each.name for each in dataclasses.fields(HouseConfig)})
+    if unknown:
+        there_is = ", ".join(each.name for each in dataclasses.fields(HouseConfig))
+        raise ConfigError(f"generate has no option '{unknown[0]}'. Available: {there_is}.")
+    return generate_house(seed, replace(config or HouseConfig(), **fields), catalogue).spec
+
+
+def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Catalogue = CATALOGUE) -> GeneratedHouse:
+    """Returns a new home with its plan and the reasons of rejected tries.
+
+    Args:
+        seed: any whole number from 0 on.
+        config: requirements for it.
+        catalogue: the styles of furniture that may be drawn.
+
+    Raises:
+        ConfigError: the seed is negative.
+        HouseError: no try within the bound gave a house without a fault; the message lists them.
+    """
+    config = config or HouseConfig()
+    if seed < 0:
+        raise ConfigError(f"A house's seed must be 0 or more, got {seed}.")
+    rejects: list[str] = []
+    for attempt in range(MAX_TRIES):
+        rng = np.random.default_rng([seed, POOL_STREAM[config.pool], attempt])
+        try:
+            draft = _draw_house(rng, config, catalogue)
+        except (PlanError, FurnishError) as error:
+            rejects.append(str(error))
+            continue
+        built = _build_within_limit(draft, config)
+        spec = built.spec if built is not None else None
+        if spec is not None:
+            lay_ground(spec, house_text(spec), seed, POOL_STREAM[config.pool])
+        faults = (
+            check_house(spec, furnished=True)
+            if spec is not None
+            else [f"its file is larger than {draft.max_bytes / 1000:.0f} KB"]
+        )
+        if built is not None and not faults:
+            geoms = len(built.spec.geoms)
+            return GeneratedHouse(built.spec, draft.plan, geoms, attempt + 1, tuple(rejects), built.styles)
+        rejects.append("; ".join(faults))
+    reasons = "; ".join(f"{reason} ({count} x)" for reason, count in Counter(rejects).most_common(MAX_REASONS))
+    raise HouseError(f"Seed {seed} gave no house without faults in {MAX_TRIES} tries: {reasons}.")
+
+
+@dataclass(frozen=True)
+class _Draft:
+    """A home before it becomes a specification."""
+
+    plan: FloorPlan
+    ceiling_m: float
+    structure: list[PlacedItem]
+    layouts: list[RoomLayout]
+    lamps: list[Lamp]
+    time: str
+    """Time of day, a key of `DAYLIGHT`."""
+    hazards: tuple[PlacedHazard, ...] = ()
+    upper: UpperStorey | None = None
+
+    @property
+    def max_bytes(self) -> int:
+        """Largest size of its file without the ground; see `max_bytes`."""
+        if self.upper is None:
+            return max_bytes(self.plan.area_m2)
+        return min(round(STOREYS_BYTES * max_bytes(self.plan.area_m2 + self.upper.plan.area_m2)), MAX_STOREYS_BYTES)
+
+
+def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalogue) -> _Draft:
+    """Draws one home.
+
+    Raises:
+        PlanError: no floor plan fits.
+        FurnishError: a room did not get the furniture that it needs.
+    """
+    area_m2, kind = _draw_size(rng, config)
+    clutter = config.clutter if config.clutter is not None else float(rng.uniform(0.25, 0.85))
+    ceiling_m = round(float(rng.uniform(2.5, 2.8)), 2)
+    plan, openings, stairs = _draw_storeys(rng, kind, area_m2, config)
+    if stairs is not None:
+        ceiling_m = stairs.ceiling_m
+    looks = draw_structure_looks(rng, plan, config.pool)
+    structure = build_structure(plan, openings, ceiling_m, looks, ceiling_hole=stairs.flight.well if stairs else None)
+    source = FurnitureSource(rng, config.pool, clutter, frozenset(room.kind for room in plan.rooms), catalogue)
+    layouts = [RoomLayout(index, room.kind, room.rect, openings, ceiling_m) for index, room in enumerate(plan.rooms)]
+    for layout in layouts:
+        if stairs is not None and layout.kind == "stair_hall":
+            stairs.flight.close_off(layout, upper=False)
+        furnish(layout, source)
+    draft = _Draft(plan, ceiling_m, structure, layouts, draw_lamps(rng, plan, ceiling_m, looks.time), looks.time)
+    if stairs is not None:
+        draft = replace(draft, upper=draw_upper_storey(rng, stairs, config.pool, source, looks))
+    if not config.hazards:
+        return draft
+    bare = _build(draft, config, BYTES_PER_GEOM[0]).spec
+    hazards = draw_hazards(rng, config.hazards, config.pool, bare, openings, config.hazard_count)
+    return replace(draft, hazards=hazards)
+
+
+def _draw_storeys(
+    rng: np.random.Generator, kind: PlanKind, area_m2: float, config: HouseConfig
+) -> tuple[FloorPlan, tuple[Opening, ...], Stairs | None]:
+    """Returns the plan of the ground storey, the openings in its walls, and the stairs to a second storey.
+
+    Raises:
+        PlanError: no plan fits, or the stairs fit into none.
+    """
+    plan, openings = _draw_plan(rng, kind, area_m2, config)
+    if config.storeys == 1:
+        return plan, openings, None
+    for _ in range(MAX_STAIRS_TRIES - 1):
+        try:
+            stairs = draw_stairs(rng, plan, openings)
+        except PlanError:
+            plan, openings = _draw_plan(rng, kind, area_m2, config)
+        else:
+            return plan, stairs.lower_openings, stairs
+    stairs = draw_stairs(rng, plan, openings)
+    return plan, stairs.lower_openings, stairs
+
+
+def _draw_plan(
+    rng: np.random.Generator, kind: PlanKind, area_m2: float, config: HouseConfig
+) -> tuple[FloorPlan, tuple[Opening, ...]]:
+    """Returns a plan and the openings in its walls; many plans are drawn before one fits.
+
+    Raises:
+        PlanError: none fits.
+    """
+    given = config.exact and config.area_m2 is not None
+    rooms, error = config.wanted_rooms, PlanError("no plan was drawn")
+    for _ in range(MAX_PLAN_TRIES):
+        try:
+            drawn_m2 = area_m2 * float(rng.uniform(*DRAWN_AREAS)) if given else area_m2
+            plan = draw_floor_plan(rng, kind, drawn_m2, rooms)
+            if config.exact:
+                _require_as_asked(plan, area_m2 if given else None, rooms)
+            return plan, cut_openings(rng, plan)
+        except PlanError as fault:
+            error = fault
+    raise error
+
+
+def _require_as_asked(plan: FloorPlan, area_m2: float | None, rooms: tuple[str, ...]) -> None:
+    """Raises PlanError where a plan lacks a room, or its area differs by too much from the one that was asked for."""
+    missing = Counter(rooms) - Counter(room.kind for room in plan.rooms)
+    if missing:
+        raise PlanError(f"no place for {next(iter(missing))}")
+    inner_m2 = sum(room.rect.grown(-HALF_WALL_M).area_m2 for room in plan.rooms)
+    if area_m2 is None:
+        return
+    if max(abs(plan.area_m2 - area_m2), abs(inner_m2 - area_m2)) > MAX_AREA_ERROR * area_m2:
+        raise PlanError(f"no plan has {area_m2:.0f} m2")
+
+
+def max_bytes(area_m2: float) -> int:
+    """Returns the largest size of the file of a house of this floor area, without the ground, which adds up to 2 %."""
+    return round(MAX_BYTES + BYTES_PER_M2 * max(0.0, area_m2 - USUAL_M2))
+
+
+def _build_within_limit(draft: _Draft, config: HouseConfig) -> HouseBuilder | None:
+    """Returns a drawn home, built, its parts joined as much as the size of the file allows.
+
+    Returns None where the file is too large anyway. Homes of the pool `wide` are in no split and may have any size.
+    """
+    assembler = Assembler()
+    if config.pool == "wide" or config.any_size:
+        return _build(draft, config, BYTES_PER_GEOM[0], assembler)
+    limit, last = draft.max_bytes, len(BYTES_PER_GEOM) - 1
+    level = 0
+    for share in THINNED_SHARES:
+        thinned = draft if share == 1.0 else _thinned(draft, share)
+        while level <= last:
+            built = _build(thinned, config, BYTES_PER_GEOM[level], assembler)
+            excess = len(house_text(built.spec)) - limit
+            if excess <= 0:
+                return built
+            if level == last and excess > (MAX_EXCESS - 1.0) * limit:
+                return None
+            if level == last:
+                break
+            level = _level_that_saves(thinned, assembler, level, excess)
+    return None
+
+
+def _level_that_saves(draft: _Draft, assembler: Assembler, level: int, excess: int) -> int:
+    """Returns the first index of `BYTES_PER_GEOM` after `level` that saves about so many bytes, else the last one."""
+    placed = list(_all_items(draft))
+    copies = Counter(map(id, placed))
+    designs = {id(item): item for item in placed}.values()
+    for other in range(level + 1, len(BYTES_PER_GEOM) - 1):
+        limits = BYTES_PER_GEOM[level], BYTES_PER_GEOM[other]
+        if sum(assembler.saved_bytes(item, copies[id(item)], *limits) for item in designs) > SAFETY * excess:
+            return other
+    return len(BYTES_PER_GEOM) - 1
+
+
+def _all_items(draft: _Draft) -> Iterator[Item]:
+    """Yields every item of a home, children too, as often as it is placed."""
+    upper = draft.upper
+    todo = [placed.item for placed in [*draft.structure, *(upper.structure if upper else ())]]
+    layouts = [*draft.layouts, *(upper.layouts if upper else ())]
+    todo += [placement.placed.item for layout in layouts for placement in layout.placements]
+    while todo:
+        item = todo.pop()
+        yield item
+        todo += [child.item for child in item.children]
+
+
+def _thinned(draft: _Draft, share: float) -> _Draft:
+    """Returns the home with this share of the small objects of each room."""
+    upper = draft.upper
+    if upper is not None:
+        upper = replace(upper, layouts=_thinned_layouts(upper.layouts, share))
+    return replace(draft, layouts=_thinned_layouts(draft.layouts, share), upper=upper)
+
+
+def _thinned_layouts(of_rooms: list[RoomLayout], share: float) -> list[RoomLayout]:
+    layouts = []
+    for layout in of_rooms:
+        small = [p for p in layout.placements if p.item.category == "objects"]
+        removed = {id(p) for n, p in enumerate(small) if int((n + 1) * share) == int(n * share)}
+        thinned = copy.copy(layout)
+        thinned.placements = [p for p in layout.placements if id(p) not in removed]
+        layouts.append(thinned)
+    return layouts
+
+
+def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int, assembler: Assembler | None = None) -> HouseBuilder:
+    """Returns the builder of a drawn home, which has its specification and the styles of its items."""
+    builder = HouseBuilder(config.name, bytes_per_geom=bytes_per_geom, assembler=assembler)
+    builder.add_ground(draft.plan.bounds.grown(OUTER_WALL_M))
+    for room in draft.plan.rooms:
+        builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), draft.ceiling_m)
+    storeys = [(0.0, draft.structure, draft.layouts)]
+    if draft.upper is not None:
+        draft.upper.add_ground(builder)
+        storeys.append((draft.upper.floor_z_m, draft.upper.structure, draft.upper.layouts))
+    for _, structure, layouts in storeys:
+        builder.expect([*structure, *(placement.placed for layout in layouts for placement in layout.placements)])
+    for z_m, structure, layouts in storeys:
+        for placed in structure:
+            builder.add(lifted(placed, z_m))
+        for layout in layouts:
+            for placement in layout.placements:
+                if config.movable and not supports_items(layout, placement):
+                    builder.add_movable(lifted(placement.placed, z_m))
+                else:
+                    builder.add(lifted(placement.placed, z_m))
+    for number, hazard in enumerate(draft.hazards):
+        hazard.add_to(builder, number)
+    builder.set_ambient(DAYLIGHT[draft.time].ambient)
+    for lamp in [*draft.lamps, *(draft.upper.lamps if draft.upper else ())]:
+        builder.add_lamp(lamp)
+    return builder
+
+
+def _draw_size(rng: np.random.Generator, config: HouseConfig) -> tuple[float, PlanKind]:
+    """Returns area and kind of plan; what is not given is drawn to suit the other."""
+    kind = config.kind
+    if config.area_m2 is not None:
+        return config.area_m2, kind or draw_plan_kind(rng, config.area_m2)
+    if kind is None:
+        kind = PLAN_KINDS[int(rng.integers(len(PLAN_KINDS)))]
+    low, high = PLAN_AREA_M2[kind]
+    return float(rng.uniform(low, high)), kind

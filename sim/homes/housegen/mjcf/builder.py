@@ -1,0 +1,256 @@
+"""Builds a standalone MuJoCo specification in the house format (docs/houses.md) from placed items."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from sim.core.paths import assets_dir
+from sim.gl import mujoco
+from sim.homes.housegen.floor_plan.rectangles import Rect
+from sim.homes.housegen.furniture.item import Geom, Item
+from sim.homes.housegen.mjcf.assets import MESH_UNIT_M, AssetTable
+from sim.homes.housegen.mjcf.merging import BYTES_PER_GEOM, Assembler, Assembly
+from sim.homes.housegen.mjcf.movables import ROLLING_M, Movable, split_movable
+from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
+
+TEXTURE_DIR = "../textures"
+"""Folder of the textures, relative to the house file."""
+AMBIENT, HEADLIGHT = 0.36, 0.12
+"""Ambient light and light from the camera: without them, walls that no lamp faces look black."""
+_VISUAL, _VISUAL_MESH, _COLLISION = "seen", "skin", "hit"
+"""Default classes of visual-only geoms, of visual-only meshes, and of collision-only geoms."""
+_SHAPES = {
+    "box": mujoco.mjtGeom.mjGEOM_BOX,
+    "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
+    "sphere": mujoco.mjtGeom.mjGEOM_SPHERE,
+    "capsule": mujoco.mjtGeom.mjGEOM_CAPSULE,
+    "ellipsoid": mujoco.mjtGeom.mjGEOM_ELLIPSOID,
+    "mesh": mujoco.mjtGeom.mjGEOM_MESH,
+}
+
+
+class HouseBuilder:
+    """A builder that collects the parts of a house in one `MjSpec`; equal looks and meshes are written once."""
+
+    def __init__(self, name: str, *, bytes_per_geom: int = BYTES_PER_GEOM, assembler: Assembler | None = None) -> None:
+        """Begins an empty house.
+
+        Args:
+            name: the model's name.
+            bytes_per_geom: bytes by which the file may grow for each geom that is saved.
+            assembler: one that has assembled the same items before, which saves time.
+        """
+        self._bytes_per_geom = bytes_per_geom
+        self._assembler = assembler or Assembler()
+        self._spec = mujoco.MjSpec()
+        self._spec.modelname = name
+        self._spec.texturedir = TEXTURE_DIR
+        # Only for compiling in memory: the folder of a shipped house. It is not written to the file.
+        self._spec.modelfiledir = str(assets_dir() / "val")
+        light = self._spec.visual.headlight
+        light.ambient, light.diffuse, light.specular = [AMBIENT] * 3, [HEADLIGHT] * 3, [0.0] * 3
+        self._spec.default.geom.type = mujoco.mjtGeom.mjGEOM_BOX  # most are: shorter XML
+        self._visual = self._spec.add_default(_VISUAL, self._spec.default)
+        self._visual.geom.contype = 0
+        self._visual.geom.conaffinity = 0
+        self._visual_mesh = self._spec.add_default(_VISUAL_MESH, self._visual)
+        self._visual_mesh.geom.type = mujoco.mjtGeom.mjGEOM_MESH
+        self._collision = self._spec.add_default(_COLLISION, self._spec.default)
+        self._collision.geom.group = 3
+        self._spec.default.mesh.scale = [MESH_UNIT_M] * 3
+        self._spec.default.mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL  # some show only their front
+        self._copies: dict[int, int] = {}
+        self._assemblies: dict[int, tuple[Item, Assembly]] = {}
+        self._frictions: dict[str, mujoco.MjsDefault] = {}
+        self._splits: dict[int, tuple[Item, tuple[Item | None, tuple[Movable, ...]]]] = {}
+        self._counts: dict[str, int] = {}
+        self._assets = AssetTable(self._spec)
+        self.styles: dict[str, str] = {}
+        """Style of each item by the name of its body, which is the label of its instance."""
+
+    @property
+    def spec(self) -> mujoco.MjSpec:
+        """The specification built so far."""
+        return self._spec
+
+    def expect(self, items: Sequence[PlacedItem]) -> None:
+        """Counts the items that will be added: meshes of an item that occurs often may take more bytes."""
+        for placed in items:
+            self._count(placed.item)
+
+    def add(self, placed: PlacedItem) -> str:
+        """Adds an item and its children; returns the name of its body."""
+        at = (placed.x_m, placed.y_m, placed.z_m)
+        return self._add_body(self._spec.worldbody, placed.item, at, placed.yaw_rad)
+
+    def _count(self, item: Item) -> None:
+        self._copies[id(item)] = self._copies.get(id(item), 0) + 1
+        for child in item.children:
+            self._count(child.item)
+
+    def add_movable(self, placed: PlacedItem) -> None:
+        """Adds an item so that the robot can push it, or those parts of it that are light and separate."""
+        rest, movables = self._split(placed.item)
+        if rest is not None:
+            self.add(replace(placed, item=rest))
+        for movable in movables:
+            self.add_movable_body(movable, placed)
+
+    def _split(self, item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
+        """Returns the static and the movable parts of an item; computed once for each design."""
+        if id(item) not in self._splits:
+            self._splits[id(item)] = (item, split_movable(item))
+            rest, movables = self._splits[id(item)][1]
+            for part in (rest, *(movable.item for movable in movables)):
+                if part is not None:
+                    self._copies[id(part)] = self._copies.get(id(item), 1)
+        return self._splits[id(item)][1]
+
+    def add_ground(self, rect: Rect, z_m: float = 0.0) -> None:
+        """Adds an invisible slab that carries the wheels, its top at `z_m`."""
+        x, y = rect.centre
+        self._spec.worldbody.add_geom(
+            name=self._label("floor"), type=mujoco.mjtGeom.mjGEOM_BOX, group=3,
+            size=[_r(rect.width_m / 2), _r(rect.depth_m / 2), 0.05], pos=[_r(x), _r(y), _r(z_m - 0.05)],
+        )  # fmt: skip
+
+    def add_room(self, room: RoomBox, height_m: float, z_m: float = 0.0) -> None:
+        """Adds the site that marks a room, whose floor is at `z_m`."""
+        x, y = room.rect.centre
+        self._spec.worldbody.add_site(
+            name=room.name, type=mujoco.mjtGeom.mjGEOM_BOX, group=4,
+            pos=[_r(x), _r(y), _r(z_m + height_m / 2)],
+            size=[_r(room.rect.width_m / 2), _r(room.rect.depth_m / 2), _r(height_m / 2)],
+        )  # fmt: skip
+
+    def add_box_site(self, name: str, low_m: Sequence[float], high_m: Sequence[float]) -> None:
+        """Adds a site that marks the axis-aligned box between two corners; it is never rendered."""
+        self._spec.worldbody.add_site(
+            name=name, type=mujoco.mjtGeom.mjGEOM_BOX, group=4,
+            pos=[_r((a + b) / 2) for a, b in zip(low_m, high_m, strict=True)],
+            size=[_r((b - a) / 2) for a, b in zip(low_m, high_m, strict=True)],
+        )  # fmt: skip
+
+    def add_collision_geoms(self, body: str, geoms: Sequence[Geom]) -> None:
+        """Adds geoms to a body that collide and are not rendered."""
+        for geom in geoms:
+            self._add_shape(self._spec.body(body).add_geom(self._collision, type=_SHAPES[geom.shape]), geom)
+
+    def set_ambient(self, ambient: tuple[float, float, float]) -> None:
+        """Sets the ambient light of the whole home."""
+        self._spec.visual.headlight.ambient = list(ambient)
+
+    def add_lamp(self, lamp: Lamp) -> None:
+        """Adds a light; it has no label, because it is not visible itself."""
+        light = self._spec.worldbody.add_light()
+        light.pos = list(lamp.pos_m)
+        light.diffuse = list(lamp.diffuse)
+        light.ambient = [0.0, 0.0, 0.0]
+        light.specular = [0.5 * v for v in lamp.diffuse]
+        light.castshadow = lamp.shadow
+        if lamp.direction is not None:
+            light.type = mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
+            light.dir = list(lamp.direction)
+        else:
+            light.type = mujoco.mjtLightType.mjLIGHT_SPOT
+            light.dir = [0.0, 0.0, -1.0]
+            light.cutoff = 85.0
+            light.exponent = 1.0
+            light.attenuation = [1.0, 0.0, 0.06]
+
+    def add_movable_body(self, movable: Movable, placed: PlacedItem) -> None:
+        """Adds a body with a free joint at the pose of the item that it was part of."""
+        name = self._label(movable.item.category)
+        self.styles[name] = movable.item.style
+        x, y = placed.to_world(*movable.offset_m)
+        body = self._spec.worldbody.add_body(
+            name=name, pos=[_r(v) for v in (x, y, placed.z_m)], quat=_yaw_quat(placed.yaw_rad)
+        )
+        body.add_freejoint()
+        body.explicitinertial = True
+        body.mass, body.ipos, body.fullinertia = movable.mass_kg, list(movable.centre_m), list(movable.inertia_kg_m2)
+        for geom in self._assembly(movable.item).visual:
+            self._add_geom(body, geom)
+        collision = self._movable_class(movable)
+        for geom in movable.collision_geoms:
+            self._add_shape(body.add_geom(collision, type=_SHAPES[geom.shape]), geom)
+
+    def _movable_class(self, movable: Movable) -> mujoco.MjsDefault:
+        """Returns the default class of the collision geoms of a movable; its friction overrides the floor's."""
+        name = f"slides_{round(100 * movable.friction)}" + ("_rolls" if movable.rolls else "")
+        if name not in self._frictions:
+            made = self._spec.add_default(name, self._spec.default)
+            made.geom.group, made.geom.priority = 3, 1
+            made.geom.friction = [movable.friction, 0.005, ROLLING_M if movable.rolls else 0.0001]
+            made.geom.condim = 6 if movable.rolls else 3
+            self._frictions[name] = made
+        return self._frictions[name]
+
+    def _label(self, category: str) -> str:
+        """Returns the next free name of a category."""
+        number = self._counts.get(category, 0)
+        self._counts[category] = number + 1
+        return f"{category}_{number:02d}"
+
+    def _add_body(self, parent: mujoco.MjsBody, item: Item, pos_m: tuple[float, float, float], yaw_rad: float) -> str:
+        name = self._label(item.category)
+        self.styles[name] = item.style
+        body = parent.add_body(name=name, pos=[_r(v) for v in pos_m], quat=_yaw_quat(yaw_rad))
+        parts = self._assembly(item)
+        for geom in parts.visual:
+            self._add_geom(body, geom)
+        for geom in parts.collision_only:
+            self._add_shape(body.add_geom(self._collision, type=_SHAPES[geom.shape]), geom)
+        for child in item.children:
+            self._add_body(body, child.item, child.pos_m, child.yaw_rad)
+        return name
+
+    def _assembly(self, item: Item) -> Assembly:
+        """Returns the geoms of an item; computed once for each design."""
+        if id(item) not in self._assemblies:
+            self._assemblies[id(item)] = (
+                item,
+                self._assembler.assemble(item, self._bytes_per_geom * self._copies.get(id(item), 1)),
+            )
+        return self._assemblies[id(item)][1]
+
+    def _add_geom(self, body: mujoco.MjsBody, geom: Geom) -> None:
+        kind = _SHAPES[geom.shape]
+        if geom.solid:
+            made = body.add_geom(type=kind)  # no class: the standard one is for geoms that are rendered and collide
+        else:
+            made = body.add_geom(self._visual_mesh if geom.mesh is not None else self._visual, type=kind)
+        made.material = self._assets.material(geom.look)
+        self._add_shape(made, geom)
+
+    def _add_shape(self, made: mujoco.MjsGeom, geom: Geom) -> None:
+        made.pos = [_r(v) for v in geom.pos_m]
+        made.quat = _quat(geom.euler_rad)
+        if geom.mesh is not None:
+            made.meshname = self._assets.mesh(geom.mesh)
+        else:
+            made.size = [_r(v) for v in geom.size_m] + [0.0] * (3 - len(geom.size_m))
+
+
+def _r(value: float) -> float:
+    """Returns a value rounded to 0.1 mm, without a negative zero, for short and stable XML."""
+    return round(float(value), 4) + 0.0
+
+
+def _yaw_quat(yaw_rad: float) -> list[float]:
+    """Returns the unit quaternion (w, x, y, z) of a rotation about z."""
+    return [round(math.cos(yaw_rad / 2), 6) + 0.0, 0.0, 0.0, round(math.sin(yaw_rad / 2), 6) + 0.0]
+
+
+def _quat(euler_rad: tuple[float, float, float]) -> list[float]:
+    """Returns the unit quaternion (w, x, y, z) of intrinsic rotations about x, y, z in that order."""
+    (cx, sx), (cy, sy), (cz, sz) = ((math.cos(a / 2), math.sin(a / 2)) for a in euler_rad)
+    quat = (
+        cx * cy * cz - sx * sy * sz,
+        sx * cy * cz + cx * sy * sz,
+        cx * sy * cz - sx * cy * sz,
+        cx * cy * sz + sx * sy * cz,
+    )
+    return [round(v, 6) + 0.0 for v in quat]

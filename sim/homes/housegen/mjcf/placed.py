@@ -1,0 +1,43 @@
+"""Items at their poses, rooms and lamps: the content of a house, before `builder` writes it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from sim.homes.housegen.floor_plan.rectangles import Rect
+from sim.homes.housegen.furniture.item import Item
+
+
+@dataclass(frozen=True)
+class PlacedItem:
+    """An item with the world pose of its origin; the yaw is the heading of its front."""
+
+    item: Item
+    x_m: float = 0.0
+    y_m: float = 0.0
+    z_m: float = 0.0
+    yaw_rad: float = 0.0
+
+    def to_world(self, x_m: float, y_m: float) -> tuple[float, float]:
+        """Returns the world position in plan of a point of the item's frame."""
+        c, s = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
+        return self.x_m + c * x_m - s * y_m, self.y_m + s * x_m + c * y_m
+
+
+@dataclass(frozen=True)
+class RoomBox:
+    """A room of the house file: its name and its extent between the walls."""
+
+    name: str
+    rect: Rect
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """A light: directional with a `direction`, else a spot that shines down from `pos_m`."""
+
+    pos_m: tuple[float, float, float]
+    diffuse: tuple[float, float, float]
+    direction: tuple[float, float, float] | None = None
+    shadow: bool = False

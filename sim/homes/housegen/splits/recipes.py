@@ -1,0 +1,295 @@
+"""Recipes of the houses of the shipped splits (seed, pool, kind of plan, size), and the version of these splits.
+
+The tables here decide what is generated: `SPLITS` for val, test, large, hazards and the test splits of the last two,
+whose houses use the held-out pool and are shipped as files, and `train_recipe` for train. Train houses are not shipped
+as files: `sim.episodes.house_list` reads and writes their recipes and checksums (`train/houses.json`) and
+generates them on first use. Seeds of splits differ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from sim.homes.housegen.floor_plan.rooms import PLAN_AREA_M2, PlanKind
+
+if TYPE_CHECKING:  # loading a house needs no furniture
+    from sim.homes.housegen.furniture.item import Pool
+    from sim.homes.housegen.generator import GeneratedHouse, HouseConfig
+
+SPLIT_VERSION = "3.0.0"
+"""Version of all shipped splits; results contain it with a hash over houses and episodes. It is increased in
+
+- the last number when a house or an episode changed without an effect on agents (a colour, the layout of a file);
+- the middle number when houses or episodes changed so that results can no longer be compared;
+- the first number when the format changed so that older code cannot read the files.
+
+A change of the generator, new files of the splits and a new version belong in one commit; the hash shows the difference
+if that was forgotten."""
+TRAIN_HOUSES = 200
+MAX_TRAIN_SEEDS = 1_000
+"""Seeds below this belong to train; a seed that gives no house is skipped."""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """The recipe of one shipped house: everything that the generator needs."""
+
+    name: str
+    seed: int
+    pool: Pool
+    kind: PlanKind
+    area_m2: float
+    rooms: tuple[str, ...] = ()
+    movable: bool = False
+    """Whether its light furniture can be pushed."""
+    storeys: int = 1
+    """Number of storeys."""
+    hazards: tuple[str, ...] = ()
+    """Kinds of hazards placed in it (`sim.homes.housegen.hazards`)."""
+
+    def make(self) -> GeneratedHouse:
+        """Returns the generated house; the same bytes of XML every time.
+
+        Raises:
+            HouseError: no try within the bound gave a house without a fault.
+        """
+        from sim.homes.housegen.generator import generate_house
+
+        return generate_house(self.seed, self.config())
+
+    def config(self) -> HouseConfig:
+        """Returns the requirements for the generator."""
+        from sim.homes.housegen.generator import HouseConfig
+
+        return HouseConfig(
+            pool=self.pool,
+            kind=self.kind,
+            area_m2=self.area_m2,
+            rooms=self.rooms,
+            name=self.name,
+            movable=self.movable,
+            storeys=self.storeys,
+            hazards=self.hazards,
+            exact=False,
+        )
+
+    def house_bytes(self) -> bytes:
+        """Returns the content of the house's file, which refers to textures in `../textures`.
+
+        Raises:
+            HouseError: the seed gives no house.
+        """
+        from sim.houses.writing import house_text
+
+        return house_text(self.make().spec).encode("utf-8")
+
+    def to_json(self) -> dict[str, Any]:
+        """Returns the recipe as a JSON object."""
+        return asdict(self) | {"rooms": list(self.rooms), "hazards": list(self.hazards)}
+
+    @classmethod
+    def from_json(cls, entry: Mapping[str, Any]) -> Recipe:
+        """Returns the recipe of a JSON object.
+
+        Raises:
+            KeyError, TypeError, ValueError: the object does not have the form that `to_json` writes.
+        """
+        return cls(
+            name=str(entry["name"]),
+            seed=int(entry["seed"]),
+            pool=entry["pool"],
+            kind=entry["kind"],
+            area_m2=float(entry["area_m2"]),
+            rooms=tuple(entry["rooms"]),
+            movable=bool(entry["movable"]),
+            storeys=int(entry.get("storeys", 1)),
+            hazards=tuple(entry.get("hazards", ())),
+        )
+
+
+def _is_movable(number: int) -> bool:
+    """Returns whether a house has furniture that can be pushed: every third house of a split does."""
+    return number % 3 == 1
+
+
+_Shape = tuple[PlanKind, float, tuple[str, ...]]
+"""Kind of plan, area in square metres, and required rooms beyond the usual ones."""
+
+_VAL: tuple[_Shape, ...] = (
+    ("flat", 95.0, ("gym",)),
+    ("corridor", 140.0, ("office",)),
+    ("loop", 130.0, ("gym", "laundry")),
+    ("openplan", 130.0, ()),
+    ("split", 150.0, ("office",)),
+    ("large", 270.0, ("gym", "laundry", "office")),
+    ("studio", 55.0, ()),
+    ("greatroom", 150.0, ("gym", "closet")),
+    ("lshape", 190.0, ("laundry",)),
+    ("corridor", 260.0, ("gym",)),
+    ("loop", 190.0, ("office",)),
+    ("flat", 75.0, ()),
+    ("split", 280.0, ("gym", "laundry")),
+    ("greatroom", 105.0, ()),
+    ("openplan", 220.0, ("laundry",)),
+    ("large", 380.0, ("gym", "office", "laundry", "closet")),
+    ("lshape", 120.0, ("gym",)),
+    ("loop", 100.0, ()),
+    ("flat", 128.0, ("gym",)),
+    ("loop", 290.0, ("gym", "laundry")),
+    ("split", 200.0, ("gym",)),
+    ("openplan", 100.0, ("office",)),
+    ("large", 320.0, ("office", "laundry")),
+    ("corridor", 165.0, ("laundry",)),
+    ("greatroom", 210.0, ("office", "gym")),
+    ("loop", 160.0, ("closet",)),
+    ("large", 300.0, ("gym",)),
+    ("split", 125.0, ()),
+    ("lshape", 145.0, ("office",)),
+    ("greatroom", 258.0, ("gym", "office")),
+)
+
+_TEST: tuple[_Shape, ...] = (
+    ("lshape", 110.0, ("gym",)),
+    ("loop", 145.0, ("office",)),
+    ("flat", 125.0, ("office",)),
+    ("large", 300.0, ("gym", "office")),
+    ("greatroom", 135.0, ("laundry",)),
+    ("split", 165.0, ("gym",)),
+    ("corridor", 155.0, ("gym",)),
+    ("flat", 65.0, ()),
+    ("loop", 270.0, ("gym", "laundry")),
+    ("openplan", 145.0, ("laundry",)),
+    ("split", 260.0, ("office", "gym")),
+    ("studio", 50.0, ()),
+    ("greatroom", 180.0, ("gym", "office")),
+    ("lshape", 200.0, ("gym", "office")),
+    ("large", 360.0, ("gym", "laundry", "office")),
+    ("loop", 115.0, ()),
+    ("openplan", 185.0, ("closet",)),
+    ("split", 140.0, ()),
+    ("corridor", 265.0, ("laundry",)),
+    ("flat", 90.0, ("gym",)),
+    ("loop", 205.0, ("gym", "laundry")),
+    ("greatroom", 230.0, ("gym",)),
+    ("large", 390.0, ("gym", "laundry", "closet")),
+    ("corridor", 120.0, ()),
+    ("lshape", 140.0, ("laundry",)),
+    ("split", 305.0, ("gym", "office", "laundry")),
+    ("openplan", 80.0, ()),
+    ("greatroom", 98.0, ()),
+    ("loop", 310.0, ("office", "gym")),
+    ("flat", 130.0, ("gym", "office")),
+)
+
+_LARGE: tuple[_Shape, ...] = (
+    ("estate", 360.0, ("gym", "office", "laundry")),
+    ("estate", 430.0, ("gym", "laundry")),
+    ("estate", 440.0, ("stair_hall", "gym", "office", "laundry")),
+    ("estate", 500.0, ("gym", "office", "laundry", "closet")),
+    ("estate", 310.0, ("laundry",)),
+    ("estate", 460.0, ("office", "gym")),
+    ("estate", 400.0, ("stair_hall", "office", "laundry")),
+    ("estate", 500.0, ("gym", "office", "laundry", "gym")),
+    ("estate", 340.0, ("gym",)),
+    ("estate", 430.0, ("gym", "laundry", "closet")),
+    ("estate", 450.0, ("stair_hall", "gym", "laundry")),
+    ("estate", 420.0, ("office", "gym")),
+    ("estate", 700.0, ("gym", "office", "laundry", "closet")),
+    ("estate", 380.0, ("office", "laundry")),
+    ("estate", 480.0, ("gym", "office", "laundry")),
+    ("estate", 460.0, ("stair_hall", "gym", "office")),
+    ("estate", 325.0, ("office",)),
+    ("estate", 400.0, ("gym", "office", "laundry", "office")),
+    ("estate", 440.0, ("gym", "office", "closet")),
+    ("estate", 480.0, ("stair_hall", "gym", "office", "laundry")),
+)
+
+_HAZARDS: tuple[_Shape, ...] = (
+    ("flat", 95.0, ()),
+    ("loop", 150.0, ("gym",)),
+    ("corridor", 130.0, ("office",)),
+    ("greatroom", 140.0, ()),
+    ("split", 170.0, ("gym", "laundry")),
+    ("openplan", 110.0, ("office",)),
+    ("lshape", 150.0, ("gym",)),
+    ("loop", 195.0, ("office", "gym")),
+    ("flat", 120.0, ("gym",)),
+    ("corridor", 180.0, ("gym", "laundry")),
+    ("greatroom", 185.0, ("gym",)),
+    ("openplan", 160.0, ("gym",)),
+    ("split", 130.0, ("office",)),
+    ("lshape", 190.0, ("gym", "office")),
+    ("flat", 82.0, ()),
+)
+HAZARD_KINDS = ("glass", "slab", "overhang", "legs", "scan", "loose")
+"""Families of hazards (`sim.homes.housegen.hazards.FAMILIES`) in the houses of the split `hazards`."""
+
+
+def _heldout(split: str, first_seed: int, shapes: tuple[_Shape, ...]) -> tuple[Recipe, ...]:
+    """Returns the recipes of a split of held-out houses."""
+    return tuple(
+        Recipe(
+            f"{split.replace('-', '_')}_{n:02d}",
+            first_seed + n,
+            "heldout",
+            kind,
+            area_m2,
+            rooms,
+            movable=_is_movable(n),
+            storeys=2 if "stair_hall" in rooms else 1,
+            hazards=HAZARD_KINDS if split in ("hazards", "hazards-test") else (),
+        )
+        for n, (kind, area_m2, rooms) in enumerate(shapes)
+    )
+
+
+_TRAIN_SMALL: tuple[PlanKind, ...] = (
+    "flat", "loop", "openplan", "corridor", "split", "greatroom", "lshape", "loop", "flat", "studio", "corridor",
+)  # fmt: skip
+_TRAIN_LARGE: tuple[PlanKind, ...] = ("large", "corridor", "loop", "large", "split")
+_TRAIN_ROOMS: tuple[tuple[str, ...], ...] = (
+    ("gym",),
+    ("office",),
+    (),
+    ("gym", "laundry"),
+    ("office", "gym"),
+    ("laundry",),
+    ("gym", "closet"),
+    ("office", "laundry"),
+    ("gym",),
+)
+_SMALL_M2, _LARGE_M2 = (50.0, 230.0), (262.0, 400.0)
+"""Areas of small and of large train houses, limited to those of their kind of plan."""
+_ROOMY_M2 = 110.0
+"""Smallest area with required rooms: in a smaller home a gym or an office would replace the bedroom."""
+_GOLDEN = 0.6180339887
+"""The fractional parts of its multiples fill [0, 1) evenly for any number of them (Kronecker sequence)."""
+
+
+def train_recipe(seed: int) -> Recipe:
+    """Returns the recipe of the train house of a seed; every fourth house is larger than 250 m2."""
+    large = seed % 4 == 2
+    kinds, (smallest, largest) = (_TRAIN_LARGE, _LARGE_M2) if large else (_TRAIN_SMALL, _SMALL_M2)
+    kind = kinds[(seed // 4 if large else seed) % len(kinds)]
+    low, high = max(smallest, PLAN_AREA_M2[kind][0]), min(largest, PLAN_AREA_M2[kind][1])
+    area_m2 = round(low + (high - low) * (seed * _GOLDEN % 1.0), 0)
+    rooms = _TRAIN_ROOMS[seed % len(_TRAIN_ROOMS)] if area_m2 >= _ROOMY_M2 else ()
+    return Recipe(f"train_{seed:03d}", seed, "train", kind, area_m2, rooms, movable=_is_movable(seed))
+
+
+SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
+    {
+        "val": _heldout("val", 10_000, _VAL),
+        "test": _heldout("test", 20_000, _TEST),
+        "large": _heldout("large", 30_000, _LARGE),
+        "hazards": _heldout("hazards", 40_000, _HAZARDS),
+        "large-test": _heldout("large-test", 70_000, _LARGE),
+        "hazards-test": _heldout("hazards-test", 60_000, _HAZARDS),
+    }
+)
+"""Recipes of the houses shipped as files, by split, in the order of the episodes; a quarter of the houses of val and
+test is larger than 250 m2, all of `large` are larger than 300 m2, and 5 of them have two storeys. `large-test` and
+`hazards-test` have the sizes and rooms of `large` and `hazards` with other seeds."""

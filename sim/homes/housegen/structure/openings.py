@@ -1,0 +1,235 @@
+"""Chooses the openings of a floor plan: doors, wide openings and windows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from sim.homes.housegen.floor_plan import FloorPlan, Join, PlanError
+from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, SIDES, Interval, Rect, Side, shared_side, subtract
+from sim.homes.housegen.floor_plan.rooms import ROOM_RULES
+
+HALF_WALL_M = 0.06
+"""Thickness of one room's half of a wall, inside the room's rectangle."""
+OUTER_WALL_M = 0.12
+"""Thickness of outer walls outside of the rectangle."""
+JAMB_M = 0.03
+"""Thickness of a door frame inside its opening."""
+HEAD_M = 2.1
+"""Height of the upper edge of doors, openings and windows."""
+
+OpeningKind = Literal["door", "opening", "open", "window", "entry"]
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """A door leaf that is ajar."""
+
+    room: int
+    """Index of the room it swings into."""
+    hinge_at_start: bool
+    """True: its hinge is at the lower end of the opening's span."""
+    angle_rad: float
+    """0 closes the doorway."""
+
+
+@dataclass(frozen=True)
+class Opening:
+    """An opening in a wall: along `span` of `side` of room `a`, from `bottom_m` to `top_m`."""
+
+    kind: OpeningKind
+    a: int
+    b: int | None
+    """Index of the room behind it; None for outside."""
+    side: Side
+    line_m: float
+    """World coordinate of the middle of the wall."""
+    span: Interval
+    bottom_m: float
+    top_m: float
+    leaf: Leaf | None = None
+
+    @property
+    def centre_m(self) -> float:
+        """The middle of the span."""
+        return 0.5 * (self.span[0] + self.span[1])
+
+    def side_of(self, room: int) -> Side:
+        """Returns the side of one of its two rooms on which it lies."""
+        return self.side if room == self.a else OPPOSITE[self.side]
+
+    def clear_span(self) -> Interval:
+        """Returns the span between the jambs of the frame."""
+        jamb = JAMB_M if self.kind in ("door", "entry") else 0.0
+        return self.span[0] + jamb, self.span[1] - jamb
+
+
+def cut_openings(rng: np.random.Generator, plan: FloorPlan) -> tuple[Opening, ...]:
+    """Returns openings for the connections of a plan, a front door, and windows for rooms that have an outer wall.
+
+    Raises:
+        PlanError: two rooms that should be connected share too little wall.
+    """
+    rects = [room.rect for room in plan.rooms]
+    widths = (round(float(rng.uniform(0.80, 0.88)), 2), round(float(rng.uniform(0.86, 1.0)), 2))
+    openings = [_cut_join(rng, plan, join, widths) for join in plan.joins]
+    for n, opening in enumerate(openings):
+        openings[n] = _with_leaf(rng, plan, opening, openings)
+    entry = _cut_entry(rng, plan, rects)
+    if entry is not None:
+        openings.append(entry)
+    openings += _cut_windows(rng, plan, rects, openings)
+    return tuple(openings)
+
+
+def outer_spans(rects: Sequence[Rect], room: int, side: Side) -> list[Interval]:
+    """Returns the stretches of a room's side that have no other room behind them."""
+    holes = []
+    for i, rect in enumerate(rects):
+        shared = shared_side(rects[room], rect) if i != room else None
+        if shared is not None and shared[0] == side:
+            holes.append(shared[1])
+    return subtract(rects[room].span(side), holes, 0.01)
+
+
+def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tuple[float, float]) -> Opening:
+    """Returns the opening of a connection; `clear_m` are the home's two door widths, for small and other rooms."""
+    a, b = plan.rooms[join.a], plan.rooms[join.b]
+    shared = shared_side(a.rect, b.rect)
+    if shared is None:
+        raise PlanError(f"{a.name} and {b.name} are connected but do not touch")
+    side, (lo, hi) = shared
+    line_m, inner = a.rect.line(side), (lo + HALF_WALL_M, hi - HALF_WALL_M)
+    if join.kind == "open":
+        return Opening("open", join.a, join.b, side, line_m, inner, 0.0, 1e3)
+    length_m = inner[1] - inner[0]
+    if join.kind == "partial" and length_m > 1.8:
+        width_m = max(round(length_m * float(rng.uniform(0.45, 0.75)), 2), 1.2)
+        stub_m = min(0.35, (length_m - width_m) / 2)
+        at = round(inner[0] + stub_m + float(rng.uniform(0.0, 1.0)) * (length_m - width_m - 2 * stub_m), 2)
+        return Opening("open", join.a, join.b, side, line_m, (at, round(at + width_m, 2)), 0.0, 1e3)
+    if join.kind == "opening" and length_m > 1.5:
+        width_m = min(round(float(rng.uniform(1.3, 2.4)), 2), length_m - 0.2)
+        at = inner[0] + 0.1 + float(rng.uniform(0.0, 1.0)) * max(0.0, length_m - 0.2 - width_m)
+        return Opening("opening", join.a, join.b, side, line_m, (round(at, 2), round(at + width_m, 2)), 0.0, HEAD_M)
+    small = "bathroom" in (a.kind, b.kind) or "closet" in (a.kind, b.kind)
+    width_m = (clear_m[0] if small else clear_m[1]) + 2 * JAMB_M
+    if length_m < width_m + 0.16:
+        raise PlanError(f"{a.name} and {b.name} share only {length_m:.2f} m of wall")
+    spare = max(0.0, length_m - width_m - 0.16)
+    # Near a corner, which leaves a long wall for furniture.
+    offset = float(rng.uniform(0.0, min(0.3, spare))) if rng.random() < 0.75 else float(rng.uniform(0.0, spare))
+    at = inner[0] + 0.08 + offset if rng.random() < 0.5 else inner[1] - 0.08 - offset - width_m
+    return Opening("door", join.a, join.b, side, line_m, (round(at, 3), round(at + width_m, 3)), 0.0, HEAD_M)
+
+
+def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening, others: Sequence[Opening]) -> Opening:
+    """Returns some doors with an ajar leaf in the room that is not a hallway, its hinge at the nearer corner.
+
+    Returns a door unchanged where the leaf would swing in front of another doorway of that room.
+    """
+    if opening.kind != "door" or rng.random() > 0.55:
+        return opening
+    assert opening.b is not None
+    kinds = plan.rooms[opening.a].kind, plan.rooms[opening.b].kind
+    room = opening.b if kinds[0] == "hallway" or plan.rooms[opening.b].rect.area_m2 > 30 else opening.a
+    rect = plan.rooms[room].rect
+    side = opening.side_of(room)
+    lo, hi = rect.span(side)
+    width_m = opening.span[1] - opening.span[0]
+    depth_m = rect.depth_m if side in ("north", "south") else rect.width_m
+    if plan.rooms[room].kind == "hallway" or depth_m < width_m + 0.75:
+        return opening
+    at_start = opening.span[0] - lo < hi - opening.span[1]
+    gap_m = opening.span[0] - lo if at_start else hi - opening.span[1]
+    # A leaf opens at most as far as the wall next to it; without such a wall it may open a little further.
+    widest = 92.0 if gap_m < 0.6 else 110.0
+    angle = np.deg2rad(round(float(rng.uniform(78.0, widest))))
+    ajar = replace(opening, leaf=Leaf(room, at_start, float(angle)))
+    zone = leaf_keep_out(ajar, rect)
+    for other in others:
+        if other is opening or room not in (other.a, other.b):
+            continue
+        doorway = rect.strip(other.side_of(room), other.span, 0.75)
+        crossing = other.leaf is not None and other.leaf.room == room and zone.overlaps(leaf_keep_out(other, rect))
+        if zone.overlaps(doorway) or crossing:
+            return opening
+    return ajar
+
+
+def leaf_keep_out(opening: Opening, rect: Rect) -> Rect:
+    """Returns the zone that an ajar leaf needs inside the room that it swings into, `rect`."""
+    assert opening.leaf is not None
+    lo, hi = opening.clear_span()
+    width_m = hi - lo
+    reach = width_m * abs(np.cos(opening.leaf.angle_rad)) + 0.06
+    back = reach if opening.leaf.angle_rad > np.pi / 2 else 0.06
+    ahead = reach if opening.leaf.angle_rad <= np.pi / 2 else 0.06
+    span = (lo - back, lo + ahead) if opening.leaf.hinge_at_start else (hi - ahead, hi + back)
+    return rect.strip(opening.side_of(opening.leaf.room), span, width_m + 0.1)
+
+
+def _cut_entry(rng: np.random.Generator, plan: FloorPlan, rects: Sequence[Rect]) -> Opening | None:
+    """Returns the front door, in a short outer wall of the hallway if possible; None without any outer wall for it."""
+    width_m = 0.98
+    order = sorted(range(len(rects)), key=lambda i: (i != plan.entry, plan.rooms[i].kind != "hallway"))
+    for room in order:
+        if plan.rooms[room].kind not in ("hallway", "living_room", "studio", "kitchen"):
+            continue
+        spans: list[tuple[float, Side, float, float]] = [
+            (hi - lo, side, lo, hi) for side in SIDES for lo, hi in outer_spans(rects, room, side)
+        ]
+        for length_m, side, lo, hi in sorted(spans):
+            if length_m >= width_m + 2 * HALF_WALL_M + 0.06:
+                middle = 0.5 * (lo + hi) if length_m < 2.5 else float(rng.uniform(lo + 0.8, hi - 0.8))
+                span = (round(middle - width_m / 2, 3), round(middle + width_m / 2, 3))
+                return Opening("entry", room, None, side, rects[room].line(side), span, 0.0, HEAD_M)
+    return None
+
+
+def _cut_windows(
+    rng: np.random.Generator, plan: FloorPlan, rects: Sequence[Rect], others: Sequence[Opening]
+) -> list[Opening]:
+    """Returns windows in most outer walls of rooms with daylight, at least one for each, and at the ends of hallways.
+
+    A home has three sizes of windows: one for living rooms, one for bathrooms, one for the others.
+    """
+    large = (round(float(rng.uniform(1.6, 2.2)), 1), round(float(rng.uniform(0.35, 0.75)), 2))
+    usual = (round(float(rng.uniform(1.0, 1.5)), 1), round(float(rng.uniform(0.85, 1.0)), 2))
+    small = (round(float(rng.uniform(0.5, 0.8)), 1), 1.45)
+    windows = []
+    for i, room in enumerate(plan.rooms):
+        if not ROOM_RULES[room.kind].windows and room.kind != "hallway":
+            continue
+        size = {"bathroom": small, "living_room": large, "studio": large, "dining_room": large}.get(room.kind, usual)
+        width_m = size[0] if room.kind != "hallway" else 0.7
+        found: list[tuple[bool, Opening]] = []
+        for side in SIDES:
+            taken = [o.span for o in others if o.a == i and o.side == side]
+            for lo, hi in outer_spans(rects, i, side):
+                if room.kind == "hallway" and taken:
+                    continue
+                wanted = bool(rng.random() > 0.12)
+                for span in _window_spans((lo, hi), width_m, taken, most=1 if room.kind == "bathroom" else 3):
+                    hole = Opening("window", i, None, side, room.rect.line(side), span, size[1], HEAD_M)
+                    found.append((wanted, hole))
+        wanted_ones = [hole for wanted, hole in found if wanted]
+        windows += wanted_ones or [hole for _, hole in found[:1]]
+    return windows
+
+
+def _window_spans(wall: Interval, width_m: float, taken: Sequence[Interval], most: int) -> list[Interval]:
+    """Returns the spans of evenly distributed windows in one stretch of wall, narrower where it is short."""
+    length_m = wall[1] - wall[0] - 2 * HALF_WALL_M
+    width_m = min(width_m, round(length_m - 0.3, 1))
+    if width_m < 0.45:
+        return []
+    count = min(most, 1 + int((length_m - width_m) / (width_m + 1.8)))
+    spans = []
+    for n in range(count):
+        middle = wall[0] + (n + 0.5) * (wall[1] - wall[0]) / count
+        spans.append((round(middle - width_m / 2, 3), round(middle + width_m / 2, 3)))
+    return [s for s in spans if not any(s[0] < t[1] + 0.2 and s[1] > t[0] - 0.2 for t in taken)]

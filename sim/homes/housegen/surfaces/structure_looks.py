@@ -1,0 +1,62 @@
+"""Draws the looks of a home's structure, and its time of day."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sim.homes.housegen.floor_plan import FloorPlan
+from sim.homes.housegen.furniture.item import Look, Pool
+from sim.homes.housegen.structure.parts import StructureLooks
+from sim.homes.housegen.surfaces import materials
+from sim.homes.housegen.surfaces.lighting import draw_time, draw_views
+
+TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
+OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
+WALLPAPER_ROOMS = frozenset(("living_room", "bedroom", "dining_room", "studio"))
+"""Rooms that may have patterned wallpaper; one room of a home at most."""
+
+
+def draw_structure_looks(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> StructureLooks:
+    """Returns paint and floors by room; rooms without a wall between them share theirs."""
+    walls, floors = {}, {}
+    paint = "heldout" if pool == "heldout" else "train"
+    main_floor = materials.floor_look("living_room", rng, pool)
+    main_wall = _wall_look(rng, pool, "hallway")
+    shared = _open_rooms(plan)
+    has_wallpaper = False
+    for i, room in enumerate(plan.rooms):
+        own = _wall_look(rng, pool, room.kind, paper=not has_wallpaper and room.kind in WALLPAPER_ROOMS)
+        has_wallpaper = has_wallpaper or _is_wallpaper(own)
+        floor = materials.floor_look(room.kind, rng, pool)
+        same_floor = room.kind in ("hallway", "living_room", "dining_room") and rng.random() < 0.75
+        walls[room.name] = main_wall if room.kind == "hallway" or i in shared else own
+        floors[room.name] = main_floor if room.kind == "hallway" or i in shared or same_floor else floor
+    trim = Look(TRIM[paint], specular=0.2)
+    time = draw_time(rng)
+    door = materials.look("wood", rng, pool) if rng.random() < 0.5 else materials.look("lacquer", rng, pool)
+    frame = trim if rng.random() < 0.6 else door
+    return StructureLooks(
+        walls, floors, replace(materials.ceiling_look(rng, pool), texture=None), Look(OUTSIDE[paint]), trim, door,
+        frame, materials.look("metal", rng, pool), draw_views(rng, pool, time), time,
+    )  # fmt: skip
+
+
+def _wall_look(rng: np.random.Generator, pool: Pool, room_kind: str, *, paper: bool = False) -> Look:
+    """Returns tiles for wet rooms, else paint, more often smooth than rough; wallpaper only with `paper`."""
+    look = materials.wall_look(rng, pool, room_kind)
+    smooth = bool(rng.random() < 0.6)
+    if look.texture is None or look.texture.startswith("tiles"):
+        return look
+    plain = not paper if _is_wallpaper(look) else smooth
+    return replace(look, texture=None) if plain else look
+
+
+def _is_wallpaper(look: Look) -> bool:
+    return look.texture is not None and look.texture.startswith("paper")
+
+
+def _open_rooms(plan: FloorPlan) -> set[int]:
+    """Returns the indices of rooms that are connected to another one without any wall."""
+    return {room for join in plan.joins if join.kind in ("open", "partial") for room in (join.a, join.b)}

@@ -1,0 +1,196 @@
+"""Reads a home that is one GLB, glTF, OBJ or PLY file, whose nodes are its objects.
+
+The category of a node is that of the first rule of a table that its name matches. Without a table, or for other nodes,
+the words of the node's and its material's name say it, as in `stubborn label`; then its size: large level plates are
+floors, upright ones walls. A node that is the whole home is cut: its level triangles at the lowest level are the floor,
+the others wall. What is left becomes objects. All that was found is returned as a table for the user to edit.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.core.errors import ConfigError, HouseError
+from sim.homes.importers.floors import LEVEL_M, find_levels, level_triangles
+from sim.homes.importers.losses import Losses
+from sim.homes.importers.mesh_house import MeshConfig, MeshHouse, MeshObject, Shape, build_house
+from sim.homes.importers.obj import read_obj, used_files
+from sim.homes.importers.surfaces import FORMATS, Y_UP, Surface, Up, parts_of, read_surfaces
+from sim.houses.labels import VOID, categories_by_rules
+from sim.houses.proposals import Proposal, category_by_size, category_of_name, rules_of
+
+Axis = Literal["auto", "y", "z"]
+MAX_HOUSES = 10_000
+WHOLE_SHARE = 0.6
+"""A node without a category is the whole home if it extends over this share of its plan along both axes."""
+WHOLE_M = 1.5
+"""Least height of such a node."""
+OTHER = "objects"
+
+
+@dataclass(frozen=True)
+class MeshScene:
+    """A home, ready to be written."""
+
+    house: MeshHouse
+    table: Mapping[str, str]
+    """The category of each node: `{"regex over node names": "category"}`."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Node:
+    name: str
+    surfaces: tuple[Surface, ...]
+
+    @property
+    def corners_m(self) -> NDArray[np.float64]:
+        """All triangles (m, 3, 3)."""
+        return np.concatenate([each.corners_m for each in self.surfaces])
+
+
+def find_files(path: Path) -> list[Path]:
+    """Returns the meshes of a folder, or the one file that is given, sorted.
+
+    Raises:
+        ConfigError: there are none, or two of them have one name.
+    """
+    if not path.is_dir():
+        return [path]
+    found = sorted(file for file in path.iterdir() if file.suffix.lower().lstrip(".") in FORMATS)[:MAX_HOUSES]
+    if not found:
+        raise ConfigError(f"'{path}' has no file of a home: {', '.join(f'.{kind}' for kind in FORMATS)}.")
+    twice = next((b.name for a, b in itertools.pairwise(found) if a.stem == b.stem), None)
+    if twice is not None:
+        raise ConfigError(f"'{path}' has two homes of the name '{Path(twice).stem}', one of them '{twice}'.")
+    return found
+
+
+def files_of(file: Path) -> list[Path]:
+    """Returns the files that a mesh uses: materials and pictures of OBJ, buffers and pictures of glTF."""
+    if file.suffix.lower() == ".obj":
+        return list(used_files(file))
+    return list(parts_of(file)) if file.suffix.lower() == ".gltf" else []
+
+
+def import_mesh(file: Path, *, rules: Mapping[str, str], up: Axis, config: MeshConfig) -> MeshScene:
+    """Returns the house of a file.
+
+    Args:
+        file: a GLB, glTF, OBJ or PLY file.
+        rules: `{"regex over node names": "category"}`; nodes of the category `void` are left out.
+        up: the axis that points up; `auto`: z in PLY files, y in others.
+        config: options of the house.
+
+    Raises:
+        HouseError: the file is broken, or is no home; the message names it.
+    """
+    losses = Losses()
+    axis: Up = up if up != "auto" else "z" if file.suffix.lower() == ".ply" else "y"
+    try:
+        surfaces = _read(file, axis, config.texture_px, losses)
+        nodes = _nodes(surfaces)
+        given = categories_by_rules([node.name for node in nodes], rules)
+        proposals = _proposals(nodes, given)
+        found = {each.name: each.category for each in proposals}
+        objects = _objects(nodes, {**found, **given}, losses)
+        house = build_house(file.stem, str(file), objects, (), config, losses)
+    except HouseError as error:
+        said = str(error)
+        raise HouseError(said if said.startswith("Mesh ") else f"Mesh '{file}': {said}") from None
+    table = {**{rule: rules[rule] for rule in rules}, **rules_of(proposals)}
+    return MeshScene(house, table)
+
+
+def _read(file: Path, up: Up, texture_px: int, losses: Losses) -> list[Surface]:
+    """Returns the surfaces of a file in our frame."""
+    if file.suffix.lower() != ".obj":
+        return read_surfaces(file, up=up, texture_px=texture_px, losses=losses.changes)
+    turn = np.eye(4)
+    turn[:3, :3] = Y_UP if up == "y" else np.eye(3)
+    return [surface.moved(turn) for surface in read_obj(file, texture_px=texture_px, losses=losses.changes)]
+
+
+def _nodes(surfaces: Sequence[Surface]) -> list[_Node]:
+    """Returns the nodes with their surfaces; the instances of a PLY file with `object_id` are nodes of their own."""
+    parts: dict[str, list[Surface]] = {}
+    for surface in surfaces:
+        if surface.face_ids is None:
+            parts.setdefault(surface.node, []).append(surface)
+            continue
+        for number in np.unique(surface.face_ids).tolist():
+            piece = surface.part(surface.face_ids == number)
+            parts.setdefault(f"{surface.node}_{number}", []).append(replace(piece, face_ids=None))
+    return [_Node(name, tuple(found)) for name, found in parts.items()]
+
+
+def _proposals(nodes: Sequence[_Node], given: Mapping[str, str]) -> tuple[Proposal, ...]:
+    """Returns a proposal for each node that no rule names: by its name, its material, else by its size."""
+    named = {}
+    for node in nodes:
+        words = category_of_name(node.name) or next(filter(None, map(category_of_name, _materials(node))), None)
+        if node.name not in given and words is not None:
+            named[node.name] = Proposal(node.name, words, "name")
+    categories = {**{name: each.category for name, each in named.items()}, **given}
+    floors = [node.corners_m for node in nodes if categories.get(node.name) == "floor"]
+    everything = np.concatenate([node.corners_m for node in nodes])
+    lowest_m = find_levels(np.concatenate(floors) if floors else everything)[0]
+    for node in nodes:
+        if node.name in categories:
+            continue
+        points = node.corners_m.reshape(-1, 3) - np.array([0.0, 0.0, lowest_m])
+        category = category_by_size(points.min(axis=0), points.max(axis=0))
+        if category is None and _is_whole(node, everything):
+            category = "wall"
+        named[node.name] = Proposal(node.name, category or OTHER, "size" if category else "unknown")
+    return tuple(named.values())
+
+
+def _materials(node: _Node) -> list[str]:
+    return list(dict.fromkeys(each.material for each in node.surfaces if each.material))
+
+
+def _is_whole(node: _Node, everything: NDArray[np.float64]) -> bool:
+    """Returns whether a node extends over the home."""
+    size = np.ptp(node.corners_m.reshape(-1, 3), axis=0)
+    total = np.ptp(everything.reshape(-1, 3), axis=0)
+    return bool((size[:2] >= WHOLE_SHARE * total[:2]).all() and size[2] >= WHOLE_M)
+
+
+def _objects(nodes: Sequence[_Node], categories: Mapping[str, str], losses: Losses) -> list[MeshObject]:
+    """Returns the objects of the nodes; without a floor, one is cut out of the walls."""
+    objects = []
+    for node in nodes:
+        category = categories[node.name]
+        if category == VOID:
+            losses.left_out[f"{node.name}: the table says void"] += 1
+            continue
+        objects.append(MeshObject(category, node.name, Shape(node.surfaces)))
+        losses.furniture[category] += 1
+    if not objects or any(each.category == "floor" for each in objects):
+        return objects
+    lowest_m = find_levels(np.concatenate([each.corners_m for each in objects]))[0]
+    cut: list[MeshObject] = []
+    for each in objects:
+        cut += _cut(each, lowest_m) if each.category == "wall" else [each]
+    losses.changes["No node is a floor; the level triangles of the walls at the lowest level became one."] += 1
+    return cut
+
+
+def _cut(walls: MeshObject, lowest_m: float) -> list[MeshObject]:
+    """Returns the floor and the rest of an object that is a whole home."""
+    floor: list[Surface] = []
+    rest: list[Surface] = []
+    for surface in walls.shape.surfaces:
+        corners = surface.corners_m
+        level = level_triangles(corners) & (np.abs(corners[:, :, 2].mean(axis=1) - lowest_m) <= LEVEL_M)
+        floor += [surface.part(level)] if level.any() else []
+        rest += [surface.part(~level)] if not level.all() else []
+    parts = (("floor", floor), ("wall", rest))
+    return [replace(walls, category=name, shape=Shape(tuple(found))) for name, found in parts if found]

@@ -1,0 +1,232 @@
+"""Reads OBJ files by object and material.
+
+trimesh joins all objects of one material, and their names are lost; here each `o` or `g` begins a node of its own.
+Materials may have a colour (`Kd`), an opacity (`d`) and a picture (`map_Kd`), in whose place the colour does not count,
+from files of the OBJ file's folder.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.core.errors import ConfigError, HouseError
+from sim.core.reading import printable, read_bytes, require_small_image
+from sim.homes.importers.surfaces import FARTHEST_M, GREY, MAX_FILE_BYTES, MAX_TRIANGLES, WHITE, Paint, Surface
+
+MAX_MATERIALS = 10_000
+PICTURE_OPTIONS = {
+    "-blendu": 1, "-blendv": 1, "-bm": 1, "-boost": 1, "-cc": 1, "-clamp": 1, "-mm": 2, "-o": 3, "-s": 3, "-t": 3,
+    "-texres": 1,
+}  # fmt: skip
+"""Options of `map_Kd`, with the largest number of their values."""
+Corner = tuple[int, int]
+"""Numbers of a vertex and of a texture coordinate, from 0; -1: none."""
+
+
+@dataclass
+class _Content:
+    """What the lines of a file have said so far."""
+
+    vertices: list[list[float]] = field(default_factory=list)
+    uv: list[list[float]] = field(default_factory=list)
+    faces: dict[tuple[str, str], list[tuple[Corner, Corner, Corner]]] = field(default_factory=dict)
+    """Triangles by node and material."""
+    paints: dict[str, Paint] = field(default_factory=dict)
+    triangles: int = 0
+
+
+def read_obj(file: Path, *, texture_px: int, losses: Counter[str]) -> list[Surface]:
+    """Returns the surfaces of an OBJ file in its own frame.
+
+    Args:
+        file: the file.
+        texture_px: larger pictures are reduced to this length of their longer side.
+        losses: gets sentences on what was lost.
+
+    Raises:
+        HouseError: the file cannot be read or is broken; the message names file and line.
+    """
+    where = f"Mesh '{printable(str(file))}'"
+    text = read_bytes(file, what="Mesh", error=HouseError, most=MAX_FILE_BYTES).decode("utf-8", errors="replace")
+    found = _Content()
+    node, material = file.stem, ""
+    for number, line in enumerate(text.splitlines(), start=1):
+        words = line.split()
+        if not words:
+            continue
+        try:
+            if words[0] == "v":
+                found.vertices.append(_vertex(words[1:4]))
+            elif words[0] == "vt":
+                found.uv.append([float(word) for word in [*words[1:3], "0", "0"][:2]])
+            elif words[0] == "f":
+                _add_face(found, node, material, words[1:])
+            elif words[0] in ("o", "g") and len(words) > 1:
+                node = " ".join(words[1:])
+            elif words[0] == "usemtl":
+                material = " ".join(words[1:])
+            elif words[0] == "mtllib":
+                _read_materials(file.parent, " ".join(words[1:]), texture_px, found.paints, losses)
+        except (ValueError, IndexError) as fault:
+            raise HouseError(f"{where}, line {number}: '{printable(line)[:60]}' cannot be read: {fault}.") from None
+    if not found.faces:
+        raise HouseError(f"{where} has no triangles.")
+    vertices = np.array(found.vertices, dtype=np.float64)
+    if not bool((np.abs(vertices) <= FARTHEST_M).all()):
+        raise HouseError(f"{where}: a vertex is not finite or beyond {FARTHEST_M:g} m.")
+    return [_surface(found, vertices, *key) for key in found.faces]
+
+
+def _vertex(words: list[str]) -> list[float]:
+    """Returns a vertex; raises ValueError if it is broken."""
+    if len(words) < 3:
+        raise ValueError("a vertex needs three coordinates")
+    return [float(word) for word in words]
+
+
+def _add_face(found: _Content, node: str, material: str, words: list[str]) -> None:
+    """Adds a polygon as triangles; raises ValueError if it is broken."""
+    corners = [_corner(found, word) for word in words]
+    if len(corners) < 3:
+        raise ValueError("a face needs three vertices")
+    found.triangles += len(corners) - 2
+    if found.triangles > MAX_TRIANGLES:
+        raise ValueError(f"the file has more than {MAX_TRIANGLES:,} triangles")
+    triangles = found.faces.setdefault((node, material), [])
+    triangles += [(corners[0], corners[n], corners[n + 1]) for n in range(1, len(corners) - 1)]
+
+
+def _corner(found: _Content, word: str) -> Corner:
+    """Returns a corner of a face, `vertex/texture/normal`, whose negative numbers count from the end."""
+    numbers = [int(part) if part else 0 for part in word.split("/")]
+    vertex = numbers[0] - 1 if numbers[0] > 0 else len(found.vertices) + numbers[0]
+    if not 0 <= vertex < len(found.vertices) or numbers[0] == 0:
+        raise ValueError(f"vertex {numbers[0]} does not exist")
+    uv = numbers[1] if len(numbers) > 1 else 0
+    at = uv - 1 if uv > 0 else len(found.uv) + uv
+    return vertex, at if uv and 0 <= at < len(found.uv) else -1
+
+
+def _surface(found: _Content, vertices_m: NDArray[np.float64], node: str, material: str) -> Surface:
+    corners = np.array(found.faces[node, material], dtype=np.int64).reshape(-1, 2)
+    used, faces = np.unique(corners, axis=0, return_inverse=True)
+    paint = found.paints.get(material, Paint(GREY))
+    if paint.picture is not None:
+        if found.uv and bool((used[:, 1] >= 0).all()):
+            paint = replace(paint, uv=np.nan_to_num(np.array(found.uv, dtype=np.float64)[used[:, 1]]))
+        else:
+            paint = Paint(GREY)  # no part of the picture belongs to a triangle
+    return Surface(node, material, vertices_m[used[:, 0]], faces.reshape(-1, 3).astype(np.int32), paint)
+
+
+def _read_materials(folder: Path, name: str, texture_px: int, paints: dict[str, Paint], losses: Counter[str]) -> None:
+    """Adds the materials of an MTL file; one that is missing is reported, one outside of the folder is refused."""
+    content = _file_inside(folder, name, losses)
+    if content is None:
+        return
+    current = ""
+    for line in content.decode("utf-8", errors="replace").splitlines():
+        words = line.split()
+        if words[:1] == ["newmtl"] and len(paints) < MAX_MATERIALS:
+            current = " ".join(words[1:])
+            paints[current] = Paint(GREY)
+        elif words[:1] == ["Kd"] and current in paints and paints[current].picture is None:
+            r, g, b = map(_share, words[1:4])
+            paints[current] = replace(paints[current], rgba=(r, g, b, paints[current].rgba[3]))
+        elif words[:1] == ["d"] and current in paints:
+            paints[current] = replace(paints[current], rgba=(*paints[current].rgba[:3], _share(words[-1])))
+        elif words[:1] == ["map_Kd"] and current in paints and len(words) > 1:
+            named = _picture_name(words[1:])
+            picture = _file_inside(folder, named, losses)
+            if picture is not None:
+                rgba = (*WHITE[:3], paints[current].rgba[3])
+                paints[current] = Paint(rgba, picture=_pixels(picture, named, texture_px))
+
+
+def _share(word: str) -> float:
+    """Returns a number as one in [0, 1]; raises ValueError if it is not one."""
+    value = float(word)
+    if math.isnan(value):
+        raise ValueError("a colour or opacity is a number")
+    return min(max(value, 0.0), 1.0)
+
+
+def _picture_name(words: list[str]) -> str:
+    """Returns the name of a picture, which may have spaces, without the options in front of it and their values."""
+    first = 0
+    while first < len(words) - 1 and words[first] in PICTURE_OPTIONS:
+        first += 1
+        most = first + PICTURE_OPTIONS[words[first - 1]]
+        while first < min(most, len(words) - 1) and _is_value(words[first]):
+            first += 1
+    return " ".join(words[first:])
+
+
+def _is_value(word: str) -> bool:
+    return word in ("on", "off") or word.lstrip("+-").replace(".", "", 1).isdigit()
+
+
+def used_files(file: Path) -> Iterator[Path]:
+    """Yields the files of its folder that an OBJ file and its materials name, whether they exist or not."""
+    for named in _words_after("mtllib", file):
+        materials = _path_inside(file.parent, " ".join(named))
+        if materials is not None:
+            yield materials
+            pictures = (_path_inside(file.parent, _picture_name(words)) for words in _words_after("map_Kd", materials))
+            yield from (picture for picture in pictures if picture is not None)
+
+
+def _words_after(key: str, file: Path) -> Iterator[list[str]]:
+    """Yields the words after each `key` at the beginning of a line of a file; nothing if it cannot be read."""
+    try:
+        text = read_bytes(file, what="File", most=MAX_FILE_BYTES).decode("utf-8", errors="replace")
+    except ConfigError:
+        return
+    for line in text.splitlines():
+        words = line.split()
+        if words[:1] == [key] and len(words) > 1:
+            yield words[1:]
+
+
+def _path_inside(folder: Path, name: str) -> Path | None:
+    """Returns the path of a named file in the folder or below it; None if it is elsewhere."""
+    base = folder.resolve()
+    target = (base / name.replace("\\", "/")).resolve()
+    return target if target.is_relative_to(base) else None
+
+
+def _file_inside(folder: Path, name: str, losses: Counter[str]) -> bytes | None:
+    """Returns a file of the folder or below it; None if it is missing.
+
+    Raises:
+        HouseError: it is outside of the folder.
+    """
+    target = _path_inside(folder, name)
+    if target is None:
+        raise HouseError(f"A mesh in '{folder}' uses '{printable(name)[:100]}', which is outside of its folder.")
+    try:
+        return read_bytes(target, what="File", most=MAX_FILE_BYTES)
+    except ConfigError:
+        losses[f"The file '{printable(name)[:60]}' is missing; its colours were lost."] += 1
+        return None
+
+
+def _pixels(content: bytes, name: str, texture_px: int) -> NDArray[np.uint8]:
+    """Returns the pixels (h, w, 3) of a picture, RGB, at most `texture_px` along its longer side."""
+    require_small_image(content, where=f"Picture '{printable(name)[:60]}'", error=HouseError)
+    picture = cv2.imdecode(np.frombuffer(content, dtype=np.uint8), cv2.IMREAD_COLOR)
+    if picture is None:
+        raise HouseError(f"Picture '{printable(name)[:60]}' cannot be read.")
+    factor = texture_px / max(picture.shape[:2])
+    if factor < 1.0:
+        size = max(1, round(picture.shape[1] * factor)), max(1, round(picture.shape[0] * factor))
+        picture = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+    return np.ascontiguousarray(picture[..., ::-1], np.uint8)

@@ -1,0 +1,339 @@
+"""Reads the triangles of GLB, glTF, OBJ and PLY files by node and material, with pictures and colours.
+
+Reading is by trimesh, of the extra `import`. What a file could ask for is limited before it is decoded: its size, the
+numbers that its accessors announce, its nodes and their loops, its pixels, and references to other files, which must
+lie in the folder of the file or below it.
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Annotated, Any, Literal
+from urllib.parse import unquote
+
+import numpy as np
+from msgspec import Meta, Struct
+from numpy.typing import NDArray
+
+from sim.core.errors import ConfigError, HouseError, ObjectNavError
+from sim.core.reading import MAX_PIXELS, parse_json, printable, read_bytes, reason_of
+from sim.homes.housegen.imported.meshes import library, resolver
+from sim.homes.housegen.imported.sources import Skipped
+
+FORMATS = ("glb", "gltf", "obj", "ply")
+MAX_FILE_BYTES = 1 << 30
+MAX_NUMBERS = 200_000_000
+"""Numbers that the accessors of a glTF file may announce."""
+MAX_TRIANGLES = 20_000_000
+"""Triangles of a file, those of repeated meshes counted each time."""
+MAX_NODES = 100_000
+FARTHEST_M = 2_000.0
+"""Largest coordinate of a vertex."""
+GREY, WHITE = (0.7, 0.7, 0.7, 1.0), (1.0, 1.0, 1.0, 1.0)
+_LOST = {
+    "KHR_texture_basisu": "A file has pictures in the Basis format, which cannot be read; they became plain colours.",
+    "EXT_texture_webp": "A file has pictures in the WebP format, which may have been left out.",
+}
+_REFUSED = {
+    "KHR_draco_mesh_compression": "Draco", "EXT_meshopt_compression": "meshopt", "KHR_meshopt_compression": "meshopt",
+}  # fmt: skip
+Up = Literal["y", "z"]
+"""The axis of a file that points up: y in glTF and in Habitat, z in Matterport's scans and in this project."""
+Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""Turns a y-up frame to ours: (x, y, z) becomes (x, -z, y)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Paint:
+    """The appearance of a surface."""
+
+    rgba: tuple[float, float, float, float] = GREY
+    """Colour, by which the picture is multiplied."""
+    picture: NDArray[np.uint8] | None = None  # (h, w, 3), the first row at the top
+    uv: NDArray[np.float64] | None = None  # (n, 2) for each vertex, v upwards
+    vertex_rgb: NDArray[np.uint8] | None = None  # (n, 3)
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Triangles of one material of one node, metres."""
+
+    node: str
+    material: str
+    vertices_m: NDArray[np.float64]  # (n, 3)
+    faces: NDArray[np.int32]  # (m, 3)
+    paint: Paint = field(default_factory=Paint)
+    face_ids: NDArray[np.int64] | None = None  # (m,), from the property `object_id` of a PLY file
+
+    def part(self, chosen: NDArray[np.bool_]) -> Surface:
+        """Returns the surface of some of the triangles (m,), with the vertices that they use."""
+        faces = self.faces[chosen]
+        used, index = np.unique(faces, return_inverse=True)
+        paint = replace(
+            self.paint,
+            uv=None if self.paint.uv is None else self.paint.uv[used],
+            vertex_rgb=None if self.paint.vertex_rgb is None else self.paint.vertex_rgb[used],
+        )
+        ids = None if self.face_ids is None else self.face_ids[chosen]
+        return Surface(
+            self.node, self.material, self.vertices_m[used], index.reshape(-1, 3).astype(np.int32), paint, ids
+        )
+
+    def moved(self, transform: NDArray[np.float64]) -> Surface:
+        """Returns the surface moved by a 4 x 4 matrix; one that mirrors also reverses the triangles."""
+        vertices = self.vertices_m @ transform[:3, :3].T + transform[:3, 3]
+        mirrors = bool(np.linalg.det(transform[:3, :3]) < 0.0)
+        faces = np.ascontiguousarray(self.faces[:, ::-1]) if mirrors else self.faces
+        return replace(self, vertices_m=vertices, faces=faces)
+
+    @property
+    def corners_m(self) -> NDArray[np.float64]:
+        """The corners (m, 3, 3) of the triangles: triangle, corner, xyz."""
+        return self.vertices_m[self.faces]
+
+
+def check_installed() -> None:
+    """Raises ConfigError if a package of the extra `import` is missing."""
+    for module in ("trimesh", "fast_simplification", "PIL"):
+        library(module, extra="import")
+
+
+def read_surfaces(
+    file: Path, *, up: Up = "z", texture_px: int | None = None, losses: Counter[str] | None = None
+) -> list[Surface]:
+    """Returns the surfaces of a file in our frame, nodes at their places.
+
+    Args:
+        file: the file.
+        up: its upward axis.
+        texture_px: larger pictures are reduced to this size; None: they stay.
+        losses: gets sentences on what was lost.
+
+    Raises:
+        HouseError: the file cannot be read, is too large, or has a number that is not allowed; one line.
+        ConfigError: a package is not installed.
+    """
+    trimesh, kind = library("trimesh", extra="import"), file.suffix.lower().lstrip(".")
+    where = f"Mesh '{printable(str(file))}'"
+    if kind not in FORMATS:
+        raise HouseError(f"{where}: its format '{printable(kind)}' is none of {', '.join(FORMATS)}.")
+    content = read_bytes(file, what="Mesh", error=HouseError, most=MAX_FILE_BYTES)
+    if kind in ("glb", "gltf"):
+        _require_sane_gltf(content, kind, where, Counter() if losses is None else losses)
+    elif kind == "ply":
+        _require_sane_ply(content, where)
+    try:
+        scene = trimesh.load_scene(
+            io.BytesIO(content), file_type=kind, resolver=_resolver(trimesh, file.parent), process=False
+        )
+        found = list(_surfaces(trimesh, scene, texture_px, where))
+    except ObjectNavError:
+        raise
+    except Exception as error:  # a reader meets any error in a broken file
+        raise HouseError(
+            f"{where} cannot be read ({type(error).__name__}: {printable(reason_of(error))[:100]})."
+        ) from None
+    if not found:
+        raise HouseError(f"{where} has no triangles.")
+    if up == "y":
+        turn = np.eye(4)
+        turn[:3, :3] = Y_UP
+        found = [surface.moved(turn) for surface in found]
+    return found
+
+
+def _surfaces(trimesh: Any, scene: Any, texture_px: int | None, where: str) -> Iterator[Surface]:
+    """Yields the surfaces of a scene of trimesh."""
+    total, painted = 0, dict[int, NDArray[np.uint8]]()
+    for node in scene.graph.nodes_geometry:
+        transform, name = scene.graph[node]
+        mesh = scene.geometry[name]
+        if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
+            continue
+        total += len(mesh.faces)
+        if total > MAX_TRIANGLES:
+            raise HouseError(f"{where} has more than {MAX_TRIANGLES:,} triangles.")
+        vertices = np.asarray(mesh.vertices, dtype=np.float64)
+        faces = np.asarray(mesh.faces, dtype=np.int32)
+        if faces.min() < 0 or faces.max() >= len(vertices):
+            raise HouseError(f"{where}, node '{printable(str(node))}': a triangle names a vertex that does not exist.")
+        material = getattr(mesh.visual, "material", None)
+        surface = Surface(
+            str(node), str(getattr(material, "name", None) or ""), vertices, faces,
+            _paint(mesh, material, texture_px, painted, where), _face_ids(mesh),
+        ).moved(np.asarray(transform, dtype=np.float64))  # fmt: skip
+        if not bool((np.abs(surface.vertices_m) <= FARTHEST_M).all()):
+            raise HouseError(
+                f"{where}, node '{printable(str(node))}': a vertex is not finite or beyond {FARTHEST_M:g} m."
+            )
+        yield surface
+
+
+def _paint(
+    mesh: Any, material: Any, texture_px: int | None, painted: dict[int, NDArray[np.uint8]], where: str
+) -> Paint:
+    """Returns the appearance of a mesh of trimesh; `painted` keeps decoded pictures by the identity of their source."""
+    uv, rgba = getattr(mesh.visual, "uv", None), GREY
+    if material is None:
+        if getattr(mesh.visual, "kind", None) == "vertex":
+            return Paint(WHITE, vertex_rgb=np.asarray(mesh.visual.vertex_colors, dtype=np.uint8)[:, :3])
+        if getattr(mesh.visual, "kind", None) == "face":
+            return Paint(tuple(float(v) / 255.0 for v in mesh.visual.main_color))  # type: ignore[arg-type]
+        return Paint()
+    factor = getattr(material, "baseColorFactor", None)
+    factor = getattr(material, "diffuse", None) if factor is None else factor
+    image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
+    if factor is not None:
+        found = np.asarray(factor, dtype=np.float64).ravel() / 255.0
+        if len(found) in (3, 4) and np.isfinite(found).all():
+            r, g, b, a = (float(v) for v in np.clip([*found, 1.0][:4], 0.0, 1.0))
+            rgba = (r, g, b, a)
+    elif image is not None:
+        rgba = WHITE
+    colours = getattr(mesh.visual, "vertex_attributes", {}).get("color")
+    if image is None and colours is not None and len(colours) == len(mesh.vertices):
+        return Paint(rgba, vertex_rgb=_bytes_of(np.asarray(colours)[:, :3]))
+    if image is None or uv is None or len(uv) != len(mesh.vertices) or not np.isfinite(uv).all():
+        return Paint(rgba)
+    if id(image) not in painted:
+        painted[id(image)] = _pixels(image, texture_px, where)
+    return Paint(rgba, painted[id(image)], np.asarray(uv, dtype=np.float64))
+
+
+def _bytes_of(colours: NDArray[Any]) -> NDArray[np.uint8]:
+    """Returns colours as bytes; numbers of floating point are from 0 to 1."""
+    if np.issubdtype(colours.dtype, np.floating):
+        return np.rint(np.clip(np.nan_to_num(colours), 0.0, 1.0) * 255.0).astype(np.uint8)
+    return (colours >> 8).astype(np.uint8) if colours.dtype == np.uint16 else colours.astype(np.uint8)
+
+
+def _pixels(image: Any, texture_px: int | None, where: str) -> NDArray[np.uint8]:
+    """Returns the pixels of a picture (h, w, 3), at most `texture_px` along its longer side."""
+    width, height = image.size
+    if width * height > MAX_PIXELS:
+        raise HouseError(f"{where}: a picture has {width} x {height} pixels; at most {MAX_PIXELS:,} are allowed.")
+    image = image.convert("RGB")
+    if texture_px is not None and max(width, height) > texture_px:
+        share = texture_px / max(width, height)
+        image = image.resize((max(1, round(width * share)), max(1, round(height * share))), 4)  # 4: mean of the pixels
+    return np.asarray(image, dtype=np.uint8)
+
+
+def _face_ids(mesh: Any) -> NDArray[np.int64] | None:
+    """Returns the instance of each triangle of a PLY file with the property `object_id`, else None."""
+    raw = mesh.metadata.get("_ply_raw") if isinstance(getattr(mesh, "metadata", None), dict) else None
+    data = (raw or {}).get("face", {}).get("data")
+    names = getattr(getattr(data, "dtype", None), "names", None) or (data.keys() if isinstance(data, dict) else ())
+    if data is None or "object_id" not in names:
+        return None
+    ids = np.asarray(data["object_id"]).astype(np.int64).ravel()
+    return ids if len(ids) == len(mesh.faces) else None
+
+
+# ---- limits before decoding -----------------------------------------------------------------------------------------
+
+
+class _Accessor(Struct):
+    count: Annotated[int, Meta(ge=0)] = 0
+
+
+class _Node(Struct):
+    children: list[int] = []
+
+
+class _Gltf(Struct):
+    accessors: list[_Accessor] = []
+    nodes: Annotated[list[_Node], Meta(max_length=MAX_NODES)] = []
+    extensionsRequired: list[str] = []
+    extensionsUsed: list[str] = []
+
+
+class _Part(Struct):
+    uri: str = ""
+
+
+class _Parts(Struct):
+    buffers: list[_Part] = []
+    images: list[_Part] = []
+
+
+def parts_of(file: Path) -> Iterator[Path]:
+    """Yields the files of buffers and pictures that a .gltf file names; nothing if it cannot be read."""
+    try:
+        content = read_bytes(file, what="Mesh", most=MAX_FILE_BYTES)
+        found = parse_json(content, _Parts, where=f"Mesh '{file}'")
+    except ConfigError:
+        return
+    for part in (*found.buffers, *found.images):
+        if part.uri and not part.uri.startswith("data:"):
+            yield file.parent / unquote(part.uri)
+
+
+def _require_sane_gltf(content: bytes, kind: str, where: str, losses: Counter[str]) -> None:
+    """Raises HouseError if a glTF file announces too much, its nodes form a loop, or it needs what cannot be read."""
+    text = content
+    if kind == "glb":
+        if len(content) < 20 or content[:4] != b"glTF":
+            raise HouseError(f"{where} is not a GLB file.")
+        length, chunk = struct.unpack("<I4s", content[12:20])
+        if chunk != b"JSON" or length > len(content) - 20:
+            raise HouseError(f"{where} is a damaged GLB file: its first part is incomplete.")
+        text = content[20 : 20 + length].rstrip(b"\0 ")
+    found = parse_json(text, _Gltf, where=where, error=HouseError)
+    if sum(each.count for each in found.accessors) > MAX_NUMBERS:
+        raise HouseError(f"{where} announces more than {MAX_NUMBERS:,} numbers.")
+    for name in found.extensionsRequired:
+        if name in _REFUSED:
+            raise HouseError(f"{where} is compressed by {_REFUSED[name]}, which cannot be read; decompress it first.")
+    for name in {*found.extensionsRequired, *found.extensionsUsed} & set(_LOST):
+        losses[_LOST[name]] += 1
+    _require_tree([node.children for node in found.nodes], where)
+
+
+def _require_tree(children: list[list[int]], where: str) -> None:
+    """Raises HouseError if a node has two parents or is below itself, or names a node that does not exist."""
+    named = Counter(child for each in children for child in each)
+    if any(not 0 <= child < len(children) for child in named):
+        raise HouseError(f"{where}: a node has a child that does not exist.")
+    if any(count > 1 for count in named.values()):
+        raise HouseError(f"{where}: a node is the child of several nodes.")
+    seen, todo = 0, [n for n in range(len(children)) if n not in named]
+    while todo:
+        seen += 1
+        todo += children[todo.pop()]
+    if seen < len(children):  # each has one parent: those that are not reached are in a loop
+        raise HouseError(f"{where}: its nodes form a loop.")
+
+
+def _require_sane_ply(content: bytes, where: str) -> None:
+    """Raises HouseError if a PLY file announces more elements than it has bytes."""
+    head = content[: content.find(b"end_header") + 1 or 1 << 16][: 1 << 16]
+    for line in head.splitlines():
+        words = line.split()
+        if words[:1] == [b"element"] and len(words) == 3 and words[2].isdigit() and int(words[2]) > len(content):
+            raise HouseError(f"{where} announces {int(words[2])} elements, but has {len(content)} bytes.")
+
+
+def _resolver(trimesh: Any, folder: Path) -> Any:
+    """Returns trimesh's access to the files that a mesh names: buffers, materials, pictures of its own folder."""
+    base = folder.resolve()
+
+    def read(name: str) -> bytes:
+        try:
+            target = (base / name).resolve()
+            outside = not target.is_relative_to(base)
+        except (OSError, ValueError, RuntimeError):
+            raise HouseError(f"A mesh in '{folder}' uses '{printable(name)[:100]}', which is no file name.") from None
+        if outside:
+            raise HouseError(f"A mesh in '{folder}' uses '{printable(name)[:100]}', which is outside of its folder.")
+        try:
+            return read_bytes(target, what="File", most=MAX_FILE_BYTES)
+        except ConfigError as error:
+            raise Skipped(str(error)) from None
+
+    return resolver(trimesh, read, "")

@@ -1,4 +1,0 @@
-"""House plans: apartments as grids of 5 cm, with a camera, a robot and a task in them that need no MuJoCo.
-
-`sim.plans.export` and `sim.plans.surfaces` make plans from MJCF houses and import MuJoCo; no other module here does.
-"""

@@ -1,0 +1,1 @@
+"""Training of every learned part: views, samples, trainers and fits. Nothing that runs an episode needs it."""

@@ -1,0 +1,1 @@
+"""Fits of the plain numbers that agents read: fusion of views, context of objects, verifiers."""

@@ -1,0 +1,1 @@
+"""Potentials of plans, from which the explorer `poni` learns."""

@@ -1,0 +1,170 @@
+"""Evaluates a network: intersection over union, and the reliability of its scores."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import torch
+from jaxtyping import Float32, Float64, Int64
+from torch import Tensor
+
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID
+from stubborn.segmentation.calibration import fit_calibration
+from stubborn.segmentation.networks import Network
+from stubborn.segmentation.rednet import CLASSES
+
+GOAL_CHANNELS = np.array([MPCAT40_ID[name] - 1 for name in GOAL_CATEGORIES])
+"""Output channels of the goal categories."""
+RELIABILITY_BINS = 10
+
+
+def confusion(
+    predicted: Int64[np.ndarray, "*shape"], truth: Int64[np.ndarray, "*shape"]
+) -> Int64[np.ndarray, "classes classes"]:
+    """Returns the number of pixels by true class (row) and predicted class (column), without ignored pixels."""
+    counts = truth >= 0
+    joint = truth[counts] * CLASSES + predicted[counts]
+    return np.bincount(joint, minlength=CLASSES * CLASSES).reshape(CLASSES, CLASSES)
+
+
+@dataclass(frozen=True)
+class Iou:
+    """The intersection over union of each class on one set of views."""
+
+    by_category: dict[str, float]
+    """Values of the categories whose pixels are in the views."""
+    goals: float
+    """Mean over the goal categories in the views (mIoU)."""
+    everything: float
+    """Mean over all categories in the views."""
+    accuracy: float
+    """Share of pixels that are classified correctly."""
+
+    @classmethod
+    def of(cls, matrix: Int64[np.ndarray, "classes classes"]) -> Iou:
+        """Returns the values of a confusion matrix."""
+        right, truth, predicted = np.diag(matrix), matrix.sum(axis=1), matrix.sum(axis=0)
+        union = truth + predicted - right
+        by_category = {
+            MPCAT40[i + 1]: float(right[i] / union[i]) for i in range(CLASSES) if truth[i] > 0 and union[i] > 0
+        }
+        goals = [by_category[name] for name in GOAL_CATEGORIES if name in by_category]
+        return cls(
+            by_category,
+            float(np.mean(goals)) if goals else math.nan,
+            float(np.mean(list(by_category.values()))) if by_category else math.nan,
+            float(right.sum() / max(1, truth.sum())),
+        )
+
+
+@dataclass
+class Reliability:
+    """The share of correct classes at a score p, in bins of p, over the goal categories' scores of every pixel."""
+
+    count: Int64[np.ndarray, " bins"]
+    """Number of scores."""
+    score: Float64[np.ndarray, " bins"]
+    """Sum of the scores."""
+    right: Float64[np.ndarray, " bins"]
+    """Number of correct classes."""
+
+    @classmethod
+    def empty(cls) -> Reliability:
+        """Returns counts of zero."""
+        n = RELIABILITY_BINS
+        return cls(np.zeros(n, np.int64), np.zeros(n), np.zeros(n))
+
+    def add(self, probability: Float32[np.ndarray, "classes n"], truth: Int64[np.ndarray, " n"]) -> None:
+        """Counts the goal categories' scores of pixels with these true channels; scores below 0.01 are left out."""
+        p = probability[GOAL_CHANNELS]
+        hit = GOAL_CHANNELS[:, None] == truth[None]
+        kept = p >= 0.01
+        p, hit = p[kept], hit[kept]
+        bins = np.minimum((p * RELIABILITY_BINS).astype(np.int64), RELIABILITY_BINS - 1)
+        self.count += np.bincount(bins, minlength=RELIABILITY_BINS)
+        self.score += np.bincount(bins, weights=p, minlength=RELIABILITY_BINS)
+        self.right += np.bincount(bins, weights=hit, minlength=RELIABILITY_BINS)
+
+    def rows(self) -> list[tuple[int, float, float]]:
+        """Returns the count, the mean score and the share of correct classes of each bin that is not empty."""
+        return [
+            (int(n), float(s / n), float(r / n))
+            for n, s, r in zip(self.count, self.score, self.right, strict=True)
+            if n > 0
+        ]
+
+    @property
+    def error(self) -> float:
+        """Expected calibration error: mean of |score - share|, weighted by counts (Naeini et al. 2015)."""
+        total = max(1, int(self.count.sum()))
+        return float(sum(n * abs(score - right) for n, score, right in self.rows()) / total)
+
+
+class Evaluation(NamedTuple):
+    """Results of a network on some views."""
+
+    iou: Iou
+    """Intersection over union of the network's own logits."""
+    reliability: Reliability
+    """Reliability of the network's own scores."""
+    calibrated: Iou
+    """Intersection over union of logits calibrated as the agent uses them: each half of the views by a calibration that
+    was fitted to the other half. It uses every second pixel in each direction."""
+
+
+def evaluate(
+    model: Network,
+    batches: Iterable[tuple[Tensor, Tensor, Tensor]],
+    *,
+    device: torch.device,
+) -> Evaluation:
+    """Returns the intersection over union and the reliability of a network over batches of samples.
+
+    Args:
+        model: the network.
+        batches: samples without augmentation; see `sim.training.segmentation.samples.Sample`. Views of one house must
+            follow one another, so that the two halves of the views show different houses.
+        device: device of the model.
+    """
+    matrix = np.zeros((CLASSES, CLASSES), np.int64)
+    reliability = Reliability.empty()
+    thinned: list[tuple[Tensor, Tensor]] = []
+    model.eval()
+    with torch.inference_mode():
+        for rgb, depth, target in batches:
+            logits = model(rgb.to(device), depth.to(device)).float().cpu()
+            truth = target.numpy()
+            matrix += confusion(logits.argmax(dim=1).numpy(), truth)
+            some = logits[:, :, 2::8, 2::8].softmax(dim=1)
+            kept = truth[:, 2::8, 2::8]
+            flat = some.permute(1, 0, 2, 3).reshape(CLASSES, -1).numpy()
+            counts = kept.reshape(-1) >= 0
+            reliability.add(flat[:, counts], kept.reshape(-1)[counts])
+            thinned += zip(logits[:, :, 1::2, 1::2].half(), target[:, 1::2, 1::2], strict=True)
+    iou = Iou.of(matrix)
+    return Evaluation(iou, reliability, calibrated_iou(thinned) if len(thinned) > 1 else iou)
+
+
+def calibrated_iou(views: Sequence[tuple[Tensor, Tensor]]) -> Iou:
+    """Returns the intersection over union of logits, each half of them calibrated by a fit to the other half.
+
+    Args:
+        views: logits (classes, h, w) and true channels (h, w) of each view, at least two.
+    """
+    matrix = np.zeros((CLASSES, CLASSES), np.int64)
+    middle = len(views) // 2
+    for fitted, judged in ((views[:middle], views[middle:]), (views[middle:], views[:middle])):
+        pairs = [
+            (logits[:, ::4, ::4].reshape(CLASSES, -1).t(), truth[::4, ::4].reshape(-1)) for logits, truth in fitted
+        ]
+        logits, truth = torch.cat([pair[0] for pair in pairs]).float(), torch.cat([pair[1] for pair in pairs])
+        if not (truth >= 0).any():
+            continue
+        calibration = fit_calibration(logits[truth >= 0].clone(), truth[truth >= 0].clone())
+        for each, target in judged:
+            matrix += confusion(calibration.applied(each.float()).argmax(dim=0).numpy(), target.numpy())
+    return Iou.of(matrix)

@@ -1,0 +1,1 @@
+"""Reinforcement learning of the explorer `semexp` in plans."""

@@ -1,0 +1,98 @@
+"""Objects of a view in the format of COCO: boxes and run-length encoded masks from an image of instances.
+
+The format is that of `pycocotools` and of the libraries that read its files (https://cocodataset.org/#format-data).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.core.interface import MPCAT40, MPCAT40_ID, ConfigError
+from sim.core.reading import MAX_PIXELS, Count, convert
+from sim.houses.labels import Instance
+
+STUFF: tuple[str, ...] = ("void", "wall", "floor", "ceiling")
+"""Categories that are surfaces and not objects: they have pixels in the image of instances, but no annotation."""
+CATEGORIES: tuple[dict[str, Any], ...] = tuple(
+    {"id": i, "name": name} for i, name in enumerate(MPCAT40) if name not in STUFF
+)
+"""The categories of COCO files; their ids are those of mpcat40."""
+
+
+class _Runs(msgspec.Struct):
+    """A run-length encoded mask."""
+
+    size: tuple[Count, Count]
+    counts: list[Count]
+
+
+def annotate(
+    instance_ids: NDArray[np.uint16], instances: Sequence[Instance], styles: Mapping[str, str] | None = None
+) -> list[dict[str, Any]]:
+    """Returns an annotation for each visible object of a view, without the id of the image.
+
+    Args:
+        instance_ids: (h, w) number of the instance of each pixel, from 1; 0: none.
+        instances: the instances of the house; number `n` is `instances[n - 1]`.
+        styles: style of each instance by its name; None: they are not known.
+
+    Returns:
+        For each object `id` (its number), `name`, `category_id` (mpcat40), `bbox` (x, y, width and height in pixels),
+        `area` (visible pixels), `iscrowd` 0 and `segmentation`, a run-length encoded mask; `style` where it is known.
+    """
+    found = []
+    for number in np.unique(instance_ids[instance_ids > 0]).tolist():
+        instance = instances[number - 1]
+        if instance.category in STUFF:
+            continue
+        mask = instance_ids == number
+        found.append(
+            {
+                "id": number,
+                "name": instance.name,
+                "category_id": MPCAT40_ID[instance.category],
+                "bbox": bounding_box(mask),
+                "area": int(mask.sum()),
+                "iscrowd": 0,
+                "segmentation": encode_mask(mask),
+            }
+            | ({"style": styles[instance.name]} if styles and instance.name in styles else {})
+        )
+    return found
+
+
+def bounding_box(mask: NDArray[np.bool_]) -> list[int]:
+    """Returns the column and row of the corner of a mask (h, w) that is not empty, its width and its height, pixels."""
+    rows, cols = (np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0))
+    top, left = int(rows[0]), int(cols[0])
+    return [left, top, int(cols[-1]) - left + 1, int(rows[-1]) - top + 1]
+
+
+def encode_mask(mask: NDArray[np.bool_]) -> dict[str, list[int]]:
+    """Returns a mask (h, w) as COCO's uncompressed runs: column by column, first the number of pixels outside."""
+    flat = mask.ravel(order="F")
+    ends = np.flatnonzero(flat[1:] != flat[:-1]) + 1
+    counts = np.diff(np.concatenate(([0], ends, [flat.size]))).tolist()
+    return {"size": [*mask.shape], "counts": [0, *counts] if flat[0] else counts}
+
+
+def decode_mask(segmentation: Mapping[str, Sequence[int]]) -> NDArray[np.bool_]:
+    """Returns the mask (h, w) from the run lengths that `encode_mask` returns.
+
+    Raises:
+        ConfigError: `size` or `counts` is missing, is not a list of whole numbers from 0 on, or they contradict.
+    """
+    runs = convert(dict(segmentation), _Runs, where="The mask of an object")
+    (height, width), total = runs.size, sum(runs.counts)
+    if total != height * width or total > MAX_PIXELS:
+        raise ConfigError(
+            f"The mask of an object has runs of {total} pixels for an image of {width} x {height}; at most "
+            f"{MAX_PIXELS // 1_000_000} million pixels are allowed."
+        )
+    inside = np.arange(len(runs.counts)) % 2 == 1
+    return np.repeat(inside, np.array(runs.counts, np.int64)).reshape((height, width), order="F")

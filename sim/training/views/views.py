@@ -1,0 +1,222 @@
+"""Labelled views for training a segmentation network: sampling of poses, rejection of bare walls, metadata.
+
+Half of the views are from random free positions in random directions; the other half are along shortest paths between
+two positions of the house, on the 30 deg grid of headings of an exploring robot. Sequences are all views along such a
+path, in their order. `EXTRAS` are members that a view has only where they are asked for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.core.errors import EpisodeError, HouseError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import MPCAT40_ID, CameraModel
+from sim.env.scene import Scene
+from sim.houses.labels import Labels
+from sim.training.views.aimed import AIMS, aimed_poses, shows
+from sim.training.views.coco import annotate
+from sim.training.views.normals import encode_normals, surface_normals
+from sim.training.views.poses import MAX_TRIES, any_pose, mixed_poses, sequence_poses
+from sim.world.freespace import FreeSpace
+
+BARE_SHARE = 0.97
+"""A view is rejected if wall, floor, ceiling and void cover more than this share and its median depth is small."""
+BARE_DEPTH_M = 1.2
+"""Median depth below which such a view is rejected: a near wall holds no information."""
+EXTRAS: tuple[str, ...] = ("instances", "normals", "poses")
+"""Members of a view in addition to colour, depth and categories."""
+_STRUCTURE = np.isin(np.arange(256), [MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling")])
+
+
+@dataclass(frozen=True)
+class View:
+    """One labelled view."""
+
+    key: str
+    rgb: NDArray[np.uint8]
+    """(h, w, 3)"""
+    depth_mm: NDArray[np.uint16]
+    """(h, w) millimetres along the optical axis; 0: no return or below the camera's range; its maximum: beyond it."""
+    semantic: NDArray[np.uint8]
+    """(h, w) mpcat40 id"""
+    record: dict[str, Any]
+    """House, pose, intrinsics, profile and versions; JSON types."""
+    instances: NDArray[np.uint16] | None = None
+    """(h, w) number of the instance, from 1, the same in all views of a house; 0: none."""
+    annotations: list[dict[str, Any]] | None = None
+    """Boxes and masks of the objects (`sim.training.views.coco.annotate`)."""
+    normals: NDArray[np.uint8] | None = None
+    """(h, w, 3) surface normals (`sim.training.views.normals.encode_normals`)."""
+
+
+def sample_views(
+    scene: Scene,
+    rng: np.random.Generator,
+    count: int,
+    *,
+    stem: str,
+    record: dict[str, Any],
+    block_px: int = 1,
+    extras: Collection[str] = (),
+    sequence: int | None = None,
+    aim: str | None = None,
+    styles: Mapping[str, str] | None = None,
+) -> Iterator[View]:
+    """Yields views of one house; the same generator state gives the same views.
+
+    Args:
+        scene: the house; the robot is not rendered.
+        rng: generator of the poses.
+        count: number of views.
+        stem: the keys are `<stem>_<number>`.
+        record: entries of each view's record.
+        block_px: factor by which views are reduced: colour is averaged, all else takes the middle pixel.
+        extras: names of `EXTRAS`.
+        sequence: number of views of a sequence along one path; bare walls in it are not rejected. None: no sequences.
+        aim: name of `AIMS`: the camera is aimed at objects that are rare in other views. None: it is not.
+        styles: style of each instance of the house by its name, for the annotations; None: they are not known.
+
+    Raises:
+        HouseError: the house has no free position, shows only bare walls, has no path of that many views, or no object
+            to aim at.
+    """
+    space = scene.task.truth.space(0.0)
+    cells = np.argwhere(space.largest_part())
+    name = scene.world.house.name
+    if len(cells) == 0:
+        raise HouseError(f"House '{name}': the robot fits nowhere, so there is no view of it.")
+    _start_world(scene, space, cells, rng)
+    if aim is not None:
+        poses = aimed_poses(scene.world, space, cells, rng, AIMS[aim])
+    elif sequence is not None:
+        poses = sequence_poses(space, cells, rng, sequence, name)
+    else:
+        poses = mixed_poses(space, cells, rng)
+    labels = ("depth", "semantic", *(("geom",) if aim or {"instances", "normals"} & set(extras) else ()))
+    taken = tries = 0
+    while taken < count:
+        if tries >= MAX_TRIES * count:
+            raise HouseError(f"House '{name}': {taken} of {count} views after {tries} tries; it shows too little.")
+        tries += 1
+        pose, how = next(poses)
+        images = scene.camera.render(scene.world.data, pose, labels)
+        if sequence is None and is_bare(images["semantic"], images["depth"]):
+            continue
+        camera = scene.camera.camera
+        if aim is not None and not shows(images["geom"], scene.world.labels, how["aim"]["instance"], camera):
+            continue
+        images |= scene.camera.render(scene.world.data, pose, ("rgb",))
+        yield _view(f"{stem}_{taken:05d}", images, pose, scene, block_px, record | how, extras, styles)
+        taken += 1
+
+
+def is_bare(semantic: NDArray[np.uint8], depth: NDArray[np.float32]) -> bool:
+    """Returns whether a view shows only near bare walls; it tests every fourth pixel in each direction.
+
+    A pixel without return counts as near, as a surface right in front of the camera has no return.
+    """
+    structure = _STRUCTURE[semantic[::4, ::4]].mean()
+    return bool(structure > BARE_SHARE and np.median(depth[::4, ::4]) < BARE_DEPTH_M)
+
+
+def intrinsics(camera: CameraModel, block_px: int) -> dict[str, float]:
+    """Returns the pinhole intrinsics of a reduced view; pixel centres are at half pixels."""
+    focal_px = camera.focal_px / block_px
+    return {
+        "width_px": camera.width_px // block_px,
+        "height_px": camera.height_px // block_px,
+        "fx_px": focal_px,
+        "fy_px": focal_px,
+        "cx_px": 0.5 * camera.width_px / block_px,
+        "cy_px": 0.5 * camera.height_px / block_px,
+    }
+
+
+def reduce_image(image: NDArray, block_px: int) -> NDArray:
+    """Returns an image with one pixel for each block: the mean of colour (h, w, 3), else the middle pixel (h, w)."""
+    if block_px == 1:
+        return image
+    height, width = image.shape[:2]
+    if image.ndim == 3:
+        return cv2.resize(image, (width // block_px, height // block_px), interpolation=cv2.INTER_AREA)
+    return _middle_pixels(image, block_px)
+
+
+def camera_to_world(pose: Pose, camera: CameraModel) -> NDArray[np.float64]:
+    """Returns the transform `T_world_cam` (4, 4) from the camera's frame to the world's, in metres.
+
+    The camera's axes are those of OpenCV: x to the right, y down, z along the optical axis.
+    """
+    c, s = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
+    return np.array(
+        [
+            [s, 0.0, c, pose.x_m],
+            [-c, 0.0, s, pose.y_m],
+            [0.0, -1.0, 0.0, pose.floor_z_m + camera.height_m],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
+
+
+def _middle_pixels(image: NDArray, block_px: int) -> NDArray:
+    """Returns the middle pixel of each block of an image (h, w, ...)."""
+    middle = block_px // 2
+    return np.ascontiguousarray(image[middle::block_px, middle::block_px])
+
+
+def _view(
+    key: str,
+    images: dict[str, NDArray],
+    pose: Pose,
+    scene: Scene,
+    block_px: int,
+    record: dict[str, Any],
+    extras: Collection[str],
+    styles: Mapping[str, str] | None,
+) -> View:
+    camera = scene.camera.camera
+    depth_mm = np.rint(reduce_image(images["depth"], block_px) * 1000.0).astype(np.uint16)
+    camera_entry = {"intrinsics": intrinsics(camera, block_px), "camera_height_m": camera.height_m}
+    pose_entry: dict[str, Any] = {name: round(value, 4) for name, value in asdict(pose).items()}
+    if "poses" in extras:
+        record = record | {"T_world_cam": camera_to_world(Pose(**pose_entry), camera).round(6).tolist()}
+    view = View(
+        key,
+        reduce_image(images["rgb"], block_px),
+        depth_mm,
+        reduce_image(images["semantic"], block_px),
+        {"key": key, "pose": pose_entry, **camera_entry, **record},
+    )
+    if "normals" in extras:
+        normals = surface_normals(images["depth"], images["geom"], camera)
+        view = replace(view, normals=_middle_pixels(encode_normals(normals), block_px))
+    if "instances" in extras:
+        labels = scene.world.labels
+        ids = _instance_ids(_middle_pixels(images["geom"], block_px), labels)
+        view = replace(view, instances=ids, annotations=annotate(ids, labels.instances, styles))
+    return view
+
+
+def _instance_ids(geom: NDArray[np.int32], labels: Labels) -> NDArray[np.uint16]:
+    """Returns the number of the instance of each pixel (h, w), from 1; 0: none."""
+    numbers = np.append(labels.geom_instance, -1) + 1  # geom -1 takes the last
+    return numbers[geom].astype(np.uint16)
+
+
+def _start_world(scene: Scene, space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> None:
+    """Starts the world at a random free position where the body fits, so that movable objects come to rest."""
+    for _ in range(MAX_TRIES):
+        try:
+            scene.world.reset(any_pose(space, cells, rng))
+        except EpisodeError:
+            continue
+        return
+    raise HouseError(f"House '{scene.world.house.name}': the robot fits at none of {MAX_TRIES} free places.")

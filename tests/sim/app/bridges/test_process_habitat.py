@@ -1,0 +1,121 @@
+"""Agents with Habitat's interface in a process of their own: the same results as in this process."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sim.app.bridges.habitat.conversions import to_action
+from sim.app.bridges.process import ProcessAgent
+from sim.app.bridges.process_command import ProcessConfig
+from sim.app.bridges.stubborn_client import from_habitat
+from sim.app.commands.run import entry
+from sim.app.composition.options import RunOptions
+from sim.app.composition.setup import resolve
+from sim.app.evaluation.rollout import TIMES
+from sim.core.errors import AgentError, ConfigError
+from sim.core.interface import CameraModel, RobotModel, SuccessRule
+from tests.helpers.results import lines_of
+
+ROOT = Path(__file__).parents[4]
+CLIENT = ROOT / "sim" / "app" / "bridges" / "stubborn_client.py"
+SMALL = ("camera.width_px=160", "camera.height_px=120", "task.max_steps=25")
+OWN = """
+import random
+import sys
+import numpy as np
+
+class Own(object):
+    def reset(self):
+        self.turns = 0
+
+    def act(self, observations):
+        depth, gps = observations["depth"], observations["gps"]
+        assert depth.shape == (120, 160, 1) and depth.dtype == np.float32 and 0.0 <= depth.min() <= depth.max() <= 1.0
+        assert observations["objectgoal"].tolist() == [int(GOAL)]
+        if depth[60, 50:110].min() < 0.15 or np.random.rand() < 0.2 or gps[1] > 1.0:
+            self.turns += 1
+            return {"action": random.choice(["TURN_LEFT", "turn_right"])}
+        return {"action": {"action": 0 if self.turns > 12 else np.int64(1)}}
+
+if __name__ == "__main__":
+    from stubborn_client import serve
+    serve(Own())
+"""
+
+
+def write_agent(folder: Path, goal_number: int, client: str | None = None) -> str:
+    """Writes agent and client file; returns the name of the agent in its process."""
+    (folder / "own_of_habitat.py").write_text(OWN.replace("GOAL", str(goal_number)))
+    (folder / "stubborn_client.py").write_text(client or CLIENT.read_text())
+    return f"process:{shlex.quote(sys.executable)} {shlex.quote(str(folder / 'own_of_habitat.py'))}"
+
+
+def results(out: Path, house: Path, agent: str, *config: str) -> list[dict[str, Any]]:
+    options = ["--house", str(house), "--goal", "sofa", "--episodes", "2", "--out", str(out), "--seed-key", "k"]
+    options += ["--step-timeout", "0"]  # in this process
+    assert entry([*options, "--agent", agent, "--config", *SMALL, *config]) == 0
+    dropped = {"agent", "isolated", *TIMES}
+    return [{key: value for key, value in line.items() if key not in dropped} for line in lines_of(out)]
+
+
+def test_the_same_agent_gives_the_same_lines_in_this_process_and_in_its_own(
+    house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = write_agent(tmp_path, 5)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "own_of_habitat", raising=False)
+    there = results(tmp_path / "there", house, own, "agent.interface=habitat", "agent.categories=hm3d")
+    here = results(tmp_path / "here", house, "habitat:own_of_habitat:Own", "agent.categories=hm3d")
+    assert here == there
+    assert {line["end_reason"] for line in here} <= {"stop", "max_steps"}
+    assert any(line["path_length"] > 0.5 for line in here)
+
+
+FORMS: list[Any] = [
+    0, 1, "stop", "MOVE_FORWARD", "turn_left", np.int64(3), np.array([2]), np.array(1), [1], ("turn_right",),
+    {"action": 2}, {"action": "stop"}, {"action": {"action": "TURN_LEFT", "action_args": None}},
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("given", FORMS, ids=repr)
+def test_the_client_understands_an_action_as_the_bridge_does(given: Any) -> None:
+    assert int(from_habitat(given)) == to_action(given)
+
+
+def test_a_truth_value_is_no_action() -> None:
+    with pytest.raises(TypeError, match="truth value"):
+        from_habitat({"action": True})
+
+
+def test_options_of_habitat_need_its_interface_and_choose_the_goals() -> None:
+    with pytest.raises(ConfigError, match=r"need agent\.interface=habitat"):
+        ProcessConfig(categories="hm3d")
+    with pytest.raises(ConfigError, match="interface must be one of stubborn, habitat, got 'gym'"):
+        ProcessConfig(interface="gym")  # type: ignore[arg-type]
+    setup = resolve(RunOptions(agent="process:true", config=("agent.interface=habitat", "agent.categories=hm3d")))
+    assert setup.spec.goals is not None
+    assert len(setup.spec.goals(setup.config.agent)) == 6
+
+
+def test_a_client_file_that_does_not_know_the_interface_is_named(tmp_path: Path) -> None:
+    old = CLIENT.read_text().replace("return dict(ready, interface=self.interface)", "return ready")
+    command = shlex.split(write_agent(tmp_path, 0, old).removeprefix("process:"))
+    parts: dict[str, Any] = {"camera": CameraModel(), "robot": RobotModel(), "success": SuccessRule(), "max_steps": 5}
+    with pytest.raises(ConfigError, match=r"does not know agent\.interface=habitat: copy the file anew"):
+        ProcessAgent(command, **parts, config=ProcessConfig(interface="habitat"))
+
+
+def test_a_goal_that_the_data_set_lacks_is_an_error_of_the_episode(tmp_path: Path) -> None:
+    command = shlex.split(write_agent(tmp_path, 0).removeprefix("process:"))
+    parts: dict[str, Any] = {"camera": CameraModel(), "robot": RobotModel(), "success": SuccessRule(), "max_steps": 5}
+    agent = ProcessAgent(command, **parts, config=ProcessConfig(interface="habitat", categories="hm3d"))
+    with pytest.raises(AgentError, match="'towel' is not one of the categories of hm3d"):
+        agent.reset("towel", 0)
+    agent.reset("bed", 0)
+    agent.close()

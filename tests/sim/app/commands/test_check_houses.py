@@ -1,0 +1,35 @@
+"""`stubborn houses check` on a house of the user's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from sim.app.commands.houses.check import Args, main
+from tests.helpers.foreign import write_scene
+
+EXAMPLE = Path("examples/my_house.xml")
+
+
+def test_a_house_of_ones_own_needs_no_furniture(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(Args(house=EXAMPLE, views=1)) == 0
+    assert main(Args(house=EXAMPLE, views=0, furnished=True)) == 1
+    assert "has no" in capsys.readouterr().out
+
+
+def test_a_scene_from_elsewhere_is_checked_with_its_rules(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene, labels = write_scene(tmp_path / "scene")
+    assert main(Args(house=scene, labels=labels, views=1)) == 0
+    assert "no room" not in capsys.readouterr().out
+
+
+def test_houses_without_episodes_are_checked_whatever_their_endings(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "first.XML").write_bytes(EXAMPLE.read_bytes())
+    (tmp_path / "second.mjcf").write_bytes(EXAMPLE.read_bytes())
+    assert main(Args(split=str(tmp_path), views=0)) == 0
+    printed = capsys.readouterr().out
+    assert "first: 0 faults" in printed
+    assert "second: 0 faults" in printed

@@ -1,0 +1,164 @@
+"""`stubborn`: the table of its commands, its list, and its messages about names that do not exist."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import importlib.metadata
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from sim.app.commands.main import COMMANDS, entry
+from tests.helpers.documented import MOVED
+
+ROOT = Path(__file__).resolve().parents[4]
+
+
+def file_of(module: str) -> Path:
+    return ROOT / f"{module.replace('.', '/')}.py"
+
+
+def started(*words: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, *words], cwd=cwd, capture_output=True, text=True, check=False, timeout=120)
+
+
+def top_names(module: ast.Module) -> Iterator[str]:
+    """Yields the names that a module defines, and those that it passes on (`from ... import X as X`)."""
+    for node in module.body:
+        if isinstance(node, ast.ImportFrom):
+            yield from (each.asname for each in node.names if each.asname is not None)
+        elif isinstance(node, ast.Assign):
+            yield from (target.id for target in node.targets if isinstance(target, ast.Name))
+        elif isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+            yield node.name
+
+
+def test_every_module_with_options_is_in_the_table() -> None:
+    found = {
+        ".".join(file.relative_to(ROOT).with_suffix("").parts)
+        for file in (ROOT / "sim" / "app" / "commands").rglob("*.py")
+        if {"Args", "main"} <= set(top_names(ast.parse(file.read_text())))
+    }
+    assert found == {each.module for each in COMMANDS.values() if each.module.startswith("sim.app.commands.")}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_docstring_of_a_command_has_its_purpose_and_its_call(name: str) -> None:
+    module = ast.parse(file_of(COMMANDS[name].module).read_text(encoding="utf-8"))
+    about = ast.get_docstring(module) or ""
+    assert about.splitlines()[0].endswith((".", ",")) or name in ("run", "web")
+    assert f"stubborn {name}" in about
+    summary = COMMANDS[name].summary
+    assert summary[0].isupper()
+    assert not summary.endswith(".")
+    assert len(summary) <= 60
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_of_a_command_has_its_name_and_says_what_it_does(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        entry([*name.split(), "--help"])
+    assert ended.value.code == 0
+    shown = capsys.readouterr().out
+    assert shown.startswith(f"usage: stubborn {name} [-h]")
+    assert importlib.import_module(COMMANDS[name].module).Args.__doc__.splitlines()[0][:40] in " ".join(shown.split())
+    assert "Options of the" not in shown
+    assert "tools/" not in shown
+    assert "(default: True)" not in shown  # `--no-NAME` is the option, so that its text would contradict it
+
+
+@pytest.mark.parametrize("words", [[], ["--help"], ["-h"]])
+def test_the_list_has_one_line_for_each_command(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert entry(words) == 0
+    lines = capsys.readouterr().out.splitlines()
+    for name, each in COMMANDS.items():
+        assert [line for line in lines if line.split("  ")[1:2] == [name] and line.endswith(f"  {each.summary}.")]
+    assert max(map(len, lines)) <= 90
+
+
+def test_the_list_imports_neither_mujoco_nor_torch_nor_the_parser_of_options() -> None:
+    code = (
+        "import sys; from sim.app.commands.main import entry; entry([]); "
+        "print(sorted({'mujoco', 'torch', 'numpy', 'tyro'} & set(sys.modules)))"
+    )
+    assert started("-c", code).stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize("group", ["houses", "train", "import"])
+def test_a_group_alone_lists_its_commands(group: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert entry([group]) == 0
+    shown = capsys.readouterr().out
+    for name in COMMANDS:
+        assert (f"  {name}  " in shown) == name.startswith(f"{group} ")
+
+
+@pytest.mark.parametrize(
+    ("typed", "message"),
+    [
+        ("rnu --episodes 3", "There is no command 'rnu'. Did you mean 'run'?"),
+        ("houses generat", "There is no command 'houses generat'. Did you mean 'houses generate'?"),
+        ("views shwo", "There is no command 'views shwo'. Did you mean 'views show'?"),
+        ("zzzzqqq", "There is no command 'zzzzqqq'."),
+        ("a\x1b[31m", "There is no command 'a\\x1b[31m'."),
+    ],
+)
+def test_an_unknown_command_is_one_line_with_the_nearest_name(
+    typed: str, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert entry(typed.split(" ")) == 2
+    assert capsys.readouterr().err == f"error: {message} `stubborn` lists all commands.\n"
+
+
+def test_a_group_with_a_default_takes_options_directly(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert entry(["views", "--split", "nowhere", "--out", str(tmp_path / "out")]) == 2
+    assert "Unknown split 'nowhere'" in capsys.readouterr().err
+
+
+def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    assert entry(["--version"]) == 0
+    assert capsys.readouterr().out.strip() == importlib.metadata.version("stubborn-objectnav")
+
+
+def test_both_forms_of_run_are_the_same_command(capsys: pytest.CaptureFixture[str]) -> None:
+    from sim.app.commands import run
+
+    assert entry(["run", "--list-agents"]) == 0
+    listed = capsys.readouterr().out
+    assert run.entry(["--list-agents"]) == 0
+    assert capsys.readouterr().out == listed
+
+
+@pytest.mark.parametrize("old", MOVED)
+@pytest.mark.parametrize("way", ["file", "module"])
+def test_the_old_path_of_a_command_names_the_new_one(old: str, way: str) -> None:
+    assert MOVED[old] in COMMANDS
+    ended = started(*([f"tools/{old}.py"] if way == "file" else ["-m", f"tools.{old}"]), "--out", "x")
+    assert ended.returncode == 2
+    assert ended.stderr == f"tools/{old}.py is now: stubborn {MOVED[old]}\n"
+
+
+def test_nothing_else_lies_directly_in_the_folder_of_makers_tools() -> None:
+    assert {file.stem for file in (ROOT / "tools").glob("*.py")} == {*MOVED, "__init__"}
+
+
+@pytest.mark.parametrize("file", [*(ROOT / "sim/app/commands").rglob("*.py"), *(ROOT / "sim").glob("*.py")], ids=str)
+def test_commands_import_nothing_from_tools_tests_or_examples(file: Path) -> None:
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+        assert not [name for name in names if name.split(".")[0] in ("tools", "tests", "examples")]
+
+
+def test_no_file_changes_where_modules_are_looked_for() -> None:
+    folders = ("sim", "stubborn", "tools", "examples", "tests")
+    found = [
+        str(file.relative_to(ROOT))
+        for folder in folders
+        for file in (ROOT / folder).rglob("*.py")
+        if "sys.path." + "insert" in file.read_text(encoding="utf-8")
+    ]
+    assert found == ["sim/app/composition/imports.py"]  # the current folder, where `--agent package.module:NAME` looks

@@ -1,0 +1,140 @@
+"""A segmentation of a user's runs beside the shipped ones: checked, recorded, and true about what it reads."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim.app.commands.run import entry
+from sim.app.composition.options import RunOptions
+from sim.app.composition.perception import StatedByAgent, seen_by
+from sim.app.composition.segmenters import find_segmentation
+from sim.app.composition.setup import resolve
+from sim.core.errors import AgentError, ConfigError
+from sim.core.interface import AgentSpec, CameraModel, Perceived, Scores, SegmenterSpec
+from sim.env.objectnav import ObjectNavEnv
+from tests.helpers import segmentations
+from tests.helpers.agents import Ahead
+
+SMALL = ("camera.width_px=64", "camera.height_px=48", "task.max_steps=2")
+FLAT = "tests.helpers.segmentations:FLAT"
+
+
+def run(house: Path, out: Path, *options: str) -> int:
+    given = ["--house", str(house), "--goal", "sofa", "--episodes", "1", "--out", str(out), *options]
+    return entry([*given, "--config", *SMALL])
+
+
+def test_a_segmentation_of_ones_own_is_run_recorded_and_named(
+    house: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    segmentations.ASKED.clear()
+    given = ["--house", str(house), "--goal", "sofa", "--episodes", "1", "--out", str(tmp_path), "--semantics", FLAT]
+    given += ["--step-timeout", "0"]  # in this process
+    assert entry([*given, "--config", *SMALL, "detector.level=0.125"]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert f"with segmentation by {FLAT}" in printed
+    assert "No parameters are fitted to segmentation of kind 'flat'" in printed
+    record = json.loads((tmp_path / "config.json").read_text())
+    assert record["config"]["detector"] == {"level": 0.125}
+    assert record["segmentation"]["kind"] == "flat"
+    assert record["segmentation"]["has_fitted_parameters"] is False
+    assert "+" in record["versions"]["code"]  # the hash of the user's code follows
+    line = json.loads((tmp_path / "results.jsonl").read_text())
+    assert (line["semantics"], line["uses_ground_truth"], line["num_steps"]) == (FLAT, False, 2)
+    assert len(segmentations.ASKED) == 2  # each frame once
+    assert set.union(*segmentations.ASKED) == {"rgb", "depth", "gps", "compass", "objectgoal"}
+
+
+@pytest.mark.costly
+def test_a_segmentation_that_reads_the_truth_is_marked(house: Path, tmp_path: Path) -> None:
+    assert run(house, tmp_path, "--semantics", "tests.helpers.segmentations:Truth") == 0
+    assert json.loads((tmp_path / "results.jsonl").read_text())["uses_ground_truth"] is True
+
+
+@pytest.mark.parametrize(
+    ("returned", "message"),
+    [
+        (Scores(np.zeros((7, 7), np.float32), np.zeros((7, 7), np.float32)), "an array of shape"),
+        (Scores(np.full((48, 64), 2.0, np.float32), np.zeros((48, 64), np.float32)), "probabilities in"),
+        (Scores(np.full((48, 64), np.nan, np.float32), np.zeros((48, 64), np.float32)), "probabilities in"),
+        ((np.zeros((48, 64), np.float32),), "it returns Scores"),
+        (ValueError("no weights"), "ValueError: no weights"),
+    ],
+)
+def test_a_result_that_is_not_allowed_is_named_with_the_segmentation(
+    returned: object, message: str, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(segmentations.Wrong, "returned", returned)
+    name = "tests.helpers.segmentations:Wrong"
+    env = ObjectNavEnv(house=house, sensors=("rgb", "depth"), camera=CameraModel(width_px=64, height_px=48))
+    segmenter = find_segmentation(name, None).make(env, None)
+    observation, _ = env.reset(seed=0)
+    with pytest.raises(AgentError, match=f"Segmentation '{name}'.*{message}"):
+        segmenter.scores(observation, "sofa")
+    env.close()
+
+
+@pytest.mark.parametrize("returned", [np.zeros((5, 7), int), np.zeros((0, 0), int), np.full((48, 64), 41)])
+def test_categories_of_a_wrong_size_or_number_are_named(
+    returned: object, house: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(segmentations.Wrong, "returned", returned)
+    env = ObjectNavEnv(house=house, sensors=("rgb", "depth"), camera=CameraModel(width_px=64, height_px=48))
+    segmenter = find_segmentation("tests.helpers.segmentations:WrongNames", None).make(env, None)
+    observation, _ = env.reset(seed=0)
+    with pytest.raises(AgentError, match="categories returned an array of"):
+        segmenter.categories(observation)  # pyright: ignore[reportAttributeAccessIssue]
+    env.close()
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("redmet", "Did you mean 'rednet'"),
+        ("nowhere_at_all:X", "no module 'nowhere_at_all'"),
+        ("tests.helpers.segmentations:ASKED", "must be a SegmentationSpec or a factory, got list"),
+    ],
+)
+def test_a_segmentation_that_does_not_exist_is_refused(name: str, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        find_segmentation(name, None)
+    with pytest.raises(ConfigError, match=r"detector\.FIELD=VALUE"):
+        find_segmentation(FLAT, Path("weights.pt"))
+
+
+def test_a_sensor_of_the_segmentation_reaches_the_observation_and_its_truth_is_marked(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Bearing(Ahead):
+        name, images, reads = "bearing", (), ("pose",)
+
+    for sensor, marked in ((Ahead(), False), (Bearing(), True)):
+        spec = SegmenterSpec(sensors=("rgb", sensor), kind="flat")
+        monkeypatch.setattr(segmentations.Wrong, "spec", spec, raising=False)
+        setup = resolve(RunOptions(semantics="tests.helpers.segmentations:Wrong"))
+        assert sensor in setup.sensors
+        assert setup.uses_ground_truth is marked
+
+
+def test_the_segmentation_that_an_agent_brings_is_shown_and_no_other() -> None:
+    options = RunOptions(agent="tests.helpers.segmentations:Stating", semantics="gt")
+    spec = AgentSpec(make=segmentations.Stating, own_segmentation="my network")
+    setup, agent = resolve(options, spec), segmentations.Stating()
+    assert not spec.uses_segmentation
+    assert setup.segmentation_name == "my network"
+    seen = seen_by(setup, agent, None)
+    assert isinstance(seen, StatedByAgent)
+    agent.reset("sofa", 0)
+    assert seen.perceived({}, "sofa") is None
+    agent.act({})
+    stated = seen.perceived({}, "sofa")
+    assert stated is not None
+    assert stated.categories is not None
+    assert (stated.categories == 3).all()
+    agent.seen = Perceived(None, np.full((2, 2), 99, np.uint8))
+    with pytest.raises(AgentError, match="mpcat40 ids 0 to 40"):
+        seen.perceived({}, "sofa")

@@ -1,0 +1,120 @@
+"""A sealed split is made from a secret, and only the sealed split passes for it."""
+
+from __future__ import annotations
+
+import json
+import stat
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sim.app.commands.seal import make, publish, reveal
+from sim.app.submissions import sealing
+from sim.core.errors import ConfigError
+from sim.episodes.splits import load_split
+from sim.homes.housegen.splits.recipes import Recipe
+from tests.helpers.submissions import tiny_split
+
+STUDIO = Recipe(name="studio", seed=0, pool="heldout", kind="studio", area_m2=55.0)
+SECRET, OTHER = "0123456789abcdef" * 4, "0" * 64
+
+
+def test_a_published_split_is_revealed_by_its_folder_and_a_changed_one_is_not(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    split = tiny_split(tmp_path)
+    assert publish.main(publish.Args(split=split)) == 0
+    seal = tmp_path / "tiny.sealed.json"
+    assert reveal.main(reveal.Args(seal=seal, split=split)) == 0
+    assert "'tiny' is the sealed split: 1 houses, 3 episodes." in capsys.readouterr().out
+    with pytest.raises(ConfigError, match="it may be a seal that was published"):
+        publish.main(publish.Args(split=split))
+    secret = tmp_path / "secret"
+    secret.write_text(SECRET)
+    with pytest.raises(ConfigError, match="the seal of houses without a secret: give their folder"):
+        reveal.main(reveal.Args(seal=seal, secret_file=secret, out=tmp_path / "made" / "tiny"))
+    house = split / "sofa_room.xml"
+    house.write_text(house.read_text().replace("2.5", "2.4", 1))
+    with pytest.raises(ConfigError, match=r"'tiny' is not the sealed split: .* The versions are the same\."):
+        reveal.main(reveal.Args(seal=seal, split=split))
+
+
+@pytest.mark.parametrize("change", [{"houses": 2}, {"episodes": 4}])
+def test_a_seal_with_other_counts_is_of_no_split(tmp_path: Path, change: dict[str, Any]) -> None:
+    split, seal = tiny_split(tmp_path), tmp_path / "tiny.sealed.json"
+    publish.main(publish.Args(split=split))
+    seal.write_text(json.dumps(json.loads(seal.read_text()) | change))
+    with pytest.raises(ConfigError, match=r"it has 1 houses and 3 episodes, the seal says (2 and 3|1 and 4)\."):
+        reveal.main(reveal.Args(seal=seal, split=split))
+
+
+def test_the_hash_of_a_secret_does_not_hold_it_and_a_new_one_is_for_its_owner_only(tmp_path: Path) -> None:
+    file = tmp_path / "secret"
+    secret = sealing.new_secret(file)
+    assert sealing.read_secret(file) == secret
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    assert secret not in sealing.digest_of(secret)
+    with pytest.raises(ConfigError, match="it may be the secret of another split"):
+        sealing.new_secret(file)
+
+
+@pytest.mark.parametrize("text", ["", "abc", "0" * 63, "g" * 64, "0" * 2000])
+def test_what_is_no_secret_is_refused(tmp_path: Path, text: str) -> None:
+    (tmp_path / "secret").write_text(text)
+    with pytest.raises(ConfigError, match=r"holds no secret|is too large"):
+        sealing.read_secret(tmp_path / "secret")
+
+
+@pytest.mark.parametrize(
+    "change", [{"format": "x"}, {"split_sha256": "0"}, {"extra": 1}, {"houses": -1}, {"name": "a\nb"}, {"made_with": 3}]
+)
+def test_a_seal_of_another_form_is_refused(tmp_path: Path, change: dict[str, Any]) -> None:
+    publish.main(publish.Args(split=tiny_split(tmp_path)))
+    file = tmp_path / "tiny.sealed.json"
+    file.write_text(json.dumps(json.loads(file.read_text()) | change))
+    with pytest.raises(ConfigError, match="Seal '"):
+        sealing.read_seal(file)
+
+
+def test_another_secret_or_another_name_is_refused_before_houses_are_made(tmp_path: Path) -> None:
+    sealing.write_seal(tmp_path / "tiny.sealed.json", sealing.seal_of(load_split(tiny_split(tmp_path)), OTHER))
+    seal, secret = tmp_path / "tiny.sealed.json", tmp_path / "secret"
+    secret.write_text(SECRET)
+    cases: tuple[tuple[dict[str, Any], str], ...] = (
+        ({"secret_file": secret, "out": tmp_path / "other"}, "a folder named 'tiny'"),
+        ({"secret_file": secret, "out": tmp_path / "made" / "tiny"}, "is not the sealed one"),
+        ({}, "Give either"),
+    )
+    for options, sentence in cases:
+        with pytest.raises(ConfigError, match=sentence):
+            reveal.main(reveal.Args(seal=seal, **options))
+
+
+def test_houses_of_different_secrets_differ_and_are_no_shipped_ones() -> None:
+    seeds = {next(sealing.recipes(secret, "s", house)).seed for secret in ("a", "b") for house in range(10)}
+    assert len(seeds) == 20
+    assert min(seeds) >= sealing.FIRST_SEED > max(each.seed for of in sealing.SPLITS.values() for each in of)
+
+
+@pytest.mark.slow
+def test_a_split_made_again_from_its_secret_is_the_sealed_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sealing, "SPLITS", {"test": (STUDIO,)})
+    args = make.Args(out=tmp_path / "sealed", secret_file=tmp_path / "secret", houses=1, episodes=2)
+    assert make.main(args) == 0
+    again = reveal.Args(
+        seal=tmp_path / "sealed.sealed.json", secret_file=tmp_path / "secret", out=tmp_path / "again" / "sealed"
+    )
+    assert reveal.main(again) == 0
+    seal = tmp_path / "sealed.sealed.json"
+    seal.write_text(json.dumps(json.loads(seal.read_text()) | {"split_sha256": "0" * 64, "made_with": {"mujoco": "1"}}))
+    capsys.readouterr()
+    for _ in range(2):  # what was made is removed, so that the next try begins as the first one
+        with pytest.raises(ConfigError, match="Other versions: mujoco 1 there"):
+            reveal.main(replace(again, out=tmp_path / "third" / "sealed"))
+    assert "Made with another version: mujoco 1 there" in capsys.readouterr().out
+    with pytest.raises(ConfigError, match="is not empty"):
+        make.main(args)

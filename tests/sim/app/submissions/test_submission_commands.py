@@ -1,0 +1,145 @@
+"""`submit`, `verify` and `leaderboard` as a user calls them."""
+
+from __future__ import annotations
+
+import copy
+import csv
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+
+from sim.app.analysis.comparison import read_run
+from sim.app.commands import leaderboard, submit, verify
+from sim.app.submissions.contents import read_submission
+from sim.app.submissions.leaderboard import Row
+from sim.app.submissions.packing import About, pack
+from sim.app.submissions.report import Report
+from sim.core.errors import ConfigError
+from tests.helpers.submissions import (
+    content_of,
+    written,
+)
+
+
+def test_the_exit_status_says_whether_the_results_hold(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options: dict[str, Any] = {"split": folder / "tiny", "nonstandard": True, "draw_seed": 3}
+    report = tmp_path / "report.json"
+    assert verify.main(verify.Args(file=folder / "oracle.json.gz", report=report, **options)) == 0
+    printed = capsys.readouterr().out
+    for part in (
+        "all 3 episodes of tiny",
+        "3 equal",
+        "Frames of 1",
+        "an hour a core",
+        "Verified: ",
+        "proved by no replay",
+    ):
+        assert part in printed
+    assert json.loads(report.read_text())["equal"] == 3
+    content = content_of(folder / "oracle.json.gz")
+    content["episodes"][1]["result"].update(success=0.0, spl=0.0, failure="misc")
+    assert verify.main(verify.Args(file=written(tmp_path / "forged.json.gz", content), **options)) == 1
+    assert "NOT VERIFIED: 1 episodes are different" in capsys.readouterr().out
+
+
+def test_an_agent_that_gets_no_segmentation_declares_none(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = submit.Args(run=folder / "process", name="x", authors=(), out=tmp_path / "x.json.gz")
+    assert submit.main(words) == 0
+    assert "in a process of its own; semantics not used; " in capsys.readouterr().out
+
+
+def test_a_run_without_its_actions_is_refused_with_the_command_that_records(folder: Path, tmp_path: Path) -> None:
+    shutil.copytree(folder / "oracle", tmp_path / "run")
+    shutil.rmtree(tmp_path / "run" / "trajectories")
+    with pytest.raises(ConfigError, match=r"Record them: stubborn run --agent oracle .*--record --out .*run_recorded"):
+        pack(read_run(tmp_path / "run"), About(name="x", authors=()))
+
+
+def test_actions_of_another_run_are_not_packed(folder: Path, tmp_path: Path) -> None:
+    shutil.copytree(folder / "oracle", tmp_path / "run")
+    shutil.copy(folder / "random" / "trajectories" / "tiny_0000.npz", tmp_path / "run" / "trajectories")
+    with pytest.raises(ConfigError, match="is of another result than its line"):
+        pack(read_run(tmp_path / "run"), About(name="x", authors=()))
+
+
+@pytest.mark.parametrize(("field", "value"), [("house", "a.xml"), ("physics", 0)])
+def test_a_run_that_cannot_be_replayed_is_not_packed(folder: Path, field: str, value: Any) -> None:
+    run = read_run(folder / "oracle")
+    with pytest.raises(ConfigError, match=r"a submission needs a split|physics of version 0"):
+        pack(replace(run, config={**run.config, field: value}), About(name="x", authors=()))
+
+
+def test_the_leaderboard_has_the_rows_that_hold(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sim.app.submissions.setting.Setting.changes", lambda setting: [])  # the images are small
+    monkeypatch.setattr("sim.app.submissions.leaderboard.LEAST_EPISODES", 3)
+    (tmp_path / "submissions").mkdir()
+    content = content_of(folder / "random.json.gz")
+    content["manifest"] |= {"name": "Our <b>agent</b> [x](y) | z", "authors": ["A. *Author*"]}
+    written(tmp_path / "submissions" / "good.json.gz", content)
+    erred = copy.deepcopy(content)
+    erred["episodes"][0] |= {"actions": "", "places_m": []}
+    erred["episodes"][0]["result"] |= {"end_reason": "error", "success": 0.0, "spl": 0.0, "soft_spl": 0.0}
+    written(tmp_path / "submissions" / "erred.json.gz", erred)
+    content["episodes"][0]["result"]["collisions"] = 99
+    written(tmp_path / "submissions" / "forged.json.gz", content)
+    content = content_of(folder / "oracle.json.gz")
+    written(tmp_path / "submissions" / "few.json.gz", content | {"episodes": content["episodes"][:2]})
+    content["episodes"] = content["episodes"][1:]
+    written(tmp_path / "submissions" / "chosen.json.gz", content)
+    (tmp_path / "submissions" / "broken.json.gz").write_bytes(b"x")
+    args = leaderboard.Args(folder=tmp_path, splits=(folder / "tiny",))
+    assert leaderboard.main(args) == 1
+    printed = capsys.readouterr().out
+    for part in (
+        "forged.json.gz: 1 episodes are different", "chosen.json.gz: its episodes were chosen by the authors",
+        "broken.json.gz: Submission ", "few.json.gz: it has 2 episodes; a row needs 3",
+    ):  # fmt: skip
+        assert f"Left out: {part}" in printed
+    table = (tmp_path / "table.md").read_text()
+    assert r"Our &lt;b&gt;agent&lt;/b&gt; \[x\]\(y\)" in table
+    assert "| equal |" in table
+    assert "| equal, 1 of 3 ended with an error |" in table
+    assert len([line for line in table.splitlines() if line.startswith("| ")]) == 4
+    _, row = csv.DictReader((tmp_path / "table.csv").open())
+    assert (row["name"], row["authors"]) == ("Our <b>agent</b> [x](y) | z", "A. *Author*")
+    assert (row["noise"], row["episodes"], row["verified"]) == ("harsh", "3", "equal")
+    assert (row["ground_truth_declared"], row["own_process_declared"], row["success"]) == ("yes", "no", "0.0")
+    monkeypatch.setattr(leaderboard, "verify", lambda file, choices: pytest.fail("a current report was made again"))
+    for name in ("forged", "chosen", "few", "broken"):
+        (tmp_path / "submissions" / f"{name}.json.gz").unlink()
+    assert leaderboard.main(args) == 0
+
+
+def test_replicates_are_no_further_episodes_of_a_row(folder: Path) -> None:
+    submission = read_submission(folder / "oracle.json.gz")
+    copies = [
+        msgspec.structs.replace(e, result=msgspec.structs.replace(e.result, episode_id=f"{e.result.episode_id}~{i}"))
+        for e in submission.episodes
+        for i in range(1, 41)
+    ]
+    report = Report("0" * 64, 1, 120, 120, 0, 0, 0, 0, is_first=True, nonstandard=(), tolerance_m=0.01)
+    fake = msgspec.structs.replace(submission, episodes=copies)
+    assert Row(Path("x"), fake, report).episodes == 3
+
+
+def test_the_leaderboard_of_the_repository_is_that_of_its_files(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Each submission has a current report, and the tables are those of all of them."""
+    monkeypatch.setattr(leaderboard, "verify", lambda file, choices: pytest.fail(f"{file} has no current report"))
+    shipped = Path(__file__).parents[4] / "leaderboard"
+    shutil.copytree(shipped, tmp_path / "leaderboard")
+    assert leaderboard.main(leaderboard.Args(folder=tmp_path / "leaderboard")) == 0
+    for name in ("table.md", "table.csv"):
+        assert (tmp_path / "leaderboard" / name).read_bytes() == (shipped / name).read_bytes()

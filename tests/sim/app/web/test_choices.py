@@ -1,0 +1,232 @@
+"""Choices on the page: the parts that ship, those with which the server was started, and the episodes of its runs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sim.app.commands import run as sim_run
+from sim.app.composition.options import RunOptions
+from sim.app.evaluation.results import read_record, read_result_lines
+from sim.app.web.choices import Choices, Offer
+from sim.app.web.controls import EpisodeRequest
+from sim.app.web.driven import DrivenRuns
+from sim.app.web.session import Frame, Session
+from sim.core.errors import ConfigError
+from sim.task.trajectory import read_trajectory, trajectory_file
+from tests.helpers.worlds import room, with_box
+
+START = {"split": "traps", "house": "wedged_spawn", "goal": "bed", "agent": "oracle", "semantics": "gt"}
+OWN_AGENT = "examples.my_agent:AGENT"
+
+
+class Display:
+    """Keeps the frames and states that it receives."""
+
+    def __init__(self) -> None:
+        self.states: list[Any] = []
+        self.frames: list[Frame] = []
+
+    def wanted(self) -> frozenset[str]:
+        return frozenset()
+
+    def show(self, frame: Frame) -> None:
+        self.frames.append(frame)
+
+    def show_state(self, state: Any) -> None:
+        self.states.append(json.loads(json.dumps(state)))
+
+
+@pytest.fixture(scope="module")
+def choices() -> Choices:
+    return Choices(Offer())
+
+
+@pytest.fixture(scope="module")
+def own(house: Path) -> Choices:
+    """Choices with an agent, an explorer and a house of the user's."""
+    options = RunOptions(weights=None, profile="fast", config=("task.max_steps=8",))
+    return Choices(
+        Offer(agents=(OWN_AGENT,), explorers=("stubborn.agents:INFORMED_TOUR",), houses=(house,), options=options)
+    )
+
+
+def play(request: EpisodeRequest, runs: Path, prepare: Callable[[Session], None] = lambda _: None) -> Display:
+    """Plays an episode to its end in this thread."""
+    display = Display()
+    session = Session(display, DrivenRuns(runs))
+    session.controls.obey({"do": "speed", "per_s": 60})
+    session.controls.ask_for(request)
+    assert session.controls.next_request() is request
+    prepare(session)
+    try:
+        session._run_episode(request)
+    finally:
+        session._free()
+    return display
+
+
+def test_what_the_server_was_started_with_is_offered_and_comes_first(own: Choices, house: Path) -> None:
+    offered = own.as_json()
+    assert offered["splits"][str(house)] == {"sofa_room": {"sofa": []}}
+    assert offered["first"] == {
+        "split": str(house),
+        "agent": OWN_AGENT,
+        "explorer": "stubborn.agents:INFORMED_TOUR",
+        "semantics": "rednet",
+    }
+    assert {"stubborn", "oracle", OWN_AGENT} <= set(offered["agents"])
+    assert offered["agents"]["stubborn"]["explorer"]
+    assert not offered["agents"]["oracle"]["explorer"]
+    request = own.request(START | {"agent": "stubborn-plus", "explorer": "stubborn.agents:INFORMED_TOUR"})
+    assert (request.options.split, request.options.house) == ("traps", None)
+    assert (request.options.explorer, request.options.config) == (
+        "stubborn.agents:INFORMED_TOUR",
+        ("task.max_steps=8",),
+    )
+
+
+def test_the_id_of_an_episode_says_its_house_and_goal(choices: Choices) -> None:
+    request = choices.request(START | {"split": "val", "episode": "val_0018"})
+    assert (request.episode_id, request.house != "wedged_spawn") == ("val_0018", True)
+    with pytest.raises(ConfigError, match="Split 'val' has no episode 'val_9999'"):
+        choices.request(START | {"split": "val", "episode": "val_9999"})
+
+
+@pytest.mark.parametrize(
+    ("part", "value"),
+    [
+        ("agent", "os:system"), ("agent", ["oracle"]), ("split", "/tmp"), ("split", "test"), ("semantics", "os:getcwd"),
+        ("explorer", "os:getcwd"), ("house", "../../etc"), ("house", None), ("driver", "other"), ("goal", 5),
+    ],
+)  # fmt: skip
+def test_nothing_else_can_be_started(choices: Choices, part: str, value: object) -> None:
+    with pytest.raises(ConfigError):
+        choices.request(START | {part: value})
+
+
+def test_an_episode_of_a_run_has_its_options_but_no_file_or_code_that_is_not_offered(choices: Choices) -> None:
+    line = {"episode_id": "traps_0000", "house": "wedged_spawn", "goal": "bed"}
+    line["episode_id"] = choices.as_json()["splits"]["traps"]["wedged_spawn"]["bed"][0]
+    settings = {"task.max_steps": 30, "agent.weights": "/etc/passwd", "agent.name": "plain", "agent.list": ["../x"]}
+    record = {"agent": "random", "semantics": "noisy", "split": "traps", "seed": 7, "noise": "harsh"}
+    request = choices.again(record | {"settings": settings}, line, "person")
+    assert (request.options.seed, request.options.noise, request.driver) == (7, "harsh", "person")
+    assert request.options.config == ("task.max_steps=30", 'agent.name="plain"')
+    for part, name in (("agent", OWN_AGENT), ("explorer", "mine:EXPLORER"), ("split", "/my/split")):
+        with pytest.raises(ConfigError, match=rf"--{part} '?{name}"):
+            choices.again(record | {part: name}, line, "agent")
+    with pytest.raises(ConfigError, match=r"web --house /my/house\.xml"):
+        choices.again(record | {"house": "/my/house.xml"}, line, "agent")
+
+
+def test_a_run_in_one_house_without_its_number_of_episodes_is_refused(own: Choices, house: Path) -> None:
+    record = {"agent": "random", "semantics": "gt", "house": str(house), "seed": 7}
+    line = {"episode_id": f"{house.stem}_0000", "house": house.stem, "goal": "sofa"}
+    with pytest.raises(ConfigError, match="episodes"):
+        own.again(record, line, "agent")
+
+
+def test_an_episode_of_a_run_is_repeated_exactly(own: Choices, house: Path, tmp_path: Path) -> None:
+    options = ["--house", str(house), "--agent", "random", "--semantics", "gt", "--seed", "5", "--noise", "harsh"]
+    options += ["--config", "task.max_steps=8", "--episodes", "2", "--record", "--out", str(tmp_path / "run")]
+    assert sim_run.entry(options) == 0
+    line = read_result_lines(tmp_path / "run" / "results.jsonl").values[1]
+    request = own.again(read_record(tmp_path / "run" / "config.json"), line, "agent")
+    display = play(request, tmp_path)
+    (begun,) = (state for state in display.states if state["phase"] == "running")
+    assert (begun["episode_id"], begun["note"]) == (line["episode_id"], "")
+    last = display.frames[-1].facts
+    assert (last["step"], last["driven_m"]) == (line["num_steps"], line["path_length"])
+
+
+@pytest.mark.costly
+def test_an_episode_of_a_run_without_noise_in_a_house_with_two_goals_begins_where_it_began(tmp_path: Path) -> None:
+    built = with_box(room(5, 5), "sofa_00", centre_m=(2.0, 0, 0.4), half_m=(0.3, 0.6, 0.4))
+    built = with_box(built, "bed_00", centre_m=(-2.0, 0, 0.3), half_m=(0.3, 0.6, 0.3))
+    (tmp_path / "two.xml").write_text(built.spec.to_xml())
+    options = ["--house", str(tmp_path / "two.xml"), "--agent", "oracle", "--semantics", "gt", "--seed", "3"]
+    assert sim_run.entry([*options, "--episodes", "3", "--out", str(tmp_path / "run")]) == 0
+    line = read_result_lines(tmp_path / "run" / "results.jsonl").values[2]
+    offered = Choices(Offer(houses=(tmp_path / "two.xml",), options=RunOptions(weights=None, profile="fast")))
+    request = offered.again(read_record(tmp_path / "run" / "config.json"), line, "agent")
+    last = play(request, tmp_path).frames[-1].facts
+    assert (last["step"], last["driven_m"]) == (line["num_steps"], line["path_length"])
+
+
+def test_an_episode_driven_by_hand_is_recorded_and_one_of_the_agent_is_not(
+    own: Choices, house: Path, tmp_path: Path
+) -> None:
+    start = START | {"split": str(house), "house": "sofa_room", "goal": "sofa", "agent": "random"}
+
+    def drive(session: Session) -> None:
+        session.controls.obey({"do": "hints", "on": True})
+        for action in (2, 1, 0):
+            session.controls.obey({"do": "act", "action": action})
+
+    display = play(own.request(start | {"driver": "person", "episode": "sofa_room_0003"}), tmp_path, drive)
+    assert display.frames[0].facts["hint"] is not None
+    (run,) = tmp_path.iterdir()
+    assert display.states[-1]["outcome"]["recorded"] == f"Recorded in {run}."
+    (line,) = read_result_lines(run / "results.jsonl").values
+    assert (line["agent"], line["uses_ground_truth"], line["semantics"]) == ("human", True, "gt")
+    assert (line["episode_id"], line["person_steps"], line["hint_steps"]) == ("sofa_room_0003", 3, 3)
+    assert read_trajectory(trajectory_file(run, "sofa_room_0003")).actions.tolist() == [2, 1, 0]
+    assert read_record(run / "config.json")["config"]["task"]["max_steps"] == 8
+    assert {file.name for file in run.iterdir()} >= {"summary.json", "pictures"}
+    play(own.request(start), tmp_path)
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_hints_lead_to_the_goal_also_after_a_detour(own: Choices, house: Path, tmp_path: Path) -> None:
+    start = START | {"split": str(house), "house": "sofa_room", "goal": "sofa", "agent": "random", "driver": "person"}
+    request = own.request(start | {"episode": "sofa_room_0001"})
+    request = EpisodeRequest(
+        **{**vars(request), "options": RunOptions(agent="random", semantics="gt", house=house, goal="sofa")}
+    )
+
+    class Follower(Display):
+        def show(self, frame: Frame) -> None:
+            super().show(frame)
+            if frame.facts["hint"] is not None:
+                detour = len(self.frames) in (1, 3)
+                controls.obey({"do": "act", "action": 3 if detour else frame.facts["hint"]["action"]})
+
+    display = Follower()
+    session = Session(display, DrivenRuns(tmp_path))
+    controls = session.controls
+    controls.obey({"do": "hints", "on": True})
+    controls.ask_for(request)
+    controls.next_request()
+    session._run_episode(request)
+    session._free()
+    assert display.states[-1]["outcome"]["found"]
+    assert len(display.frames) < 100
+
+
+def test_code_of_the_users_that_raises_anything_leaves_the_session_alive(
+    own: Choices, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Strange(BaseException):
+        pass
+
+    display = Display()
+    session = Session(display, DrivenRuns(tmp_path))
+
+    def fail(request: EpisodeRequest) -> None:
+        if len(display.states) == 1:
+            session.controls.close()
+        session.controls.ask_for(request)
+        raise Strange("no\nreason \ud800")
+
+    monkeypatch.setattr(session, "_run_episode", fail)
+    session.controls.ask_for(own.request(START))
+    session._run()
+    assert [state["phase"] for state in display.states] == ["failed", "failed"]
+    message = "The episode failed: Strange: no reason \\ud800 (unexpected; --debug shows where)"
+    assert display.states[0]["message"] == message
+    assert capsys.readouterr().err == ""

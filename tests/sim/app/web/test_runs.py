@@ -1,0 +1,103 @@
+"""The finished runs of the page: hostile folders are listed with the reason, and nothing outside of them is read."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sim.app.web.runs import Runs
+from sim.core.errors import ConfigError
+
+pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
+
+from sim.app.web.answers import as_ascii
+
+LINE = {"episode_id": "e/0", "house": "h", "goal": "bed", "end_reason": "stop", "success": 1.0}
+
+
+def write_run(folder: Path, line: Any = LINE, config: bytes = b'{"agent": "mine"}') -> Path:
+    folder.mkdir(parents=True)
+    (folder / "results.jsonl").write_text(json.dumps(line) + "\n")
+    (folder / "config.json").write_bytes(config)
+    return folder
+
+
+def link_out(file: Path) -> None:
+    (file.parents[2] / "secret.json").write_text('{"agent": "SECRET"}')
+    file.symlink_to(file.parents[2] / "secret.json")
+
+
+PLACES: dict[str, Callable[[Path], None]] = {
+    "a link out of the folder": link_out,
+    "a pipe": lambda file: os.mkfifo(file),
+    "a device": lambda file: file.symlink_to("/dev/zero"),
+    "a folder": lambda file: file.mkdir(),
+    "a loop of links": lambda file: file.symlink_to(file.name),
+}
+
+
+@pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
+@pytest.mark.parametrize("name", ["config.json", "results.jsonl", "report.html", "videos/e%2F0.mp4"])
+def test_only_plain_files_inside_the_folder_are_read(tmp_path: Path, name: str, place: Callable[[Path], None]) -> None:
+    run = write_run(tmp_path / "runs" / "run")
+    file = run / name
+    file.unlink(missing_ok=True)
+    file.parent.mkdir(exist_ok=True)
+    if "/" in name:  # the link and the pipe then stand for the folder of the videos, or for a file in it
+        place(file) if place is not link_out else file.symlink_to("/etc/hostname")
+    else:
+        place(file)
+    runs = Runs(tmp_path / "runs")
+    assert "SECRET" not in as_ascii(runs.as_json())
+    for read in (lambda: runs.report("run"), lambda: runs.video("run", "e/0")):
+        with pytest.raises(ConfigError):
+            read()
+
+
+@pytest.mark.parametrize(
+    "config",
+    [b"", b"\xff\xfe", b'{"agent": "\\ud800"}', b'{"agent": 5}', b'{"x": 1e999}', b'{"x":' + b"[" * 9999, b"[]"],
+)
+def test_a_run_that_cannot_be_read_is_listed_with_the_reason(tmp_path: Path, config: bytes) -> None:
+    write_run(tmp_path / "broken", config=config)
+    write_run(tmp_path / "whole")
+    listed = {run["name"]: run for run in Runs(tmp_path).as_json()}
+    assert "config.json" in listed["broken"]["broken"]
+    assert listed["whole"]["agent"] == "mine"
+    with pytest.raises(ConfigError):
+        Runs(tmp_path).episodes("broken")
+
+
+def test_a_report_of_traps_is_not_listed_as_a_run(tmp_path: Path) -> None:
+    (write_run(tmp_path / "traps") / "traps.csv").touch()
+    write_run(tmp_path / "whole")
+    assert [run["name"] for run in Runs(tmp_path).as_json()] == ["whole"]
+
+
+@pytest.mark.parametrize(
+    "name", [b"\xff\xfe", b"line\nbreak", b"\x1b[31m", "Häuser ✓".encode(), b"<img src=x>", b"a%2fb"]
+)
+def test_a_folder_of_any_name_is_listed_and_opened(tmp_path: Path, name: bytes) -> None:
+    write_run(tmp_path / os.fsdecode(name))
+    (run,) = Runs(tmp_path).as_json()
+    assert json.loads(as_ascii(run))["agent"] == "mine"
+    assert Runs(tmp_path).episodes(run["name"])[0]["episode_id"] == "e/0"
+
+
+def test_a_run_that_goes_on_is_read_again_and_an_unchanged_one_is_not(tmp_path: Path) -> None:
+    run = write_run(tmp_path / "run")
+    runs = Runs(tmp_path)
+    assert runs.run("run") is runs.run("run")
+    with (run / "results.jsonl").open("a") as stream:
+        stream.write(json.dumps(LINE | {"episode_id": "e/1"}) + "\n")
+    assert [episode["episode_id"] for episode in runs.episodes("run")] == ["e/0", "e/1"]
+
+
+def test_a_folder_that_does_not_exist_holds_no_run(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    assert Runs(tmp_path / "none").as_json() == Runs(tmp_path / "file").as_json() == []

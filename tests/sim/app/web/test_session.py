@@ -1,0 +1,62 @@
+"""The agent of the page: it states a place for its own STOP, and no place for the STOP of a person."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sim.app.web.controls import Choice
+from sim.app.web.session import Frame, SharedAgent
+from sim.core.interface import Action, StatesTarget
+
+
+class Stops:
+    """An agent that stops at once."""
+
+    def reset(self, goal: str, seed: int) -> None: ...
+
+    def act(self, observation: object) -> Action:
+        return Action.STOP
+
+
+class StopsThere(Stops):
+    """It also states the place for which it stops."""
+
+    def stop_target_xy_m(self) -> tuple[float, float]:
+        return 1.0, 2.0
+
+
+@pytest.mark.parametrize(
+    ("inner", "driver", "place"),
+    [(StopsThere(), "agent", (1.0, 2.0)), (StopsThere(), "person", None), (Stops(), "agent", None)],
+)
+def test_the_place_is_that_of_the_agents_own_stop(
+    inner: Stops, driver: Any, place: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(SharedAgent, "_show", lambda *_: None)
+    controls: Any = SimpleNamespace(choose=lambda advised: Choice(advised, driver), hints=False)
+    unused: Any = None
+    parts: Any = SimpleNamespace(agent=inner, env=SimpleNamespace())
+    shared = SharedAgent(parts, unused, controls, unused)
+    shared.reset("bed", 0)
+    assert shared.act({}) is Action.STOP  # pyright: ignore[reportArgumentType] - nothing reads the observation
+    assert isinstance(shared, StatesTarget)
+    assert shared.stop_target_xy_m() == place
+
+
+def test_the_world_can_be_shown_before_the_first_action() -> None:
+    shown: list[Frame] = []
+    metrics = {"num_steps": 0, "collisions": 0, "path_length": 0.0, "distance_to_goal": None, "shortest_path": None}
+    env = SimpleNamespace(
+        truth_images={"semantic": np.zeros((4, 4), np.uint8)},
+        scene=SimpleNamespace(task=SimpleNamespace(metrics=lambda: metrics)),
+        episode=SimpleNamespace(goal="bed"),
+    )
+    parts: Any = SimpleNamespace(agent=Stops(), env=env, painter=None)
+    display: Any = SimpleNamespace(wanted=frozenset, show=shown.append)
+    unused: Any = None
+    SharedAgent(parts, unused, unused, display).show_end()
+    assert (shown[0].facts["last"], shown[0].facts["ended"]) == (None, True)

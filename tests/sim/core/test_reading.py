@@ -1,0 +1,210 @@
+"""Typed reading: a message names the file, the line, the field, the value found and the type expected."""
+
+from __future__ import annotations
+
+import gzip
+import io
+import os
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import cv2
+import msgspec
+import numpy as np
+import pytest
+
+from sim.core import reading
+from sim.core.errors import HouseError
+from sim.core.interface import ConfigError
+
+
+class Row(msgspec.Struct):
+    """A row of a file."""
+
+    name: reading.Name
+    at: list[reading.Metres]
+    seed: int = 0
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("", "is empty"),
+        ("\0\0\0\0", "is empty"),
+        ("{", "not JSON"),
+        ('{"name": "a"}', "missing required field at"),
+        ('{"name": 5, "at": []}', r"field 'name': expected str, got int"),
+        ('{"name": "a", "at": [0.5, "b"]}', r"field 'at\[1\]': expected float, got str"),
+        ('{"name": "a", "at": [NaN]}', "not JSON"),
+        ('{"name": "a", "at": [Infinity]}', "not JSON"),
+        ('{"name": "a", "at": [1e308]}', r"field 'at\[0\]': expected float <= 10000"),
+        ('{"name": "a", "at": [1e999]}', "out of range"),
+        ('{"name": "\\u001b[31m", "at": []}', "field 'name'"),
+        ('{"name": "\\ud800", "at": []}', "not JSON"),
+        ('{"name": "a", "at": [], "more": ' + "[" * 100_000, "nested too deeply|not JSON"),
+        ("7", "expected object, got int"),
+        ("1" * 10_000, "rows.json"),
+    ],
+)
+def test_content_of_another_type_is_one_line_that_names_the_field(content: str, message: str, tmp_path: Path) -> None:
+    file = tmp_path / "rows.json"
+    file.write_text(content)
+    with pytest.raises(HouseError, match=message) as caught:
+        reading.read_json(file, Row, what="Rows", error=HouseError)
+    assert str(file) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b'{"name": "a", "at": []}\n\n{"name": "b", "at": []}\n', "line 2 is empty"),
+        (b'{"name": "a", "at": []}\n\0\0\0\0\n', "line 2 is empty"),
+        (b'{"name": "a", "at": []}\n{"name": "b"}\n', "line 2: object missing required field at"),
+        (b'{"name": "a", "at": []}\n[]\n', "line 2: expected object, got array"),
+    ],
+)
+def test_a_broken_line_is_named_by_its_number(content: bytes, message: str, tmp_path: Path) -> None:
+    (tmp_path / "rows.jsonl").write_bytes(content)
+    with pytest.raises(ConfigError, match=message):
+        reading.read_lines(tmp_path / "rows.jsonl", Row, what="Rows")
+
+
+@pytest.mark.parametrize("torn", [b'{"name": "b"', b"\0\0\0\0", b"\xff"])
+def test_an_incomplete_last_line_is_left_out_and_reported(torn: bytes, tmp_path: Path) -> None:
+    file = tmp_path / "rows.jsonl"
+    whole = b'{"name": "a", "at": [], "more": 1}\n'
+    file.write_bytes(whole + torn)
+    lines = reading.read_lines(file, Row, what="Rows")
+    assert lines.values == [{"name": "a", "at": [], "more": 1}]
+    assert lines.whole_bytes == len(whole)
+    assert "line 2" in lines.torn
+    file.write_bytes(whole)
+    assert reading.read_lines(file, Row, what="Rows").torn == ""
+
+
+def test_a_file_that_expands_without_end_is_refused_soon(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reading, "MAX_BYTES", 1 << 20)
+    (tmp_path / "bomb.gz").write_bytes(gzip.compress(b"[" + b" " * (4 << 20), compresslevel=1))
+    with pytest.raises(ConfigError, match="expands to more than 1 MB"):
+        reading.read_gzip_json(tmp_path / "bomb.gz", list[Any], what="Rows")
+    with zipfile.ZipFile(tmp_path / "bomb.npz", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("a.npy", b"\0" * (8 << 20))
+    with pytest.raises(ConfigError, match="expands to 8 MB; at most 1 MB"):
+        reading.require_small_zip(tmp_path / "bomb.npz", what="Rows", most=1 << 20)
+
+
+def damaged_zip(change: Callable[[bytearray], None]) -> bytes:
+    """Returns an `.npz` file of one compressed array `a`, damaged."""
+    content = io.BytesIO()
+    np.savez_compressed(content, a=np.arange(1000))
+    damaged = bytearray(content.getvalue())
+    change(damaged)
+    return bytes(damaged)
+
+
+def put(place: bytes, offset: int, value: int) -> Callable[[bytearray], None]:
+    """Returns a function that sets a byte behind the last occurrence of `place`."""
+
+    def change(content: bytearray) -> None:
+        content[content.rindex(place) + offset] = value
+
+    return change
+
+
+def member(header: str) -> bytes:
+    """Returns an `.npz` file whose array `a` has this text as its header."""
+    content = io.BytesIO()
+    text = header.encode()
+    with zipfile.ZipFile(content, "w") as archive:
+        archive.writestr("a.npy", b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text)
+    return content.getvalue()
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"no archive",
+        damaged_zip(put(b"PK\x01\x02", 16, 0xAA)),  # the checksum
+        damaged_zip(put(b"PK\x01\x02", 10, 99)),  # a compression method that does not exist
+        damaged_zip(put(b"PK\x01\x02", 10, 14)),  # LZMA
+        damaged_zip(put(b"PK\x01\x02", 8, 1)),  # encrypted
+        damaged_zip(lambda content: content.__setitem__(slice(40, 60), b"\xff" * 20)),
+        damaged_zip(lambda content: content.__delitem__(slice(50, 70))),
+        member("{'descr': '<i8', 'fortran_order': False, 'shape': (3,)}\n"),
+        member("{'descr': '<i8', 'fortran_order': False, 'shape': (1 << 60,)}\n"),
+        member("{'descr': '<i8', 'fortran_order': False, 'shape': (1000000000000000,)}\n"),
+        member("{'descr': 'q9', 'fortran_order': False, 'shape': (3,)}\n"),
+        member("{'descr': '|O', 'fortran_order': False, 'shape': (1,)}\n"),
+        member("((((((("),
+        member("{'descr': " + "[" * 5000),
+    ],
+)
+def test_a_damaged_npz_is_named_in_a_message(content: bytes, tmp_path: Path) -> None:
+    file = tmp_path / "rows.npz"
+    file.write_bytes(content)
+    for names in (None, ("a",)):
+        with pytest.raises(ConfigError, match=r"rows\.npz' is not a table: \S"):
+            reading.read_npz(file, names, what="table", most_bytes=1 << 20)
+
+
+def test_the_arrays_of_an_npz_are_read_by_name(tmp_path: Path) -> None:
+    file = tmp_path / "rows.npz"
+    with pytest.raises(HouseError, match=r"rows\.npz' is not a table: No such file or directory\."):
+        reading.read_npz(file, what="table", most_bytes=1 << 20, error=HouseError)
+    np.savez(file, a=np.arange(3), b=np.array("text"), c=np.asfortranarray(np.eye(3)))
+    whole = reading.read_npz(file, what="table", most_bytes=1 << 20)
+    assert list(whole) == ["a", "b", "c"]
+    assert str(whole["b"]) == "text"
+    np.testing.assert_array_equal(whole["c"], np.eye(3))
+    assert list(reading.read_npz(file, ("b", "a"), what="table", most_bytes=1 << 20)) == ["b", "a"]
+    with pytest.raises(ConfigError, match=r"is not a table: it has no 'd'\."):
+        reading.read_npz(file, ("a", "d"), what="table", most_bytes=1 << 20)
+    np.savez_compressed(file, a=np.zeros(1 << 20))
+    with pytest.raises(ConfigError, match=r"is not a table: it expands to 8 MB; at most 1 MB are read\."):
+        reading.read_npz(file, what="table", most_bytes=1 << 20)
+
+
+@pytest.mark.parametrize("kind", ["bytes", "JSON", "gzipped JSON", "zip", "npz"])
+def test_a_pipe_in_place_of_a_file_is_refused_and_not_waited_for(kind: str, tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    readers = {
+        "bytes": lambda: reading.read_bytes(pipe, what="Table"),
+        "JSON": lambda: reading.read_json(pipe, dict, what="Table"),
+        "gzipped JSON": lambda: reading.read_gzip_json(pipe, dict, what="Table"),
+        "zip": lambda: reading.require_small_zip(pipe, what="Table", most=1),
+        "npz": lambda: reading.read_npz(pipe, what="table", most_bytes=1),
+    }
+    with pytest.raises(ConfigError, match="not a plain file"):
+        readers[kind]()
+    with pytest.raises(ConfigError, match=r"a plain file|directory"):
+        reading.read_bytes(tmp_path, what="Table")
+
+
+def test_the_size_of_a_jpeg_is_found_behind_fill_bytes() -> None:
+    content = cv2.imencode(".jpg", np.zeros((30, 50, 3), np.uint8))[1].tobytes()
+    filled = content.replace(b"\xff\xc0", b"\xff" * 700 + b"\xc0", 1)
+    assert reading.image_size_px(filled) == (50, 30)
+
+
+@pytest.mark.parametrize("suffix", [".png", ".jpg"])
+def test_the_size_of_an_image_is_read_from_its_header(suffix: str) -> None:
+    content = cv2.imencode(suffix, np.zeros((30, 50, 3), np.uint8))[1].tobytes()
+    assert reading.image_size_px(content) == (50, 30)
+    reading.require_small_image(content, where="Image")
+    with pytest.raises(ConfigError, match="neither a PNG nor a JPEG"):
+        reading.require_small_image(content[:10], where="Image")
+    bomb = content[:16] + (60_000).to_bytes(4, "big") * 2 + content[24:]
+    if suffix == ".png":
+        with pytest.raises(ConfigError, match="60000 x 60000"):
+            reading.require_small_image(bomb, where="Image")
+
+
+def test_control_characters_and_lone_surrogates_are_written_as_escapes() -> None:
+    assert reading.printable("a\x1b[31mb\u009bc\udcff [d] é") == "a\\x1b[31mb\\x9bc\\udcff [d] é"
+    assert reading.first_unprintable(["a b", "ü"]) is None
+    assert reading.first_unprintable(["a", "b\x1b[0m"]) == "b\x1b[0m"

@@ -1,0 +1,200 @@
+"""Conformance tests of generated houses, the same for every seed."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim.core.errors import HouseError
+from sim.core.interface import GOAL_CATEGORIES, ConfigError
+from sim.gl import mujoco
+from sim.homes.housegen import generate
+from sim.homes.housegen.floor_plan.rectangles import Rect
+from sim.homes.housegen.floor_plan.rooms import PLAN_AREA_M2, draw_plan_kind
+from sim.homes.housegen.furnishing.placement import RoomLayout
+from sim.homes.housegen.furnishing.placement.floor import put_against_wall
+from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
+from sim.homes.housegen.furniture import CATALOGUE
+from sim.homes.housegen.generator import MAX_BYTES, GeneratedHouse, HouseConfig, _draw_plan, generate_house, max_bytes
+from sim.homes.housegen.splits.recipes import SPLITS
+from sim.homes.housegen.structure.openings import HALF_WALL_M
+from sim.houses.house import House, read_rooms
+from sim.houses.labels import read_labels
+from sim.houses.load import load_house, validate_house
+from sim.houses.writing import house_text, write_house
+from sim.world.check import check_house
+from tests.helpers.sampling import sample
+
+SEEDS = list(range(30))
+
+
+@pytest.mark.parametrize("seed", sample(SEEDS, 2))
+def test_any_seed_gives_a_house_in_the_format_that_passes_the_check(seed: int) -> None:
+    house = generate_house(seed, HouseConfig(pool="heldout" if seed % 2 else "train"))
+    model = house.spec.compile()
+    labels = validate_house(House("fresh", house.spec), model)
+    assert labels.void_geoms == 0
+    assert check_house(house.spec) == []
+    assert len(read_rooms(model)) == len(house.plan.rooms)
+    assert len(house_text(house.spec)) <= 1.02 * max_bytes(house.plan.area_m2)
+    lamps = model.light_pos[model.light_type != mujoco.mjtLightType.mjLIGHT_DIRECTIONAL.value]
+    assert model.nlight - len(lamps) == 4  # shine everywhere; OpenGL has eight
+    for room in read_rooms(model):
+        assert any(room.contains(x, y) for x, y, _ in lamps.tolist()), room.name
+
+
+def small(seed: int) -> GeneratedHouse:
+    return generate_house(seed, HouseConfig(kind="studio", area_m2=55.0))
+
+
+@pytest.mark.costly
+def test_the_same_seed_gives_the_same_bytes_in_another_process() -> None:
+    xml = generate(3, kind="studio", area_m2=55.0).to_xml()
+    code = "from sim.homes.housegen import generate; print(generate(3, kind='studio', area_m2=55.0).to_xml(), end='')"
+    other = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert xml == other
+
+
+@pytest.mark.costly
+def test_seeds_and_pools_give_different_houses() -> None:
+    xml = {small(seed).spec.to_xml() for seed in range(3)}
+    assert len(xml) == 3
+    assert generate(0, kind="studio", pool="heldout").to_xml() != generate(0, kind="studio", pool="train").to_xml()
+
+
+@pytest.mark.slow
+def test_a_wide_house_is_in_the_format_and_may_be_too_large_to_ship() -> None:
+    house = generate_house(4, HouseConfig(pool="wide", kind="large", area_m2=300.0))
+    assert validate_house(House("wide", house.spec), house.spec.compile()).void_geoms == 0
+    assert check_house(house.spec) == []
+    assert len(house.spec.to_xml()) > MAX_BYTES
+
+
+def test_area_and_kind_of_plan_are_as_requested() -> None:
+    house = generate_house(1, HouseConfig(kind="corridor", area_m2=120.0))
+    assert house.plan.kind == "corridor"
+    assert house.plan.area_m2 == pytest.approx(120.0, rel=0.25)
+
+
+def test_clutter_zero_leaves_no_small_objects() -> None:
+    labels = read_labels(generate_house(2, HouseConfig(clutter=0.0, kind="flat")).spec.compile())
+    assert not labels.of_category("objects")
+
+
+def test_no_view_from_inside_shows_void() -> None:
+    model = small(5).spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    model.vis.map.znear, model.vis.map.zfar = 0.001, 10.0
+    renderer = mujoco.Renderer(model, 60, 80)
+    renderer.enable_segmentation_rendering()
+    camera = mujoco.MjvCamera()
+    camera.type, camera.distance = mujoco.mjtCamera.mjCAMERA_FREE, 1e-3
+    for room in read_rooms(model):
+        (x, y, _), _ = room.boxes[0]
+        camera.lookat[:] = (x, y, 0.88)
+        for azimuth_deg in range(0, 360, 45):
+            camera.azimuth, camera.elevation = azimuth_deg, 0.0
+            renderer.update_scene(data, camera)
+            void = renderer.render()[..., 0] < 0
+            assert not void.any(), f"{room.name}, {azimuth_deg} deg: {void.sum()} pixels of void"
+    renderer.close()
+
+
+def test_errors_of_bad_requests_name_the_allowed_values() -> None:
+    with pytest.raises(ConfigError, match="50-800 m2, got 12"):
+        HouseConfig(area_m2=12.0)
+    with pytest.raises(ConfigError, match="studio, flat"):
+        HouseConfig(kind="castle")  # type: ignore[arg-type]
+    with pytest.raises(ConfigError, match="0 or more, got -1"):
+        generate_house(-1)
+    with pytest.raises(ConfigError, match="no room kind 'ballroom'"):
+        HouseConfig(rooms=("ballroom",))
+
+
+@pytest.mark.parametrize("area_m2", [52.0, 90.0, 200.0, 500.0])
+def test_the_area_and_the_rooms_that_are_asked_for_are_met(area_m2: float) -> None:
+    config = HouseConfig(area_m2=area_m2, rooms=("office",) if area_m2 > 80.0 else ())
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        plan, _ = _draw_plan(rng, draw_plan_kind(rng, area_m2), area_m2, config)
+        inner_m2 = sum(room.rect.grown(-HALF_WALL_M).area_m2 for room in plan.rooms)
+        assert plan.area_m2 == pytest.approx(area_m2, rel=0.05)
+        assert inner_m2 == pytest.approx(area_m2, rel=0.05)
+        assert set(config.rooms) <= {room.kind for room in plan.rooms}
+
+
+def test_a_written_house_is_read_from_its_folder_wherever_that_is(tmp_path: Path) -> None:
+    written = write_house(generate(3, kind="studio", area_m2=55.0), tmp_path / "first", "home")
+    moved = (tmp_path / "first").rename(tmp_path / "second") / written.name
+    house = load_house(moved)
+    assert house.name == "home"
+    assert all((moved.parent / "textures" / texture.file).is_file() for texture in house.spec.textures if texture.file)
+
+
+def test_requests_that_contradict_each_other_are_refused() -> None:
+    with pytest.raises(ConfigError, match="kind 'studio' has 50-68 m2"):
+        HouseConfig(kind="studio", area_m2=300.0)
+    with pytest.raises(ConfigError, match="no place for further rooms"):
+        HouseConfig(kind="studio", rooms=("gym",))
+    with pytest.raises(ConfigError, match="no option 'area'"):
+        generate(0, area=70.0)
+
+
+@pytest.mark.parametrize("split", list(SPLITS))
+def test_recipes_have_different_seeds_and_sizes_that_suit_their_kind(split: str) -> None:
+    recipes = SPLITS[split]
+    assert len({recipe.seed for recipe in recipes}) == len(recipes)
+    assert len({recipe.name for recipe in recipes}) == len(recipes)
+    for recipe in recipes:
+        low, high = PLAN_AREA_M2[recipe.kind]
+        assert low <= recipe.area_m2 <= high
+
+
+@pytest.mark.slow
+def test_all_goal_categories_appear_over_the_val_houses() -> None:
+    counts = dict.fromkeys(GOAL_CATEGORIES, 0)
+    for recipe in SPLITS["val"]:
+        for category in read_labels(recipe.make().spec.compile()).categories():
+            if category in counts:
+                counts[category] += 1
+    assert min(counts.values()) >= math.ceil(len(SPLITS["val"]) / 4), counts
+
+
+def test_items_are_inside_rooms() -> None:
+    model = small(4).spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    rooms = read_rooms(model)
+    labels = read_labels(model)
+    for instance in labels.instances:
+        if instance.category in ("wall", "floor", "ceiling", "door", "window"):
+            continue
+        x, y, _ = np.mean(data.geom_xpos[list(instance.geom_ids)], axis=0)
+        assert any(room.contains(x, y) for room in rooms), instance.name
+
+
+def test_a_picture_high_above_a_bed_blocks_no_other_position() -> None:
+    rng = np.random.default_rng(0)
+    layout = RoomLayout(0, "bedroom", Rect(0.0, 0.0, 5.0, 5.0), [], 2.6)
+    bed = CATALOGUE.make_item("bed", rng, pool="train", width_m=1.8)
+    picture = CATALOGUE.make_item("picture", rng, pool="train", width_m=0.3)
+    assert put_against_wall(layout, rng, bed, sides=["west"], along="middle") is not None
+    assert hang_on_wall(layout, rng, picture, sides=["west"], at=2.5, bottom_m=1.7) is not None
+    wardrobe = CATALOGUE.make_item("cabinet", rng, pool="train", use="wardrobe")
+    assert put_against_wall(layout, rng, wardrobe, sides=["east"]) is not None
+
+
+def test_a_house_that_breaks_the_format_does_not_replace_a_file(tmp_path: Path) -> None:
+    (tmp_path / "mine.xml").write_text("kept")
+    spec = mujoco.MjSpec.from_string(
+        '<mujoco><worldbody><geom name="table_00" size="1 1 1" type="box"/></worldbody></mujoco>'
+    )
+    with pytest.raises(HouseError, match="House 'mine'"):
+        write_house(spec, tmp_path, "mine")
+    assert (tmp_path / "mine.xml").read_text() == "kept"

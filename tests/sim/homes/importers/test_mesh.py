@@ -1,0 +1,240 @@
+"""A home that is one mesh gets objects by the names of its nodes, a flat floor, and walls that leave its door open."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from sim.app.commands.importing import mesh as command
+from sim.core.errors import ConfigError, HouseError
+from sim.gl import mujoco
+from sim.homes.importers.losses import Losses
+from sim.homes.importers.mesh import files_of, find_files, import_mesh
+from sim.homes.importers.mesh_house import MeshConfig, MeshObject, Shape, build_house
+from sim.homes.importers.obj import read_obj
+from sim.homes.importers.surfaces import Paint, Surface
+from sim.houses.house import House, read_rooms
+from sim.houses.labels import read_labels
+from sim.houses.load import load_house
+from sim.world.check import check_own_house
+from tests.helpers.scanned import PIECES, triangles_of, write_glb
+
+
+def write_obj(folder: Path) -> Path:
+    """Writes the home as an OBJ file, z up, an object for each piece, with two materials."""
+    lines, count = ["mtllib flat.mtl"], 0
+    for number, piece in enumerate(PIECES):
+        made = triangles_of(piece)
+        lines += [f"o {piece.kind.replace(' ', '_')}.{number}", f"usemtl m{number % 2}"]
+        lines += ["v " + " ".join(f"{value:.4f}" for value in vertex) for vertex in made.vertices]
+        lines += ["f " + " ".join(str(corner + 1 + count) for corner in face) for face in made.faces]
+        count += len(made.vertices)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "flat.mtl").write_text("newmtl m0\nKd 1 0 0\nnewmtl m1\nKd 0 0 1\n")
+    (folder / "flat.obj").write_text("\n".join(lines))
+    return folder / "flat.obj"
+
+
+@pytest.fixture(scope="module")
+def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("mesh")
+    assert command.main(command.Args(path=write_glb(folder), out=folder / "out", pictures=0)) == 0
+    return folder / "out"
+
+
+def categories(house: House) -> list[str]:
+    labels = read_labels(house.spec.copy().compile(), ignore_prefix="")
+    return sorted({each.category for each in labels.instances})
+
+
+def test_nodes_have_the_categories_of_their_names_and_places_of_the_source(split: Path) -> None:
+    house = load_house(split / "flat.xml")
+    assert categories(house) == ["bed", "ceiling", "chair", "floor", "picture", "plant", "table", "wall"]
+    model = house.spec.copy().compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    (bed,) = read_labels(model, ignore_prefix="").of_category("bed")
+    boxes = [geom for geom in bed.geom_ids if model.geom_group[geom] == 3]
+    low = (data.geom_xpos[boxes] - model.geom_size[boxes]).min(axis=0)
+    high = (data.geom_xpos[boxes] + model.geom_size[boxes]).max(axis=0)
+    assert low == pytest.approx([6.0, 2.4, 0.0], abs=0.06)
+    assert high == pytest.approx([7.9, 3.9, 0.5], abs=0.06)
+    assert sum(room.area_m2 for room in read_rooms(model)) == pytest.approx(32.0, abs=1.5)
+
+
+def test_the_robot_passes_the_door(split: Path) -> None:
+    assert check_own_house(load_house(split / "flat.xml"))[0] == []
+
+
+def test_a_table_counts_first_and_the_proposed_one_can_be_edited(split: Path, tmp_path: Path) -> None:
+    table = json.loads((split / "categories" / "flat.json").read_text())
+    assert table[r"^office_chair\.008$"] == "chair"
+    table = {"office_chair": "stool", "bed": "void", **table}
+    (tmp_path / "table.json").write_text(json.dumps(table))
+    file = write_glb(tmp_path, names={"table": "Object"})
+    args = command.Args(path=file, categories=tmp_path / "table.json", out=tmp_path / "out", pictures=0)
+    assert command.main(args) == 0
+    found = categories(load_house(tmp_path / "out" / "flat.xml"))
+    assert "stool" in found
+    assert "objects" in found
+    assert not {"chair", "bed", "table"} & set(found)
+    report = json.loads((tmp_path / "out" / "import.json").read_text())["flat"]
+    assert report["left_out"] == {"bed.005: the table says void": 1}
+
+
+def test_an_obj_file_keeps_its_objects_and_colours(tmp_path: Path) -> None:
+    file = write_obj(tmp_path)
+    surfaces = read_obj(file, texture_px=64, losses=Losses().changes)
+    assert [each.node for each in surfaces] == [f"{p.kind.replace(' ', '_')}.{n}" for n, p in enumerate(PIECES)]
+    assert surfaces[1].paint.rgba == (0.0, 0.0, 1.0, 1.0)
+    scene = import_mesh(file, rules={}, up="z", config=MeshConfig())
+    assert scene.house.report["furniture"]["chair"] == 1
+
+
+MATERIALS = """
+newmtl red
+Kd 1 0 0
+d 0.25
+newmtl first
+Kd 1 0 0
+map_Kd -s 2 2 2 -clamp on my picture.png
+newmtl last
+map_Kd my picture.png
+Kd 1 0 0
+"""
+
+
+def test_materials_of_an_obj_file_have_an_opacity_and_a_picture_whose_name_has_spaces(tmp_path: Path) -> None:
+    faces = [f"usemtl {name}\nf 1/1 2/1 3/1" for name in ("red", "first", "last")]
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0"
+    (tmp_path / "home.obj").write_text("\n".join(["mtllib all kinds.mtl", corners, *faces]))
+    (tmp_path / "all kinds.mtl").write_text(MATERIALS)
+    cv2.imwrite(str(tmp_path / "my picture.png"), np.full((4, 4, 3), 90, np.uint8))
+    losses = Losses()
+    red, first, last = read_obj(tmp_path / "home.obj", texture_px=64, losses=losses.changes)
+    assert red.paint.rgba == (1.0, 0.0, 0.0, 0.25)
+    for each in (first, last):
+        assert each.paint.rgba == (1.0, 1.0, 1.0, 1.0)
+        assert each.paint.picture is not None
+    assert not losses.changes
+    assert {file.name for file in files_of(tmp_path / "home.obj")} == {"all kinds.mtl", "my picture.png"}
+    with (tmp_path / "all kinds.mtl").open("a") as materials:
+        materials.write("newmtl far\nmap_Kd ..\\outside.png\nnewmtl near\nmap_Kd sub\\b.png\n")
+    (tmp_path / "sub").mkdir()
+    found = {file.relative_to(tmp_path.resolve()).as_posix() for file in files_of(tmp_path / "home.obj")}
+    assert found == {"all kinds.mtl", "my picture.png", "sub/b.png"}
+
+
+def test_a_home_is_imported_again_when_its_materials_change(tmp_path: Path) -> None:
+    file, out = write_obj(tmp_path), tmp_path / "out"
+    file.write_text(file.read_text().replace("mtllib flat.mtl", "mtllib other.mtl"))
+    materials = (tmp_path / "flat.mtl").rename(tmp_path / "other.mtl")
+    args = command.Args(path=file, out=out, pictures=0, up="z")
+    assert command.main(args) == 0
+    assert 'rgba="0 0 1 1"' in (out / "flat.xml").read_text()
+    materials.write_text(materials.read_text().replace("Kd 0 0 1", "Kd 0 1 0"))
+    assert command.main(args) == 0
+    assert 'rgba="0 0 1 1"' not in (out / "flat.xml").read_text()
+
+
+def test_the_parts_of_a_gltf_file_are_its_buffers_and_pictures(tmp_path: Path) -> None:
+    parts = {"buffers": [{"uri": "a%20b.bin"}, {}], "images": [{"uri": "data:image/png;base64,AA"}, {"uri": "c.png"}]}
+    (tmp_path / "home.gltf").write_text(json.dumps(parts))
+    assert files_of(tmp_path / "home.gltf") == [tmp_path / "a b.bin", tmp_path / "c.png"]
+    (tmp_path / "home.gltf").write_text("{")
+    assert files_of(tmp_path / "home.gltf") == []
+
+
+def test_homes_of_one_name_are_refused(tmp_path: Path) -> None:
+    for suffix in ("glb", "obj"):
+        (tmp_path / f"home.{suffix}").touch()
+    with pytest.raises(ConfigError, match=r"two homes of the name 'home', one of them 'home\.obj'"):
+        find_files(tmp_path)
+
+
+def test_an_object_may_be_a_single_triangle_and_a_rug_lies_flat_although_a_mat_on_a_table_does_not(
+    tmp_path: Path,
+) -> None:
+    def box(name: str, low: tuple[float, ...], high: tuple[float, ...]) -> MeshObject:
+        made = trimesh.creation.box(bounds=[low, high])
+        return MeshObject("rug", name, Shape((Surface(name, "", made.vertices, made.faces.astype(np.int32), Paint()),)))
+
+    rug = box("rug", (0.0, 0.0, 0.0), (1.0, 1.0, 0.015))
+    mat = replace(rug, position_m=(2.0, 0.0, 0.7))
+    corners = np.array([[0.0, 0.0, 0.5], [0.3, 0.0, 0.5], [0.0, 0.3, 0.9]])
+    flag = Shape((Surface("flag", "", corners, np.array([[0, 1, 2]], np.int32), Paint()),))
+    floor = replace(box("floor", (0.0, 0.0, -0.1), (4.0, 4.0, 0.0)), category="floor")
+    counts = []
+    for order in ([rug, mat], [mat, rug], [rug], [mat]):
+        objects = [floor, MeshObject("objects", "flag", flag, is_solid=False), *order]
+        made = build_house("home", "here", objects, (), MeshConfig(), Losses())
+        counts.append(made.report["collision_geoms"])
+    assert counts[0] == counts[1] == counts[3] > counts[2] == 0
+
+
+def test_a_home_in_one_node_gets_a_floor_and_walls(tmp_path: Path) -> None:
+    whole = trimesh.util.concatenate(
+        [triangles_of(piece, edge_m=0.5) for piece in PIECES if piece.kind in ("floor", "wall")]
+    )
+    whole.export(tmp_path / "scan.ply")
+    scene = import_mesh(tmp_path / "scan.ply", rules={}, up="auto", config=MeshConfig())
+    assert scene.house.report["area_m2"] == pytest.approx(32.0, abs=2.0)
+    assert any("level triangles of the walls" in each for each in scene.house.report["changes"])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("f 1 2 3", "line 1: .*vertex 1 does not exist"),
+        ("v 0 0 0\nv x 0 0", "line 2"),
+        ("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3", "not finite"),
+        ("v 0 0 0", "has no triangles"),
+        ("mtllib ../other.mtl", "outside of its folder"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "no level floor"),
+        ("v 0 0 0\nv 1 0 0\nf 1 2", "three vertices"),
+    ],
+)
+def test_a_broken_file_is_one_line_with_file_and_place(text: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "home.obj").write_text(text)
+    with pytest.raises(HouseError, match=message) as caught:
+        import_mesh(tmp_path / "home.obj", rules={}, up="auto", config=MeshConfig())
+    assert str(tmp_path) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_folder_without_meshes_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="has no file of a home"):
+        find_files(tmp_path)
+
+
+LINES = st.sampled_from(
+    ["v 0 0 0", "v 9 0 0", "v 9 9 0", "v 1e3 0 2", "vt 0 1", "f 1 2 3", "f 1/1 2/1 -1/1 4", "f 1//2 2 3", "f",
+     "o floor", "g chair", "usemtl m", "mtllib m.mtl", "mtllib", "v 1", "f 1 2 99999999999999", "vt nan nan",
+     "\x00 \ud800"]
+)  # fmt: skip
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(LINES, max_size=12))
+@example(["v 0 0 0", "v 0 0 0", "v 1", "f 1 2 3"])
+@example(["v 0 0 0", "v 1 0 0", "v 0 1 0", "vt", "vt 1", "f 1/1 2/2 3/1"])
+def test_any_lines_of_an_obj_file_give_surfaces_or_one_line(
+    tmp_path_factory: pytest.TempPathFactory, lines: list[str]
+) -> None:
+    file = tmp_path_factory.getbasetemp() / "any.obj"
+    file.write_text("\n".join(lines), errors="replace")
+    fault = ""
+    try:
+        read_obj(file, texture_px=16, losses=Losses().changes)
+    except HouseError as error:
+        fault = str(error)
+    assert "\n" not in fault
+    assert "any.obj" in fault or not fault

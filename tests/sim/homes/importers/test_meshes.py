@@ -1,0 +1,188 @@
+"""Triangles become visual meshes that show the same, collision geoms that leave doorways open, and flat floors."""
+
+from __future__ import annotations
+
+import json
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sim.core.errors import HouseError
+from sim.homes.importers.collision import CELL_M, collision_boxes, convex_parts, joined_cells
+from sim.homes.importers.floors import find_levels, make_storeys
+from sim.homes.importers.surfaces import Paint, Surface, read_surfaces
+from sim.homes.importers.visual import make_skins, pixels_at, samples
+from tests.helpers.scanned import DOOR_Y_M, PIECES, Mesh, Piece, painted, triangles_of, trimesh, uneven
+
+WALLS = next(piece for piece in PIECES if piece.kind == "wall")
+INNER_WALL = Piece("wall", 0, WALLS.boxes[3:], WALLS.rgb)
+
+
+def surface_of(mesh: Mesh, paint: Paint | None = None) -> Surface:
+    return Surface("", "", np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int32), paint or Paint())
+
+
+def doorway_m(boxes: np.ndarray) -> float:
+    """Returns the width in y that boxes leave free at x = 4, below 0.9 m."""
+    there = boxes[(boxes[:, 0] < 4.1) & (boxes[:, 3] > 3.9) & (boxes[:, 2] < 0.9)]
+    below = there[there[:, 4] < np.mean(DOOR_Y_M), 4].max()
+    return float(there[there[:, 1] > np.mean(DOOR_Y_M), 1].min() - below)
+
+
+def test_boxes_contain_the_surface_and_leave_a_doorway_its_width() -> None:
+    mesh = triangles_of(INNER_WALL, edge_m=0.5)
+    corners = np.asarray(mesh.triangles)
+    boxes = collision_boxes(corners)
+    assert doorway_m(boxes) == pytest.approx(DOOR_Y_M[1] - DOOR_Y_M[0], abs=0.006)  # boxes are at least 1 cm thick
+    scan = uneven(np.asarray(mesh.vertices))[mesh.faces]
+    boxes = collision_boxes(scan)
+    assert doorway_m(boxes) > DOOR_Y_M[1] - DOOR_Y_M[0] - 0.03
+    assert len(boxes) < 30  # the grid is placed so that the noise does not spread a wall over two layers
+    points = samples(scan[::7], CELL_M)[0]
+    inside = np.all((points[:, None] >= boxes[:, :3] - 2e-4) & (points[:, None] <= boxes[:, 3:] + 2e-4), axis=2)
+    assert np.asarray(inside).any(axis=1).mean() > 0.995
+
+
+def test_the_inside_of_furniture_is_filled_and_that_of_walls_is_not() -> None:
+    corners = np.asarray(trimesh.creation.box(bounds=[[0, 0, 0], [1, 1, 0.5]]).triangles)
+    hollow, filled = (collision_boxes(corners, is_filled=is_filled) for is_filled in (False, True))
+    assert filled.tolist() == [[0.0, 0.0, 0.0, 1.0, 1.0, 0.5]]
+    middle = np.array([0.5, 0.5, 0.25])
+    assert not ((hollow[:, :3] < middle) & (middle < hollow[:, 3:])).all(axis=1).any()
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.floats(0.1, 0.9))
+def test_joined_cells_cover_the_filled_cells_once_and_nothing_else(seed: int, share: float) -> None:
+    filled = np.random.default_rng(seed).random((5, 6, 4)) < share
+    ranges, of_cell = joined_cells(filled)
+    count = np.zeros(filled.shape, dtype=int)
+    for x0, y0, z0, x1, y1, z1 in ranges.tolist():
+        count[x0:x1, y0:y1, z0:z1] += 1
+    assert np.array_equal(count, filled)
+    assert np.array_equal(of_cell >= 0, filled)
+
+
+def test_convex_parts_leave_the_gap_of_a_frame_open() -> None:
+    pytest.importorskip("coacd")
+    posts = [trimesh.creation.box(bounds=box) for box in (((0, 0, 0), (0.1, 0.4, 1)), ((0, 1.2, 0), (0.1, 1.6, 1)))]
+    parts = convex_parts([surface_of(trimesh.util.concatenate(posts))])
+    assert sorted(round(float(part[:, 1].max()), 2) for part in parts) == pytest.approx([0.4, 1.6], abs=0.03)
+
+
+def test_a_surface_within_its_budget_keeps_picture_and_triangles() -> None:
+    picture = np.full((4, 4, 3), 7, np.uint8)
+    mesh = trimesh.creation.box()
+    skin = make_skins([surface_of(mesh, Paint(picture=picture, uv=np.zeros((8, 2))))], 100, 64)[0]
+    assert skin.picture is picture
+    assert len(skin.faces) == 12
+
+
+def test_a_reduced_surface_shows_its_colours_where_they_were() -> None:
+    mesh = trimesh.creation.icosphere(subdivisions=4, radius=0.5)
+    rgb = np.where(mesh.vertices[:, 2:] > 0, [200, 30, 30], [30, 30, 200]).astype(np.uint8)
+    skin = make_skins([surface_of(mesh, Paint((1.0, 1.0, 1.0, 1.0), vertex_rgb=rgb))], 300, 256)[0]
+    assert 200 < len(skin.faces) <= 400
+    assert skin.uv is not None
+    assert skin.picture is not None
+    middle, shown = skin.vertices_m[skin.faces].mean(axis=1), pixels_at(skin.picture, skin.uv[skin.faces].mean(axis=1))
+    clear = np.abs(middle[:, 2]) > 0.1
+    assert np.array_equal(shown[clear, 0] > 128, middle[clear, 2] > 0)
+
+
+def test_an_uneven_floor_with_a_hole_becomes_one_flat_level() -> None:
+    mesh = trimesh.Trimesh(*trimesh.remesh.subdivide_to_size(
+        np.array([[0, 0, 1], [4, 0, 1], [4, 3, 1], [0, 3, 1.0]]), np.array([[0, 1, 2], [0, 2, 3]]), 0.3
+    ), process=False)  # fmt: skip
+    corners = uneven(np.asarray(mesh.vertices))[mesh.faces]
+    middle = corners.mean(axis=1)
+    holed = corners[~((np.abs(middle[:, :2] - (2, 1.5)) < 0.7).all(axis=1))]
+    (level,) = find_levels(holed)
+    assert level == pytest.approx(1.0, abs=0.01)
+    (storey,) = make_storeys([level], holed, np.zeros((0, 3, 3)))
+    assert storey.floor.area_m2 == pytest.approx(12.0, rel=0.04)
+    with pytest.raises(HouseError, match="no level floor"):
+        find_levels(corners[:3])
+
+
+# ---- reading ---------------------------------------------------------------------------------------------------------
+
+
+def glb(header: dict[str, Any], data: bytes = b"") -> bytes:
+    text = json.dumps(header).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text
+    chunks += struct.pack("<I4s", len(data), b"BIN\0") + data if data else b""
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+TRIANGLE = {
+    "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36}],
+}  # fmt: skip
+CORNERS = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
+
+
+@pytest.mark.parametrize(
+    ("changed", "data", "reason"),
+    [
+        ({"accessors": [{"componentType": 5126, "count": 10**9, "type": "VEC3"}]}, CORNERS, "announces more than"),
+        ({"nodes": [{"mesh": 0, "children": [1]}, {"children": [0]}]}, CORNERS, "its nodes form a loop"),
+        ({"nodes": [{"mesh": 0, "children": [7]}]}, CORNERS, "a child that does not exist"),
+        ({"nodes": [{"children": [2]}, {"children": [2]}, {"mesh": 0}]}, CORNERS, "the child of several"),
+        ({"buffers": [{"byteLength": 36, "uri": "../../secret.bin"}]}, b"", "outside of its folder"),
+        ({"extensionsRequired": ["KHR_draco_mesh_compression"]}, CORNERS, "compressed by Draco"),
+        ({"nodes": []}, CORNERS, "x.glb"),
+        ({}, CORNERS[:-4] + struct.pack("<f", np.nan), "not finite"),
+        ({}, CORNERS[:-4] + struct.pack("<f", 1e9), "beyond 2000 m"),
+    ],
+)
+def test_hostile_meshes_are_one_line(changed: dict[str, Any], data: bytes, reason: str, tmp_path: Path) -> None:
+    file = tmp_path / "scene" / "x.glb"
+    file.parent.mkdir()
+    (tmp_path / "secret.bin").write_bytes(CORNERS)
+    file.write_bytes(glb({**TRIANGLE, **changed}, data))
+    with pytest.raises(HouseError, match=reason) as caught:
+        read_surfaces(file)
+    assert "\n" not in str(caught.value)
+    assert "scene" in str(caught.value)
+
+
+def test_a_triangle_is_read_and_turned_upright(tmp_path: Path) -> None:
+    (tmp_path / "x.glb").write_bytes(glb(TRIANGLE, CORNERS))
+    surface = read_surfaces(tmp_path / "x.glb", up="y")[0]
+    assert surface.corners_m.tolist() == [[[0, 0, 0], [1, 0, 0], [0, 0, 1]]]
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.data())
+def test_any_bytes_are_surfaces_or_one_line(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
+    content = bytearray(glb(TRIANGLE, CORNERS))
+    for _ in range(data.draw(st.integers(1, 4))):
+        content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
+    file = tmp_path_factory.mktemp("any") / "x.glb"
+    file.write_bytes(bytes(content[: data.draw(st.integers(0, len(content)))]))
+    fault, found = "", []
+    try:
+        found = read_surfaces(file)
+    except HouseError as error:
+        fault = str(error)
+    assert all(np.isfinite(surface.vertices_m).all() for surface in found)
+    assert "\n" not in fault
+    assert "x.glb" in fault or found
+
+
+def test_pictures_of_a_mesh_are_read_once_and_reduced(tmp_path: Path) -> None:
+    scene = trimesh.Scene([painted(triangles_of(PIECES[0]), (200, 100, 50))])
+    scene.export(tmp_path / "x.glb")
+    (surface,) = read_surfaces(tmp_path / "x.glb", texture_px=16)
+    assert surface.paint.picture is not None
+    assert surface.paint.picture.shape == (16, 16, 3)
+    assert surface.paint.picture[8, 8].tolist() == [200, 100, 50]
