@@ -13,6 +13,7 @@ import torch
 from jaxtyping import Float32, Float64, Int
 
 from sim.core.interface import MPCAT40, MPCAT40_ID, ConfigError
+from sim.homes.plans.plan import Plan
 from stubborn.detection.context import OBJECTS, Context
 
 LEAST_OBJECTS = 10
@@ -49,6 +50,18 @@ def surroundings(
     near &= rng.random(near.shape) < rng.uniform(LEAST_SEEN, 1.0, (len(near), 1))
     is_of = number[:, None] == np.arange(len(OBJECTS))
     return (near.astype(np.float32) @ is_of > 0.0).astype(np.float32), number
+
+
+def around(plan: Plan, radius_m: float, rng: np.random.Generator) -> Surroundings:
+    """Returns what is around the objects of one plan."""
+    on_storey = plan.span_low_m < plan.ceiling_m  # spans reach above the ceiling, into the next storey
+    instances, number = np.unique(plan.span_instance[on_storey], return_inverse=True)
+    low, high = np.full((2, instances.size), np.inf), np.zeros((2, instances.size))
+    for axis, cell in enumerate(np.divmod(plan.span_cell[on_storey], plan.frame.shape[1])):
+        np.minimum.at(low[axis], number, cell)
+        np.maximum.at(high[axis], number, cell)
+    middle_m = 0.5 * plan.frame.cell_m * (low + high)
+    return surroundings(middle_m[1], middle_m[0], plan.categories[instances].astype(np.intp), radius_m, rng)
 
 
 def fit(houses: Sequence[Surroundings], radius_m: float, *, steps: int = 400) -> Context:

@@ -19,8 +19,8 @@ import numpy as np
 from sim.app import cli
 from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
-from sim.homes.plans.plan import Plan, read_plan
-from sim.training.fits.context import Surroundings, fit, log_losses, surroundings
+from sim.homes.plans.plan import read_plan
+from sim.training.fits.context import around, fit, log_losses
 from sim.training.plan_split import split_plans
 from stubborn.detection.context import SHIPPED, content_of
 
@@ -65,15 +65,3 @@ def main(args: Args) -> int:
     write_atomically(file, json.dumps(content, indent=1, allow_nan=False) + "\n")
     print(f"written: {file}")
     return 0
-
-
-def around(plan: Plan, radius_m: float, rng: np.random.Generator) -> Surroundings:
-    """Returns what is around the objects of one plan."""
-    on_storey = plan.span_low_m < plan.ceiling_m  # spans reach above the ceiling, into the next storey
-    instances, number = np.unique(plan.span_instance[on_storey], return_inverse=True)
-    low, high = np.full((2, instances.size), np.inf), np.zeros((2, instances.size))
-    for axis, cell in enumerate(np.divmod(plan.span_cell[on_storey], plan.frame.shape[1])):
-        np.minimum.at(low[axis], number, cell)
-        np.maximum.at(high[axis], number, cell)
-    middle_m = 0.5 * plan.frame.cell_m * (low + high)
-    return surroundings(middle_m[1], middle_m[0], plan.categories[instances].astype(np.intp), radius_m, rng)

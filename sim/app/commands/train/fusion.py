@@ -17,16 +17,13 @@ docs/segmentation.md. Houses of val and test are for --judge only.
 
 from __future__ import annotations
 
-import io
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import msgspec
-import numpy as np
-from jaxtyping import Int
 
 from sim.app.commands.train.episode_logs import (
     LogOptions,
@@ -39,48 +36,19 @@ from sim.app.commands.train.episode_logs import (
 from sim.app.composition.segmenters import find_segmentation, make_segmenter
 from sim.app.evaluation.rollout import episode_seed
 from sim.app.evaluation.workers import RunnerSpec
-from sim.core.errors import EpisodeError, PhysicsError
-from sim.core.files import inside, write_atomically
-from sim.core.interface import GOAL_CATEGORIES, MPCAT40, Action, ConfigError
-from sim.core.reading import Count as ReadCount
-from sim.core.reading import Name, read_npz
+from sim.core.files import write_atomically
+from sim.core.interface import ConfigError
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split
-from sim.training.fits.fusion import PLAUSIBLE, Sample, fit, judge, left_out, probabilities, samples_of
-from stubborn.agent import StubbornAgent
-from stubborn.agents import PLUS
-from stubborn.detection.fusion import FOLDER, Fusion, read_fusion
-from stubborn.detection.look import LookConfig
-from stubborn.detection.track_seeker import TrackSeeker, TrackSeekerConfig
-from stubborn.detection.tracks import Tracks
-from stubborn.segmentation.ground_truth import STRIDE_PX
-
-LOOK_AT_ALL = LookConfig(bar=((0, 1.0),), slack=0.0, visit=0.15)
-"""The agent accepts nothing, and looks at everything that may be the goal."""
-SEEKER = TrackSeekerConfig()
-"""The configuration of `stubborn-plus`."""
-LEAST_VOXELS = 6
-"""Smaller tracks are no candidates of the agent's and not logged."""
-LEVELS = (0.4, 1.0, 2.0, 3.5, 6.0)
-"""A track is logged when the total weight of its views reaches each of these values."""
-MAX_FILE_BYTES = 256 << 20
-_ARRAYS = ("counts", "track", "sample", "view", "mean", "weight")
+from sim.training.fits.fusion import fit, judge, probabilities, samples_of
+from sim.training.fits.track_log import TrackLine, TrackRecorder, compared, file_of, read_tracks, write_tracks
+from stubborn.detection.fusion import FOLDER, read_fusion
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args(LogOptions):
     """Log the tracks of episodes, then fit the fusion of views to them."""
-
-
-class TrackLine(msgspec.Struct):
-    """A line of the log."""
-
-    episode_id: Name
-    goal: Name
-    house: Name
-    steps: ReadCount
-    tracks: ReadCount
 
 
 def main(args: Args) -> int:
@@ -114,14 +82,6 @@ def main(args: Args) -> int:
     return 0
 
 
-def compared(samples: Sequence[Sample]) -> dict[str, Any]:
-    """Returns the quality on houses left out, and that of plain averages on the same pairs."""
-    fitted, plain = left_out(samples), probabilities(Fusion(), samples)
-    goals = np.array([MPCAT40.index(name) - 1 for name in GOAL_CATEGORIES])
-    among = np.maximum(fitted, plain)[:, goals] >= PLAUSIBLE
-    return {name: judge(p, samples, among) for name, p in (("fitted", fitted), ("averages", plain))}
-
-
 def tracks_of(args: Args, split: Split) -> list[dict[str, Any]]:
     """Returns the tracks of the first `args.episodes` episodes; those that are not in the log yet are run now."""
     log = args.log or default_log("tracks", args, split)
@@ -130,11 +90,6 @@ def tracks_of(args: Args, split: Split) -> list[dict[str, Any]]:
     return [
         {"house": line["house"], **read_tracks(file_of(log, line["episode_id"]))} for line in lines if line["steps"]
     ]
-
-
-def file_of(log: Path, episode_id: str) -> Path:
-    """Returns the file with the tracks of an episode."""
-    return inside(log / "tracks", f"{episode_id}.npz", what="An episode of the log")
 
 
 class TrackRunner:
@@ -150,130 +105,19 @@ class TrackRunner:
             truth=tuple({"semantic", *spec.truth}),
             max_steps=args.max_steps,
         )
-        self._agent = StubbornAgent(
-            camera=self._env.camera_model,
-            robot=self._env.robot_model,
-            success=self._env.success_rule,
-            segmenter=make_segmenter(args.semantics, self._env, args.weights),
-            config=replace(PLUS, seeker=replace(SEEKER, look=LOOK_AT_ALL, context_share=0.0)),
-        )
-        assert isinstance(self._agent.seeker, TrackSeeker)
-        self._agent.seeker.fusion = Fusion()  # what is logged must depend on no fitted parameters, also not on context
+        self._recorder = TrackRecorder(self._env, make_segmenter(args.semantics, self._env, args.weights))
 
     def run(self, episode: Episode) -> dict[str, Any]:
         """Runs one episode to its last step and writes its tracks; returns its line."""
-        seed = episode_seed(self._seed, episode.episode_id)
-        counts = np.zeros((self._agent_tracks_limit(), len(MPCAT40)), np.int64)
-        samples = TrackSamples()
-        try:
-            observation, _ = self._env.reset(seed=seed, options={"episode": episode})
-            self._agent.reset(episode.goal, seed)
-            ended = False
-            while not ended:
-                action = self._agent.act(observation)
-                self._count(observation["depth"], counts)
-                samples.add(self._tracks())
-                if action == Action.STOP:  # cannot happen: nothing is accepted
-                    break
-                observation, _, terminated, truncated, _ = self._env.step(action)
-                ended = terminated or truncated
-        except (EpisodeError, PhysicsError):
+        arrays = self._recorder.run(episode, episode_seed(self._seed, episode.episode_id))
+        if arrays is None:
             return line_of(episode, 0, tracks=0)
-        content: dict[str, Any] = logged(self._tracks(), counts, samples)
-        buffer = io.BytesIO()
-        np.savez_compressed(buffer, **content)
-        file = file_of(self._log, episode.episode_id)
-        file.parent.mkdir(exist_ok=True)
-        write_atomically(file, buffer.getvalue())
-        return line_of(episode, self._env.scene.task.num_steps, tracks=len(content["counts"]))
+        write_tracks(self._log, episode.episode_id, arrays)
+        return line_of(episode, self._env.scene.task.num_steps, tracks=len(arrays["counts"]))
 
     def close(self) -> None:
         """Frees the renderers."""
         self._env.close()
-
-    def _tracks(self) -> Tracks:
-        seeker = self._agent.seeker
-        assert isinstance(seeker, TrackSeeker)
-        assert seeker.tracks is not None, "the agent has acted"
-        return seeker.tracks
-
-    def _agent_tracks_limit(self) -> int:
-        return SEEKER.tracks.most_tracks
-
-    def _count(self, depth: np.ndarray, counts: Int[np.ndarray, "tracks ids"]) -> None:
-        """Adds the true ids of the pixels of the frame to those of their tracks."""
-        truth = self._env.truth_images["semantic"][STRIDE_PX // 2 :: STRIDE_PX, STRIDE_PX // 2 :: STRIDE_PX]
-        assert self._agent.pose is not None
-        owner = self._tracks().shown(depth, self._agent.pose, truth.shape[1])
-        np.add.at(counts, (owner.astype(np.intp), truth.astype(np.intp)), 1)
-
-
-class TrackSamples:
-    """The views of tracks at several steps of an episode."""
-
-    def __init__(self) -> None:
-        self._level: dict[int, int] = {}
-        self._track: list[int] = []
-        self._parts: dict[str, list[np.ndarray]] = {name: [] for name in _ARRAYS[2:]}
-
-    def add(self, tracks: Tracks) -> None:
-        """Adds the tracks in view whose views have reached a further one of `LEVELS`."""
-        numbers = tracks.in_view[tracks.sizes(tracks.in_view) >= LEAST_VOXELS]
-        _, weight = tracks.evidence.views(numbers)
-        level = np.searchsorted(LEVELS, weight.sum(axis=1), side="right")
-        grown = [v > self._level.get(n, 0) for n, v in zip(numbers.tolist(), level.tolist(), strict=True)]
-        self._level.update(zip(numbers.tolist(), level.tolist(), strict=True))
-        self.take(tracks, numbers[np.array(grown, np.bool_)])
-
-    def take(self, tracks: Tracks, numbers: Int[np.ndarray, " n"]) -> None:
-        """Adds these tracks as they are now; without any, `arrays` still has the shapes of the arrays."""
-        mean, weight = tracks.evidence.views(numbers)
-        sample, view = np.nonzero(weight > 0.0)
-        added = {
-            "sample": (len(self._track) + sample).astype(np.int32),
-            "view": view.astype(np.int16),
-            "mean": mean[sample, view].astype(np.float16),
-            "weight": weight[sample, view].astype(np.float16),
-        }
-        self._track += numbers.tolist()
-        for name, values in added.items():
-            self._parts[name].append(values)
-
-    def arrays(self, now: Int[np.ndarray, " numbers"], kept: Int[np.ndarray, " n"]) -> dict[str, np.ndarray]:
-        """Returns all samples of the kept tracks; `now` is the track into which each one was merged.
-
-        `track` is the index of a sample's track in `kept`, `sample` the index of a view's sample in `track`.
-        """
-        index = np.full(len(now), -1)
-        index[kept] = np.arange(len(kept))
-        track = index[now[np.array(self._track, np.intp)]]
-        number = np.cumsum(track >= 0) - 1
-        parts = {name: np.concatenate(values) for name, values in self._parts.items()}
-        views = track[parts["sample"]] >= 0
-        result = {name: parts[name][views] for name in ("view", "mean", "weight")}
-        return result | {
-            "track": track[track >= 0].astype(np.int32),
-            "sample": number[parts["sample"][views]].astype(np.int32),
-        }
-
-
-def logged(tracks: Tracks, counts: Int[np.ndarray, "tracks ids"], samples: TrackSamples) -> dict[str, np.ndarray]:
-    """Returns what `samples_of` reads of an episode."""
-    now = tracks.now()
-    merged = np.zeros_like(counts)
-    np.add.at(merged, now, counts[: len(now)])
-    kept = 1 + np.flatnonzero(tracks.sizes(np.arange(1, len(now))) >= LEAST_VOXELS)
-    samples.take(tracks, kept)
-    return {"counts": merged[kept].astype(np.int32)} | samples.arrays(now, kept)
-
-
-def read_tracks(file: Path) -> dict[str, np.ndarray]:
-    """Returns the tracks of an episode.
-
-    Raises:
-        ConfigError: the file is missing or broken.
-    """
-    return read_npz(file, _ARRAYS, what="file of `stubborn train fusion`", most_bytes=MAX_FILE_BYTES)
 
 
 def _print(quality: Mapping[str, Any]) -> None:

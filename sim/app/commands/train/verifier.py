@@ -25,8 +25,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from sim.app import cli
 from sim.app.commands.train.episode_logs import (
     LogOptions,
@@ -39,21 +37,13 @@ from sim.app.commands.train.episode_logs import (
 from sim.app.composition.segmenters import find_segmentation, make_segmenter
 from sim.app.evaluation.rollout import episode_seed
 from sim.app.evaluation.workers import RunnerSpec
-from sim.core.errors import EpisodeError, PhysicsError
 from sim.core.files import write_atomically
-from sim.core.interface import Action, ConfigError
-from sim.core.reading import Count as ReadCount
-from sim.core.reading import Name, Number
+from sim.core.interface import ConfigError
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split
-from stubborn.agent import AgentConfig, StubbornAgent
-from stubborn.detection.classifiers import Features
-from stubborn.detection.distances import TargetConfig
+from sim.training.fits.candidates import CandidateLine, CandidateRecorder
 from stubborn.detection.verification import FOLDER, NAIVE_BAYES, FittedVerifier
-
-NEVER = 1_000_000
-"""A step that no episode reaches."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,48 +60,6 @@ class Args(LogOptions):
     """Steps of an episode; an agent never verifies what it first finds after step 200."""
     least_of_either: cli.Count = 20
     """A category with fewer true or fewer false candidates uses the pooled naive Bayes."""
-
-
-class CandidateLine(msgspec.Struct):
-    """A line of the log."""
-
-    episode_id: Name
-    goal: Name
-    house: Name
-    steps: ReadCount
-    candidates: list[tuple[Number, Number, Number, Number, Number, Number, Number]]
-
-
-class RecordingVerifier:
-    """A verifier that rejects every candidate and records it with the truth.
-
-    Candidates that are verified from too far away to stop (`Approach.near_enough` is False) are not recorded: a STOP
-    fails there at a true instance too, which would be recorded as a false candidate.
-    """
-
-    may_refuse = True
-
-    def __init__(self, env: ObjectNavEnv) -> None:
-        self._env = env
-        self.agent: StubbornAgent | None = None
-        """The agent that asks; None: every candidate is recorded."""
-        self.candidates: list[list[float]] = []
-        """Features; 1 where a STOP would have succeeded, else 0; the robot's x and y in metres."""
-
-    def accepts(self, goal: str, features: Features) -> bool:
-        """Records the candidate and returns False."""
-        approach = None if self.agent is None else self.agent.approach
-        if approach is not None and not approach.near_enough:
-            return False
-        world, task = self._env.scene.world, self._env.scene.task
-        x_m, y_m, floor_z_m = world.pose.x_m, world.pose.y_m, world.pose.floor_z_m
-        truth = task.truth.succeeds_now(goal, x_m, y_m, floor_z_m)
-        self.candidates.append([round(float(value), 4) for value in (*features, truth, x_m, y_m)])
-        return False
-
-    def would_accept(self, goal: str, features: Features) -> bool:
-        """Returns False and records nothing, so that the nearest candidate is visited first."""
-        return False
 
 
 def main(args: Args) -> int:
@@ -152,33 +100,12 @@ class CandidateRunner:
         self._env = ObjectNavEnv(
             split=args.split, sensors=("depth", *spec.sensors), truth=spec.truth, max_steps=args.max_steps
         )
-        self._recorder = RecordingVerifier(self._env)
-        self._agent = self._recorder.agent = StubbornAgent(
-            camera=self._env.camera_model,
-            robot=self._env.robot_model,
-            success=self._env.success_rule,
-            segmenter=make_segmenter(args.semantics, self._env, args.weights),
-            verifier=self._recorder,
-            config=AgentConfig(target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER)),
-        )
+        self._recorder = CandidateRecorder(self._env, make_segmenter(args.semantics, self._env, args.weights))
 
     def run(self, episode: Episode) -> dict[str, Any]:
         """Runs one episode to its last step, or until it fails; returns its line."""
-        self._recorder.candidates = []
         seed = episode_seed(self._seed, episode.episode_id)
-        try:
-            observation, _ = self._env.reset(seed=seed, options={"episode": episode})
-            self._agent.reset(episode.goal, seed)
-            ended = False
-            while not ended:
-                action = self._agent.act(observation)
-                if action == Action.STOP:  # cannot happen: every candidate is rejected
-                    break
-                observation, _, terminated, truncated, _ = self._env.step(action)
-                ended = terminated or truncated
-            steps = self._env.scene.task.num_steps
-        except (EpisodeError, PhysicsError):
-            steps = 0
+        steps = self._recorder.run(episode, seed)
         return line_of(episode, steps, candidates=self._recorder.candidates)
 
     def close(self) -> None:

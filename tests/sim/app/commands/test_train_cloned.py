@@ -12,6 +12,7 @@ import pytest
 from sim.app.commands.run import entry
 from sim.app.commands.train import cloned as train_cloned
 from sim.core.interface import MPCAT40_ID, Action, ConfigError
+from sim.training.cloned import trainer
 from sim.training.cloned.demonstrations import (
     Demonstration,
     list_demonstrations,
@@ -79,19 +80,19 @@ def test_a_training_learns_a_rule_and_is_continued(tmp_path: Path, capsys: pytes
 
 @pytest.mark.costly
 def test_training_lowers_the_loss_on_the_demonstrated_actions(tmp_path: Path):
-    shown = [train_cloned.labelled_steps_of(rule("house_1", seed=seed), Path("a")) for seed in range(20)]
+    shown = [trainer.labelled_steps_of(rule("house_1", seed=seed), Path("a")) for seed in range(20)]
     args = train_cloned.Args(demonstrations=(), out=tmp_path, streams=6, length=12, rate=5e-3)
-    trainer = train_cloned.Trainer(args, shown, shown[:4], [])
+    training = trainer.Trainer(args, shown, shown[:4], [])
     losses = []
     for _ in range(30):
-        losses.append(trainer.train_once()["cross_entropy"])
+        losses.append(training.train_once()["cross_entropy"])
     assert np.mean(losses[-5:]) < 0.5 * np.mean(losses[:5])
 
 
 def test_an_evaluation_takes_at_most_the_given_number(tmp_path: Path):
-    shown = [train_cloned.labelled_steps_of(rule("house_0", seed=seed), Path("a")) for seed in range(7)]
+    shown = [trainer.labelled_steps_of(rule("house_0", seed=seed), Path("a")) for seed in range(7)]
     args = train_cloned.Args(demonstrations=(), out=tmp_path, val_count=4)
-    assert len(train_cloned.Trainer(args, shown, shown, []).val) == 4
+    assert len(trainer.Trainer(args, shown, shown, []).val) == 4
 
 
 def test_other_options_and_other_demonstrations_do_not_continue_a_run(tmp_path: Path):

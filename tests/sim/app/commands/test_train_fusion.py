@@ -14,6 +14,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40, ConfigError
 from sim.episodes.episode import Episode
 from sim.episodes.splits import write_split
+from sim.training.fits import track_log
 from stubborn.detection.fusion import Fusion
 from stubborn.detection.track_seeker import TrackSeeker
 from tests.helpers.worlds import room, with_box
@@ -43,7 +44,7 @@ def log_after(split: Path, log: Path, episodes: int) -> list[dict]:
 def test_the_agent_of_the_log_uses_no_fitted_parameters(split: Path, tmp_path: Path):
     args = train_tracks.Args(split=str(split), semantics="noisy", log=tmp_path, out=tmp_path / "x.json")
     runner = train_tracks.TrackRunner((args, tmp_path))
-    seeker = runner._agent.seeker
+    seeker = runner._recorder._agent.seeker
     assert isinstance(seeker, TrackSeeker)
     assert (seeker.fusion, seeker.context) == (Fusion(), None)
     runner.close()
@@ -85,7 +86,7 @@ def test_a_file_holds_the_tracks_only(split: Path, tmp_path: Path, monkeypatch: 
 def test_an_episode_without_tracks_is_logged_and_adds_no_samples(
     split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr(train_tracks, "LEAST_VOXELS", 10**9)
+    monkeypatch.setattr(track_log, "LEAST_VOXELS", 10**9)
     args = train_tracks.Args(
         split=str(split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
     )
@@ -151,9 +152,9 @@ def test_merged_tracks_are_counted_together():
 
     counts = np.zeros((5, len(MPCAT40)), np.int64)
     counts[1, 3], counts[2, 3], counts[3, 3] = 10, 5, 2
-    samples, tracks = train_tracks.TrackSamples(), Merged()
+    samples, tracks = track_log.TrackSamples(), Merged()
     samples.take(tracks, np.array([2]))  # type: ignore[arg-type]
-    content = train_tracks.logged(tracks, counts, samples)  # type: ignore[arg-type]
+    content = track_log.logged(tracks, counts, samples)  # type: ignore[arg-type]
     assert content["counts"][:, 3].tolist() == [15]
     assert content["track"].tolist() == [0, 0]  # as it was before it was merged, and at the end
     assert content["sample"].tolist() == [0, 1]

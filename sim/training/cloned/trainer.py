@@ -1,0 +1,206 @@
+"""Trains the policy of the agent `cloned`: demonstrations, the loss, the run and its curve."""
+
+from __future__ import annotations
+
+import time
+import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+from torch.nn import functional
+
+from sim.core.interface import GOAL_CATEGORIES, Action, ConfigError
+from sim.core.option_types import Amount, Count, NotNegative, OutFolder, Positive, Seed
+from sim.training.cloned.demonstrations import Demonstration, read_demonstration
+from sim.training.cloned.samples import LabelledSteps, Piece, Streams
+from sim.training.figures import empty_figure
+from sim.training.timed_training import PRINT_EVERY_S, TimedTraining, stride
+from sim.training.training_files import read_columns
+from stubborn.baselines.cloned_input import HEIGHT_PX, NO_ACTION, WIDTH_PX, Steps, depth_levels, motions
+from stubborn.baselines.cloned_net import FILES, ClonedNet
+
+HELD_BACK = 10
+"""One of this many houses is held back."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Train the policy of the agent cloned on demonstrations."""
+
+    demonstrations: tuple[Path, ...]
+    """Folders of demonstrations; folders in them count."""
+    out: OutFolder
+    """Folder of the run; an existing run is continued."""
+    minutes: Positive = 60.0
+    """Time of the training, to which the learning rate is fitted."""
+    streams: Count = 24
+    """Number of demonstrations in a batch."""
+    length: Count = 32
+    """Steps of each demonstration in a step of the training; gradients do not pass to earlier steps."""
+    rate: Positive = 1.5e-3
+    """Peak learning rate of AdamW."""
+    weight_decay: NotNegative = 0.01
+    """Weight decay of AdamW."""
+    threads: Count = 1
+    """Number of threads of PyTorch."""
+    val_count: Amount = 150
+    """Largest number of held-back demonstrations in an evaluation; 0: all."""
+    seed: Seed = 0
+    """Seed of the initial weights and of the order."""
+
+
+def read_all(files: Sequence[Path]) -> tuple[list[LabelledSteps], list[LabelledSteps]]:
+    """Returns the demonstrations to train on, and those in houses that are held back."""
+    train: list[LabelledSteps] = []
+    val: list[LabelledSteps] = []
+    printed_s = time.monotonic()
+    for number, file in enumerate(files):
+        if time.monotonic() - printed_s >= PRINT_EVERY_S:
+            printed_s = time.monotonic()
+            print(f"{number} of {len(files)} demonstrations read", flush=True)
+        given = read_demonstration(file)
+        held_back = zlib.crc32(given.house.encode()) % HELD_BACK == 0
+        (val if held_back else train).append(labelled_steps_of(given, file))
+    if not train or not val:
+        raise ConfigError(
+            f"{len(train)} demonstrations to train on and {len(val)} held back: both are needed. One house in "
+            f"{HELD_BACK} is held back; render more houses."
+        )
+    return train, val
+
+
+def labelled_steps_of(demonstration: Demonstration, file: Path) -> LabelledSteps:
+    """Returns a demonstration in the form that the policy reads.
+
+    Raises:
+        ConfigError: its images have another size.
+    """
+    if demonstration.depth_mm.shape[1:] != (HEIGHT_PX, WIDTH_PX):
+        height, width = demonstration.depth_mm.shape[1:]
+        raise ConfigError(f"'{file}' has images of {width} x {height}, the policy takes {WIDTH_PX} x {HEIGHT_PX}.")
+    before = np.concatenate((np.array([NO_ACTION], np.uint8), demonstration.actions[:-1]))
+    steps = Steps(
+        depth_levels(demonstration.depth_mm.astype(np.float32) / 1000.0),
+        demonstration.semantic,
+        motions(demonstration.poses),
+        before,
+        GOAL_CATEGORIES.index(demonstration.goal),
+    )
+    return LabelledSteps(steps, demonstration.actions)
+
+
+class Trainer(TimedTraining):
+    """The network, the optimiser, the demonstrations and the progress of one run."""
+
+    def __init__(
+        self, args: Args, train: Sequence[LabelledSteps], val: Sequence[LabelledSteps], files: Sequence[Path]
+    ) -> None:
+        self.val = val[:: stride(len(val), args.val_count)]
+        self.counts = {"demonstrations": len(train), "frames": sum(len(each.actions) for each in train)}
+        torch.manual_seed(args.seed)
+        samples = args.streams * args.length
+        super().__init__(
+            args,
+            FILES,
+            ClonedNet(),
+            max_gradient_norm=1.0,
+            samples_per_step=samples,
+            files={"demonstrations": files},
+        )
+        self.streams = Streams(train, width=args.streams, length=args.length, seed=args.seed + self.progress.step)
+        self.state: Tensor | None = None
+        """The memory of the policy in each stream."""
+        words = ", ".join(f"{value} {name}" for name, value in self.counts.items())
+        print(f"{words}, {len(self.val)} of {len(val)} held-back demonstrations to evaluate on", flush=True)
+
+    def losses(self) -> tuple[Tensor, Mapping[str, Tensor]]:
+        """See `TimedTraining.losses`: the weighted cross entropy of the next piece."""
+        piece = self.streams.next_piece()
+        if self.state is not None:
+            self.state = self.state.detach() * torch.from_numpy(~piece.begins).float()[None, :, None]
+        logits, self.state = self._logits(self.model, piece, self.state)
+        losses = functional.cross_entropy(
+            logits.flatten(0, 1), torch.from_numpy(piece.actions).long().flatten(), reduction="none"
+        )
+        weight = torch.from_numpy(piece.weight).flatten()
+        loss = (losses * weight).sum() / weight.sum()
+        return loss, {"cross_entropy": loss}
+
+    def evaluate(self, model: torch.nn.Module) -> tuple[float, dict[str, Any], str]:
+        """See `TimedTraining.evaluate`."""
+        found, true, changes, losses = [], [], [], []
+        for one in self.val:
+            logits = self._logits(model, one.steps, None)[0][:, 0]
+            actions = torch.from_numpy(one.actions).long()
+            losses.append(functional.cross_entropy(logits, actions, reduction="none").numpy())
+            found.append(logits.argmax(1).numpy())
+            true.append(one.actions)
+            changes.append(one.changes)
+        row = agreement(*(np.concatenate(each) for each in (found, true, changes, losses)))
+        loss = row["cross_entropy"]
+        assert loss is not None
+        return loss, row, ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in row.items())
+
+    def about(self) -> dict[str, Any]:
+        """See `TimedTraining.about`."""
+        return self.counts
+
+    def _logits(self, model: torch.nn.Module, piece: Piece | Steps, state: Tensor | None) -> tuple[Tensor, Tensor]:
+        """Returns the logits of the actions and the state after the last step; `Steps` are one stream."""
+        arrays = (piece.depth, piece.categories, piece.motion, piece.before)
+        tensors = [torch.from_numpy(np.ascontiguousarray(array)) for array in arrays]
+        if isinstance(piece, Steps):
+            tensors = [tensor[:, None] for tensor in tensors]
+        with torch.autocast("cpu", dtype=torch.bfloat16, enabled=self.bf16):
+            logits, after = model(*tensors, torch.as_tensor(piece.goal).reshape(-1), state)
+        return logits.float(), after.float()
+
+
+def agreement(
+    found: np.ndarray, true: np.ndarray, changes: np.ndarray, losses: np.ndarray
+) -> dict[str, float | int | None]:
+    """Returns how often the most probable actions are those of the demonstrator.
+
+    Args:
+        found: (n,) the most probable actions.
+        true: (n,) the actions of the demonstrator.
+        changes: (n,) whether the demonstrator's action differs from the previous one.
+        losses: (n,) cross entropies.
+    """
+    right = found == true
+
+    def share(among: np.ndarray) -> float | None:
+        return round(float(right[among].mean()), 4) if among.any() else None
+
+    return {
+        "frames": len(true),
+        "cross_entropy": round(float(losses.mean()), 4),
+        "right": share(np.ones(len(true), np.bool_)),
+        "right_at_changes": share(changes),
+        "stops_found": share(true == Action.STOP),
+        "stops_right": share(found == Action.STOP),
+    }
+
+
+def draw_curve(out: Path) -> None:
+    """Draws the columns of `train.csv` and `val.csv` as `curve.png`."""
+    train, val = (read_columns(out / name) for name in ("train.csv", "val.csv"))
+    figure = empty_figure(9.0, 3.2, what="The curves of a training")
+    axes = figure.subplots(1, 2)
+    if train:
+        axes[0].plot(train["minutes"], train["cross_entropy"], color="0.6", label="training, changes count more")
+    axes[0].plot(val["minutes"], val["cross_entropy"], color="C0", label="held-back houses")
+    axes[0].set_title("cross entropy of the action", fontsize=9)
+    for name, label in (("right", "all actions"), ("right_at_changes", "changes"), ("stops_found", "STOPs")):
+        axes[1].plot(val["minutes"], val[name], label=label)
+    axes[1].set_title("share of actions that are the demonstrator's, held-back houses", fontsize=9)
+    axes[1].set_ylim(0.0, 1.0)
+    for axis in axes:
+        axis.set_xlabel("minutes")
+        axis.legend(fontsize=8)
+    figure.savefig(out / "curve.png", dpi=80)

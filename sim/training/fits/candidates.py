@@ -1,0 +1,98 @@
+"""Records the candidates that an agent finds, with the truth: the data of the verifier's fit."""
+
+from __future__ import annotations
+
+import msgspec
+
+from sim.core.errors import EpisodeError, PhysicsError
+from sim.core.interface import Action, Segmenter
+from sim.core.reading import Count as ReadCount
+from sim.core.reading import Name, Number
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.episode import Episode
+from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.detection.classifiers import Features
+from stubborn.detection.distances import TargetConfig
+
+NEVER = 1_000_000
+"""A step that no episode reaches."""
+
+
+class CandidateLine(msgspec.Struct):
+    """A line of the log."""
+
+    episode_id: Name
+    goal: Name
+    house: Name
+    steps: ReadCount
+    candidates: list[tuple[Number, Number, Number, Number, Number, Number, Number]]
+
+
+class RecordingVerifier:
+    """A verifier that rejects every candidate and records it with the truth.
+
+    Candidates that are verified from too far away to stop (`Approach.near_enough` is False) are not recorded: a STOP
+    fails there at a true instance too, which would be recorded as a false candidate.
+    """
+
+    may_refuse = True
+
+    def __init__(self, env: ObjectNavEnv) -> None:
+        self._env = env
+        self.agent: StubbornAgent | None = None
+        """The agent that asks; None: every candidate is recorded."""
+        self.candidates: list[list[float]] = []
+        """Features; 1 where a STOP would have succeeded, else 0; the robot's x and y in metres."""
+
+    def accepts(self, goal: str, features: Features) -> bool:
+        """Records the candidate and returns False."""
+        approach = None if self.agent is None else self.agent.approach
+        if approach is not None and not approach.near_enough:
+            return False
+        world, task = self._env.scene.world, self._env.scene.task
+        x_m, y_m, floor_z_m = world.pose.x_m, world.pose.y_m, world.pose.floor_z_m
+        truth = task.truth.succeeds_now(goal, x_m, y_m, floor_z_m)
+        self.candidates.append([round(float(value), 4) for value in (*features, truth, x_m, y_m)])
+        return False
+
+    def would_accept(self, goal: str, features: Features) -> bool:
+        """Returns False and records nothing, so that the nearest candidate is visited first."""
+        return False
+
+
+class CandidateRecorder:
+    """An agent that runs whole episodes, because its verifier records every candidate and rejects it."""
+
+    def __init__(self, env: ObjectNavEnv, segmenter: Segmenter) -> None:
+        self._env = env
+        self._verifier = RecordingVerifier(env)
+        self._agent = self._verifier.agent = StubbornAgent(
+            camera=env.camera_model,
+            robot=env.robot_model,
+            success=env.success_rule,
+            segmenter=segmenter,
+            verifier=self._verifier,
+            config=AgentConfig(target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER)),
+        )
+
+    @property
+    def candidates(self) -> list[list[float]]:
+        """The candidates of the last episode (`RecordingVerifier.candidates`)."""
+        return self._verifier.candidates
+
+    def run(self, episode: Episode, seed: int) -> int:
+        """Runs an episode to its last step; returns the number of its steps, 0 if it failed."""
+        self._verifier.candidates = []
+        try:
+            observation, _ = self._env.reset(seed=seed, options={"episode": episode})
+            self._agent.reset(episode.goal, seed)
+            ended = False
+            while not ended:
+                action = self._agent.act(observation)
+                if action == Action.STOP:  # cannot happen: every candidate is rejected
+                    break
+                observation, _, terminated, truncated, _ = self._env.step(action)
+                ended = terminated or truncated
+            return self._env.scene.task.num_steps
+        except (EpisodeError, PhysicsError):
+            return 0
