@@ -134,7 +134,7 @@ def read_tracks(file: Path) -> dict[str, np.ndarray]:
 def write_tracks(log: Path, episode_id: str, arrays: Mapping[str, np.ndarray]) -> None:
     """Writes the tracks of an episode into a log."""
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, allow_pickle=False, **arrays)
+    np.savez_compressed(buffer, **arrays)  # pyright: ignore[reportArgumentType] - it takes no other keyword
     file = file_of(log, episode_id)
     file.parent.mkdir(exist_ok=True)
     write_atomically(file, buffer.getvalue())
