@@ -43,6 +43,7 @@ lint: setup
 	$(BIN)/ruff format --check .
 
 types: setup
+	$(BIN)/python -m tools.maintenance.mujoco_stubs
 	$(BIN)/pyright
 
 docs: setup $(VENV)/.docs-installed

@@ -200,7 +200,7 @@ def describe(split: Split, name: str) -> HouseFacts:
     listed = split.house_list.recipes.values() if split.house_list else RECIPES.get(split.name, ())
     return HouseFacts(
         name=name,
-        recipe=next((recipe for recipe in listed if recipe.name == name), None),
+        recipe=next((entry for entry in listed if isinstance(entry, Recipe) and entry.name == name), None),
         area_m2=sum(room.area_m2 for room in rooms),
         storeys=count_storeys(floor_levels(model, labels)),
         rooms=len(rooms),

@@ -20,6 +20,7 @@ from sim.detectors.noisy import NoisyConfig
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.splits import load_split, write_split
+from sim.training.fits import candidates
 from stubborn.detection.classifiers import Features
 from stubborn.detection.seeker import TargetSeeker
 from stubborn.detection.verification import FOLDER, FittedVerifier
@@ -126,9 +127,9 @@ def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
     episodes = [Episode(f"fenced_{i}", "seats", "sofa", Pose(-0.3, 0.4 * i, 0.0)) for i in range(3)]
     write_split(folder, episodes, {"seats": {}}, version="0.0.1")
     asked: list[tuple[bool, int]] = []
-    accepts = train_verifier.RecordingVerifier.accepts
+    accepts = candidates.RecordingVerifier.accepts
 
-    def spy(self: train_verifier.RecordingVerifier, goal: str, features: Features) -> bool:
+    def spy(self: candidates.RecordingVerifier, goal: str, features: Features) -> bool:
         before = len(self.candidates)
         answer = accepts(self, goal, features)
         assert self.agent is not None
@@ -139,7 +140,7 @@ def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
     judged: list[object] = []
     judge = TargetSeeker.judge
     monkeypatch.setattr(TargetSeeker, "judge", lambda *args: judged.append(args) or judge(*args))
-    monkeypatch.setattr(train_verifier.RecordingVerifier, "accepts", spy)
+    monkeypatch.setattr(candidates.RecordingVerifier, "accepts", spy)
     exact = replace(KINDS["gt"], spec=replace(GroundTruthSegmenter.spec, needs_verification=True))
     monkeypatch.setattr(train_verifier, "find_segmentation", lambda *_: exact)
     monkeypatch.setattr(train_verifier, "make_segmenter", lambda *_, **__: GroundTruthSegmenter())
