@@ -11,7 +11,7 @@ from sim.homes.housegen.hazards import FAMILIES
 
 AREA_M2 = (50.0, 800.0)
 """Smallest and largest floor area of a house."""
-POOL_STREAM = {"train": 0, "heldout": 1, "wide": 2}
+POOL_STREAM = {"train": 0, "heldout": 1}
 """Numbers of the pools in the seeds of random generators."""
 
 
@@ -40,7 +40,9 @@ class HouseConfig:
     hazard_count: int | None = None
     """Number of hazards; it depends on the area when None."""
     any_size: bool = False
-    """Whether the file may have any size, like the files of the pool `wide`; imported models are large."""
+    """Whether the file may have any size, larger than those of the shipped splits; imported models are large."""
+    reshape: bool = False
+    """Whether about half of the items get other proportions than those of their styles, to train perception."""
     exact: bool = True
     """False: the area may be off by a quarter, and rooms that do not fit are left out, as in the shipped splits."""
 

@@ -185,7 +185,8 @@ def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalo
         ceiling_m = stairs.ceiling_m
     looks = draw_structure_looks(rng, plan, config.pool)
     structure = build_structure(plan, openings, ceiling_m, looks, ceiling_hole=stairs.flight.well if stairs else None)
-    source = FurnitureSource(rng, config.pool, clutter, frozenset(room.kind for room in plan.rooms), catalogue)
+    kinds = frozenset(room.kind for room in plan.rooms)
+    source = FurnitureSource(rng, config.pool, clutter, kinds, catalogue, reshape=config.reshape)
     layouts = [RoomLayout(index, room.kind, room.rect, openings, ceiling_m) for index, room in enumerate(plan.rooms)]
     for layout in layouts:
         if stairs is not None and layout.kind == "stair_hall":
@@ -265,10 +266,10 @@ def max_bytes(area_m2: float) -> int:
 def _build_within_limit(draft: _Draft, config: HouseConfig) -> HouseBuilder | None:
     """Returns a drawn home, built, its parts joined as much as the size of the file allows.
 
-    Returns None where the file is too large anyway. Homes of the pool `wide` are in no split and may have any size.
+    Returns None where the file is too large anyway. Homes with reshaped items are in no split and may have any size.
     """
     assembler = Assembler()
-    if config.pool == "wide" or config.any_size:
+    if config.reshape or config.any_size:
         return _build(draft, config, BYTES_PER_GEOM[0], assembler)
     limit, last = draft.max_bytes, len(BYTES_PER_GEOM) - 1
     level = 0

@@ -1,7 +1,7 @@
 """Styles of furniture that houses for training leave out, so that a network can be selected on furniture it never saw.
 
-About one in `WITHHELD_PART` styles of each goal category is withheld, of our own styles in the pools `train` and
-`wide` and of imported models of the split `train`. A hash of the name decides, so that every machine and every
+About one in `WITHHELD_PART` styles of each goal category is withheld, of our own styles in the pool `train`
+and of imported models of the split `train`. A hash of the name decides, so that every machine and every
 catalogue agrees. The pool `heldout` and the models of the transfer test are not concerned: they judge, never select.
 """
 

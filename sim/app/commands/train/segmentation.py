@@ -1,7 +1,7 @@
 """Trains a segmentation network on labelled views, or finetunes a published RedNet.
 
 stubborn train segmentation --furniture runs/models --out runs/rednet
-stubborn train segmentation --views runs/views/{wide,models,train,aimed} --val-views runs/views/selection \
+stubborn train segmentation --views runs/views/{reshaped,models,train,aimed} --val-views runs/views/selection \
     --init stubborn/segmentation/weights/rednet.safetensors --out runs/rednet --hours 20
 stubborn train segmentation --size published --block-px 1 --init rednet_semmap_mp3d_40.pth --views runs/views \
     --val-views runs/views_val --out runs/finetuned --steps 20000

@@ -1,17 +1,17 @@
 """Generates labelled views as WebDataset shards, for training segmentation networks.
 
 stubborn views --split train --views 100000 --out /data/views --workers 2
-stubborn views --pool wide --views 100000 --out /data/views_wide --workers 2
-stubborn views --pool wide --furniture runs/models --views 100000 --out /data/views_models --workers 2
-stubborn views --pool wide --views 15000 --aim rare --out /data/views_rare
+stubborn views --pool train --reshape --views 100000 --out /data/views_reshaped --workers 2
+stubborn views --pool train --reshape --furniture runs/models --views 100000 --out /data/views_models --workers 2
+stubborn views --pool train --reshape --views 15000 --aim rare --out /data/views_rare
 stubborn views --split val --views 2000 --out runs/views_val --seed 1
 stubborn views --split val --views 2000 --extras instances normals poses --out runs/views_objects
 stubborn views --split val --views 2000 --sequence 40 --extras poses --out runs/views_along
 stubborn views --house kitchen.xml --labels labels.json --views 500 --out runs/views_kitchen
 
 A shard holds views of one house: first of the houses of the split, in an order drawn from the seed, then (train only)
-of new generated ones. With --pool wide all houses are new, with more styles of furniture than the houses of the splits.
-With --furniture they are new as well, and also have the imported models of the split `train` (docs/furniture.md).
+of new generated ones. With --pool train all houses are new; with --reshape about half of their items have proportions
+of their own. With --furniture they are new, too, and have the imported models of the split `train` (docs/furniture.md).
 The same command continues a killed run; the same options give the same bytes. Several machines can share the work
 with --shard 1/4 to 4/4; the last to finish writes an index of all shards.
 """
@@ -19,7 +19,6 @@ with --shard 1/4 to 4/4; the last to finish writes an index of all shards.
 from __future__ import annotations
 
 import functools
-import hashlib
 import shlex
 import sys
 import time
@@ -60,10 +59,8 @@ MOST_PER_SHARD = 250
 """Views in a shard, if there are enough of them for `FEWEST_HOUSES` shards."""
 FEWEST_HOUSES = 20
 
-WIDE = "wide"
-"""The pool with styles of furniture that no split has."""
-POOLS = ("train", WIDE)
-"""Furniture of new houses: the styles of the split train, or those of `wide` as well."""
+POOLS = ("train",)
+"""Furniture of new houses: the styles of the split train."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +76,9 @@ class Args:
     root: Path | None = None
     """With --house: a folder whose files the house may use in addition to its own folder."""
     pool: str | None = None
-    """New houses only, with the styles of train, or of wide: these and styles that combine parts at random."""
+    """New houses only, with the styles of this pool: train."""
+    reshape: bool = False
+    """With --pool or --furniture: about half of the items get other proportions than those of their styles."""
     furniture: Path | None = None
     """Folder of imported models (`stubborn import furniture`): new houses only, with models of the split train."""
     withheld: str | None = None
@@ -236,7 +235,8 @@ def _house(args: Args, task: ShardTask, fresh_seed: int | None) -> tuple[House, 
 
 
 def _made(args: Args, seed: int) -> GeneratedHouse:
-    config, withheld = _recipe(args, seed).config(), cast("Withheld | None", args.withheld)
+    config = replace(_recipe(args, seed).config(), reshape=args.reshape)
+    withheld = cast("Withheld | None", args.withheld)
     if args.furniture is None:
         return generate_house(seed, config, restricted(CATALOGUE, withheld))
     return ImportedFurniture(args.furniture).make_house(seed, config, withheld=withheld)
@@ -244,9 +244,9 @@ def _made(args: Args, seed: int) -> GeneratedHouse:
 
 def _recipe(args: Args, seed: int) -> Recipe:
     recipe = train_recipe(seed)
-    if args.pool is None:
-        return recipe if args.furniture is None else replace(recipe, name=f"models_{seed}")
-    return recipe if args.pool == "train" else replace(recipe, name=f"{args.pool}_{seed}", pool=WIDE)
+    if args.furniture is None and not args.reshape:
+        return recipe
+    return replace(recipe, name=f"{'models' if args.furniture is not None else 'reshaped'}_{seed}")
 
 
 def _kept(args: Args, task: ShardTask, config: dict[str, Any]) -> ShardNote | None:
@@ -273,7 +273,7 @@ def _config(args: Args, split: Split) -> dict[str, Any]:
     return {
         "split": split.name,
         "pool": args.pool,
-        "styles_sha256": _styles_sha256() if args.pool not in (None, "train") else None,
+        **({"reshape": True} if args.reshape else {}),
         **({"furniture_sha256": sha256_of_models(args.furniture)} if args.furniture is not None else {}),
         **({"withheld": args.withheld} if args.withheld is not None else {}),
         "split_version": split.version,
@@ -288,13 +288,6 @@ def _config(args: Args, split: Split) -> dict[str, Any]:
         **({"aim": args.aim} if args.aim is not None else {}),
         "versions": {name: version(name) for name in packages} | {"gl_renderer": describe_gl()},
     }
-
-
-def _styles_sha256() -> str:
-    """Returns a hash of the names of the styles in the pool `wide`: a new style changes the houses."""
-    styles = (style for category in CATALOGUE.categories for style in CATALOGUE.styles(category, WIDE))
-    names = [f"{style.category}/{style.name}" for style in styles]
-    return hashlib.sha256("\n".join(names).encode()).hexdigest()
 
 
 def _check_options(args: Args) -> None:
@@ -319,6 +312,8 @@ def _check_options(args: Args) -> None:
     if args.withheld not in (None, *get_args(Withheld)) or (args.withheld and not (args.pool or args.furniture)):
         known = " or ".join(get_args(Withheld))
         raise ConfigError(f"--withheld must be {known}, and needs --pool or --furniture, got '{args.withheld}'.")
+    if args.reshape and not (args.pool or args.furniture):
+        raise ConfigError("--reshape needs --pool or --furniture: other houses are files.")
     if args.house is None and (args.labels is not None or args.root is not None):
         raise ConfigError("--labels and --root need --house.")
     if args.house is not None and (args.pool is not None or args.furniture is not None or args.split != "train"):
@@ -329,13 +324,14 @@ def _command(args: Args) -> str:
     """Returns the options that generate the same shards."""
     source = ("split",) if args.house is None else ("house", "labels", "root")
     keys = (
-        *source, "pool", "furniture", "withheld", "views", "profile", "seed", "views_per_shard", "shrink", "rgb",
-        "sequence", "aim",
+        *source, "pool", "reshape", "furniture", "withheld", "views", "profile", "seed", "views_per_shard", "shrink",
+        "rgb", "sequence", "aim",
     )  # fmt: skip
-    given = [(key, [value]) for key in keys if (value := getattr(args, key)) is not None]
+    values = {key: getattr(args, key) for key in keys}
+    given = [(key, [] if value is True else [value]) for key, value in values.items() if value not in (None, False)]
     given += [("extras", args.extras)] if args.extras else []
-    words = [f"--{key.replace('_', '-')} {shlex.join(map(str, values))}" for key, values in given]
-    return " ".join(words) + " --out DIR"
+    words = [word for key, shown in given for word in (f"--{key.replace('_', '-')}", *map(str, shown))]
+    return shlex.join([*words, "--out", "DIR"])
 
 
 def _summary(index: dict[str, Any]) -> str:

@@ -2,13 +2,13 @@
 
 stubborn import furniture --source /usr/share/sweethome3d/furniture --out runs/models
 stubborn views mix --furniture runs/models --views 100000 --out runs/views
-stubborn train segmentation --views runs/views/{wide,models,train,aimed} --val-views runs/views/selection \
+stubborn train segmentation --views runs/views/{reshaped,models,train,aimed} --val-views runs/views/selection \
     --out runs/rednet
 
 | folder | share | houses |
 |---|--:|---|
-| wide | 40 % | new houses with the styles of the pool wide |
-| models | 40 % | the same with imported models; without --furniture these views are of `wide` as well |
+| reshaped | 40 % | new houses whose items have other proportions than those of their styles |
+| models | 40 % | the same with imported models; without --furniture these views are of `reshaped` as well |
 | train | 5 % | new houses with the styles of the split train |
 | aimed | 15 % | as `models`, cameras aimed at rare goals from 1 to 3.5 m |
 | selection | | `--selection` views of houses that prefer the withheld styles and models, which no other part shows |
@@ -32,7 +32,7 @@ VIEWS_PER_HOUSE = 40
 """Views of one house in the parts of the training: more houses teach more than more views of them."""
 SELECTION_PER_HOUSE = 20
 """Views of one house of the selection."""
-SHARES = {"wide": 8, "models": 8, "train": 1, "aimed": 3}
+SHARES = {"reshaped": 8, "models": 8, "train": 1, "aimed": 3}
 """Houses of each part in a turn."""
 PER_TURN = VIEWS_PER_HOUSE * sum(SHARES.values())
 SELECTION = "selection"
@@ -77,10 +77,11 @@ def parts(args: Args, turns: int) -> Iterator[generate.Args]:
     """Yields the options of each part of the views for training after a number of turns."""
     houses = dict(SHARES)
     if args.furniture is None:
-        houses["wide"] += houses.pop("models")
-    models = {"pool": "wide", "furniture": args.furniture}
+        houses["reshaped"] += houses.pop("models")
+    reshaped: dict[str, Any] = {"pool": "train", "reshape": True}
+    models = {**reshaped, "furniture": args.furniture}
     changes: dict[str, dict[str, Any]] = {
-        "wide": {"pool": "wide"}, "models": models, "train": {"pool": "train"}, "aimed": {**models, "aim": "rare"}
+        "reshaped": reshaped, "models": models, "train": {"pool": "train"}, "aimed": {**models, "aim": "rare"}
     }  # fmt: skip
     for name, count in houses.items():
         views = VIEWS_PER_HOUSE * count * turns
@@ -91,8 +92,8 @@ def selection(args: Args) -> generate.Args:
     """Returns the options of the views for selecting a network."""
     views = SELECTION_PER_HOUSE * -(-args.selection // SELECTION_PER_HOUSE)
     return _options(
-        args, SELECTION, views=views, per_house=SELECTION_PER_HOUSE, withheld="only", pool="wide",
-        furniture=args.furniture,
+        args, SELECTION, views=views, per_house=SELECTION_PER_HOUSE, withheld="only", pool="train",
+        reshape=True, furniture=args.furniture,
     )  # fmt: skip
 
 

@@ -81,6 +81,8 @@ class FurnitureSource:
         clutter: float,
         home_rooms: frozenset[str],
         catalogue: Catalogue = CATALOGUE,
+        *,
+        reshape: bool = False,
     ) -> None:
         self.rng = rng
         self.pool: Pool = pool
@@ -89,6 +91,7 @@ class FurnitureSource:
         self.home_rooms = home_rooms
         """Kinds of rooms that the home has."""
         self._catalogue = catalogue
+        self._reshape = reshape
         self._designs: dict[str, list[Item]] = {}
         self._made: dict[tuple[str, str], list[Design]] = {}
         self._small_styles: set[str] = set()
@@ -183,12 +186,14 @@ class FurnitureSource:
 
     def _new(self, category: str, style: str, use: str | None, hints: Mapping[str, Any]) -> Item:
         asked = hints if use is None else {"use": use, **hints}
-        return self._catalogue.make_item(category, self.rng, pool=self.pool, style=style, reshape=True, **asked)
+        return self._catalogue.make_item(
+            category, self.rng, pool=self.pool, style=style, reshape=self._reshape, **asked
+        )
 
     def _least_used(self, category: str, use: str | None, key: str, fresh: bool) -> str:
         """Returns a style that the home has least often, one that the last calls did not return where `fresh`."""
         placed = self._placed_styles()
-        names = [style.name for style in self._catalogue.offered(category, self.pool, use, self.rng)]
+        names = [style.name for style in self._catalogue.styles(category, self.pool, use)]
         others = [style.name for style in self._catalogue.styles(category, self.pool, use)]
         tried = self._tried.setdefault(key, set())
         if not fresh:
@@ -215,7 +220,7 @@ class FurnitureSource:
             if not items:
                 items.extend(known[n] for n in self.rng.permutation(len(known)).tolist())
             return items.pop()
-        names = [style.name for style in self._catalogue.offered(category, self.pool, use, self.rng)]
+        names = [style.name for style in self._catalogue.styles(category, self.pool, use)]
         if category in _ONE_STYLE:
             style = self._set_style.setdefault(repr((category, use)), self.pick(names))
         else:

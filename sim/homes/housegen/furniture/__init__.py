@@ -1,13 +1,12 @@
 """Furniture: parametric styles for every category that a home has.
 
-A module of this package, or of `free`, that declares `STYLES` is a family of furniture: its styles are in `CATALOGUE`
-without an entry elsewhere.
+A module of this package that declares `STYLES` is a family of furniture: its styles are in `CATALOGUE` without an entry
+elsewhere.
 
 A style belongs to one pool and is built with the palettes and textures of that pool only
 (`sim.homes.housegen.surfaces.materials`). A held-out house therefore shows structures, sizes, colours and textures that
 no house of `train` shows. Every category has styles in both pools, goal categories at least four in `train` and two in
-`heldout`, and every `use` exists in both. Styles of the pool `wide`, in `free`, have the colours of `train` and add
-variety for training perception; they were designed without looking at the held-out ones.
+`heldout`, and every `use` exists in both.
 """
 
 from __future__ import annotations
@@ -17,15 +16,12 @@ import pkgutil
 from collections.abc import Iterator
 from types import ModuleType
 
-from sim.homes.housegen.furniture import free
 from sim.homes.housegen.furniture.catalogue import Catalogue, Style
 
 
 def _families() -> Iterator[ModuleType]:
-    """Yields the modules that declare styles: those of this folder by name, then those of `free`."""
-    names = sorted(module.name for module in pkgutil.iter_modules(__path__) if not module.ispkg)
-    names += sorted(f"free.{module.name}" for module in pkgutil.iter_modules(free.__path__))
-    for name in names:
+    """Yields the modules of this folder that declare styles, by name."""
+    for name in sorted(module.name for module in pkgutil.iter_modules(__path__) if not module.ispkg):
         module = importlib.import_module(f"{__name__}.{name}")
         if "STYLES" in vars(module):
             yield module

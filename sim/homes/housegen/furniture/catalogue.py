@@ -22,11 +22,8 @@ HINTS: frozenset[str] = frozenset(
     {"use", "width_m", "depth_m", "height_m", "looks", "with_sink", "with_hob", "cushions"}
 )
 """All hints that `Catalogue.make_item` accepts."""
-WIDE_SHARE = 0.35
-"""Probability that an item of a `wide` house has a style of this pool, where there is one for its use."""
-RESHAPED_SHARE = 0.25
-"""Probability that an item of a `wide` house in another style gets other proportions; twice as much where there is no
-style of `wide` for its use. About half of all items thus have a shape of their own."""
+RESHAPED_SHARE = 0.5
+"""Probability that an item gets other proportions than those of its style, where this is asked for."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +35,7 @@ class Style:
     name: str
     """Unique within the category."""
     pool: Pool
-    """The pool whose houses show the style. Houses of `wide` also show the styles of `train`; its own combine parts at
-    random, so that hardly two items have the same shape."""
+    """The pool whose houses show the style."""
     build: Callable[[Workbench], None]
     """Puts the geoms of one item on the workbench."""
     uses: tuple[str, ...] = ()
@@ -47,10 +43,6 @@ class Style:
     mount: Mount = "floor"
     walk_over: bool = False
     """True: items lie flat on the floor, and other objects may stand on them."""
-
-    def shown_in(self, pool: Pool) -> bool:
-        """Returns True if houses of this pool may show the style."""
-        return self.pool == pool or (pool == "wide" and self.pool == "train")
 
 
 class Catalogue:
@@ -96,22 +88,8 @@ class Catalogue:
             raise ConfigError(
                 f"No furniture of category '{category}'. Available: {', '.join(sorted(self.categories))}."
             )
-        shown = (style for style in self._by_category[category] if pool is None or style.shown_in(pool))
+        shown = (style for style in self._by_category[category] if pool is None or style.pool == pool)
         return tuple(style for style in shown if use is None or use in style.uses)
-
-    def offered(self, category: str, pool: Pool, use: str | None, rng: np.random.Generator) -> tuple[Style, ...]:
-        """Returns the styles from which one item is chosen: for `wide`, sometimes its own ones only.
-
-        Other pools draw nothing from `rng`.
-
-        Raises:
-            ConfigError: the catalogue has no such category.
-        """
-        fitting = self.styles(category, pool, use)
-        own = tuple(style for style in fitting if style.pool == "wide")
-        if not own:
-            return fitting
-        return own if rng.random() < WIDE_SHARE else tuple(style for style in fitting if style.pool != "wide") or own
 
     def with_styles(self, *styles: Style) -> Catalogue:
         """Returns a new catalogue that has these styles as well, after the others of their categories.
@@ -146,10 +124,9 @@ class Catalogue:
         Args:
             category: mpcat40 name with underscores (`categories` has all); rugs are of category "floor".
             rng: source of all random draws.
-            pool: "train", "heldout" or "wide"; `wide` has the styles of `train` and more.
+            pool: "train" or "heldout".
             style: name of a style of that pool; None draws one.
-            reshape: items of `wide`, and what lies on them, sometimes get other proportions (`reshape.py`). Other
-                pools ignore it.
+            reshape: whether the item, and what lies on it, sometimes gets other proportions (`reshape.py`).
             **hints: see the tables.
 
         ================ =========================================================================================
@@ -212,18 +189,12 @@ class Catalogue:
             raise ConfigError(f"make_item knows no hint '{unknown[0]}'. It knows: {', '.join(sorted(HINTS))}.")
         use = hints.get("use")
         chosen = self._named(category, pool, style) if style is not None else self._drawn(category, rng, pool, use)
-        reshape = reshape and pool == "wide"
         bench = Workbench(rng, pool, hints, functools.partial(self.make_item, reshape=reshape))
         chosen.build(bench)
         item = bench.finish(category, chosen.name, chosen.mount, walk_over=chosen.walk_over)
-        if reshape and chosen.pool != "wide":
-            again = rng.random() < self._reshaped_share(category, use) and may_reshape(item)
-            return reshaped(item, rng, hints) if again else item
+        if reshape and rng.random() < RESHAPED_SHARE and may_reshape(item):
+            return reshaped(item, rng, hints)
         return item
-
-    def _reshaped_share(self, category: str, use: str | None) -> float:
-        own = any(style.pool == "wide" for style in self.styles(category, "wide", use))
-        return RESHAPED_SHARE if own else 2 * RESHAPED_SHARE
 
     def _named(self, category: str, pool: Pool, name: str) -> Style:
         of_pool = self.styles(category, pool)
@@ -234,7 +205,7 @@ class Catalogue:
         raise ConfigError(f"'{category}' has no style '{name}' in pool '{pool}'. It has: {known}.")
 
     def _drawn(self, category: str, rng: np.random.Generator, pool: Pool, use: str | None) -> Style:
-        fitting = self.offered(category, pool, use, rng)
+        fitting = self.styles(category, pool, use)
         if fitting:
             return fitting[int(rng.integers(len(fitting)))]
         uses = sorted({use for style in self.styles(category, pool) for use in style.uses})

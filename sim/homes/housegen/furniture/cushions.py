@@ -1,6 +1,6 @@
-"""Cushions and rugs.
+"""Cushions.
 
-Usual retail dimensions: throw cushions 0.40-0.50 m, floor cushions 0.45-0.70 m, rugs 0.9-2.4 m.
+Usual retail dimensions: throw cushions 0.40-0.50 m, floor cushions 0.45-0.70 m.
 """
 
 from __future__ import annotations
@@ -47,19 +47,6 @@ def floor_round(w: Workbench) -> None:
     w.cylinder((0.0, 0.0), (high - 0.002, high + 0.004), 0.02, w.look("dark"), solid=False)
 
 
-def rug(w: Workbench) -> None:
-    """Builds a patterned rug."""
-    width, depth = w.width(1.4, 2.4), w.depth(0.9, 1.7)
-    w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.008), w.look("rug"), solid=False)
-
-
-def round_rug(w: Workbench) -> None:
-    """Builds a round rug with rings."""
-    r = 0.5 * w.width(1.2, 2.0)
-    for i, share in enumerate((1.0, 0.86, 0.5)):
-        w.cylinder((0.0, 0.0), (0.0, 0.006 + 0.002 * i), share * r, w.new_look("fabric"), solid=False)
-
-
 def round_cushion(w: Workbench) -> None:
     """Builds a round throw cushion with a button, standing on its edge."""
     r = 0.5 * w.choice((0.38, 0.42))
@@ -87,40 +74,6 @@ def banded_cushion(w: Workbench) -> None:
     )
 
 
-def runner(w: Workbench) -> None:
-    """Builds a long narrow striped rug for halls."""
-    width, depth = w.width(1.8, 2.8), w.depth(0.65, 0.85)
-    w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.007), w.look("fabric"), solid=False)
-    band = w.look("bright")
-    for side in (-1, 1):
-        c = side * (0.5 * depth - 0.10)
-        w.box((c - 0.03, c + 0.03), (-0.5 * width + 0.08, 0.5 * width - 0.08), (0.0, 0.010), band, solid=False)
-
-
-def shag(w: Workbench) -> None:
-    """Builds a thick plain rug with a border."""
-    width, depth = w.width(1.5, 2.4), w.depth(1.0, 1.7)
-    w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.008), w.new_look("fabric"), solid=False)
-    w.box(
-        (-0.5 * depth + 0.09, 0.5 * depth - 0.09),
-        (-0.5 * width + 0.09, 0.5 * width - 0.09),
-        (0.0, 0.012),
-        w.new_look("fabric"),
-        solid=False,
-    )
-
-
-def oriental(w: Workbench) -> None:
-    """Builds a patterned rug with fringes at both ends."""
-    width, depth = w.width(1.5, 2.4), w.depth(1.0, 1.7)
-    w.box(
-        (-0.5 * depth, 0.5 * depth), (-0.5 * width + 0.06, 0.5 * width - 0.06), (0.0, 0.009), w.look("rug"), solid=False
-    )
-    for side in (-1, 1):
-        low, high = sorted((side * (0.5 * width - 0.065), side * 0.5 * width))
-        w.box((-0.5 * depth, 0.5 * depth), (low, high), (0.0, 0.004), w.look("linen"), solid=False)
-
-
 def knot_cushion(w: Workbench) -> None:
     """Builds a cushion that is a knot of thick rolls."""
     r, look = 0.06, w.look("bright")
@@ -142,12 +95,7 @@ STYLES = (
     Style("cushion", "bolster", "heldout", bolster, ("throw",), "top"),
     Style("cushion", "floor_square", "train", floor_cushion, ("floor",)),
     Style("cushion", "floor_round", "heldout", floor_round, ("floor",)),
-    Style("floor", "rug_rectangle", "train", rug, ("rug",), walk_over=True),
-    Style("floor", "rug_round", "heldout", round_rug, ("rug",), walk_over=True),
     Style("cushion", "round", "train", round_cushion, ("throw",), "top"),
     Style("cushion", "banded", "train", banded_cushion, ("throw",), "top"),
     Style("cushion", "knot", "heldout", knot_cushion, ("throw",), "top"),
-    Style("floor", "rug_runner", "train", runner, ("rug",), walk_over=True),
-    Style("floor", "rug_bordered", "train", shag, ("rug",), walk_over=True),
-    Style("floor", "rug_fringed", "heldout", oriental, ("rug",), walk_over=True),
 )

@@ -17,12 +17,8 @@ from numpy.typing import NDArray
 Shape = Literal["box", "cylinder", "sphere", "capsule", "ellipsoid", "mesh"]
 Mount = Literal["floor", "wall", "ceiling", "top"]
 """The support on which the origin of an item lies: the floor, a wall (x = 0 is its surface), the ceiling, or a top."""
-Pool = Literal["train", "heldout", "wide"]
-"""The styles, sizes, colours and textures that may be drawn. `heldout` (val and test houses) shares none with `train`.
-
-Houses of `wide` show all styles of `train` and further ones. They are for training perception and are in no split, so
-a new style of `wide` changes no shipped house.
-"""
+Pool = Literal["train", "heldout"]
+"""The styles, sizes, colours and textures that may be drawn: `heldout` (val and test) shares none with `train`."""
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ class _Entry(msgspec.Struct, forbid_unknown_fields=True):
 
     name: Name
     seed: Count
-    pool: Literal["train", "heldout", "wide"]
+    pool: Literal["train", "heldout"]
     kind: PlanKind
     area_m2: Annotated[float, msgspec.Meta(gt=0.0, le=10_000.0)]
     rooms: tuple[Name, ...]

@@ -44,7 +44,7 @@ DAYLIGHT: dict[str, Daylight] = {
 }
 """Daylight by time of day; `sim.homes.housegen.surfaces.texture_views` draws the sky of each."""
 VIEWS: dict[str, tuple[str, ...]] = {"train": ("hills", "street"), "heldout": ("roofs", "garden")}
-"""Scenes outside the windows by pool; `wide` has those of train."""
+"""Scenes outside the windows by pool."""
 _WARM, _NEUTRAL, _COLD = (1.0, 0.88, 0.72), (1.0, 0.97, 0.92), (0.93, 0.98, 1.0)
 _LAMP_COLOURS: dict[str, tuple[Rgb, ...]] = {
     "bedroom": (_WARM,), "living_room": (_WARM, _WARM, _NEUTRAL), "dining_room": (_WARM, _NEUTRAL),

@@ -32,7 +32,7 @@ class Swatches:
 
 @dataclass(frozen=True)
 class Material:
-    """A material: two palettes and its reflectance; the pool `wide` uses the palette of train."""
+    """A material: two palettes and its reflectance."""
 
     train: Swatches
     heldout: Swatches

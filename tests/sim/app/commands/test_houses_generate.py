@@ -50,9 +50,9 @@ def test_houses_of_withheld_styles_show_what_training_leaves_out(
     monkeypatch.setattr(generate_houses, "generate_house", make)
     monkeypatch.setattr(generate_houses, "copy_textures", lambda folder: None)
     for withheld in (None, "only"):
-        generate_houses.main(generate_houses.Args(out=tmp_path, pool="wide", withheld=withheld))
+        generate_houses.main(generate_houses.Args(out=tmp_path, withheld=withheld))
     assert len(shown) == 2
-    chairs = [shown[i].styles("chair", "wide", "dining") for i in range(2)]
+    chairs = [shown[i].styles("chair", "train", "dining") for i in range(2)]
     assert all(is_withheld(style) for style in chairs[1])
     assert not all(is_withheld(style) for style in chairs[0])
 

@@ -31,7 +31,7 @@ def test_a_plan_that_exists_is_kept_and_one_of_other_options_is_refused(
         export_plans.main(replace(args, area_m2=55.0))
 
 
-@pytest.mark.parametrize("option", [{"pool": "wide"}, {"first_seed": 4}, {"kind": "studio"}, {"area_m2": 60.0}])
+@pytest.mark.parametrize("option", [{"pool": "heldout"}, {"first_seed": 4}, {"kind": "studio"}, {"area_m2": 60.0}])
 def test_an_option_of_generated_houses_is_refused_for_those_of_a_split(tmp_path: Path, option: dict):
     with pytest.raises(ConfigError, match=f"--{next(iter(option)).replace('_', '-')} is for generated houses"):
         export_plans.main(export_plans.Args(out=tmp_path / "plans", split="val", houses=1, **option))

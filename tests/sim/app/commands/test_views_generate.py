@@ -16,7 +16,6 @@ from sim.app.commands.views.generate import FRESH_SEEDS_FROM, Args, ShardTask, m
 from sim.core.errors import HouseError
 from sim.core.interface import ConfigError
 from sim.episodes.splits import load_split
-from sim.homes.housegen.furniture import CATALOGUE
 from sim.training.segmentation.dataset import list_shards, read_shard
 from tests.helpers.worlds import room, with_box
 
@@ -125,15 +124,14 @@ def test_objects_and_sequences_are_options_that_a_folder_keeps(split: Path, tmp_
 
 
 @pytest.mark.slow
-def test_the_wide_pool_has_new_houses_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    main(Args(pool="wide", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
+def test_reshaped_houses_are_new_ones(tmp_path: Path) -> None:
+    options = Args(pool="train", reshape=True, views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path)
+    main(options)
     index = json.loads((tmp_path / "index.json").read_text())
-    assert [entry["house"] for entry in index["shards"]] == [f"wide_{FRESH_SEEDS_FROM}"]
-    assert "--pool wide" in index["command"]
-    throne = replace(CATALOGUE.styles("chair", "wide")[0], name="throne")
-    monkeypatch.setattr(generate_views, "CATALOGUE", CATALOGUE.with_styles(throne))
-    with pytest.raises(ConfigError, match="holds shards with styles_sha256 = "):
-        main(Args(pool="wide", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
+    assert [entry["house"] for entry in index["shards"]] == [f"reshaped_{FRESH_SEEDS_FROM}"]
+    assert "--pool train --reshape" in index["command"]
+    with pytest.raises(ConfigError, match="holds shards with reshape = True"):
+        main(replace(options, reshape=False))
 
 
 def test_a_new_house_without_views_is_replaced_by_that_of_another_fixed_seed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -146,8 +144,8 @@ def test_a_new_house_without_views_is_replaced_by_that_of_another_fixed_seed(mon
         return task.number
 
     monkeypatch.setattr(generate_views, "_shard_of", shard_of)
-    args = Args(pool="wide", out=Path("x"))
-    assert make_shard(args, {}, ShardTask(3, 40, "wide", FRESH_SEEDS_FROM)) == 3
+    args = Args(pool="train", out=Path("x"))
+    assert make_shard(args, {}, ShardTask(3, 40, "reshaped", FRESH_SEEDS_FROM)) == 3
     assert tried == [FRESH_SEEDS_FROM, FRESH_SEEDS_FROM + FRESH_SEEDS_FROM // 2]
     tried.clear()
     with pytest.raises(HouseError, match="shows too little"):
@@ -163,7 +161,7 @@ def test_a_new_house_without_views_is_replaced_by_that_of_another_fixed_seed(mon
         ({"sequence": 2}, "--sequence must divide --views and --views-per-shard, got 2"),
         ({"rgb": "bmp"}, "--rgb must be jpg or png, got 'bmp'"),
         ({"shard": "0/2"}, '--shard must be "i/n" with 1 <= i <= n'),
-        ({"pool": "wide"}, "--pool must be .* or wide, and needs --split train, got 'wide' with"),
+        ({"reshape": True}, "--reshape needs --pool or --furniture"),
         ({"pool": "heldout", "split": "train"}, "--pool must be .*, and needs --split train, got 'heldout' with"),
         ({"profile": "best"}, "Unknown rendering profile 'best'"),
     ],

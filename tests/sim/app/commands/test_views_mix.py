@@ -23,7 +23,7 @@ def test_each_turn_adds_views_in_the_same_proportions_to_what_is_there(tmp_path:
     first, later = by_name(args, 1), by_name(args, 3)
     total = sum(part.views for part in first.values())
     assert {name: part.views / total for name, part in first.items()} == {
-        "wide": 0.4, "models": 0.4, "train": 0.05, "aimed": 0.15
+        "reshaped": 0.4, "models": 0.4, "train": 0.05, "aimed": 0.15
     }  # fmt: skip
     train = load_split("train")
     for name, part in first.items():
@@ -34,8 +34,8 @@ def test_each_turn_adds_views_in_the_same_proportions_to_what_is_there(tmp_path:
 def test_without_models_the_views_of_their_houses_are_of_our_own_furniture(tmp_path: Path) -> None:
     args = Args(out=tmp_path)
     made = by_name(args, 2)
-    assert (made["wide"].views, sum(part.views for part in made.values())) == (2 * 640, 2 * 800)
-    assert [folder.name for folder in folders(tmp_path, None)] == list(made) == ["wide", "train", "aimed"]
+    assert (made["reshaped"].views, sum(part.views for part in made.values())) == (2 * 640, 2 * 800)
+    assert [folder.name for folder in folders(tmp_path, None)] == list(made) == ["reshaped", "train", "aimed"]
     assert all(part.furniture is None for part in (*made.values(), selection(args)))
 
 
@@ -57,7 +57,8 @@ def test_the_selection_is_made_first_and_the_training_in_turns(tmp_path: Path, m
     monkeypatch.setattr(generate, "main", lambda part: made.append((part.out.name, part.views)))
     assert main(Args(out=tmp_path, views=801, selection=30)) == 0
     assert made == [
-        ("selection", 40), ("wide", 640), ("train", 40), ("aimed", 120), ("wide", 1280), ("train", 80), ("aimed", 240)
+        ("selection", 40), ("reshaped", 640), ("train", 40), ("aimed", 120),
+        ("reshaped", 1280), ("train", 80), ("aimed", 240),
     ]  # fmt: skip
     with pytest.raises(ConfigError, match=r"--furniture '.*nothing' is not a folder"):
         main(Args(out=tmp_path, furniture=tmp_path / "nothing"))

@@ -32,7 +32,6 @@ FAR_M = 0.05
 EXACT_WIDTHS = (
     "curtain", "blinds", "counter", "railing", "floor", "picture", "mirror", "board_panel", "shelving",
 )  # fmt: skip
-PALETTE_OF = {"train": "train", "heldout": "heldout", "wide": "train"}
 """The pool whose colours and textures a style of a pool has."""
 SHAPES = {
     "box": mujoco.mjtGeom.mjGEOM_BOX,
@@ -133,7 +132,7 @@ def test_item_keeps_the_conventions(style):
             assert part.geoms
         for geom in all_geoms(item):
             assert np.isfinite([*geom.pos_m, *geom.euler_rad, *geom.size_m]).all()
-            assert geom.look.texture is None or TEXTURES[geom.look.texture].pool == PALETTE_OF[style.pool]
+            assert geom.look.texture is None or TEXTURES[geom.look.texture].pool == style.pool
             assert geom.mesh is None or 4 <= len(geom.mesh.vertices_m) <= MAX_VERTICES
         for surface in item.surfaces:
             assert min(surface.half_size_m) > 0.0, "a surface has a size"
@@ -218,22 +217,12 @@ def test_every_use_exists_in_both_pools(category):
     assert CATALOGUE.styles(category, "heldout")
 
 
-@pytest.mark.parametrize("category", GOAL_CATEGORIES)
-def test_wide_has_all_styles_of_train_and_more_and_none_held_out(category):
-    train, wide, heldout = (set(names(category, pool)) for pool in ("train", "wide", "heldout"))
-    assert train < wide
-    assert not wide & heldout
-    drawn = {CATALOGUE.make_item(category, np.random.default_rng(seed), pool="wide").style for seed in range(40)}
-    assert drawn & (wide - train)
-    assert drawn <= wide
-
-
 @pytest.mark.slow
 def test_train_never_shows_a_look_of_the_heldout_pool():
     looks: dict[str, set[tuple]] = {"train": set(), "heldout": set()}
     for style in STYLES:
         for item in items(style):
-            looks[PALETTE_OF[style.pool]] |= {(g.look.rgba, g.look.texture) for g in all_geoms(item)}
+            looks[style.pool] |= {(g.look.rgba, g.look.texture) for g in all_geoms(item)}
     for material in materials.MATERIALS:
         for pool, of_pool in looks.items():
             rng = np.random.default_rng(0)
@@ -243,14 +232,14 @@ def test_train_never_shows_a_look_of_the_heldout_pool():
 
 
 @pytest.mark.parametrize("category", EXACT_WIDTHS)
-@pytest.mark.parametrize("pool", ["train", "heldout", "wide"])
+@pytest.mark.parametrize("pool", ["train", "heldout"])
 def test_width_hint_is_kept(category, pool):
     for name in names(category, pool):
         item = CATALOGUE.make_item(category, np.random.default_rng(3), pool=pool, style=name, width_m=1.23)
         assert item.size_m[1] == pytest.approx(1.23, abs=0.03), name
 
 
-@pytest.mark.parametrize("pool", ["train", "heldout", "wide"])
+@pytest.mark.parametrize("pool", ["train", "heldout"])
 @pytest.mark.parametrize("use", ["run", "island"])
 def test_sink_of_a_counter_is_a_child_only_when_asked_for(pool, use):
     for wanted, style in itertools.product((True, False), names("counter", pool, use)):

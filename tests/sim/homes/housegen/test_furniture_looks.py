@@ -10,15 +10,15 @@ from sim.homes.housegen.furniture.item import Item
 from sim.homes.housegen.mjcf.boxes import geom_box
 from sim.homes.housegen.mjcf.merging import assemble
 
-PLANTS = [(s.pool, s.name) for s in CATALOGUE.styles("plant") if s.pool != "wide"]
-TOILETS = [(s.pool, s.name) for s in CATALOGUE.styles("toilet") if s.pool != "wide"]
+PLANTS = [(s.pool, s.name) for s in CATALOGUE.styles("plant")]
+TOILETS = [(s.pool, s.name) for s in CATALOGUE.styles("toilet")]
 
 
 def made(category: str, pool: str, style: str, seed: int) -> Item:
     return CATALOGUE.make_item(category, np.random.default_rng(seed), pool=pool, style=style)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("pool", ["train", "heldout", "wide"])
+@pytest.mark.parametrize("pool", ["train", "heldout"])
 def test_the_sides_of_a_glass_top_are_opaque_and_the_glass_is_tinted(pool):
     found = 0
     for style in CATALOGUE.styles("table", pool):
@@ -71,7 +71,7 @@ def test_bathtubs_leave_room_in_a_bathroom(pool):
 
 @pytest.mark.parametrize(("use", "low_m", "high_m"), [("dining", 0.70, 0.79), ("coffee", 0.28, 0.50)])
 def test_tables_are_as_high_as_real_ones(use, low_m, high_m):
-    for pool in ("train", "heldout", "wide"):
+    for pool in ("train", "heldout"):
         for style in CATALOGUE.styles("table", pool, use):
             top = max(surface.centre_m[2] for surface in made("table", style.pool, style.name, 0).surfaces)
             assert low_m <= top <= high_m, style.name

@@ -68,9 +68,9 @@ def test_seeds_and_pools_give_different_houses() -> None:
 
 
 @pytest.mark.slow
-def test_a_wide_house_is_in_the_format_and_may_be_too_large_to_ship() -> None:
-    house = generate_house(4, HouseConfig(pool="wide", kind="large", area_m2=300.0))
-    assert validate_house(House("wide", house.spec), house.spec.compile()).void_geoms == 0
+def test_a_reshaped_house_is_in_the_format_and_may_be_too_large_to_ship() -> None:
+    house = generate_house(4, HouseConfig(reshape=True, kind="large", area_m2=300.0))
+    assert validate_house(House("reshaped", house.spec), house.spec.compile()).void_geoms == 0
     assert check_house(house.spec) == []
     assert len(house.spec.to_xml()) > MAX_BYTES
 

@@ -23,13 +23,12 @@ def test_every_goal_category_has_a_withheld_style_and_no_heldout_one_is() -> Non
         assert all(style.pool != "heldout" for style in withheld)
 
 
-def test_training_keeps_a_style_of_both_pools_for_every_use() -> None:
+def test_training_keeps_a_style_for_every_use() -> None:
     left = restricted(CATALOGUE, "without")
     for category in GOAL_CATEGORIES:
         assert not any(is_withheld(style) for style in left.styles(category))
-        for pool in ("train", "wide"):
-            for use in {use for style in CATALOGUE.styles(category, pool) for use in style.uses or (None,)}:
-                assert left.styles(category, pool, use), (category, pool, use)
+        for use in {use for style in CATALOGUE.styles(category, "train") for use in style.uses or (None,)}:
+            assert left.styles(category, "train", use), (category, use)
 
 
 def test_selection_shows_withheld_styles_alone_where_there_are_some() -> None:
@@ -37,8 +36,8 @@ def test_selection_shows_withheld_styles_alone_where_there_are_some() -> None:
     for category in GOAL_CATEGORIES:
         withheld = [style for style in own(category) if is_withheld(style)]
         for use in {use for style in withheld for use in style.uses}:
-            assert all(is_withheld(style) for style in only.styles(category, "wide", use)), (category, use)
-    assert [style.name for style in only.styles("shower", "wide")] == [
+            assert all(is_withheld(style) for style in only.styles(category, "train", use)), (category, use)
+    assert [style.name for style in only.styles("shower", "train")] == [
         style.name for style in own("shower") if is_withheld(style)
     ]
 
@@ -53,7 +52,7 @@ def test_a_model_is_withheld_by_its_name_whatever_else_there_is() -> None:
 
 
 def test_a_house_knows_the_style_of_every_instance() -> None:
-    made = generate_house(3, HouseConfig(pool="wide"), restricted(CATALOGUE, "without"))
+    made = generate_house(3, HouseConfig(pool="train"), restricted(CATALOGUE, "without"))
     names = {body.name for body in made.spec.bodies if body.name not in ("", "world")}
     assert set(made.styles) == names
     categories = {name: name.rsplit("_", 1)[0] for name in names}

@@ -1,4 +1,4 @@
-"""Free shapes of the pool `wide`: generators that combine parts at random, and items in other proportions."""
+"""Items in other proportions than those of their styles."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ BOUNDS_M: dict[tuple[str, str], tuple[tuple[float, float], ...]] = {
 """Smallest and largest depth, width and height of items of a use."""
 
 
-def make(category: str, seed: int, pool: Pool = "wide", **hints) -> Item:
+def make(category: str, seed: int, pool: Pool = "train", **hints) -> Item:
     return CATALOGUE.make_item(category, np.random.default_rng(seed), pool=pool, reshape=True, **hints)
 
 
@@ -35,55 +35,20 @@ def shape_of(item: Item) -> tuple:
     return tuple((g.shape, g.size_m, g.pos_m, g.euler_rad, g.mesh and g.mesh.name) for g in item.geoms)
 
 
-def free_styles(category: str) -> list[str]:
-    return [style.name for style in CATALOGUE.styles(category, "wide") if style.pool == "wide"]
-
-
 @pytest.mark.parametrize("category", GOAL_CATEGORIES)
-def test_fifty_draws_of_a_goal_give_fifty_shapes(category):
-    names = free_styles(category)
-    assert names
-    items = [
-        CATALOGUE.make_item(category, np.random.default_rng(seed), pool="wide", style=names[seed % len(names)])
-        for seed in range(50)
-    ]
-    assert len({shape_of(item) for item in items}) >= 49
-    parts = {tuple(sorted(geom.shape for geom in item.geoms)) for item in items}
-    assert len(parts) >= 5, "hardly two items have the same parts"
-
-
-@pytest.mark.parametrize("category", GOAL_CATEGORIES)
-def test_same_seed_gives_the_same_free_shape(category):
+def test_same_seed_gives_the_same_shape(category):
     for seed in range(6):
         assert shape_of(make(category, seed)) == shape_of(make(category, seed))
 
 
-@pytest.mark.parametrize("category", ["chair", "sofa", "toilet", "plant"])
-@pytest.mark.parametrize("pool", ["train", "heldout"])
-def test_other_pools_have_no_free_shapes_and_the_same_draws(category, pool):
-    for seed in range(8):
-        with_free, plain = np.random.default_rng(seed), np.random.default_rng(seed)
-        a = CATALOGUE.make_item(category, with_free, pool=pool, reshape=True)
-        b = CATALOGUE.make_item(category, plain, pool=pool)
-        assert shape_of(a) == shape_of(b)
-        assert with_free.bit_generator.state == plain.bit_generator.state
-    rng = np.random.default_rng(0)
-    before = rng.bit_generator.state
-    assert CATALOGUE.offered(category, pool, None, rng) == CATALOGUE.styles(category, pool)
-    assert rng.bit_generator.state == before
-    assert not any(style.pool == "wide" for style in CATALOGUE.styles(category, pool))
-
-
-def test_about_half_of_the_items_have_a_free_shape():
+def test_about_half_of_the_items_have_a_shape_of_their_own():
     counts = np.zeros(2)
     for category in GOAL_CATEGORIES:
         for seed in range(12):
             rng = np.random.default_rng(seed)
-            style = CATALOGUE.offered(category, "wide", None, rng)[0]
-            plain = CATALOGUE.make_item(category, np.random.default_rng(seed), pool="wide", style=style.name)
-            free = style.pool == "wide" or shape_of(plain) != shape_of(make(category, seed, style=style.name))
-            counts[int(free)] += 1
-    assert 0.4 < counts[1] / counts.sum() < 0.65
+            plain = CATALOGUE.make_item(category, rng, pool="train")
+            counts[int(shape_of(plain) != shape_of(make(category, seed, style=plain.style)))] += 1
+    assert 0.35 < counts[1] / counts.sum() < 0.65
 
 
 @pytest.mark.parametrize(("category", "use"), BOUNDS_M)
