@@ -17,51 +17,6 @@ from sim.app.commands.main import COMMANDS, split
 
 ROOT = Path(__file__).resolve().parents[2]
 PYTHON = ".venv/bin/python"
-OLD_NAMES_ARE_ERRORS = True
-"""To be set to True when no page names a command by its old path, such as tools/gallery.py."""
-MOVED = {
-    "generate_houses": "houses generate",
-    "check_houses": "houses check",
-    "export_plans": "houses plans",
-    "make_episodes": "episodes",
-    "make_traps": "traps",
-    "trap_report": "traps report",
-    "generate_views": "views",
-    "show_views": "views show",
-    "unpack_views": "views unpack",
-    "label_house": "label",
-    "import_furniture": "import furniture",
-    "train_rednet": "train segmentation",
-    "train_verifier": "train verifier",
-    "train_tracks": "train fusion",
-    "train_semexp": "train semexp",
-    "train_poni": "train poni",
-    "train_cloned": "train cloned",
-    "evaluate_rednet": "evaluate",
-    "show_mistakes": "evaluate mistakes",
-    "worst_objects": "evaluate objects",
-    "compare_runs": "compare",
-    "merge_runs": "merge",
-    "reproduce": "reproduce",
-    "gallery": "gallery",
-    "bench": "bench",
-}
-"""Files of tools/ that users called up to version 0.1, and the commands that they are now."""
-MOVED_TOOLS = {
-    "render_demonstrations": "training",
-    "twin_demonstrations": "training",
-    "compare_networks": "training",
-    "check_twin": "research",
-    "compare_explorers": "research",
-    "draw_potentials": "research",
-    "draw_trajectories": "research",
-    "bench_against": "maintenance",
-    "describe_houses": "maintenance",
-    "make_textures": "maintenance",
-    "readme_picture": "maintenance",
-    "split_report": "maintenance",
-}
-"""Other files of tools/, and the folders in which they are now."""
 _EXAMPLE = re.compile(r"`(examples/[\w./]+)`")
 _FENCE = re.compile(r"^(?P<indent> *)(?P<marks>```+|~~~+)(?P<language>[\w+-]*)(?P<rest>[^\n]*)$")
 
@@ -100,10 +55,7 @@ def blocks(page: Path) -> Iterator[Block]:
 
 
 def canonical(words: Sequence[str]) -> str:
-    """Returns a command in the form that `TRIALS` has, whatever form a page prefers.
-
-    `.venv/bin/stubborn run` and `python -m sim.run` become `stubborn run`; old names become the new ones.
-    """
+    """Returns a command in the form of `TRIALS`, which names `.venv/bin/stubborn run` and `python -m sim.run` alike."""
     first, rest = words[0], list(words[1:])
     if first in ("stubborn", ".venv/bin/stubborn"):
         return shlex.join(["stubborn", *rest])
@@ -111,23 +63,7 @@ def canonical(words: Sequence[str]) -> str:
         return shlex.join(words)
     if rest[0] == "-m" and rest[1] in ("sim.run", "sim.report", "sim.web"):
         return shlex.join(["stubborn", rest[1].removeprefix("sim."), *rest[2:]])
-    old = re.fullmatch(r"tools/(\w+)\.py", rest[0])
-    if old and old[1] in MOVED:
-        return shlex.join(["stubborn", *MOVED[old[1]].split(), *rest[1:]])
-    if old and old[1] in MOVED_TOOLS:
-        return shlex.join([PYTHON, "-m", f"tools.{MOVED_TOOLS[old[1]]}.{old[1]}", *rest[1:]])
     return shlex.join([PYTHON, *rest])
-
-
-def old_names() -> list[str]:
-    """Every place where a page names a command by its old path."""
-    found = []
-    for page in pages():
-        for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), start=1):
-            for name in re.findall(r"\btools[/.](\w+)", line):
-                if name in MOVED or name in MOVED_TOOLS:
-                    found.append(f"{page.relative_to(ROOT)}:{number}: {name}")
-    return found
 
 
 def example_of(block: Block) -> str | None:
