@@ -223,12 +223,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn houses plans --split val --out runs/plans/val --workers 2": (
         "stubborn houses plans --split val --houses 1 --workers 1 --out {tmp}/plans",
     ),
-    f"{PYTHON} -m tools.research.check_twin --plans runs/plans/val --runs runs/real --explore": (
-        "stubborn houses plans --split val --houses 1 --out {tmp}/plans",
-        f"{_RUN} --semantics gt --record --episodes 1 --out {{tmp}}/real",
-        f"{PYTHON} -m tools.research.check_twin --plans {{tmp}}/plans --runs {{tmp}}/real --explore"
-        " --out {tmp}/lines.jsonl",
-    ),
     "stubborn houses plans --pool train --first-seed 0 --houses 240 --out runs/plans/train --workers 2": (
         "stubborn houses plans --pool train --first-seed 0 --kind studio --houses 1 --workers 1 --out {tmp}/plans",
     ),
@@ -486,9 +480,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f" agent.seeker.context=stubborn/detection/context.json {_SMALL} --episodes 1"
         " --out {tmp}/run",
     ),
-    f"{_RUN} --explorer informed-tour --semantics gt --record --episodes 100 --workers 2 --out runs/real": (
-        f"{_RUN} --explorer informed-tour --semantics gt --record {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/real",
-    ),
     "stubborn train poni --plans runs/plans/train --minutes 30 --out runs/poni": (
         *_PLANS,
         "stubborn train poni --plans {tmp}/plans --minutes 0.05 --out {tmp}/poni",
@@ -500,13 +491,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --agent semexp --config agent.explorer.weights=runs/semexp/semexp.safetensors --episodes 5": (
         f"{_RUN} --agent semexp --config agent.explorer.weights=stubborn/exploration/weights/semexp.safetensors"
         f" {_SMALL} --semantics gt --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{PYTHON} -m tools.research.compare_explorers --plans runs/plans/train --episodes 120"
-    " --houses held-back-poni --explorers corners tour poni"
-    " informed-tour poni:goal=wrong semexp": (
-        *_PLANS,
-        f"{PYTHON} -m tools.research.compare_explorers --plans {{tmp}}/plans --houses all --episodes 1"
-        " --explorers corners poni:goal=wrong",
     ),
     "stubborn import furniture --source my_models --out runs/models": _MODELS,
     "stubborn import furniture infinigen --python infinigen/bin/python --out runs/infinigen": Only(

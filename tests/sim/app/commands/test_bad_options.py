@@ -113,7 +113,6 @@ BAD: dict[str, list[tuple[str, str]]] = {
     ],
     "sim.app.commands.compare": [("nowhere nowhere", "is not a run")],
     "tools.maintenance.describe_houses": [("--root nowhere --out OUT", "nowhere")],
-    "tools.research.draw_trajectories": [("nowhere", "is not a run")],
     "sim.app.commands.evaluate.segmentation": [
         ("--views nowhere --weights nowhere", "No weights at 'nowhere'"),
         ("--views nowhere --weights FILE", "cannot be read"),
