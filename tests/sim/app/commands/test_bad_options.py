@@ -187,6 +187,8 @@ BAD: dict[str, list[tuple[str, str]]] = {
     "sim.app.commands.traps.make": [
         ("--out OUT --family glass", "pane_gap"),
         ("--out OUT --split contact", "contact-val"),
+        ("--out OUT", "Name either a family"),
+        ("--out OUT --family jam --split contact-val", "Name either a family"),
     ],
     "sim.app.commands.traps.report": [
         ("--out OUT --split nowhere", "Unknown split"),
