@@ -537,9 +537,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --agent habitat:agent:RandomAgent": Only(_PUBLISHED),
     f"{_RUN} --agent 'process:env/bin/python stubborn_client.py Stubborn/eval.py --evaluation local --timestep_limit"
     " 451' --config agent.interface=habitat": Only(_PUBLISHED),
-    "stubborn bench --parts a,b,d --out runs/bench.json": Only(
-        "takes minutes; tests/sim/app/commands/test_bench.py runs its parts"
-    ),
+    "stubborn bench": Only("takes minutes; tests/sim/app/commands/test_bench.py runs it with --quick"),
     "stubborn traps --family pane_gap --difficulty hard --seed 10 --out runs/panes": (
         "stubborn traps --family pane_gap --difficulty hard --seed 10 --out {tmp}/panes",
     ),

@@ -77,7 +77,7 @@ COMMANDS: Mapping[str, Command] = {
     "agent-client": Command(
         "sim.app.commands.agent_client", "Write the client file for agents in a process of their own"
     ),
-    "bench": Command("sim.app.commands.bench.bench", "Measure the speed of all parts"),
+    "bench": Command("sim.app.commands.bench", "Measure the speed of camera and agent"),
 }
 """Every sub-command, by the words that the user types. A group such as `views` may be a command itself."""
 REPLACED: Mapping[str, str] = {"teleop": "web"}

@@ -96,12 +96,7 @@ def test_every_number_and_path_of_a_command_is_checked_before_it_begins(
 
 BAD: dict[str, list[tuple[str, str]]] = {
     "sim.app.commands.report": [("nowhere", "it has no config.json"), ("FILE", "config.json")],
-    "sim.app.commands.bench.bench": [
-        ("--parts z", "--parts must be some of a,b,c"),
-        ("--markdown nowhere.md", "cannot be read"),
-        ("--markdown FILE", "is not text in UTF-8"),
-    ],
-    "tools.maintenance.bench_against": [
+    "tools.benchmarks.against": [
         ("--against nowhere", "names no commit"),
         ("--against HEAD --parts walk", "--parts must be some of"),
         ("--against HEAD --rounds 0", "--rounds must be at least 1"),
