@@ -17,51 +17,6 @@ from sim.app.commands.main import COMMANDS, split
 
 ROOT = Path(__file__).resolve().parents[2]
 PYTHON = ".venv/bin/python"
-OLD_NAMES_ARE_ERRORS = True
-"""To be set to True when no page names a command by its old path, such as tools/gallery.py."""
-MOVED = {
-    "generate_houses": "houses generate",
-    "check_houses": "houses check",
-    "export_plans": "houses plans",
-    "make_episodes": "episodes",
-    "make_traps": "traps",
-    "trap_report": "traps report",
-    "generate_views": "views",
-    "show_views": "views show",
-    "unpack_views": "views unpack",
-    "label_house": "label",
-    "import_furniture": "import furniture",
-    "train_rednet": "train segmentation",
-    "train_verifier": "train verifier",
-    "train_tracks": "train fusion",
-    "train_semexp": "train semexp",
-    "train_poni": "train poni",
-    "train_cloned": "train cloned",
-    "evaluate_rednet": "evaluate",
-    "show_mistakes": "evaluate mistakes",
-    "worst_objects": "evaluate objects",
-    "compare_runs": "compare",
-    "merge_runs": "merge",
-    "reproduce": "reproduce",
-    "gallery": "gallery",
-    "bench": "bench",
-}
-"""Files of tools/ that users called up to version 0.1, and the commands that they are now."""
-MOVED_TOOLS = {
-    "render_demonstrations": "training",
-    "twin_demonstrations": "training",
-    "compare_networks": "training",
-    "check_twin": "research",
-    "compare_explorers": "research",
-    "draw_potentials": "research",
-    "draw_trajectories": "research",
-    "bench_against": "maintenance",
-    "describe_houses": "maintenance",
-    "make_textures": "maintenance",
-    "readme_picture": "maintenance",
-    "split_report": "maintenance",
-}
-"""Other files of tools/, and the folders in which they are now."""
 _EXAMPLE = re.compile(r"`(examples/[\w./]+)`")
 _FENCE = re.compile(r"^(?P<indent> *)(?P<marks>```+|~~~+)(?P<language>[\w+-]*)(?P<rest>[^\n]*)$")
 
@@ -100,10 +55,7 @@ def blocks(page: Path) -> Iterator[Block]:
 
 
 def canonical(words: Sequence[str]) -> str:
-    """Returns a command in the form that `TRIALS` has, whatever form a page prefers.
-
-    `.venv/bin/stubborn run` and `python -m sim.run` become `stubborn run`; old names become the new ones.
-    """
+    """Returns a command in the form of `TRIALS`, which names `.venv/bin/stubborn run` and `python -m sim.run` alike."""
     first, rest = words[0], list(words[1:])
     if first in ("stubborn", ".venv/bin/stubborn"):
         return shlex.join(["stubborn", *rest])
@@ -111,23 +63,7 @@ def canonical(words: Sequence[str]) -> str:
         return shlex.join(words)
     if rest[0] == "-m" and rest[1] in ("sim.run", "sim.report", "sim.web"):
         return shlex.join(["stubborn", rest[1].removeprefix("sim."), *rest[2:]])
-    old = re.fullmatch(r"tools/(\w+)\.py", rest[0])
-    if old and old[1] in MOVED:
-        return shlex.join(["stubborn", *MOVED[old[1]].split(), *rest[1:]])
-    if old and old[1] in MOVED_TOOLS:
-        return shlex.join([PYTHON, "-m", f"tools.{MOVED_TOOLS[old[1]]}.{old[1]}", *rest[1:]])
     return shlex.join([PYTHON, *rest])
-
-
-def old_names() -> list[str]:
-    """Every place where a page names a command by its old path."""
-    found = []
-    for page in pages():
-        for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), start=1):
-            for name in re.findall(r"\btools[/.](\w+)", line):
-                if name in MOVED or name in MOVED_TOOLS:
-                    found.append(f"{page.relative_to(ROOT)}:{number}: {name}")
-    return found
 
 
 def example_of(block: Block) -> str | None:
@@ -286,12 +222,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     "stubborn houses plans --split val --out runs/plans/val --workers 2": (
         "stubborn houses plans --split val --houses 1 --workers 1 --out {tmp}/plans",
-    ),
-    f"{PYTHON} -m tools.research.check_twin --plans runs/plans/val --runs runs/real --explore": (
-        "stubborn houses plans --split val --houses 1 --out {tmp}/plans",
-        f"{_RUN} --semantics gt --record --episodes 1 --out {{tmp}}/real",
-        f"{PYTHON} -m tools.research.check_twin --plans {{tmp}}/plans --runs {{tmp}}/real --explore"
-        " --out {tmp}/lines.jsonl",
     ),
     "stubborn houses plans --pool train --first-seed 0 --houses 240 --out runs/plans/train --workers 2": (
         "stubborn houses plans --pool train --first-seed 0 --kind studio --houses 1 --workers 1 --out {tmp}/plans",
@@ -550,9 +480,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f" agent.seeker.context=stubborn/detection/context.json {_SMALL} --episodes 1"
         " --out {tmp}/run",
     ),
-    f"{_RUN} --explorer informed-tour --semantics gt --record --episodes 100 --workers 2 --out runs/real": (
-        f"{_RUN} --explorer informed-tour --semantics gt --record {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/real",
-    ),
     "stubborn train poni --plans runs/plans/train --minutes 30 --out runs/poni": (
         *_PLANS,
         "stubborn train poni --plans {tmp}/plans --minutes 0.05 --out {tmp}/poni",
@@ -564,13 +491,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --agent semexp --config agent.explorer.weights=runs/semexp/semexp.safetensors --episodes 5": (
         f"{_RUN} --agent semexp --config agent.explorer.weights=stubborn/exploration/weights/semexp.safetensors"
         f" {_SMALL} --semantics gt --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{PYTHON} -m tools.research.compare_explorers --plans runs/plans/train --episodes 120"
-    " --houses held-back-poni --explorers corners tour poni"
-    " informed-tour poni:goal=wrong semexp": (
-        *_PLANS,
-        f"{PYTHON} -m tools.research.compare_explorers --plans {{tmp}}/plans --houses all --episodes 1"
-        " --explorers corners poni:goal=wrong",
     ),
     "stubborn import furniture --source my_models --out runs/models": _MODELS,
     "stubborn import furniture infinigen --python infinigen/bin/python --out runs/infinigen": Only(
@@ -617,9 +537,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --agent habitat:agent:RandomAgent": Only(_PUBLISHED),
     f"{_RUN} --agent 'process:env/bin/python stubborn_client.py Stubborn/eval.py --evaluation local --timestep_limit"
     " 451' --config agent.interface=habitat": Only(_PUBLISHED),
-    "stubborn bench --parts a,b,d --out runs/bench.json": Only(
-        "takes minutes; tests/sim/app/commands/test_bench.py runs its parts"
-    ),
+    "stubborn bench": Only("takes minutes; tests/sim/app/commands/test_bench.py runs it with --quick"),
     "stubborn traps --family pane_gap --difficulty hard --seed 10 --out runs/panes": (
         "stubborn traps --family pane_gap --difficulty hard --seed 10 --out {tmp}/panes",
     ),

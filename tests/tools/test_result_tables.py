@@ -3,42 +3,34 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import json
 import re
 import shutil
-import tarfile
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-import numpy as np
 import pytest
-from scipy.special import stdtrit
 
+from sim.app.commands.reproduce import runs as table_runs
+from sim.app.commands.reproduce.runs import AgentSetup, RunKey, runs_in
 from sim.core.errors import ConfigError
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 from tools.research import result_tables
-from tools.research.paper_page import PAPER, paper_page
-from tools.research.resolution import houses_needed, resolution_record, shown_difference, variance_components
-from tools.research.result_archive import (
-    ARCHIVE,
-    CHECKSUM_DIGITS,
-    RUN_FILES,
-    ArchivedRun,
-    RunKey,
-    read_archive,
-)
-from tools.research.result_definitions import RESOLVED, comparisons, page_tables
+from tools.research.result_archive import ARCHIVE, CHECKSUM_DIGITS, VERSION, ArchivedRun, pack, read_archive, unpack
+from tools.research.result_definitions import comparisons, needed_rows, page_tables
 from tools.research.result_tables import (
     COMPARISONS,
     PAGE,
-    RESOLUTION,
+    PAPER,
     RESULTS,
     TABLES,
+    Args,
     comparison_record,
     fill_page,
     holm,
     main,
+    paper_page,
     read_csv,
     result_record,
     row_keys,
@@ -47,19 +39,25 @@ from tools.research.result_tables import (
     with_families,
 )
 
-CONFIG = {
+CONFIG: dict[str, Any] = {
     "agent": "stubborn",
     "semantics": "gt",
     "split": "val",
     "split_identity": {"name": "val", "version": "3.0.0", "sha256": "0" * 64},
     "versions": {"stubborn-objectnav": "0.1.0"},
 }
-LINE = {"episode_id": "val_0000", "house": "val_00", "goal": "bed", "end_reason": "stop", "success": 1.0}
+LINE: dict[str, Any] = {
+    "episode_id": "val_0000",
+    "house": "val_00",
+    "goal": "bed",
+    "end_reason": "stop",
+    "success": 1.0,
+}
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> Mapping[RunKey, ArchivedRun]:
-    return read_archive(ARCHIVE, tmp_path_factory.mktemp("archive"), lambda text: None)
+    return read_archive(ARCHIVE, tmp_path_factory.mktemp("archive"))
 
 
 def test_the_tables_of_the_page_are_rows_of_the_shipped_csv_file() -> None:
@@ -71,7 +69,7 @@ def test_the_tables_of_the_page_are_rows_of_the_shipped_csv_file() -> None:
 
 def test_runs_with_a_network_are_of_the_network_that_ships(runs: Mapping[RunKey, ArchivedRun]) -> None:
     shipped = hashlib.sha256(SHIPPED_REDNET.read_bytes()).hexdigest()[:CHECKSUM_DIGITS]
-    of_network = {run.network for key, run in runs.items() if key.semantics == "rednet"}
+    of_network = {run.network for key, run in runs.items() if key.setup.semantics == "rednet"}
     assert of_network == {shipped}
 
 
@@ -80,12 +78,10 @@ def test_the_shipped_csv_files_are_those_of_the_archive(runs: Mapping[RunKey, Ar
     assert read_csv(TABLES / RESULTS) == made
     pairs = list(comparisons())
     assert read_csv(TABLES / COMPARISONS) == with_families(pairs, [comparison_record(each, runs) for each in pairs])
-    resolved = [resolution_record(each, runs) for each in pairs if each.table in RESOLVED and each.primary]
-    assert read_csv(TABLES / RESOLUTION) == resolved
 
 
 def test_the_page_of_the_paper_is_that_of_the_archive(tmp_path: Path) -> None:
-    read_archive(ARCHIVE, tmp_path, lambda text: None)
+    read_archive(ARCHIVE, tmp_path)
     assert (TABLES / PAPER).read_text(encoding="utf-8") == paper_page(tmp_path)
     shutil.rmtree(tmp_path / "poni_rednet_none_val")
     with pytest.raises(ConfigError, match="lacks a run of the paper's table 'overall'"):
@@ -117,16 +113,16 @@ def test_a_sentence_may_quote_only_quantities_of_the_csv_files() -> None:
 def test_check_reports_a_page_and_a_csv_file_that_differ(
     tmp_path: Path, runs: Mapping[RunKey, ArchivedRun], monkeypatch: pytest.MonkeyPatch, capsys
 ) -> None:
-    few = sorted({key for table in page_tables() for key in table.needed()}, key=lambda key: (key.run, key.episodes))
+    few = sorted({row for table in page_tables() for _, cells in table.rows for row, _ in cells})
     monkeypatch.setattr(result_tables, "read_archive", lambda *_: runs)
     monkeypatch.setattr(result_tables, "paper_page", lambda _: "The tables.\n")
     monkeypatch.setattr(result_tables, "row_keys", lambda _: few)
     monkeypatch.setattr(result_tables, "comparisons", lambda: [each for each in comparisons() if each.primary][:1])
     page = tmp_path / "results.md"
     page.write_text(re.sub(QUOTED, "", PAGE.read_text(encoding="utf-8")), encoding="utf-8")
-    args = result_tables.Args(tables=tmp_path, page=page)
+    args = Args(tables=tmp_path, page=page)
     assert main(args) == 0
-    check = result_tables.Args(check=True, tables=tmp_path, page=page)
+    check = Args(check=True, tables=tmp_path, page=page)
     assert main(check) == 0
     page.write_text(page.read_text(encoding="utf-8").replace("|99.5 ", "|99.6 "), encoding="utf-8")
     capsys.readouterr()
@@ -141,52 +137,79 @@ QUOTED = r"[-\d.]+(?: points)?\s\[[-\d., \n]+\]"
 """Quantities of the page: they are not those of intervals without width."""
 
 
-def archive_of(folder: Path, files: Mapping[str, str]) -> Path:
-    """Returns a tar file with these files, one of them a link."""
-    archive = folder / "archive.tar.gz"
-    with tarfile.open(archive, "w:gz") as opened:
-        for name, text in files.items():
-            member = tarfile.TarInfo(name)
-            member.size = len(text)
-            opened.addfile(member, io.BytesIO(text.encode()))
-        link = tarfile.TarInfo("linked/config.json")
-        link.type, link.linkname = tarfile.SYMTYPE, "/etc/passwd"
-        opened.addfile(link)
-    return archive
+KEY = RunKey("val", AgentSetup("stubborn", "--explorer informed-tour", "gt"), VERSION)
 
 
-def test_odd_folders_of_an_archive_are_skipped_with_a_message(tmp_path: Path) -> None:
-    config, line = json.dumps(CONFIG), json.dumps(LINE) + "\n"
-    files = {
-        "good/config.json": config,
-        "good/results.jsonl": line,
-        "../outside/config.json": config,
-        "half/config.json": config,
-        "begun/config.json": config,
-        "begun/results.jsonl": "",
-        "broken/config.json": "[",
-        "broken/results.jsonl": line,
-        "settings/config.json": json.dumps(CONFIG | {"settings": 3}),
-        "settings/results.jsonl": line,
-        "unknown/config.json": json.dumps(CONFIG | {"agent": "nobody"}),
-        "unknown/results.jsonl": line,
-        "notes.txt": "",
-    }
-    said: list[str] = []
-    folder = tmp_path / "in" / "here"
-    found = read_archive(archive_of(tmp_path, files), folder, said.append)
-    assert [run.folder for run in found.values()] == ["good"]
-    skipped = ["'../outside/config.json'", "'notes.txt'", "'linked/config.json'", "'half'", "'broken'", "'settings'"]
-    for name in (*skipped, "'unknown'", "'begun'"):
-        assert sum(text.startswith(f"Skipped {name}") for text in said) == 1, name
-    assert not (tmp_path / "in" / "outside").exists()
+def write_run(folder: Path, lines: list[dict[str, Any]], **config: Any) -> Path:
+    """Writes a run with some entries of config.json; returns its folder."""
+    folder.mkdir(parents=True)
+    (folder / "config.json").write_text(json.dumps(CONFIG | config))
+    (folder / "results.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    return folder
 
 
-def test_an_archive_with_two_runs_of_one_row_is_refused(tmp_path: Path) -> None:
-    config, line = json.dumps(CONFIG), json.dumps(LINE) + "\n"
-    files = {f"{name}/{file}": text for name in "ab" for file, text in zip(RUN_FILES, (config, line), strict=True)}
-    with pytest.raises(ConfigError, match=r"'a' and 'b' of .* are runs of the same row"):
-        read_archive(archive_of(tmp_path, files), tmp_path / "runs", print)
+def numbered(count: int) -> list[dict[str, Any]]:
+    return [LINE | {"episode_id": f"val_{number:04}"} for number in range(count)]
+
+
+def archived(folder: Path) -> ArchivedRun:
+    ((key, path),) = runs_in(folder, VERSION).items()
+    return ArchivedRun(key, table_runs.read_run(path))
+
+
+def test_runs_that_are_packed_and_unpacked_are_equal_and_the_longer_one_stays(tmp_path: Path) -> None:
+    write_run(tmp_path / "first" / "some", numbered(3), explorer="informed-tour")
+    write_run(
+        tmp_path / "first" / "earlier", numbered(4), split_identity=CONFIG["split_identity"] | {"version": "2.0.0"}
+    )
+    folders = runs_in(tmp_path / "first", VERSION)
+    assert list(folders) == [KEY]
+    archive = tmp_path / "splits.tar.gz"
+    archive.write_bytes(pack(folders))
+    assert pack(folders) == archive.read_bytes()
+    assert list(read_archive(archive, tmp_path / "read")) == [KEY]
+    unpack(archive, tmp_path / "second")
+    assert pack(runs_in(tmp_path / "second", VERSION)) == archive.read_bytes()
+    for episodes, kept in ((2, 3), (5, 5)):
+        folder = write_run(tmp_path / f"third{episodes}" / "other_name", numbered(episodes), explorer="informed-tour")
+        unpack(archive, folder.parent)
+        assert list(runs_in(folder.parent, VERSION).values()) == [folder]
+        assert len((folder / "results.jsonl").read_text().splitlines()) == kept
+
+
+def test_two_runs_of_one_row_and_a_damaged_archive_are_refused(tmp_path: Path) -> None:
+    for name in ("some", "other"):
+        write_run(tmp_path / "runs" / name, numbered(1))
+    with pytest.raises(ConfigError, match=r"other' and '.*some' are runs of the same row"):
+        runs_in(tmp_path / "runs", VERSION)
+    (tmp_path / "archive.tar.gz").write_bytes(ARCHIVE.read_bytes()[:1000])
+    with pytest.raises(ConfigError, match="cannot be read"):
+        read_archive(tmp_path / "archive.tar.gz", tmp_path / "read")
+
+
+def test_rows_take_turns_until_all_are_complete_and_the_archive_has_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = [row for row in needed_rows() if row.run.split == "val" and row.run.setup.agent in ("oracle", "poni")]
+    calls: list[tuple[str, int, Path]] = []
+    monkeypatch.setattr(result_tables, "needed_rows", lambda: rows)
+    monkeypatch.setattr(
+        table_runs, "run_missing",
+        lambda setup, episodes, *_: calls.append((setup.options.agent, len(episodes), setup.options.out)),
+    )  # fmt: skip
+    mine = write_run(tmp_path / "runs" / "mine", numbered(50), agent="poni")
+    args = Args(run=True, out=tmp_path / "runs", archive=tmp_path / "runs.tar.gz")
+    assert main(args) == 0
+    assert [name for name, _, _ in calls] == ["oracle", "poni"] + ["oracle", "poni"] * 3
+    assert {count for _, count, _ in calls} == {50}
+    assert {folder for name, _, folder in calls if name == "poni"} == {mine}
+    printed = capsys.readouterr().out
+    assert "val: poni, gt: 50 of 200 episodes" in printed
+    assert "val: oracle, gt: 0 of 200 episodes" in printed
+    assert [key.setup.agent for key in read_archive(args.archive, tmp_path / "read")] == ["poni"]
+    monkeypatch.setattr(result_tables, "VERSION", "2.0.0")
+    with pytest.raises(ConfigError, match=r"'val' has version 3.0.0, the tables 2.0.0"):
+        main(args)
 
 
 def test_replicates_are_no_episodes_and_their_spread_is_in_the_table(tmp_path: Path) -> None:
@@ -196,9 +219,7 @@ def test_replicates_are_no_episodes_and_their_spread_is_in_the_table(tmp_path: P
         for i, outcomes in enumerate(((1, 0), (1, 1), (0, 0)))
         for mark, success in zip(("", "~1"), outcomes, strict=True)
     ]
-    text = "".join(json.dumps(line) + "\n" for line in lines)
-    files = {"a/config.json": json.dumps(CONFIG | {"replicates": 2}), "a/results.jsonl": text}
-    (run,) = read_archive(archive_of(tmp_path, files), tmp_path / "runs", lambda _: None).values()
+    run = archived(write_run(tmp_path / "a", lines, replicates=2).parent)
     assert [line["episode_id"] for line in run.first_lines(2)] == ["val_0000", "val_0000~1", "val_0001", "val_0001~1"]
     record = result_record(run, 3)
     assert (record["episodes"], record["options"], record["success"]) == ("3", "--replicates 2", "0.500000")
@@ -207,14 +228,9 @@ def test_replicates_are_no_episodes_and_their_spread_is_in_the_table(tmp_path: P
 
 
 def test_a_row_has_the_command_that_repeats_it(tmp_path: Path) -> None:
-    config = CONFIG | {
-        "explorer": "tour",
-        "verification": "none",
-        "settings": {"agent.seeker.look.bar": [[0, 0.05], [500, 0.7]]},
-    }
-    files = {"a/config.json": json.dumps(config), "a/results.jsonl": json.dumps(LINE) + "\n"}
-    (run,) = read_archive(archive_of(tmp_path, files), tmp_path / "runs", lambda text: None).values()
-    assert run.command(1) == (
+    settings = {"agent.seeker.look.bar": [[0, 0.05], [500, 0.7]]}
+    write_run(tmp_path / "a", [LINE], explorer="tour", verification="none", settings=settings)
+    assert archived(tmp_path).command(1) == (
         "stubborn run --agent stubborn --explorer tour --verification none --config "
         "'agent.seeker.look.bar=[[0,0.05],[500,0.7]]' "
         "--semantics gt --split val --episodes 1"
@@ -225,17 +241,3 @@ def test_a_csv_file_read_again_has_the_same_rows(tmp_path: Path) -> None:
     records = [{"a": "x, y", "b": ""}, {"a": '"', "b": "2"}]
     (tmp_path / "some.csv").write_text(to_csv(records), encoding="utf-8")
     assert read_csv(tmp_path / "some.csv") == records
-
-
-def test_variances_between_and_within_houses_are_those_of_simulated_data() -> None:
-    rng, index = np.random.default_rng(0), np.repeat(np.arange(4000), np.resize([4, 6, 8], 4000))
-    values = rng.normal(0.0, 0.3, 4000)[index] + rng.normal(0.0, 0.5, len(index))
-    assert variance_components(values, index) == pytest.approx((0.09, 0.25), rel=0.05)
-
-
-def test_the_needed_houses_show_a_difference_in_four_of_five_samples() -> None:
-    houses = houses_needed(0.04, 0.1)
-    assert shown_difference(0.04, houses) <= 0.1 < shown_difference(0.04, houses - 1)
-    draws = np.random.default_rng(0).normal(0.1, 0.2, (20_000, houses))
-    statistic = draws.mean(axis=1) / draws.std(axis=1, ddof=1) * np.sqrt(houses)
-    assert np.mean(statistic > stdtrit(houses - 1, 0.975)) == pytest.approx(0.8, abs=0.02)

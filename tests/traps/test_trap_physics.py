@@ -19,7 +19,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import FORWARD_M, Action, ConfigError
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.recipes import START_TURNS_RAD
-from sim.homes.housegen.traps.catalogue import TRAPS
+from sim.episodes.splits import load_split
 from sim.robot.config import PHYSICS_VERSION
 from stubborn.agent import StubbornAgent
 from stubborn.agents import ABLATION
@@ -27,6 +27,7 @@ from stubborn.mapping.navmap import NavMap
 from tests.helpers.sampling import sample
 
 HEADINGS = range(len(START_TURNS_RAD))
+TRAPS = load_split("traps").houses
 CASES = list(itertools.product(TRAPS, HEADINGS))
 AGENT_CASES = [(*case, agent) for case in CASES for agent in ABLATION]
 BLIND = ("glass_pane", "scan_artifact", "hanging_shelf", "dead_end_corridor", "wedged_spawn", "chair_in_doorway")

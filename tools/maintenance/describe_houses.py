@@ -57,7 +57,8 @@ and [`{TABLE_FILE}`]({TABLE_FILE}).
 | `<split>/content/<house>.json.gz` | the episodes of one house; y points up, quaternions are xyzw |
 | `<split>/{UNREACHABLE_FILE}` | the instances that the robot cannot reach; they are not goals |
 | `train/houses.json` | the recipe and the checksum of each house of `train` |
-| `traps/`, `contact-*/` | [traps](../../docs/traps.md) with fixed start and goal, made by `stubborn traps` |
+| `traps/` | 21 [traps](../../docs/traps.md) with fixed start and goal |
+| `contact-*/` | traps of families, made by `stubborn traps --split` |
 | `transfer_models.txt` | the names of the imported models that only the [transfer test](../../docs/furniture.md) uses |
 | `{TABLE_FILE}` | one row for each house |
 

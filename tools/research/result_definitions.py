@@ -6,11 +6,12 @@ A table shows only rows of `docs/tables/results.csv`, and all rows of one split 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from sim.app.analysis.metrics import COLLISIONS, EXPLORED, FIRST_SIGHT, SPL, STEPS, SUCCESS, TRAPPED, Metric
-from tools.research.result_archive import VERSION, RunKey
+from sim.app.commands.reproduce.runs import AgentSetup, RunKey
+from tools.research.result_archive import VERSION
 
 SOFT_SPL = Metric("soft SPL", "soft_spl", digits=3)
 DISTANCE = Metric("distance to goal, m", "distance_to_goal", digits=2)
@@ -28,22 +29,27 @@ FALSE_DETECTIONS = f"{FAILED}false_detection"
 """Column of results.csv: episodes that ended with a STOP at another object."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, order=True)
 class RowKey:
     """A row of results.csv: a run, and how many of its first episodes."""
 
     run: RunKey
     episodes: int
 
+    @classmethod
+    def of(cls, split: str, episodes: int, name: str, semantics: str = "gt") -> RowKey:
+        """Returns the row of an agent with options, such as "stubborn --explorer tour"."""
+        agent, _, options = name.partition(" ")
+        return cls(RunKey(split, AgentSetup(agent, options, semantics), VERSION), episodes)
+
 
 @dataclass(frozen=True)
 class Comparison:
-    """A row of comparisons.csv: the first run minus the second one, paired by episode."""
+    """A row of comparisons.csv: the first row minus the second one, of the same episodes of a split."""
 
     table: str
-    first: RunKey
-    second: RunKey
-    episodes: int
+    first: RowKey
+    second: RowKey
     primary: bool = True
     """It answers the question of its table. All others are exploratory: their intervals are not corrected."""
 
@@ -56,38 +62,33 @@ class PageTable:
     header: tuple[str, ...]
     rows: tuple[tuple[tuple[str, ...], tuple[tuple[RowKey, Metric | str], ...]], ...]
 
-    def needed(self) -> Iterator[RowKey]:
-        """Yields the rows of results.csv that the table shows."""
-        for _, cells in self.rows:
-            yield from (row for row, _ in cells)
 
-
-HEADLINE_EPISODES = {
-    "val": 200,
-    "large": 100,
-    "hazards": 200,
-    "transfer": 100,
-    "contact-val": 150,
-    "contact-heldout": 60,
+EPISODES = {
+    "headline": {"val": 200, "large": 100, "hazards": 200, "transfer": 100, "contact-val": 150, "contact-heldout": 60},
+    "further": {"large": 100, "hazards": 100, "test": 500},
+    "ablation": {"val": 200, "hazards": 200},
+    "explorers": {"val": 200, "large": 100},
+    "semexp": {"val": 200},
+    "network": {"val": 200, "transfer": 100},
+    "drift": {"val": 30},
 }
-HEADLINE = {
-    "val": ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet"),
-    "large": ("oracle gt", "stubborn gt"),
-    "hazards": ("stubborn gt", "stubborn-plus gt"),
-    "transfer": ("stubborn-plus rednet",),
-    "contact-val": ("stubborn-plus gt",),
-    "contact-heldout": ("stubborn gt", "stubborn-plus gt"),
+"""The first episodes of each split that a table has."""
+AGENTS: Mapping[str, Mapping[str, Sequence[str]]] = {
+    "headline": {
+        "val": ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet"),
+        "large": ("oracle gt", "stubborn gt"),
+        "hazards": ("stubborn gt", "stubborn-plus gt"),
+        "transfer": ("stubborn-plus rednet",),
+        "contact-val": ("stubborn-plus gt",),
+        "contact-heldout": ("stubborn gt", "stubborn-plus gt"),
+    },
+    "further": {
+        "large": ("stubborn rednet", "stubborn-plus rednet"),
+        "hazards": ("stubborn rednet", "stubborn-plus rednet"),
+        "test": ("stubborn-plus rednet",),
+    },
 }
-"""Agents and segmentation, by split."""
-FURTHER_EPISODES = {"large": 100, "hazards": 100, "test": 500}
-FURTHER = {
-    "large": ("stubborn rednet", "stubborn-plus rednet"),
-    "hazards": ("stubborn rednet", "stubborn-plus rednet"),
-    "test": ("stubborn-plus rednet",),
-}
-"""The same on harder splits and, for the last measurement, on `test`."""
-RESOLVED = ("headline", "further")
-"""Tables whose primary comparisons have a row in resolution.csv."""
+"""Agents and segmentation by split; `further` has harder splits and, for the last measurement, `test`."""
 ABLATION = {
     "stubborn-i": "I: none",
     "stubborn-ii": "II: untrap moves",
@@ -95,7 +96,6 @@ ABLATION = {
     "stubborn-iv": "IV: and exploration avoids them",
     "stubborn": "V: and visited ground is free",
 }
-ABLATION_EPISODES = {"val": 200, "hazards": 200}
 EXPLORERS = {
     "stubborn": "corners (`stubborn`)",
     "frontier-avoid": "`frontier-avoid`",
@@ -106,12 +106,8 @@ EXPLORERS = {
     "random": "`random`",
     "oracle": "`oracle`",
 }
-EXPLORER_EPISODES = {"val": 200, "large": 100}
 PRIMARY_EXPLORERS = ("stubborn --explorer informed-tour", "poni")
 """Explorers whose comparison with corners is primary."""
-DRIFT = ("stubborn --noise realsense", "stubborn --noise realsense --config noise.pose.from_odometry=false")
-"""Runs with gps and compass by odometry, and with the true pose."""
-DRIFT_EPISODES = 30
 SEMEXP = {
     "stubborn": "corners (`stubborn`)",
     "semexp": "`semexp`",
@@ -119,128 +115,97 @@ SEMEXP = {
     "semexp --config agent.explorer.semantics=shuffled": "`semexp`, shuffled semantics",
 }
 """The last two are controls: they show whether `semexp` uses the goal and the semantics, and are compared with it."""
-SEMEXP_EPISODES = 200
-NETWORK = (
-    ("val", "stubborn", "naive Bayes", 200),
-    ("val", "stubborn --verification none", "none", 200),
-    ("val", "stubborn-plus", "tracks", 200),
-    ("transfer", "stubborn", "naive Bayes", 100),
-    ("transfer", "stubborn-plus", "tracks", 100),
-)
-"""Split, agent with options, its verification, episodes."""
-
-
-def run_key(split: str, name: str, semantics: str) -> RunKey:
-    """Returns the key of an agent with options, such as "stubborn --explorer tour"."""
-    agent, _, options = name.partition(" ")
-    return RunKey(split, agent, options, semantics, VERSION)
-
-
-def _of_agent(split: str, agent: str) -> RunKey:
-    """Returns the key of an entry of `HEADLINE`, such as "stubborn gt"."""
-    name, semantics = agent.split()
-    return run_key(split, name, semantics)
+NETWORK: Mapping[str, Mapping[str, str]] = {
+    "val": {"stubborn": "naive Bayes", "stubborn --verification none": "none", "stubborn-plus": "tracks"},
+    "transfer": {"stubborn": "naive Bayes", "stubborn-plus": "tracks"},
+}
+"""Verification by split and agent with options."""
+DRIFT = ("stubborn --noise realsense", "stubborn --noise realsense --config noise.pose.from_odometry=false")
+"""Runs with gps and compass by odometry, and with the true pose."""
 
 
 def page_tables() -> tuple[PageTable, ...]:
     """Returns the tables of the page."""
     return (
-        _agents("headline", HEADLINE, HEADLINE_EPISODES),
-        _agents("further", FURTHER, FURTHER_EPISODES),
-        _ablation(),
-        _explorers(),
-        _semexp(),
-        _network(),
-    )
+        *(_agents(name) for name in AGENTS),
+        _table(
+            "ablation", ABLATION, {"val": (SUCCESS,), "hazards": (SUCCESS, TRAPPED, COLLISIONS)},
+            "measures", "val: success %", "hazards: success %", "hazards: trapped %", "hazards: collisions",
+        ),
+        _table(
+            "explorers", EXPLORERS, {"val": (SUCCESS, SPL), "large": (SUCCESS, SPL, MEDIAN)},
+            "explorer", "val: success %", "val: SPL", "large: success %", "large: SPL", "large: first sight",
+        ),
+        _table("semexp", SEMEXP, {"val": (SUCCESS, SPL, MEDIAN)}, "explorer", "success %", "SPL", "first sight"),
+        PageTable(
+            "network",
+            ("split, episodes", "agent", "verification", "success %", "SPL", "false detections"),
+            tuple(
+                (
+                    (f"{split}, {row.episodes}", f"`{row.run.setup.agent}`", NETWORK[split][name]),
+                    _cells(row, (SUCCESS, SPL, FALSE_DETECTIONS)),
+                )
+                for split, names in NETWORK.items()
+                for name, row in _rows("network", split, names, "rednet").items()
+            ),
+        ),
+    )  # fmt: skip
 
 
 def comparisons() -> Iterator[Comparison]:
-    """Yields the comparisons that the page may quote."""
-    yield from _agents_compared("headline", HEADLINE, HEADLINE_EPISODES)
-    yield from _agents_compared("further", FURTHER, FURTHER_EPISODES)
-    *rows, whole = ABLATION
-    for split, episodes in ABLATION_EPISODES.items():
-        for name in rows:
-            first, second = run_key(split, name, "gt"), run_key(split, whole, "gt")
-            yield Comparison("ablation", first, second, episodes)
-    for split, episodes in EXPLORER_EPISODES.items():
-        for name in list(EXPLORERS)[1:]:
-            first, second = run_key(split, name, "gt"), run_key(split, "stubborn", "gt")
-            yield Comparison("explorers", first, second, episodes, name in PRIMARY_EXPLORERS)
-    corners, semexp, *controls = (run_key("val", name, "gt") for name in SEMEXP)
+    """Yields the comparisons that the page may quote; our two agents with the same segmentation are primary."""
+    for table, splits in AGENTS.items():
+        for split, names in splits.items():
+            rows = [RowKey.of(split, EPISODES[table][split], *name.split()) for name in names]
+            for second, first in itertools.combinations(rows, 2):
+                one, other = second.run.setup, first.run.setup
+                yield Comparison(table, first, second, one.agent == "stubborn" and one.semantics == other.semantics)
+    for split in EPISODES["ablation"]:
+        *rows, whole = _rows("ablation", split, ABLATION).values()
+        yield from (Comparison("ablation", row, whole) for row in rows)
+    for split in EPISODES["explorers"]:
+        for name, row in list(_rows("explorers", split, EXPLORERS).items())[1:]:
+            corners = RowKey.of(split, row.episodes, "stubborn")
+            yield Comparison("explorers", row, corners, name in PRIMARY_EXPLORERS)
+    corners, semexp, *controls = _rows("semexp", "val", SEMEXP).values()
     for first, second in ((semexp, corners), *((control, semexp) for control in controls)):
-        yield Comparison("semexp", first, second, SEMEXP_EPISODES)
-    yield from _network_comparisons()
-    first, second = (run_key("val", name, "gt") for name in DRIFT)
-    yield Comparison("drift", first, second, DRIFT_EPISODES)
+        yield Comparison("semexp", first, second)
+    for split, names in NETWORK.items():
+        second, *others = _rows("network", split, names, "rednet").values()
+        yield from (Comparison("network", first, second) for first in others)
+    first, second = _rows("drift", "val", DRIFT).values()
+    yield Comparison("drift", first, second)
 
 
-def _agents_compared(
-    table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int]
-) -> Iterator[Comparison]:
-    """Yields each pair of agents of a split; those of our two agents with the same segmentation are primary."""
-    for split, names in agents.items():
-        present = [_of_agent(split, agent) for agent in names]
-        for second, first in itertools.combinations(present, 2):
-            primary = second.agent == "stubborn" and first.semantics == second.semantics
-            yield Comparison(table, first, second, episodes[split], primary)
+def needed_rows() -> list[RowKey]:
+    """Returns the rows that tables and comparisons need, in their order."""
+    shown = [row for table in page_tables() for _, cells in table.rows for row, _ in cells]
+    return shown + [row for pair in comparisons() for row in (pair.first, pair.second)]
 
 
-def _network_comparisons() -> Iterator[Comparison]:
-    """Yields, for each split of the table, each row minus the first one."""
-    keys: dict[tuple[str, int], list[RunKey]] = {}
-    for split, name, _, episodes in NETWORK:
-        keys.setdefault((split, episodes), []).append(run_key(split, name, "rednet"))
-    for (_, episodes), (second, *others) in keys.items():
-        yield from (Comparison("network", first, second, episodes) for first in others)
+def _rows(table: str, split: str, names: Iterable[str], semantics: str = "gt") -> dict[str, RowKey]:
+    return {name: RowKey.of(split, EPISODES[table][split], name, semantics) for name in names}
 
 
-def _agents(table: str, agents: Mapping[str, Sequence[str]], episodes: Mapping[str, int]) -> PageTable:
+def _agents(table: str) -> PageTable:
     rows = []
-    for split, agent in ((split, agent) for split, names in agents.items() for agent in names):
+    for split, agent in ((split, agent) for split, names in AGENTS[table].items() for agent in names):
         name, semantics = agent.split()
-        row = RowKey(_of_agent(split, agent), episodes[split])
+        row = RowKey.of(split, EPISODES[table][split], name, semantics)
         shown = "-" if name == "oracle" else "truth" if semantics == "gt" else "network"
         rows.append(((f"{split}, {row.episodes}", f"`{name}`", shown), _cells(row, (SUCCESS, SPL))))
-    header = ("split, episodes", "agent", "segmentation", "success %", "SPL")
+    return PageTable(table, ("split, episodes", "agent", "segmentation", "success %", "SPL"), tuple(rows))
+
+
+def _table(
+    table: str, labels: Mapping[str, str], columns: Mapping[str, Sequence[Metric | str]], *header: str
+) -> PageTable:
+    """Returns a table with a row for each agent and, for each split, some columns."""
+    rows = []
+    for name, label in labels.items():
+        keys = {split: RowKey.of(split, EPISODES[table][split], name) for split in columns}
+        rows.append(((label,), tuple(cell for split in columns for cell in _cells(keys[split], columns[split]))))
     return PageTable(table, header, tuple(rows))
-
-
-def _ablation() -> PageTable:
-    rows = []
-    for name, label in ABLATION.items():
-        val, hazards = (RowKey(run_key(split, name, "gt"), count) for split, count in ABLATION_EPISODES.items())
-        rows.append(((label,), (*_cells(val, (SUCCESS,)), *_cells(hazards, (SUCCESS, TRAPPED, COLLISIONS)))))
-    header = ("measures", "val: success %", "hazards: success %", "hazards: trapped %", "hazards: collisions")
-    return PageTable("ablation", header, tuple(rows))
-
-
-def _explorers() -> PageTable:
-    rows = []
-    for name, label in EXPLORERS.items():
-        of = {split: RowKey(run_key(split, name, "gt"), count) for split, count in EXPLORER_EPISODES.items()}
-        cells = [cell for row in of.values() for cell in _cells(row, (SUCCESS, SPL))]
-        rows.append(((label,), (*cells, *_cells(of["large"], (MEDIAN,)))))
-    header = ("explorer", "val: success %", "val: SPL", "large: success %", "large: SPL", "large: first sight")
-    return PageTable("explorers", header, tuple(rows))
-
-
-def _semexp() -> PageTable:
-    rows = []
-    for name, label in SEMEXP.items():
-        row = RowKey(run_key("val", name, "gt"), SEMEXP_EPISODES)
-        rows.append(((label,), _cells(row, (SUCCESS, SPL, MEDIAN))))
-    return PageTable("semexp", ("explorer", "success %", "SPL", "first sight"), tuple(rows))
-
-
-def _network() -> PageTable:
-    rows = []
-    for split, name, verification, episodes in NETWORK:
-        row = RowKey(run_key(split, name, "rednet"), episodes)
-        labels = (f"{split}, {episodes}", f"`{row.run.agent}`", verification)
-        rows.append((labels, _cells(row, (SUCCESS, SPL, FALSE_DETECTIONS))))
-    header = ("split, episodes", "agent", "verification", "success %", "SPL", "false detections")
-    return PageTable("network", header, tuple(rows))
 
 
 def _cells(row: RowKey, columns: Sequence[Metric | str]) -> tuple[tuple[RowKey, Metric | str], ...]:

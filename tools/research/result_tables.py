@@ -1,17 +1,20 @@
-"""Makes the tables of results: `docs/tables/*.csv` and the tables of docs/results.md, from the archive of result lines.
+"""Makes `docs/tables/*.csv`, paper.md and the tables of docs/results.md, from the archive of result lines.
 
     python -m tools.research.result_tables            # writes them
     python -m tools.research.result_tables --check    # exit status 1 where a file differs from what it would write
+    python -m tools.research.result_tables --run --minutes 120 --workers 2    # runs missing episodes, and archives them
 
-`results.csv` has one row for each agent with its options, split and segmentation, `comparisons.csv` the paired
-differences, and `resolution.csv` the episodes that show a difference (`tools.research.resolution`). `paper.md` has
-the tables of the paper (`tools.research.paper_page`). Shares are between 0 and 1; `_low` and `_high` are the 95 %
-interval (`sim.app.evaluation.intervals`). In `comparisons.csv` the column `family` names the primary comparisons of a
-table: `success_p_holm` and `spl_p_holm` are their p-values, corrected by Holm's method for all primary comparisons of
-the table in both metrics. All others are exploratory, and nothing is corrected for their number. `_replicates_sd` is
-the standard deviation that chance alone gives the mean over one replicate of each episode (`stubborn run
---replicates`). No episode is run. The page's tables stand between `<!-- table: NAME -->` and `<!-- end -->`; its
-sentences may quote only quantities with an interval, such as `94.0 [89.1, 98.0]`, that are in the two files.
+`results.csv` has one row for each agent with its options, split and segmentation, and `comparisons.csv` the paired
+differences. `paper.md` has the tables of the paper (`stubborn reproduce all`). Shares are between 0 and 1; `_low` and
+`_high` are the 95 % interval (`sim.app.evaluation.intervals`). In `comparisons.csv` the column `family` names the
+primary comparisons of a table: `success_p_holm` and `spl_p_holm` are their p-values, corrected by Holm's method for all
+primary comparisons of the table in both metrics. All others are exploratory, and nothing is corrected for their number.
+`_replicates_sd` is the standard deviation that chance alone gives the mean over one replicate of each episode
+(`stubborn run --replicates`). The page's tables stand between `<!-- table: NAME -->` and `<!-- end -->`; its sentences
+may quote only quantities with an interval, such as `94.0 [89.1, 98.0]`, that are in the two files.
+
+With --run, the folder --out receives the runs of the archive first, so that another machine continues where one
+stopped. The archive then holds all runs of --out that are of its version of the splits.
 """
 
 from __future__ import annotations
@@ -26,40 +29,61 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from rich.console import Console
+
 from sim.app import cli
 from sim.app.analysis import display
-from sim.app.analysis.comparison import Line
+from sim.app.analysis.comparison import Line, require_same_episodes
 from sim.app.analysis.metrics import FIRST_SIGHT, Metric, episodes_of, houses_of
+from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, table_named
+from sim.app.commands.reproduce.reproduce import Args as ReproduceArgs
+from sim.app.commands.reproduce.reproduce import make_table, part_of
+from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, file_name, run_in_turns, runs_in
 from sim.app.evaluation.intervals import Estimate, replicate_spread
 from sim.app.evaluation.results import metric_value
 from sim.core.errors import ConfigError
-from sim.core.files import write_together
+from sim.core.files import write_atomically, write_together
 from sim.core.reading import read_bytes, read_text
 from sim.core.reading import read_csv as read_table
+from sim.episodes.splits import load_split
 from sim.task.failures import CAUSES
-from tools.research.paper_page import PAPER, paper_page
-from tools.research.resolution import paired_lines, resolution_record
-from tools.research.result_archive import ARCHIVE, ROOT, TABLES, ArchivedRun, RunKey, read_archive
+from tools.research.result_archive import ARCHIVE, ROOT, TABLES, VERSION, ArchivedRun, pack, read_archive, unpack
 from tools.research.result_definitions import (
     COMPARED,
     FAILED,
     MEANS,
     MEDIAN,
     PRIMARY_METRICS,
-    RESOLVED,
     Comparison,
     PageTable,
     RowKey,
     comparisons,
+    needed_rows,
     page_tables,
 )
 
 Record = dict[str, str]
 """One row of a CSV file, by column."""
 PAGE = ROOT / "docs" / "results.md"
-RESULTS, COMPARISONS, RESOLUTION = "results.csv", "comparisons.csv", "resolution.csv"
+RESULTS, COMPARISONS, PAPER = "results.csv", "comparisons.csv", "paper.md"
 QUANTITY = re.compile(r"([-+]?\d[\d.]*)(?: (?:points|steps|%|of SPL))? (\[[-+]?\d[\d.]*, [-+]?\d[\d.]*\])")
 """A number with an interval in a sentence of the page."""
+CHUNK = 50
+"""Episodes of a row before the next row's turn."""
+PAPER_EPISODES = 200
+"""The first episodes of val, as far as all runs of a table of the paper have them."""
+ABOUT_PAPER = f"""\
+# The paper's tables
+
+Columns that begin with *paper* are of Luo et al. (2022), from MP3D houses in Habitat; all others are measured here, in
+generated houses with contacts. Compare orders and differences of agents, not the figures. `gt` is ground-truth
+segmentation, `rednet` the network that ships. `cloned`, a small end-to-end agent, stands beside the paper's EEAux
+and is not that agent.
+
+`stubborn reproduce all --episodes 200 --workers 2` runs all of it again, and resumes; each table states its hours. This
+page is made from the [result lines]({ARCHIVE.name}) by `python -m tools.research.result_tables`.
+
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,6 +92,16 @@ class Args:
 
     check: bool = False
     """Write nothing; the exit status is 1 where a file differs."""
+    run: bool = False
+    """Run missing episodes and write the archive only."""
+    splits: tuple[str, ...] = ("val", "hazards", "large", "test", "contact-val", "contact-heldout")
+    """With --run: splits whose rows are run; other runs of --out are archived, too."""
+    minutes: cli.NotNegative | None = None
+    """With --run: time limit; no chunk begins that would end later. 0 only archives the runs of --out."""
+    workers: cli.Count = 1
+    """With --run: number of processes."""
+    out: cli.OutFolder = Path("runs/results")
+    """With --run: folder of the runs; that of `stubborn reproduce` will do."""
     archive: Path = ARCHIVE
     """Archive of result lines."""
     tables: Path = TABLES
@@ -79,22 +113,22 @@ class Args:
 def main(args: Args) -> int:
     """Writes or checks the files; returns the exit status."""
     console = display.make_console()
+    if args.run:
+        return run_missing_rows(args, console)
 
     def say(text: str) -> None:
         console.print(text, markup=False, highlight=False, soft_wrap=True)
 
     with tempfile.TemporaryDirectory() as folder:
-        runs = read_archive(args.archive, Path(folder), say)
+        runs = read_archive(args.archive, Path(folder))
         results = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
         pairs = list(comparisons())
         compared = with_families(pairs, [comparison_record(each, runs) for each in pairs])
-        resolved = [resolution_record(each, runs) for each in pairs if each.table in RESOLVED and each.primary]
         paper = paper_page(Path(folder))
     page = fill_page(read_text(args.page, what="--page"), results)
     wanted = {
         args.tables / RESULTS: to_csv(results),
         args.tables / COMPARISONS: to_csv(compared),
-        args.tables / RESOLUTION: to_csv(resolved),
         args.tables / PAPER: paper,
         args.page: page,
     }
@@ -111,22 +145,77 @@ def main(args: Args) -> int:
     return int(bool(unknown))
 
 
+def run_missing_rows(args: Args, console: Console) -> int:
+    """Runs the episodes that the tables lack and writes the archive; returns the exit status."""
+    if args.archive.is_file():
+        unpack(args.archive, args.out)
+    folders = runs_in(args.out, VERSION)
+    most: dict[RunKey, int] = {}
+    for row in sorted(needed_rows(), key=lambda row: row.run.split):
+        if row.run.split in args.splits:
+            most[row.run] = max(row.episodes, most.get(row.run, 0))
+    runs = {key: table_run(args, key, episodes, folders) for key, episodes in most.items()}
+    if args.minutes != 0.0:
+        run_in_turns(list(runs.values()), CHUNK, args.minutes, console)
+    folders = runs_in(args.out, VERSION)
+    write_atomically(args.archive, pack(folders))
+    for key, run in runs.items():
+        if len(run.lines) < len(run.episodes):
+            counts = f"{len(run.lines)} of {len(run.episodes)} episodes"
+            console.print(f"{key.split}: {key.setup.name}, {key.setup.semantics}: {counts}", highlight=False)
+    console.print(f"{len(folders)} runs in {args.archive}", highlight=False)
+    return 0
+
+
+def table_run(args: Args, key: RunKey, episodes: int, folders: Mapping[RunKey, Path]) -> TableRun:
+    """Returns the run of a row, in its folder if it has one.
+
+    Raises:
+        ConfigError: the split has another version now than the tables.
+    """
+    split, setup = load_split(key.split), key.setup
+    if split.version != VERSION:
+        raise ConfigError(f"'{key.split}' has version {split.version}, the tables {VERSION} (result_archive.py).")
+    name = "_".join(filter(None, (file_name(setup.agent), setup.semantics, key.split, setup.variant)))
+    options = setup.run_options(
+        split=key.split, episodes=episodes, workers=args.workers, out=folders.get(key, args.out / name),
+        keep_results=True,
+    )  # fmt: skip
+    return TableRun(options, split, split.episodes[:episodes])
+
+
+def paper_page(folder: Path) -> str:
+    """Returns the page of the paper's tables, docs/tables/paper.md.
+
+    Args:
+        folder: the unpacked archive; it receives the tables, too.
+
+    Raises:
+        ConfigError: a run is missing.
+    """
+    part = part_of(ReproduceArgs(table="all", episodes=PAPER_EPISODES, minutes=0.0, out=folder))
+    pages: list[str] = []
+    for name in PAPER_TABLES:
+        page = make_table(part, name, table_named(name).setups(), Console(quiet=True))
+        if page is None:
+            raise ConfigError(f"'{ARCHIVE.name}' lacks a run of the paper's table '{name}'.")
+        pages.append(page)
+    return ABOUT_PAPER + "\n".join(pages)
+
+
 def row_keys(runs: Mapping[RunKey, ArchivedRun]) -> list[RowKey]:
     """Returns the rows of results.csv in order: each run with all its episodes, and what the page's tables need.
 
     Raises:
-        ConfigError: a table needs a run that the archive does not have.
+        ConfigError: a table or comparison needs a run that the archive does not have.
     """
-    keys = {RowKey(key, run.episodes) for key, run in runs.items()}
-    for table in page_tables():
-        for key in table.needed():
-            if key.run not in runs:
-                raise ConfigError(
-                    f"Table '{table.name}' needs a run of '{key.run.name}' with {key.run.semantics} segmentation on "
-                    f"{key.run.split} {key.run.version}; the archive has none."
-                )
-            keys.add(key)
-    return sorted(keys, key=lambda key: (key.run, key.episodes))
+    for row in needed_rows():
+        if row.run not in runs:
+            raise ConfigError(
+                f"The tables need a run of '{row.run.setup.label}' on {row.run.split}; the archive has none."
+            )
+    shown = {row for table in page_tables() for _, cells in table.rows for row, _ in cells}
+    return sorted(shown | {RowKey(key, run.episodes) for key, run in runs.items()})
 
 
 def result_record(run: ArchivedRun, episodes: int) -> Record:
@@ -154,16 +243,12 @@ def result_record(run: ArchivedRun, episodes: int) -> Record:
 
 
 def comparison_record(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> Record:
-    """Returns a row of comparisons.csv without its family.
-
-    Raises:
-        ConfigError: a run is not in the archive, or the runs are of different episodes.
-    """
+    """Returns a row of comparisons.csv without its family; raises ConfigError like `paired_lines`."""
     first, second = paired_lines(pair, runs)
     minus = {
-        f"minus_{name}": value for name, value in _identity(pair.second).items() if name not in ("split", "version")
+        f"minus_{name}": value for name, value in _identity(pair.second.run).items() if name not in ("split", "version")
     }
-    record = {"table": pair.table, **_identity(pair.first), **minus, **_counts(first)}
+    record = {"table": pair.table, **_identity(pair.first.run), **minus, **_counts(first)}
     for metric in COMPARED:
         found = metric.difference(second, first).estimate
         record |= _estimate_columns(metric, found) | {f"{metric.key}_significant": _yes(found.significant)}
@@ -174,6 +259,20 @@ def comparison_record(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> R
         "only_first_succeeds": str(outcomes.count((True, False))),
         "only_second_succeeds": str(outcomes.count((False, True))),
     }
+
+
+def paired_lines(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> tuple[list[Line], list[Line]]:
+    """Returns the lines of the episodes of both runs, in the same order.
+
+    Raises:
+        ConfigError: the runs are of different episodes.
+    """
+    rows = (pair.first, pair.second)
+    shared = set(require_same_episodes(*(runs[row.run].run for row in rows)))
+    first, second = (
+        [line for line in runs[row.run].first_lines(row.episodes) if line["episode_id"] in shared] for row in rows
+    )
+    return first, second
 
 
 def with_families(pairs: Sequence[Comparison], records: Sequence[Record]) -> list[Record]:
@@ -269,14 +368,14 @@ def _identity(key: RunKey) -> Record:
     return {
         "split": key.split,
         "version": key.version,
-        "agent": key.agent,
-        "options": key.options,
-        "semantics": key.semantics,
+        "agent": key.setup.agent,
+        "options": key.setup.options,
+        "semantics": key.setup.semantics,
     }
 
 
 def _identity_names() -> Iterator[str]:
-    yield from _identity(RunKey("", "", "", "", ""))
+    yield from _identity(RunKey("", AgentSetup("", "", ""), ""))
 
 
 def _counts(lines: Sequence[Line]) -> Record:

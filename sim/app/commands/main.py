@@ -41,7 +41,7 @@ COMMANDS: Mapping[str, Command] = {
     "houses check": Command("sim.app.commands.houses.check", "Check houses for faults"),
     "houses plans": Command("sim.app.commands.houses.plans", "Write the plans of houses for the 2-D environment"),
     "episodes": Command("sim.app.commands.episodes", "Generate the episodes of a split"),
-    "traps": Command("sim.app.commands.traps.make", "Make the trap scenes"),
+    "traps": Command("sim.app.commands.traps.make", "Make traps of a family"),
     "traps report": Command("sim.app.commands.traps.report", "Report which agent escapes from which trap"),
     "label": Command("sim.app.commands.label", "Propose and check label rules for a scene from elsewhere"),
     "import furniture": Command(
@@ -77,7 +77,7 @@ COMMANDS: Mapping[str, Command] = {
     "agent-client": Command(
         "sim.app.commands.agent_client", "Write the client file for agents in a process of their own"
     ),
-    "bench": Command("sim.app.commands.bench.bench", "Measure the speed of all parts"),
+    "bench": Command("sim.app.commands.bench", "Measure the speed of camera and agent"),
 }
 """Every sub-command, by the words that the user types. A group such as `views` may be a command itself."""
 REPLACED: Mapping[str, str] = {"teleop": "web"}

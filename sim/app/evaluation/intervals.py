@@ -11,8 +11,8 @@ houses and n episodes (Cochran 1977, section 6.3). Student's t with H - 1 degree
 - a difference: around the mean. Of two values between 0 and 1, its variance is at least that of one changed episode,
   `1 / n^2`, because no difference in n episodes does not show that there is none in others.
 
-`tools/research/interval_coverage.py` chose these by simulation from recorded results, with 10 to 30 houses of 7 to 15
-episodes. They hold the true value in 93 to 97 % of the samples for success and SPL between 0.08 and 0.94 and for paired
+They were chosen by simulation from recorded results (with version 0.2.0), with 10 to 30 houses of 7 to 15 episodes.
+They hold the true value in 93 to 97 % of the samples for success and SPL between 0.08 and 0.94 and for paired
 differences, in 94 to 99 % for success of 0.98 and above or 0.01, and in 91 to 96 % for collisions. A mean that one
 episode in hundreds determines (collisions of a robot that is stuck once in 200 episodes) has no interval that holds:
 theirs does in 45 to 79 %.

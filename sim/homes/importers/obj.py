@@ -1,6 +1,8 @@
 """Reads OBJ files by object and material.
 
-trimesh joins all objects of one material, and their names are lost; here each `o` or `g` begins a node of its own.
+Each `o` or `g` begins a node of its own. trimesh is not used here: with `split_objects=True` it keeps the names, but it
+counts negative numbers of a face from the end of the whole file, takes `f 1 2 0` for a triangle, drops faces of two
+corners without a word, loses opacity and the options of pictures, and names no line.
 Materials may have a colour (`Kd`), an opacity (`d`) and a picture (`map_Kd`), in whose place the colour does not count,
 from files of the OBJ file's folder.
 """

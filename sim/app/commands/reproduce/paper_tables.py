@@ -26,7 +26,7 @@ from sim.app.analysis.metrics import (
     houses_of,
 )
 from sim.app.analysis.tables import Cell, ResultTable
-from sim.app.commands.reproduce.agent_setup import GROUND_TRUTH, AgentSetup
+from sim.app.commands.reproduce.runs import GROUND_TRUTH, AgentSetup
 from sim.app.evaluation.intervals import estimate, paired_difference
 from sim.app.evaluation.results import metric_value
 from sim.core.errors import ConfigError

@@ -22,7 +22,6 @@ See docs/running.md.
 from __future__ import annotations
 
 import shlex
-import time
 import zlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -37,11 +36,10 @@ from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.comparison import Line, Run, code_of, read_run
 from sim.app.analysis.tables import ResultTable, to_csv, to_markdown, to_rich
-from sim.app.commands.reproduce.agent_setup import AgentSetup, file_name
 from sim.app.commands.reproduce.paper_figures import beside_paper
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, PaperTable, table_named
+from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, file_name, key_of, run_in_turns
 from sim.app.composition.options import RunOptions
-from sim.app.composition.running import run_missing
 from sim.app.composition.setup import resolve
 from sim.app.evaluation.config_fields import differing_fields, field_text
 from sim.app.evaluation.intervals import MIN_PAIRS
@@ -106,9 +104,10 @@ def main(args: Args) -> int:
     names = _table_names(args)
     needed = {name: table_named(name).setups(args.agents, args.semantics) for name in names}
     setups = list(dict.fromkeys(setup for of_table in needed.values() for setup in of_table))
-    splits = [episodes_of(each) for each in _each_split(args)]
+    splits = [part_of(each) for each in _each_split(args)]
     if args.minutes != 0.0:
-        run_episodes(args, setups, splits, console)
+        runs = [_table_run(part, setup) for part in splits for setup in setups]
+        run_in_turns(runs, args.chunk or (60 if len(args.splits) > 1 else 20), args.minutes, console)
     status = 0
     pages: dict[str, list[str]] = {name: [] for name in names}
     for of_split in splits:
@@ -133,28 +132,6 @@ class SplitEpisodes:
     episodes: Sequence[Episode]
 
 
-def run_episodes(args: Args, setups: Sequence[AgentSetup], splits: Sequence[SplitEpisodes], console: Console) -> None:
-    """Lets the agents take turns, a chunk of episodes of each split, until all are run or the minutes are used up.
-
-    Raises:
-        ConfigError: a folder holds a run with other options.
-    """
-    began_s, longest_s, size = time.monotonic(), 0.0, _chunk_size(args)
-    for first in range(0, args.episodes, size):
-        for part in splits:
-            chunk = part.episodes[first : first + size]
-            chunk_began_s = time.monotonic()
-            if args.minutes is not None and chunk_began_s - began_s + longest_s >= 60.0 * args.minutes:
-                console.print(f"The {args.minutes:g} minutes are used up before episode {first + 1}.")
-                return
-            for setup in setups:
-                done = read_run(_folder(part.args, setup)).lines if _has_run(part.args, setup) else {}
-                if first and all(episode.episode_id in done for episode in chunk):
-                    continue
-                run_missing(resolve(_run_args(part.args, setup)), chunk, _identity(part.split), console)
-            longest_s = max(longest_s, time.monotonic() - chunk_began_s)
-
-
 def make_table(part: SplitEpisodes, name: str, setups: Sequence[AgentSetup], console: Console) -> str | None:
     """Writes a table of one split; returns its page, None where the setups share no episode.
 
@@ -162,7 +139,7 @@ def make_table(part: SplitEpisodes, name: str, setups: Sequence[AgentSetup], con
         ConfigError: the runs differ in conditions that must be equal.
     """
     args = part.args
-    runs = {setup: _read(args, setup, part.split) for setup in setups if _has_run(args, setup)}
+    runs = {s: _read(args, s, part.split) for s in setups if (_folder(args, s) / "results.jsonl").is_file()}
     common = common_episodes(runs, setups, part.episodes)
     if not common:
         console.print(f"{name}: no episode that {', '.join(setup.label for setup in setups)} have all run.")
@@ -306,12 +283,7 @@ def _print(console: Console, parts: Sequence[ResultTable], notes: Sequence[str])
 
 def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
     """Returns the options of `stubborn run` for one setup."""
-    return RunOptions(
-        agent=setup.agent,
-        semantics=setup.semantics,
-        explorer=setup.explorer,
-        verification=setup.verification,
-        config=setup.config,
+    return setup.run_options(
         split=args.split,
         episodes=args.episodes,
         seed=args.seed,
@@ -323,6 +295,10 @@ def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
         out=_folder(args, setup),
         record=True,
     )
+
+
+def _table_run(part: SplitEpisodes, setup: AgentSetup) -> TableRun:
+    return TableRun(_run_args(part.args, setup), part.split, part.episodes)
 
 
 def _folder(args: Args, setup: AgentSetup) -> Path:
@@ -341,38 +317,30 @@ def _seed_name(args: Args) -> str:
     return f"seed{args.seed}" if args.seed else ""
 
 
-def _has_run(args: Args, setup: AgentSetup) -> bool:
-    return (_folder(args, setup) / "results.jsonl").is_file()
-
-
 def _read(args: Args, setup: AgentSetup, split: Split) -> Run:
     """Returns the run of a setup.
 
     Raises:
         ConfigError: the folder holds a run with another agent, segmentation, split, seed or noise.
     """
-    found = read_run(_folder(args, setup))
-    optional = ("verification", "explorer", "settings")  # older code did not write all of them
-    expected = {key: value for key, value in setup.expected().items() if key in found.config or key not in optional}
-    expected |= {"noise": args.noise, "seed": args.seed, "split_identity": _identity(split)}
-    for path, actual, wanted in differing_fields({key: found.config.get(key) for key in expected}, expected):
+    run = read_run(_folder(args, setup))
+    needed = AgentSetup.named(f"{setup.name} --noise {args.noise} --seed {args.seed}", setup.semantics)
+    recorded = _key_text(key_of(run), str(run.recorded("split_identity")["sha256"]))
+    expected = _key_text(RunKey(split.name, needed, split.version), split.sha256)
+    if recorded != expected:
         raise ConfigError(
-            f"'{found.path}' holds a run with {path} = {field_text(actual)}, the table needs {field_text(wanted)}; "
+            f"'{run.path}' holds a run of {recorded}, the table needs {expected}; "
             "choose another --out, or the options of that run."
         )
-    return found
+    return run
 
 
-def _identity(split: Split) -> dict[str, str]:
-    return {"name": split.name, "version": split.version, "sha256": split.sha256}
+def _key_text(key: RunKey, sha256: str) -> str:
+    return f"{key.setup.name} --semantics {key.setup.semantics} on {key.split} {key.version} ({sha256[:8]})"
 
 
 def _table_names(args: Args) -> list[str]:
     return list(PAPER_TABLES) if args.table == "all" else [args.table]
-
-
-def _chunk_size(args: Args) -> int:
-    return args.chunk or (60 if len(args.splits) > 1 else 20)
 
 
 def _each_split(args: Args) -> list[Args]:
@@ -380,7 +348,7 @@ def _each_split(args: Args) -> list[Args]:
     return [replace(args, split=name, splits=()) for name in args.splits or (args.split,)]
 
 
-def episodes_of(args: Args) -> SplitEpisodes:
+def part_of(args: Args) -> SplitEpisodes:
     """Returns the first episodes of the split of the options; raises ConfigError if it has too few."""
     split = load_split(args.split)
     if args.episodes > len(split.episodes):

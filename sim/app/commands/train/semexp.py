@@ -2,10 +2,10 @@
 
 stubborn train semexp --plans runs/plans/train runs/plans/large_train --minutes 90 --seed 0 --out runs/semexp_0
 
-Plans are written by `stubborn houses plans`. Every tenth house, by a hash of its name, is held back for comparisons
-(`tools.research.compare_explorers` of the repository). The same command continues a killed run, also with another
---minutes or --goals: `state.pt` holds weights, optimiser and progress. `train.csv` and `curve.png` hold the curve,
-`semexp.safetensors` the weights so far, `start.safetensors` those at the start.
+Plans are written by `stubborn houses plans`. Every tenth house, by a hash of its name, is held back for comparisons.
+The same command continues a killed run, also with another --minutes or --goals: `state.pt` holds weights, optimiser and
+progress. `train.csv` and `curve.png` hold the curve, `semexp.safetensors` the weights so far, `start.safetensors` those
+at the start.
 """
 
 from __future__ import annotations

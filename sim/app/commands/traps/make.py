@@ -1,38 +1,33 @@
-"""Writes trap scenes and their episodes in the layout of a split: an MJCF file and a sidecar for each trap.
+"""Writes traps of families and their episodes in the layout of a split: an MJCF file and a sidecar for each trap.
 
-    stubborn traps --out assets/mjcf_houses/traps
-    stubborn traps --split contact-val --out assets/mjcf_houses/contact-val
     stubborn traps --family pane_gap --seed 10 --count 5 --difficulty hard --out my_traps
+    stubborn traps --split contact-val --out assets/mjcf_houses/contact-val
 
-The scenes of the split `traps` are fixed, and each has three episodes: at the start of its sidecar, with three
-headings. A trap of a family (`sim.homes.housegen.traps.families`) depends on a difficulty and a seed, and has one
-episode. The same code gives the same bytes.
+A trap of a family (`sim.homes.housegen.traps.families`) depends on a difficulty and a seed, and has one episode. The
+same code gives the same bytes. The scenes of the split `traps` are fixed: the files of assets/mjcf_houses/traps.
 """
 
 from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from sim.app import cli
 from sim.app.evaluation.parallel import ordered_map
-from sim.core.errors import HouseError
+from sim.core.errors import ConfigError, HouseError
 from sim.core.files import write_atomically
-from sim.core.interface import wrap_angle
 from sim.core.paths import assets_dir
 from sim.episodes import habitat
 from sim.episodes.episode import Episode
 from sim.episodes.reachable_goals import find_reachable_goals
-from sim.episodes.recipes import START_TURNS_RAD
 from sim.episodes.splits import write_split
 from sim.homes.housegen.mjcf.builder import TEXTURE_DIR
 from sim.homes.housegen.splits.recipes import SPLIT_VERSION
-from sim.homes.housegen.traps.catalogue import TRAPS
-from sim.homes.housegen.traps.families.catalogue import HELD_OUT
+from sim.homes.housegen.traps.families.catalogue import FAMILIES, HELD_OUT
 from sim.homes.housegen.traps.families.contact_splits import CONTACT_SPLITS, TrapKey, in_turns
 from sim.homes.housegen.traps.families.draw import draw_trap
 from sim.homes.housegen.traps.families.family import DIFFICULTIES, Difficulty
@@ -42,22 +37,22 @@ from sim.houses.sidecar import write_sidecar
 from sim.task.objectnav import Task
 from sim.world.world import World
 
-MOST_VIEW_POINTS = 2
-"""Largest number of view points of a goal in the episodes of traps of families."""
+MAX_VIEW_POINTS = 2
+"""Largest number of view points of a goal in the episodes."""
 SAME_PATH_M = 0.002
 """Largest difference between the path in a scene and in its file, whose numbers are rounded."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Make trap scenes and their episodes."""
+    """Make traps of families and their episodes."""
 
     out: cli.OutFolder
     """Folder for the scenes; its name is the name of the split."""
-    split: Literal["traps", "contact-val", "contact-test", "contact-heldout"] = "traps"
-    """The scenes to make: those of a shipped split ..."""
     family: str | None = None
-    """... or traps of one family, for example pane_gap, jam or ledge."""
+    """Family of the traps, for example pane_gap, jam or ledge ..."""
+    split: Literal["contact-val", "contact-test", "contact-heldout"] | None = None
+    """... or the shipped split whose traps are made again."""
     difficulty: Difficulty | None = None
     """With --family: the difficulty; all three when not given."""
     seed: cli.Seed = 10
@@ -65,26 +60,31 @@ class Args:
     count: cli.Count = 1
     """With --family: number of consecutive seeds."""
     workers: cli.Count = 1
-    """With --family or a split contact-*: number of processes."""
+    """Number of processes."""
     version: str = SPLIT_VERSION
     """Version of the split."""
 
 
 def main(args: Args) -> int:
-    """Writes the scenes and their episodes."""
-    if args.family is not None:
-        if args.family in HELD_OUT:
-            print(f"note: '{args.family}' is held out: measure agents on its traps, but develop none on them")
-        difficulties = DIFFICULTIES if args.difficulty is None else (args.difficulty,)
-        keys = in_turns((args.family,), difficulties, range(args.seed, args.seed + args.count))
-        return write_family_traps(args, list(keys))
-    if args.split != "traps":
+    """Writes the scenes and their episodes.
+
+    Raises:
+        ConfigError: neither a family nor a split was given, or both.
+    """
+    if (args.family is None) == (args.split is None):
+        raise ConfigError(f"Name either a family (--family {', '.join(FAMILIES)}) or a split (--split contact-val).")
+    if args.split is not None:
         return write_family_traps(args, CONTACT_SPLITS[args.split])
-    return write_fixed_traps(args)
+    assert args.family is not None
+    if args.family in HELD_OUT:
+        print(f"note: '{args.family}' is held out: measure agents on its traps, but develop none on them")
+    difficulties = DIFFICULTIES if args.difficulty is None else (args.difficulty,)
+    keys = in_turns((args.family,), difficulties, range(args.seed, args.seed + args.count))
+    return write_family_traps(args, list(keys))
 
 
 def write_family_traps(args: Args, keys: Sequence[TrapKey]) -> int:
-    """Writes traps of families, each with one episode."""
+    """Writes traps, each with one episode."""
     episodes: list[Episode] = []
     goals: dict[str, dict[str, list[habitat.Json]]] = {}
     write = functools.partial(write_family_trap, args.out)
@@ -97,13 +97,13 @@ def write_family_traps(args: Args, keys: Sequence[TrapKey]) -> int:
 
 
 def write_family_trap(folder: Path, key: TrapKey) -> tuple[Episode, dict[str, list[habitat.Json]], str]:
-    """Writes one trap of a family; returns its episode, its goals in Habitat's form, and a line about it."""
+    """Writes one trap; returns its episode, its goals in Habitat's form, and a line about it."""
     made = draw_trap(*key)
     facts, trap = made.facts, made.trap
     name = trap.site.spec.modelname
     write_scene(folder / f"{name}.xml", trap)
     task = Task(World(load_house(folder / f"{name}.xml")))
-    listed = find_reachable_goals(task, max_view_points=MOST_VIEW_POINTS).listed
+    listed = find_reachable_goals(task, max_view_points=MAX_VIEW_POINTS).listed
     distance_m = task.distance_from(trap.goal, trap.start)
     if distance_m is None or abs(distance_m - facts.shortest_path_m) > SAME_PATH_M:
         raise HouseError(f"Trap '{name}': the path is {distance_m} m long in its file, not {facts.shortest_path_m} m.")
@@ -115,48 +115,9 @@ def write_family_trap(folder: Path, key: TrapKey) -> tuple[Episode, dict[str, li
     return episode, {goal: places for goal, places in listed.items() if goal == trap.goal}, line
 
 
-def write_fixed_traps(args: Args) -> int:
-    """Writes the scenes of the split `traps`, each with three episodes."""
-    episodes: list[Episode] = []
-    goals: dict[str, dict[str, list[habitat.Json]]] = {}
-    for name, make in TRAPS.items():
-        trap = make()
-        path = args.out / f"{name}.xml"
-        write_scene(path, trap)
-        task = Task(World(load_house(path)))
-        goals[name] = {goal: listed for goal, listed in find_reachable_goals(task).listed.items() if goal == trap.goal}
-        episodes += draw_episodes(name, trap, task)
-        print(f"{name}: {episodes[-1].shortest_path_m:.1f} m, {path.stat().st_size / 1000:.0f} KB")
-    write_split(args.out, list(heading_by_heading(episodes)), goals, version=args.version)
-    return 0
-
-
 def write_scene(path: Path, trap: Trap) -> None:
     """Writes one scene, which refers to the shipped textures by a relative path, and its sidecar."""
     textures = os.path.relpath(assets_dir() / "textures", path.parent.resolve())
     xml = trap.site.spec.to_xml().replace(f'texturedir="{TEXTURE_DIR}"', f'texturedir="{textures}"', 1)
     write_atomically(path, xml)
     write_sidecar(path, trap.sidecar)
-
-
-def draw_episodes(name: str, trap: Trap, task: Task) -> list[Episode]:
-    """Returns one episode for each start heading.
-
-    Raises:
-        HouseError: there is no path from the start to the goal.
-    """
-    found = []
-    for i, yaw_rad in enumerate(START_TURNS_RAD):
-        start = replace(trap.start, yaw_rad=round(wrap_angle(trap.start.yaw_rad + yaw_rad), 4))
-        task.world.reset(start)
-        distance_m = task.distance_from(trap.goal, start)
-        if distance_m is None:
-            raise HouseError(f"Trap '{name}': there is no path from its start to '{trap.goal}'.")
-        found.append(Episode(f"{name}_{i}", name, trap.goal, start, distance_m))
-    return found
-
-
-def heading_by_heading(episodes: list[Episode]) -> Iterator[Episode]:
-    """Yields the first episode of every trap, then the second of every trap, and so on."""
-    for i in range(len(START_TURNS_RAD)):
-        yield from episodes[i :: len(START_TURNS_RAD)]

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -175,11 +174,6 @@ class TrapSite:
         self._builder.add_movable_body(movable, PlacedItem(item, 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.0, 0.0))
         return self.spec.bodies[-1]
 
-    def furniture(self, category: str, x: float, y: float, yaw_rad: float, **hints: Any) -> None:
-        """Adds an item of the houses' furniture; its front points along `yaw_rad`."""
-        item = CATALOGUE.make_item(category, self._rng, pool="heldout", **hints)
-        self._builder.add(PlacedItem(item, x, y, item.mount_height_m, yaw_rad))
-
     def goal_furniture(self, category: str, x: float, y: float) -> None:
         """Adds an item that faces the near end of the hall, at a place or as near to it as the walls allow.
 
@@ -200,11 +194,6 @@ class TrapSite:
     def floor_slab(self, x: Span, y: Span, height_m: float, look: Look) -> mujoco.MjsBody:
         """Adds a slab of floor, for example a rug or a low sill."""
         return self.box("floor", x, y, (0.0, height_m), look)
-
-    def slippery_floor(self, x: Span, y: Span, friction: float) -> None:
-        """Adds a patch of floor, 1 mm thick, with its own friction."""
-        for geom in self.box("floor", x, y, (0.0, 0.001), Look((0.72, 0.80, 0.84, 1.0), specular=0.9)).geoms:
-            geom.friction = [friction, 0.0, 0.0]
 
     def _add_shell(self) -> None:
         (x0, x1), (y0, y1) = (self.rect.x0, self.rect.x1), (self.rect.y0, self.rect.y1)

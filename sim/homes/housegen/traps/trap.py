@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from sim.core.geometry.pose import Pose
@@ -28,6 +27,3 @@ class Trap:
         """The sidecar's goal, which every trap has."""
         assert self.sidecar.goal is not None
         return self.sidecar.goal
-
-
-TrapMaker = Callable[[], Trap]

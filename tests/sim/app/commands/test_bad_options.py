@@ -96,12 +96,7 @@ def test_every_number_and_path_of_a_command_is_checked_before_it_begins(
 
 BAD: dict[str, list[tuple[str, str]]] = {
     "sim.app.commands.report": [("nowhere", "it has no config.json"), ("FILE", "config.json")],
-    "sim.app.commands.bench.bench": [
-        ("--parts z", "--parts must be some of a,b,c"),
-        ("--markdown nowhere.md", "cannot be read"),
-        ("--markdown FILE", "is not text in UTF-8"),
-    ],
-    "tools.maintenance.bench_against": [
+    "tools.benchmarks.against": [
         ("--against nowhere", "names no commit"),
         ("--against HEAD --parts walk", "--parts must be some of"),
         ("--against HEAD --rounds 0", "--rounds must be at least 1"),
@@ -113,7 +108,6 @@ BAD: dict[str, list[tuple[str, str]]] = {
     ],
     "sim.app.commands.compare": [("nowhere nowhere", "is not a run")],
     "tools.maintenance.describe_houses": [("--root nowhere --out OUT", "nowhere")],
-    "tools.research.draw_trajectories": [("nowhere", "is not a run")],
     "sim.app.commands.evaluate.segmentation": [
         ("--views nowhere --weights nowhere", "No weights at 'nowhere'"),
         ("--views nowhere --weights FILE", "cannot be read"),
@@ -188,6 +182,8 @@ BAD: dict[str, list[tuple[str, str]]] = {
     "sim.app.commands.traps.make": [
         ("--out OUT --family glass", "pane_gap"),
         ("--out OUT --split contact", "contact-val"),
+        ("--out OUT", "Name either a family"),
+        ("--out OUT --family jam --split contact-val", "Name either a family"),
     ],
     "sim.app.commands.traps.report": [
         ("--out OUT --split nowhere", "Unknown split"),

@@ -78,21 +78,16 @@ def test_every_documented_command_has_a_trial_and_every_trial_a_command() -> Non
     assert not stale, "in tests/helpers/documented.py but in no page:\n" + "\n".join(stale)
 
 
-@pytest.mark.skipif(not documented.OLD_NAMES_ARE_ERRORS, reason="the pages are being rewritten")
-def test_no_page_names_a_command_by_its_old_path() -> None:
-    assert documented.old_names() == []
-
-
 @pytest.mark.parametrize(
     "typed",
     [
-        "stubborn views --out x",
-        ".venv/bin/stubborn views --out x",
-        "python tools/generate_views.py --out x",
+        "stubborn run --out x",
+        ".venv/bin/stubborn run --out x",
+        "python -m sim.run --out x",
     ],
 )
 def test_a_command_has_one_form_however_a_page_writes_it(typed: str) -> None:
-    assert documented.canonical(shlex.split(typed)) == "stubborn views --out x"
+    assert documented.canonical(shlex.split(typed)) == "stubborn run --out x"
 
 
 @pytest.mark.parametrize("wrong", ["stubborn rnu", "stubborn run --episode 3", "stubborn houses make --out x"])

@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 
 from sim.app.commands.main import COMMANDS, entry
-from tests.helpers.documented import MOVED
 
 ROOT = Path(__file__).resolve().parents[4]
 
@@ -130,19 +129,6 @@ def test_both_forms_of_run_are_the_same_command(capsys: pytest.CaptureFixture[st
     listed = capsys.readouterr().out
     assert run.entry(["--list-agents"]) == 0
     assert capsys.readouterr().out == listed
-
-
-@pytest.mark.parametrize("old", MOVED)
-@pytest.mark.parametrize("way", ["file", "module"])
-def test_the_old_path_of_a_command_names_the_new_one(old: str, way: str) -> None:
-    assert MOVED[old] in COMMANDS
-    ended = started(*([f"tools/{old}.py"] if way == "file" else ["-m", f"tools.{old}"]), "--out", "x")
-    assert ended.returncode == 2
-    assert ended.stderr == f"tools/{old}.py is now: stubborn {MOVED[old]}\n"
-
-
-def test_nothing_else_lies_directly_in_the_folder_of_makers_tools() -> None:
-    assert {file.stem for file in (ROOT / "tools").glob("*.py")} == {*MOVED, "__init__"}
 
 
 @pytest.mark.parametrize("file", [*(ROOT / "sim/app/commands").rglob("*.py"), *(ROOT / "sim").glob("*.py")], ids=str)

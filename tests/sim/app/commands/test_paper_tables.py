@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from sim.app.analysis.tables import Cell, ResultTable
-from sim.app.commands.reproduce.agent_setup import AgentSetup
 from sim.app.commands.reproduce.paper_tables import ABLATION, TABLES, ablation_rows, table_named
+from sim.app.commands.reproduce.runs import AgentSetup
 from sim.core.interface import ConfigError
 from sim.task.failures import CAUSES
 
@@ -123,26 +123,25 @@ def test_tables_share_their_runs_and_the_oracle_runs_once() -> None:
     network = {setup for setup in TABLES["failures"].setups() if setup.semantics == "rednet"}
     assert set(TABLES["categories"].setups()) | network <= set(TABLES["overall"].setups())
     assert set(TABLES["controls"].setups()[:1]) <= set(TABLES["exploration"].setups())
-    assert TABLES["ablation"].setups()[-1] == TABLES["exploration"].setups()[0] == AgentSetup("stubborn", "gt")
-    assert AgentSetup("oracle", "gt") in TABLES["overall"].setups(semantics="rednet")
+    assert TABLES["ablation"].setups()[-1] == TABLES["exploration"].setups()[0] == AgentSetup("stubborn", "", "gt")
+    assert AgentSetup("oracle", "", "gt") in TABLES["overall"].setups(semantics="rednet")
     assert TABLES["overall"].setups(("random", "stubborn"), "rednet") == (
-        AgentSetup("random", "gt"),
-        AgentSetup("stubborn", "rednet"),
+        AgentSetup("random", "", "gt"),
+        AgentSetup("stubborn", "", "rednet"),
     )
 
 
 @pytest.mark.parametrize(
     ("name", "setup", "variant"),
     [
-        ("stubborn", AgentSetup("stubborn", "rednet"), ""),
-        ("stubborn --verification none", AgentSetup("stubborn", "rednet", "none"), "verification-none"),
+        ("stubborn", AgentSetup("stubborn", "", "rednet"), ""),
+        ("stubborn --verification none", AgentSetup("stubborn", "--verification none", "rednet"), "verification-none"),
         (
             "stubborn --explorer my.explorers:FARTHEST --config agent.planning.dilation_m=0.1 task.max_steps=90",
             AgentSetup(
                 "stubborn",
+                "--explorer my.explorers:FARTHEST --config agent.planning.dilation_m=0.1 task.max_steps=90",
                 "rednet",
-                explorer="my.explorers:FARTHEST",
-                config=("agent.planning.dilation_m=0.1", "task.max_steps=90"),
             ),
             "explorer-my.explorers_FARTHEST_config-agent.planning.dilation_m=0.1-task.max_steps=90",
         ),
@@ -170,8 +169,8 @@ def test_a_setup_of_another_form_is_refused(name: str, message: str) -> None:
 
 
 def test_the_table_of_verification_has_all_methods() -> None:
-    methods = [each.verification for each in TABLES["verification"].setups()[:-1]]
-    assert methods == ["naive-bayes", "none"]
+    options = [setup.options for setup in TABLES["verification"].setups()[:-1]]
+    assert options == ["", "--verification none"]
 
 
 def test_an_unknown_table_is_refused_with_the_tables_that_exist() -> None:

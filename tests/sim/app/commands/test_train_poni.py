@@ -6,7 +6,6 @@ import csv
 from dataclasses import replace
 from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 import torch
@@ -19,7 +18,6 @@ from sim.training.poni.potential_files import held_back
 from sim.training.poni.trainer import loss_of
 from stubborn.exploration.poni_net import CHANNELS, FILES, Predictor
 from tests.helpers.worlds import room, with_box
-from tools.research import draw_potentials
 
 
 @pytest.fixture
@@ -57,13 +55,6 @@ def test_training_makes_samples_curves_and_weights_and_continues_a_run(
     assert (out / "curve.png").stat().st_size > 1000
     samples = {file.name: file.stat().st_mtime_ns for file in (out / "samples").iterdir()}
     assert len(samples) == 2
-
-    picture = tmp_path / "picture.png"
-    draw = draw_potentials.Args(samples=out / "samples", weights=out / "poni.safetensors", out=picture)
-    assert draw_potentials.main(draw) == 0
-    assert np.asarray(cv2.imread(str(picture))).std() > 10.0
-    with pytest.raises(ConfigError, match="No samples of a held-back plan"):
-        draw_potentials.main(replace(draw, samples=tmp_path))
 
     capsys.readouterr()
     assert main(Args(**options, minutes=0.05)) == 0  # type: ignore[arg-type]

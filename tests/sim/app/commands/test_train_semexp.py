@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import shutil
 from pathlib import Path
 from typing import Any
@@ -20,7 +19,6 @@ from stubborn.exploration.semexp import SemExpConfig
 from stubborn.exploration.semexp_net import FILES
 from tests.helpers.gridworld import SMALL_CAMERA
 from tests.helpers.worlds import room, with_box
-from tools.research import compare_explorers
 
 
 @pytest.fixture(scope="module")
@@ -104,44 +102,6 @@ def test_storeys_of_a_house_are_held_back_together_and_stay_so_when_houses_are_a
     for file in held_back:
         (tmp_path / file.name).write_bytes(file.read_bytes())
     assert [file.name for file in split_plans([tmp_path])[1]] == [file.name for file in held_back]
-
-
-def test_explorers_are_compared_in_the_same_episodes(plans: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    out = tmp_path / "lines.jsonl"
-    explorers = ("corners", "random-goals", "semexp:semantics=shuffled,goal=wrong")
-    args = compare_explorers.Args(plans=(plans,), explorers=explorers, episodes=2, out=out)
-    assert compare_explorers.main(args) == 0
-    lines = [json.loads(line) for line in out.read_text().splitlines()]
-    assert [line["explorer"] for line in lines] == [name for name in explorers for _ in range(2)]
-    assert len({(line["house"], line["shortest_path"]) for line in lines}) == 2
-    printed = capsys.readouterr().out.splitlines()
-    assert "difference +0.0 not significant" in printed[1]
-    assert printed[3].startswith("semexp:semantics=shuffled,goal=wrong")
-
-
-@pytest.mark.parametrize(
-    ("explorer", "message"),
-    [
-        ("corner", "there is no 'corner'. Available: corners, "),
-        ("semexp:colour=red", "semexp:colour=red: There is no field 'colour'. The configuration has: weights, "),
-        (
-            "informed-tour:potentials.colour=red",
-            "There is no field 'potentials.colour'. 'potentials' has: weights, alpha, goal, semantics",
-        ),
-        ("tour:turn_m.colour=red", "'turn_m'"),
-        ("semexp:goal=red", "--explorers semexp:goal=red"),
-        ("semexp:goal_radius_m=nan", "a finite number"),
-        ("random-goals:goal_steps=5", "random-goals has no fields"),
-    ],
-)
-def test_unknown_explorers_and_fields_are_refused(explorer: str, message: str):
-    with pytest.raises(ConfigError, match=message):
-        compare_explorers.explorer_config(explorer, None)
-
-
-def test_fields_of_explorers_are_set():
-    config = compare_explorers.explorer_config("semexp:semantics=none,sampled=false,goal_steps=10", Path("w"))
-    assert config == SemExpConfig(weights="w", semantics="none", sampled=False, goal_steps=10)
 
 
 @pytest.mark.parametrize(

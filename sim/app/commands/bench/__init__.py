@@ -1,1 +1,0 @@
-"""The parts of `stubborn bench`; each measures figures against a baseline of the same run."""

@@ -1,0 +1,222 @@
+"""The runs that tables are made of: an agent with its options on a split; they take turns until all are complete."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import shlex
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+from rich.console import Console
+
+from sim.app import cli
+from sim.app.analysis.comparison import Run, read_run
+from sim.app.composition.agents import find_agent
+from sim.app.composition.options import RunOptions
+from sim.app.composition.running import run_missing
+from sim.app.composition.setup import resolve
+from sim.core.configuration import parse_assignments
+from sim.core.errors import ConfigError
+from sim.core.reading import convert
+from sim.episodes.episode import Episode
+from sim.episodes.splits import Split
+
+GROUND_TRUTH = "gt"
+"""The segmentation of agents that do not use one: they are run once, under this name."""
+FORM = "AGENT [--semantics SOURCE] [--explorer NAME] [--verification METHOD] [--config FIELD=VALUE ...]"
+"""The text that `AgentSetup.named` takes."""
+NAMES = ("explorer", "verification", "noise", "seed", "replicates")
+"""Options of `stubborn run` with one value that make another row of a table, in the order of its name."""
+
+
+def uses_segmentation(agent: str) -> bool:
+    """Returns False for an agent whose results do not depend on `--semantics`."""
+    return find_agent(agent).uses_segmentation
+
+
+@dataclass(frozen=True, order=True)
+class AgentSetup:
+    """An agent with its options and a source of segmentation, as on the command line of `stubborn run`."""
+
+    agent: str
+    options: str
+    """Options that are not the default, such as "--explorer informed-tour"."""
+    semantics: str
+
+    @classmethod
+    def named(cls, name: str, semantics: str) -> AgentSetup:
+        """Returns the setup of a text such as "stubborn --explorer tour", with a source of segmentation, which the text
+        can replace.
+
+        Raises:
+            ConfigError: the text has another form than `FORM`.
+        """
+        words = _words_by_option(name)
+        agent = words["agent"][0]
+        source = words.get("semantics", [semantics])[0] if uses_segmentation(agent) else GROUND_TRUTH
+        values = {option: words[option][0] for option in NAMES if option in words}
+        return cls(agent, _options_text(values, parse_assignments(words.get("config", ()))), source)
+
+    @property
+    def name(self) -> str:
+        """The text that `named` takes, without the segmentation."""
+        return f"{shlex.quote(self.agent)} {self.options}".strip()
+
+    @property
+    def label(self) -> str:
+        """Name in a table with several kinds of segmentation."""
+        return f"{self.name} ({self.semantics})" if uses_segmentation(self.agent) else self.name
+
+    @property
+    def variant(self) -> str:
+        """The options for the name of a folder."""
+        words = " ".join(shlex.split(self.options)).removeprefix("--").split(" --")
+        return "_".join(file_name(part).replace(" ", "-") for part in words)
+
+    def run_options(self, **fields: Any) -> RunOptions:
+        """Returns the options of `stubborn run`, with further fields."""
+        words = ["--agent", self.agent, "--semantics", self.semantics, *shlex.split(self.options)]
+        return replace(cli.parse(RunOptions, words), **fields)
+
+
+@dataclass(frozen=True, order=True)
+class RunKey:
+    """What a run evaluates: a setup on a version of a split."""
+
+    split: str
+    setup: AgentSetup
+    version: str
+
+
+@dataclass(frozen=True)
+class TableRun:
+    """A run that tables need: the options of its command, and its episodes."""
+
+    options: RunOptions
+    split: Split
+    episodes: Sequence[Episode]
+
+    @property
+    def lines(self) -> Mapping[str, Any]:
+        """The result lines in its folder by `episode_id`; none if there is no run yet."""
+        assert self.options.out is not None
+        return read_run(self.options.out).lines if (self.options.out / "results.jsonl").is_file() else {}
+
+
+def run_in_turns(runs: Sequence[TableRun], chunk: int, minutes: float | None, console: Console) -> None:
+    """Lets the runs take turns, a chunk of the episodes of each split, until all are complete or the time is used up.
+
+    Args:
+        runs: those of one split one after the other.
+        chunk: number of episodes.
+        minutes: no chunk of a split begins that would end later.
+        console: for progress.
+
+    Raises:
+        ConfigError: a folder holds a run with other options.
+    """
+    began_s, longest_s = time.monotonic(), 0.0
+    for first in range(0, max(len(run.episodes) for run in runs), chunk):
+        for _, of_split in itertools.groupby(runs, key=lambda run: run.options.split):
+            chunk_began_s = time.monotonic()
+            if minutes is not None and chunk_began_s - began_s + longest_s >= 60.0 * minutes:
+                console.print(f"The {minutes:g} minutes are used up before episode {first + 1}.")
+                return
+            for run in of_split:
+                episodes = run.episodes[first : first + chunk]
+                if episodes and (not first or any(episode.episode_id not in run.lines for episode in episodes)):
+                    run_missing(resolve(run.options), episodes, identity(run.split), console)
+            longest_s = max(longest_s, time.monotonic() - chunk_began_s)
+
+
+def identity(split: Split) -> dict[str, str]:
+    """Returns what config.json records of a split."""
+    return {"name": split.name, "version": split.version, "sha256": split.sha256}
+
+
+class _Recorded(msgspec.Struct):
+    """The parts of `config.json` that say which options a run had."""
+
+    explorer: str | None = None
+    verification: str | None = None
+    noise: str | None = None
+    seed: int | None = None
+    replicates: int | None = None
+    settings: dict[str, Any] = msgspec.field(default_factory=dict)
+
+
+def key_of(run: Run) -> RunKey:
+    """Returns what a run evaluates.
+
+    Raises:
+        ConfigError: config.json lacks a field that a table needs.
+    """
+    agent, semantics = str(run.recorded("agent")), str(run.recorded("semantics"))
+    find_agent(agent)
+    split = run.recorded("split_identity")
+    recorded = convert(dict(run.config), _Recorded, where=f"Config '{run.path / 'config.json'}'")
+    options = _options_text({name: getattr(recorded, name) for name in NAMES}, recorded.settings)
+    return RunKey(str(split["name"]), AgentSetup(agent, options, semantics), str(split["version"]))
+
+
+def runs_in(out: Path, version: str) -> dict[RunKey, Path]:
+    """Returns the folders of the runs in a folder that are of a version of the splits.
+
+    Raises:
+        ConfigError: two folders hold runs of the same row, or a run cannot be read.
+    """
+    folders: dict[RunKey, Path] = {}
+    for file in sorted(out.glob("*/results.jsonl")):
+        key = key_of(read_run(file.parent))
+        if key.version == version and folders.setdefault(key, file.parent) != file.parent:
+            raise ConfigError(f"'{folders[key]}' and '{file.parent}' are runs of the same row.")
+    return folders
+
+
+def file_name(text: str) -> str:
+    """Returns a text without the characters that separate folders, or modules from names."""
+    return text.replace(":", "_").replace("/", "_")
+
+
+def _options_text(values: Mapping[str, object], settings: Mapping[str, Any]) -> str:
+    """Returns the options that are not the default in a fixed order."""
+    defaults, words = RunOptions(), list[str]()
+    for name in NAMES:
+        value = values.get(name)
+        if value is not None and str(value) != str(getattr(defaults, name)):
+            words += [f"--{name}", str(value)]
+    if settings:
+        words += ["--config", *(f"{path}={_setting_text(value)}" for path, value in sorted(settings.items()))]
+    return shlex.join(words)
+
+
+def _setting_text(value: object) -> str:
+    return value if isinstance(value, str) else json.dumps(value, separators=(",", ":"))
+
+
+def _words_by_option(name: str) -> dict[str, list[str]]:
+    """Returns the words of the agent and of each option in the text of a setup."""
+    try:
+        words = shlex.split(name)
+    except ValueError as error:
+        raise ConfigError(f"--agents: {name!r} cannot be read: {error}.") from None
+    options: dict[str, list[str]] = {"agent": []}
+    option = "agent"
+    for word in words:
+        if not word.startswith("--"):
+            options[option].append(word)
+            continue
+        option = word.removeprefix("--")
+        if option not in ("semantics", "config", *NAMES) or option in options:
+            raise ConfigError(f"--agents: {name!r} has the option {word}; an agent is given as {FORM}.")
+        options[option] = []
+    for option, values in options.items():
+        if not values or (option != "config" and len(values) > 1):
+            needed = "at least one FIELD=VALUE" if option == "config" else "one name"
+            raise ConfigError(f"--agents: {name!r} needs {needed} for {option}; an agent is given as {FORM}.")
+    return options

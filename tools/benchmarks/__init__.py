@@ -1,0 +1,1 @@
+"""Benchmarks for maintainers, on pytest-benchmark, and the comparison with another commit."""
