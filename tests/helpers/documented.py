@@ -134,7 +134,7 @@ _RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp
 _HOUSES = "stubborn houses generate --houses 1 --kind flat --area-m2 90 --rooms gym --hazards glass --out {tmp}/houses"
 _SHOWN = f"{_RUN} --agent oracle --split val --episodes 2 --record --out {{tmp}}/shown/oracle"
 _SEARCHES = (
-    f"{PYTHON} -m tools.training.twin_demonstrations --first-seed 19 --houses 2 --kind studio --episodes 4 "
+    f"{PYTHON} -m tools.training.plan_demonstrations --first-seed 19 --houses 2 --kind studio --episodes 4 "
     "--out {tmp}/demonstrations/searches"
 )
 _TRAIN_CLONED = "stubborn train cloned --demonstrations {tmp}/demonstrations --minutes 0.1 --threads 2"
@@ -238,7 +238,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _SHOWN,
         f"{PYTHON} -m tools.training.render_demonstrations {{tmp}}/shown/oracle --out {{tmp}}/demonstrations",
     ),
-    f"{PYTHON} -m tools.training.twin_demonstrations --houses 112 --episodes 40 --out runs/demonstrations/searches": (
+    f"{PYTHON} -m tools.training.plan_demonstrations --houses 112 --episodes 40 --out runs/demonstrations/searches": (
         _SEARCHES,
     ),
     "stubborn train cloned --demonstrations runs/demonstrations --minutes 30 --threads 2 --out runs/cloned": (

@@ -1,1 +1,1 @@
-"""The 2-D twin of the environment: agents of `stubborn` in house plans, for training and for tests of explorers."""
+"""The 2-D environment: house plans with the interface of Gymnasium, for training explorers and policies."""

@@ -41,8 +41,8 @@ _PLANNED_ON = ("seen_obstacle", "pessimistic_marks", "visited", "trail")
 
 
 @dataclass(frozen=True, kw_only=True)
-class TwinConfig:
-    """Options of `TwinEnv`."""
+class PlanEnvConfig:
+    """Options of `PlanEnv`."""
 
     actions: Literal["primitive", "goal"] = "primitive"
     """`primitive`: the four actions of the task. `goal`: a goal cell that the agent's planner heads for."""
@@ -76,19 +76,19 @@ class TwinConfig:
 
     def __post_init__(self) -> None:
         if self.actions not in ("primitive", "goal"):
-            raise ConfigError(f"TwinConfig.actions must be 'primitive' or 'goal', got {self.actions!r}.")
+            raise ConfigError(f"PlanEnvConfig.actions must be 'primitive' or 'goal', got {self.actions!r}.")
         if min(self.goal_steps, self.plan_every, self.max_steps) < 1:
             raise ConfigError(
-                f"TwinConfig needs goal_steps, plan_every and max_steps >= 1, got {self.goal_steps}, "
+                f"PlanEnvConfig needs goal_steps, plan_every and max_steps >= 1, got {self.goal_steps}, "
                 f"{self.plan_every} and {self.max_steps}."
             )
         if self.plan_pool < 1 or self.window_cells % self.plan_pool or self.map_cells % self.plan_pool:
             raise ConfigError(
-                f"TwinConfig.plan_pool must be >= 1 and divide window_cells and map_cells, got {self.plan_pool}."
+                f"PlanEnvConfig.plan_pool must be >= 1 and divide window_cells and map_cells, got {self.plan_pool}."
             )
 
 
-class TwinEnv(gymnasium.Env[Any, Any]):
+class PlanEnv(gymnasium.Env[Any, Any]):
     """Find an object of a category in the plan of an apartment.
 
     ## Actions
@@ -132,11 +132,11 @@ class TwinEnv(gymnasium.Env[Any, Any]):
     def __init__(
         self,
         plans: Path | Sequence[Path],
-        config: TwinConfig | None = None,
+        config: PlanEnvConfig | None = None,
         *,
         read: Callable[[Path], Plan] | None = None,
     ) -> None:
-        self.config = config or TwinConfig()
+        self.config = config or PlanEnvConfig()
         self._read = read or functools.cache(read_plan)
         self.files = sorted(plans.glob("*.npz")) if isinstance(plans, Path) else list(plans)
         if not self.files:

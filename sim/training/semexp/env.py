@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from sim.core.interface import GOAL_CATEGORIES
 from sim.homes.plans.plan import Plan
 from sim.homes.plans.sight import SightConfig
-from sim.training.plan_env.env import TwinConfig, TwinEnv, require_reset
+from sim.training.plan_env.env import PlanEnv, PlanEnvConfig, require_reset
 from stubborn.exploration.semexp import SemExpConfig, sigmoid
 from stubborn.exploration.semexp_input import CELLS, GEOMETRY, HEADINGS, PolicyInput, observe
 from stubborn.exploration.semexp_net import as_arrays
 
-FAST = TwinConfig(
+FAST = PlanEnvConfig(
     actions="goal",
     ends_at_sight=True,
     goal_steps=SemExpConfig().goal_steps,
@@ -30,7 +30,7 @@ FAST = TwinConfig(
     plan_pool=2,
     sight=SightConfig(stride_px=8),
 )
-"""The twin for training: every eighth pixel, plans on cells of 10 cm at every eighth step, end at first sight."""
+"""Every eighth pixel, plans on cells of 10 cm at every eighth step, end at first sight."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,8 +48,8 @@ class RewardConfig:
     """True: the step that sees the target is also given the rest of the path, which the agent then drives by itself."""
 
 
-class SemExpEnv(TwinEnv):
-    """The twin with the input, the goals and the reward of the global policy of `semexp`.
+class SemExpEnv(PlanEnv):
+    """The 2-D environment with the input, the goals and the reward of the global policy of `semexp`.
 
     ## Actions
     `Box(2)` in [-10, 10]: its sigmoid is a point of the local map, as shares of its rows and columns.
@@ -60,14 +60,14 @@ class SemExpEnv(TwinEnv):
 
     ## Reward, end, info
     As `RewardConfig` says; the episode ends at first sight of the target or after `max_steps`. The rest is as in
-    `TwinEnv`.
+    `PlanEnv`.
 
     Args:
         plans: plan files, or a folder of them.
-        config: of the twin, with `actions="goal"`.
+        config: of the environment, with `actions="goal"`.
         cells: edge of the maps of the input.
         reward: the reward.
-        read: see `TwinEnv`.
+        read: see `PlanEnv`.
 
     Raises:
         ConfigError: there is no plan.
@@ -76,7 +76,7 @@ class SemExpEnv(TwinEnv):
     def __init__(
         self,
         plans: Path | Sequence[Path],
-        config: TwinConfig = FAST,
+        config: PlanEnvConfig = FAST,
         *,
         cells: int = CELLS,
         reward: RewardConfig = RewardConfig(),

@@ -1,4 +1,4 @@
-"""Writes the plans of houses, for training and tests in the 2-D twin (docs/explorers.md): one npz file for each storey.
+"""Writes the plans of houses for the 2-D environment (docs/explorers.md): one npz file for each storey.
 
     stubborn houses plans --split val --out runs/plans/val --workers 2
     stubborn houses plans --pool train --first-seed 0 --houses 500 --out runs/plans/many --workers 2

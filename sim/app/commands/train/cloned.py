@@ -2,7 +2,7 @@
 
     stubborn train cloned --demonstrations runs/demonstrations --minutes 60 --out runs/cloned
 
-The demonstrations are files of `tools.training.render_demonstrations` and `tools.training.twin_demonstrations`. One
+The demonstrations are files of `tools.training.render_demonstrations` and `tools.training.plan_demonstrations`. One
 house in ten, by its name, is held back for `val.csv`: the cross entropy, and how many actions are those of the
 demonstrator. The same command continues a killed run: `state.pt` holds weights, their average, optimiser and step.
 `cloned.safetensors` is the averaged network of the best evaluation so far, `curve.png` the picture of the curves.

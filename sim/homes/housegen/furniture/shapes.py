@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from sim.homes.housegen.furniture.item import MeshShape
 
@@ -212,40 +212,6 @@ def drape(width_m: float, height_m: float, depth_m: float, folds: int, *, gather
     faces += _quad(b0, f0, f1, b1)
     faces += _quad(f0 + n - 1, b0 + n - 1, b1 + n - 1, f1 + n - 1)
     return named_mesh("drape", np.vstack(rows), faces)
-
-
-def foliage(leaves: Iterable[Leaf]) -> MeshShape:
-    """Returns many leaves in one mesh. A leaf has six vertices and is a thin closed body, visible from both sides."""
-    vertices: list[NDArray[np.float64]] = []
-    faces: list[tuple[int, int, int]] = []
-    for leaf in leaves:
-        base, tip = np.asarray(leaf.base_m, float), np.asarray(leaf.tip_m, float)
-        along = tip - base
-        side = np.cross(along, (0.0, 0.0, 1.0))
-        if np.linalg.norm(side) < 1e-6:
-            side = np.array([0.0, 1.0, 0.0])
-        side *= 0.5 * leaf.width_m / np.linalg.norm(side)
-        up = np.cross(side, along)
-        up /= np.linalg.norm(up)
-        middle = base + 0.45 * along + (0.0, 0.0, leaf.arch_m)
-        n = sum(len(v) for v in vertices)
-        fold = 0.15 * leaf.width_m
-        vertices.append(
-            np.array(
-                [
-                    base,
-                    middle + side + fold * up,
-                    tip,
-                    middle - side + fold * up,
-                    middle + 0.006 * up,
-                    middle - 0.006 * up,
-                ]
-            )
-        )
-        for i in range(4):
-            j = (i + 1) % 4
-            faces += [(n + i, n + j, n + 4), (n + j, n + i, n + 5)]
-    return named_mesh("foliage", np.vstack(vertices), faces)
 
 
 def _quad(a: int, b: int, c: int, d: int) -> list[tuple[int, int, int]]:

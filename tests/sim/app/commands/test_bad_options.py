@@ -190,7 +190,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--out OUT --agents nobody", "nobody"),
         ("--out OUT --traps pit", "pit"),
     ],
-    "tools.training.twin_demonstrations": [("--out OUT --kind castle", "castle")],
+    "tools.training.plan_demonstrations": [("--out OUT --kind castle", "castle")],
     "sim.app.commands.views.unpack": [("--views nowhere --out OUT", "No shards")],
 }
 

@@ -20,7 +20,7 @@ from sim.training.cloned.demonstrations import (
     write_demonstration,
 )
 from stubborn.baselines.cloned_net import FILES
-from tools.training import render_demonstrations, twin_demonstrations
+from tools.training import plan_demonstrations, render_demonstrations
 
 
 def rows(file: Path) -> list[dict[str, str]]:
@@ -128,18 +128,18 @@ def test_demonstrations_of_too_few_houses_and_another_size_are_refused(tmp_path:
 
 @pytest.mark.costly
 def test_searches_in_plans_are_rendered_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    args = twin_demonstrations.Args(out=tmp_path, houses=1, episodes=2, kind="studio")
-    assert twin_demonstrations.main(args) == 0
+    args = plan_demonstrations.Args(out=tmp_path, houses=1, episodes=2, kind="studio")
+    assert plan_demonstrations.main(args) == 0
     files = list_demonstrations([tmp_path])
     assert f"{len(files)} episodes with" in capsys.readouterr().out
     shown = read_demonstration(files[0])
     assert shown.actions[-1] == Action.STOP
     assert (shown.semantic[-4:] == MPCAT40_ID[shown.goal]).any()
     times = [file.stat().st_mtime_ns for file in files]
-    assert twin_demonstrations.main(args) == 0
+    assert plan_demonstrations.main(args) == 0
     assert [file.stat().st_mtime_ns for file in files] == times
     with pytest.raises(ConfigError, match="take another folder"):
-        twin_demonstrations.main(replace(args, episodes=3))
+        plan_demonstrations.main(replace(args, episodes=3))
 
 
 @pytest.mark.costly

@@ -1,4 +1,4 @@
-"""The twin for training the global policy of semexp, and the code that it shares with the explorer in episodes."""
+"""The environment in which the global policy of semexp is trained, and the code that it shares with the explorer."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from sim.core.interface import GOAL_CATEGORIES
 from sim.homes.plans.export import export_plans
 from sim.homes.plans.plan import read_plan, write_plan
 from sim.homes.plans.sight import PlanCamera
-from sim.training.plan_env.agent import TwinAgent, run_episode, twin_config
-from sim.training.plan_env.env import TwinConfig, TwinEnv
+from sim.training.plan_env.env import PlanEnv, PlanEnvConfig
 from sim.training.semexp.env import FAST, RewardConfig, SemExpEnv
 from stubborn.agent import AgentConfig
 from stubborn.exploration.semexp import SemExpConfig, SemExpExplorer
 from stubborn.exploration.semexp_input import PolicyInput
+from tests.helpers.plan_agent import PlanAgent, plan_agent_config, run_episode
 from tests.helpers.worlds import bed_behind_a_wall, with_box
 
 
@@ -84,9 +84,9 @@ def test_the_policy_gets_the_same_input_in_training_and_in_episodes(plans: Path)
         given.append(seen)
         return action(PLACES[len(given) % 3]), np.zeros(2)
 
-    exact = replace(FAST, plan_every=1, plan_pool=1, sight=TwinConfig().sight, goal_steps=4)
+    exact = replace(FAST, plan_every=1, plan_pool=1, sight=PlanEnvConfig().sight, goal_steps=4)
     explorer = SemExpExplorer(SemExpConfig(goal_steps=4), policy)
-    agent = TwinAgent(twin_config(AgentConfig()))
+    agent = PlanAgent(plan_agent_config(AgentConfig()))
     agent.explorer = explorer
     start = Pose(-3.0, 1.0, 3.0)  # looks away from the bed
     run_episode(agent, PlanCamera(read_plan(plans / "flat.npz")), "bed", start, seed=0, until_sight=True)
@@ -106,7 +106,7 @@ def test_the_policy_gets_the_same_input_in_training_and_in_episodes(plans: Path)
 def test_a_step_ends_where_the_goal_is_reached(plans: Path):
     used = []
     for arrived_m in (None, 0.35):
-        env = TwinEnv(plans, TwinConfig(actions="goal", arrived_m=arrived_m))
+        env = PlanEnv(plans, PlanEnvConfig(actions="goal", arrived_m=arrived_m))
         env.reset(seed=0, options=START)
         used.append(env.step(np.array([0.5, 0.6]))[4]["num_steps"])
     assert used[0] == 25
@@ -114,7 +114,7 @@ def test_a_step_ends_where_the_goal_is_reached(plans: Path):
 
 
 def test_a_robot_that_is_at_its_goal_pushes_on_for_one_action(plans: Path):
-    env = TwinEnv(plans, TwinConfig(actions="goal", arrived_m=0.35))
+    env = PlanEnv(plans, PlanEnvConfig(actions="goal", arrived_m=0.35))
     env.reset(seed=0, options=START)
     for steps in (1, 2):
         assert env.step(np.array([0.5, 0.5]))[4]["num_steps"] == steps
@@ -125,7 +125,7 @@ def test_a_robot_that_is_at_its_goal_pushes_on_for_one_action(plans: Path):
 def test_planning_on_pooled_cells_drives_to_the_same_place(plans: Path):
     ends = []
     for pool in (1, 2, 3):
-        env = TwinEnv(plans, TwinConfig(actions="goal", plan_pool=pool))
+        env = PlanEnv(plans, PlanEnvConfig(actions="goal", plan_pool=pool))
         env.reset(seed=0, options=START)
         info = env.step(np.array([0.25, 0.75]))[4]
         assert info["collisions"] <= 1
@@ -133,7 +133,7 @@ def test_planning_on_pooled_cells_drives_to_the_same_place(plans: Path):
     assert np.abs(np.array(ends) - ends[0]).max() < 1.0
     assert len(set(ends)) > 1
     with pytest.raises(ConfigError, match="plan_pool must be >= 1 and divide window_cells and map_cells, got 7"):
-        TwinConfig(plan_pool=7)
+        PlanEnvConfig(plan_pool=7)
 
 
 def test_environments_can_share_the_plans(plans: Path):

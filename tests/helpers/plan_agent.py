@@ -18,7 +18,7 @@ from stubborn.mapping.mapper import MappingConfig, Sighting, note_sighting
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 
-class TwinAgent(StubbornAgent):
+class PlanAgent(StubbornAgent):
     """A `StubbornAgent` whose frames are looks in a plan; with ground truth, so that a candidate is the target."""
 
     def __init__(self, config: AgentConfig, camera: CameraModel | None = None) -> None:
@@ -47,7 +47,7 @@ class TwinAgent(StubbornAgent):
 
 
 def run_episode(
-    agent: TwinAgent,
+    agent: PlanAgent,
     camera: PlanCamera,
     goal: str,
     start: Pose,
@@ -99,13 +99,13 @@ def observation_of(episode: PlanEpisode) -> Observation:
     }
 
 
-def _look_once_more(agent: TwinAgent, episode: PlanEpisode) -> None:
+def _look_once_more(agent: PlanAgent, episode: PlanEpisode) -> None:
     """Counts the frame after the last action, which no agent sees."""
     look = episode.camera.look(episode.robot.pose, episode.goal, agent.navmap, episode.pose, episode.num_steps)
     episode.see(look)
 
 
-def twin_config(config: AgentConfig) -> AgentConfig:
+def plan_agent_config(config: AgentConfig) -> AgentConfig:
     """Returns the configuration without what a plan has no data for: drops of the floor.
 
     Raises:

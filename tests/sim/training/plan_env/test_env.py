@@ -1,4 +1,4 @@
-"""The twin environment and the agent in it."""
+"""The 2-D environment."""
 
 from __future__ import annotations
 
@@ -19,11 +19,9 @@ from sim.homes.plans.episode import PlanEpisode
 from sim.homes.plans.export import export_plans
 from sim.homes.plans.plan import read_plan, write_plan
 from sim.homes.plans.sight import PlanCamera, SightConfig
-from sim.training.plan_env.agent import TwinAgent, run_episode, twin_config
-from sim.training.plan_env.env import LAYERS, TwinConfig, TwinEnv
-from stubborn.agent import AgentConfig
+from sim.training.plan_env.env import LAYERS, PlanEnv, PlanEnvConfig
 from stubborn.agents import SPECS
-from stubborn.mapping.mapper import MappingConfig
+from tests.helpers.plan_agent import PlanAgent, plan_agent_config, run_episode
 from tests.helpers.worlds import bed_behind_a_wall, room, with_box
 
 
@@ -39,18 +37,18 @@ def plans(tmp_path_factory) -> Path:
 START = {"plan": 0, "goal": "bed", "start": Pose(-3.0, 1.0, 3.0)}
 
 
-def test_the_twin_never_imports_mujoco():
-    code = "import sys, sim.training.plan_env.env, sim.training.plan_env.agent; print('mujoco' in sys.modules)"
+def test_the_environment_never_imports_mujoco():
+    code = "import sys, sim.training.plan_env.env; print('mujoco' in sys.modules)"
     assert subprocess.check_output([sys.executable, "-c", code], text=True).strip() == "False"
 
 
 @pytest.mark.parametrize("actions", ["primitive", "goal"])
 def test_the_environment_keeps_gymnasiums_contract(plans, actions):
-    check_env(TwinEnv(plans, TwinConfig(actions=actions, goal_steps=5)), skip_render_check=True)
+    check_env(PlanEnv(plans, PlanEnvConfig(actions=actions, goal_steps=5)), skip_render_check=True)
 
 
 def test_reward_is_the_progress_and_a_stop_at_the_goal_succeeds(plans):
-    env = TwinEnv(plans)
+    env = PlanEnv(plans)
     observation, info = env.reset(seed=0, options=START)
     assert observation["layers"][LAYERS.index("visited")].sum() == pytest.approx(np.pi * 3.6**2, rel=0.1)
     total, first_m = 0.0, env.episode.distance_m()
@@ -69,7 +67,7 @@ def test_reward_is_the_progress_and_a_stop_at_the_goal_succeeds(plans):
 
 
 def test_a_goal_is_driven_to_around_a_wall_and_the_episode_ends_at_sight(plans):
-    env = TwinEnv(plans, TwinConfig(actions="goal", ends_at_sight=True))
+    env = PlanEnv(plans, PlanEnvConfig(actions="goal", ends_at_sight=True))
     env.reset(seed=0, options=START)
     cos, sin, steps, terminated, info = np.cos(3.0), np.sin(3.0), 0, False, {}
     while not terminated and steps < 8:
@@ -84,7 +82,7 @@ def test_a_goal_is_driven_to_around_a_wall_and_the_episode_ends_at_sight(plans):
 
 def test_the_same_seed_gives_the_same_episode_and_no_state_survives_a_reset(plans):
     frames = []
-    env = TwinEnv(plans)
+    env = PlanEnv(plans)
     for _ in range(2):
         first, _ = env.reset(seed=5)
         for action in (1, 1, 2, 1):
@@ -96,7 +94,7 @@ def test_the_same_seed_gives_the_same_episode_and_no_state_survives_a_reset(plan
 
 
 def test_the_agent_finds_the_bed_in_the_plan(plans):
-    agent = TwinAgent(twin_config(SPECS["stubborn"].config))
+    agent = PlanAgent(plan_agent_config(SPECS["stubborn"].config))
     camera = PlanCamera(read_plan(plans / "flat.npz"))
     found = run_episode(agent, camera, "bed", START["start"], seed=0)
     assert found["success"] == 1.0
@@ -105,32 +103,19 @@ def test_the_agent_finds_the_bed_in_the_plan(plans):
     assert sight["num_steps"] == sight["first_seen_step"] == found["first_seen_step"]
 
 
-def test_a_goal_that_the_last_frame_shows_first_ends_the_episode_at_sight(plans):
-    agent = TwinAgent(twin_config(SPECS["stubborn"].config))
-    camera = PlanCamera(read_plan(plans / "flat.npz"))
-    first = run_episode(agent, camera, "bed", START["start"], seed=0, until_sight=True)
-    assert (first["end_reason"], first["gt_explored"]) == ("sight", True)
-    seen_step = first["first_seen_step"]
-    for most, end, seen in ((seen_step, "sight", True), (seen_step - 1, "max_steps", False)):
-        found = run_episode(agent, camera, "bed", START["start"], seed=0, until_sight=True, max_steps=most)
-        assert (found["end_reason"], found["gt_explored"], found["num_steps"]) == (end, seen, most)
-    whole = run_episode(agent, camera, "bed", START["start"], seed=0, max_steps=seen_step)
-    assert (whole["end_reason"], whole["first_seen_step"]) == ("max_steps", seen_step)
-
-
 def test_a_start_is_sampled_for_the_goal_and_a_goal_for_the_start(tmp_path):
     house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
     house = with_box(house, "sofa_00", centre_m=(-3.4, -1.8, 0.3), half_m=(0.9, 0.4, 0.3))
     (plan,) = export_plans(house, {})
     write_plan(tmp_path / "flat.npz", plan)
-    env = TwinEnv(tmp_path)
+    env = PlanEnv(tmp_path)
     for seed in range(12):
         for goal in ("bed", "sofa"):
             info = env.reset(seed=seed, options={"goal": goal})[1]
             assert (info["goal"], info["shortest_path"] >= 1.95) == (goal, True)
         assert env.reset(seed=seed, options={"start": Pose(1.9, 0.8, 0.0)})[1]["goal"] == "sofa"  # the bed is in reach
     write_plan(tmp_path / "bare.npz", replace(plan, name="bare", succeeds=np.zeros_like(plan.succeeds)))
-    both = TwinEnv(tmp_path)
+    both = PlanEnv(tmp_path)
     for seed in range(4):
         assert both.reset(seed=seed, options={"goal": "bed"})[1]["house"] == plan.name
     with pytest.raises(EpisodeError, match="None of the 2 plans has a 'chair'"):
@@ -150,7 +135,7 @@ def test_a_start_is_sampled_for_the_goal_and_a_goal_for_the_start(tmp_path):
 
 
 def test_properties_that_reset_creates_are_refused_before_reset(plans):
-    env = TwinEnv(plans)
+    env = PlanEnv(plans)
     for name in ("episode", "navmap", "window"):
         with pytest.raises(gymnasium.error.ResetNeeded, match="Call reset"):
             getattr(env, name)
@@ -164,16 +149,13 @@ def test_properties_that_reset_creates_are_refused_before_reset(plans):
 
 def test_errors_list_the_names_that_exist(plans):
     with pytest.raises(ConfigError, match="No plan in"):
-        TwinEnv(plans / "nowhere")
+        PlanEnv(plans / "nowhere")
     with pytest.raises(EpisodeError, match=r"has no goal 'sofa'\. It has: bed"):
         PlanEpisode(PlanCamera(read_plan(plans / "flat.npz")), "sofa", START["start"])
 
 
 def test_options_that_a_plan_cannot_follow_are_refused():
-    with pytest.raises(ConfigError, match=r"TwinConfig\.actions must be 'primitive' or 'goal', got 'goals'"):
-        TwinConfig(actions="goals")  # type: ignore[arg-type]
+    with pytest.raises(ConfigError, match=r"PlanEnvConfig\.actions must be 'primitive' or 'goal', got 'goals'"):
+        PlanEnvConfig(actions="goals")  # type: ignore[arg-type]
     with pytest.raises(ConfigError, match="stride_px must be >= 1, got 0"):
         SightConfig(stride_px=0)
-    with pytest.raises(ConfigError, match=r"without the agent's mapping\.eye_level_halfwidth_m"):
-        twin_config(AgentConfig(mapping=MappingConfig(eye_level_halfwidth_m=0.5)))
-    assert twin_config(AgentConfig(mapping=MappingConfig(candidate_score=0.3))).mapping.candidate_score == 0.3

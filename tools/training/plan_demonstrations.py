@@ -1,6 +1,6 @@
 """Searches for goals in the plans of generated houses, and renders the searches as demonstrations for imitation.
 
-    python -m tools.training.twin_demonstrations --houses 200 --episodes 20 --out runs/demonstrations/searches
+    python -m tools.training.plan_demonstrations --houses 200 --episodes 20 --out runs/demonstrations/searches
 
 A house is generated from its seed and exported as a plan (docs/explorers.md). A demonstrator that knows the free space,
 but not where the goal is, explores the plan until the goal is in view and drives to it
