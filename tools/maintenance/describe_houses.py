@@ -8,10 +8,8 @@ The same houses give the same bytes. The houses of `train` are generated first i
 from __future__ import annotations
 
 import collections
-import csv
 import functools
 import hashlib
-import io
 import statistics
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,7 +18,7 @@ from pathlib import Path
 
 from sim.app import cli
 from sim.app.evaluation.parallel import ordered_map
-from sim.core.files import write_together
+from sim.core.files import csv_text, write_together
 from sim.core.interface import GOAL_CATEGORIES, ConfigError, SuccessRule
 from sim.core.paths import assets_dir
 from sim.core.reading import read_bytes
@@ -230,15 +228,13 @@ def count_storeys(levels_m: Sequence[float]) -> int:
 
 def _csv(root: Path, splits: Mapping[str, Split], facts: Mapping[str, Sequence[HouseFacts]]) -> str:
     """Returns the table of all houses."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    rows = []
     for name, houses in facts.items():
         unreachable = read_unreachable(root / name)
         episodes = collections.Counter(episode.house for episode in splits[name].episodes)
         for house in houses:
-            writer.writerow(_row(name, house, episodes[house.name], unreachable.get(house.name, ())))
-    return text.getvalue()
+            rows.append(_row(name, house, episodes[house.name], unreachable.get(house.name, ())))
+    return csv_text(COLUMNS, rows)
 
 
 def _row(split: str, house: HouseFacts, episodes: int, unreachable: Sequence[str]) -> list[str | int]:

@@ -19,8 +19,6 @@ stopped. The archive then holds all runs of --out that are of its version of the
 
 from __future__ import annotations
 
-import csv
-import io
 import re
 import sys
 import tempfile
@@ -42,7 +40,7 @@ from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, file_n
 from sim.app.evaluation.intervals import Estimate, replicate_spread
 from sim.app.evaluation.results import metric_value
 from sim.core.errors import ConfigError
-from sim.core.files import write_atomically, write_together
+from sim.core.files import csv_text, write_atomically, write_together
 from sim.core.reading import read_bytes, read_text
 from sim.core.reading import read_csv as read_table
 from sim.episodes.splits import load_split
@@ -352,11 +350,7 @@ def unknown_quantities(page: str, results: Iterable[Record], compared: Iterable[
 
 def to_csv(records: Sequence[Record]) -> str:
     """Returns CSV text."""
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, list(records[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(records)
-    return stream.getvalue()
+    return csv_text(list(records[0]), (record.values() for record in records))
 
 
 def read_csv(file: Path) -> list[Record]:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from sim.app.commands.traps.trial import DeepestContact, hull_of
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action
 from sim.gl import mujoco
@@ -60,29 +61,13 @@ def test_an_unlabelled_invisible_obstacle_has_a_geom_but_no_instance():
     assert (motion.contacts[0].instance, motion.contacts[0].geom) == ("", "artefact")
 
 
-class DeepestContact:
-    """Records the deepest overlap of the hull over all physics steps."""
-
-    def __init__(self, world: World) -> None:
-        self._hull = {world.model.geom(f"stubborn_robot/{name}_hull").id for name in ("lower", "upper")}
-        self.depth_m = 0.0
-
-    def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        if data.ncon <= 2:
-            return
-        depths_m = data.contact.includemargin - data.contact.dist
-        for pair, depth_m in zip(data.contact.geom.tolist(), depths_m.tolist(), strict=True):
-            if not self._hull.isdisjoint(pair):
-                self.depth_m = max(self.depth_m, depth_m)
-
-
 def drive_among_obstacles(seed: int, base: Base) -> tuple[list[tuple[Motion, float]], float]:
     """Returns each motion among random obstacles with the heading error after it (deg), and the deepest overlap."""
     world = World(random_obstacles(seed), robot=RobotConfig(base=base))
     rng = np.random.default_rng(seed)
     start_yaw = float(rng.uniform(-3, 3))
     world.reset(Pose(0.0, 0.0, start_yaw))
-    deepest, motions = DeepestContact(world), []
+    deepest, motions = DeepestContact(hull_of(world)), []
     mujoco.set_mjcb_control(deepest)
     try:
         for action in map(Action, rng.choice([1, 1, 1, 2, 3], size=8).tolist()):

@@ -7,9 +7,7 @@ width of the gap, the length of panes and the number of hidden objects), `famili
 
 from __future__ import annotations
 
-import csv
 import dataclasses
-import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +19,7 @@ from sim.app.commands.traps.curves import QUANTITIES, Point, Rows, curve
 from sim.app.commands.traps.family_picture import draw_family
 from sim.app.commands.traps.grid import markdown_of
 from sim.app.evaluation.intervals import estimate
-from sim.core.files import write_picture, write_together
+from sim.core.files import csv_text, write_picture, write_together
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Split
 from sim.homes.housegen.traps.families.catalogue import FAMILIES
@@ -90,13 +88,12 @@ def family_grid(rows: Rows, facts: Mapping[str, TrapFacts]) -> tuple[list[str], 
 
 def as_csv(points: Sequence[Point]) -> str:
     """Returns the points of all curves as CSV text."""
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, [field.name for field in dataclasses.fields(Point)])
-    writer.writeheader()
-    for point in points:
-        row = dataclasses.asdict(point)
-        writer.writerow({name: round(value, 4) if isinstance(value, float) else value for name, value in row.items()})
-    return stream.getvalue()
+    rows = (dataclasses.astuple(point) for point in points)
+    return csv_text(
+        [field.name for field in dataclasses.fields(Point)],
+        ([round(value, 4) if isinstance(value, float) else value for value in row] for row in rows),
+        end="\r\n",
+    )
 
 
 def draw_curves(points: Sequence[Point]) -> Figure:

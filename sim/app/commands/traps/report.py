@@ -12,8 +12,6 @@ Traps of families also get curves with intervals and a picture of each family (`
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import os
 from collections.abc import Iterator, Sequence, Set
@@ -34,7 +32,7 @@ from sim.app.composition.agents import build_agent, find_agent
 from sim.app.composition.options import RunOptions
 from sim.app.composition.record import code_of
 from sim.app.evaluation.config_fields import differing_fields, field_text
-from sim.core.files import open_to_grow, write_atomically, write_together
+from sim.core.files import csv_text, open_to_grow, write_atomically, write_together
 from sim.core.files import write_picture as save_picture
 from sim.core.interface import Agent, ConfigError
 from sim.core.reading import Count as ReadCount
@@ -234,8 +232,4 @@ def row_of(trial: Trial) -> dict[str, Any]:
 
 def as_csv(rows: Sequence[dict[str, Any]]) -> str:
     """Returns all rows as CSV text."""
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, COLUMNS)
-    writer.writeheader()
-    writer.writerows(rows)
-    return stream.getvalue()
+    return csv_text(COLUMNS, ([row[name] for name in COLUMNS] for row in rows), end="\r\n")

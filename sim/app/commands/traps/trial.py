@@ -15,6 +15,7 @@ from sim.gl import mujoco
 from sim.robot.body import PREFIX
 from sim.robot.contacts import Contact
 from sim.robot.drive import Motion
+from sim.world.world import World
 
 
 @dataclass
@@ -68,6 +69,11 @@ class DeepestContact:
                 self.depth_m = max(self.depth_m, depth_m)
 
 
+def hull_of(world: World) -> frozenset[int]:
+    """Returns the geoms of the robot's hull."""
+    return frozenset(world.model.geom(f"{PREFIX}{part}_hull").id for part in ("lower", "upper"))
+
+
 def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode, *, seed: int = 0) -> Trial:
     """Runs one episode of a trap to its end.
 
@@ -80,8 +86,7 @@ def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode, *, s
     agent.reset(episode.goal, seed)
     zone = env.split.sidecar(episode.house).zone_m
     world = env.scene.world
-    hull = frozenset(world.model.geom(f"{PREFIX}{part}_hull").id for part in ("lower", "upper"))
-    deepest = DeepestContact(hull)
+    deepest = DeepestContact(hull_of(world))
     mujoco.set_mjcb_control(deepest)
     try:
         done = False
