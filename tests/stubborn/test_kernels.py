@@ -256,7 +256,7 @@ def test_cells_farther_than_a_distance_are_those_of_the_exact_distances(share: f
 def test_a_distance_beyond_the_computed_ones_is_refused_with_the_limit() -> None:
     mask = np.ones((2, 2), np.bool_)
     assert not farther_than(mask, 8.9, 0.05).any()
-    with pytest.raises(ConfigError, match=r"own_known_m, must be at most 8\.9 m with cells of 0\.05 m, got 9 m"):
+    with pytest.raises(ConfigError, match=r"own_known_m.*8\.9.*0\.05.*9"):
         farther_than(mask, 9.0, 0.05)
 
 

@@ -45,6 +45,7 @@ from stubborn.exploration.patches import MapPatch
 from stubborn.network_files import read_checkpoint
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
+from tests.helpers import wording
 from tests.helpers.worlds import room
 from tests.sim.task.test_trajectory import walked
 
@@ -316,5 +317,5 @@ def test_an_array_of_another_type_or_shape_gives_a_result_or_a_message(reader: R
 def test_weights_in_a_zip_of_several_parts_are_refused(tmp_path: Path) -> None:
     file = tmp_path / "a.pth"
     file.write_bytes(struct.pack("<4sLQL", b"PK\x06\x07", 1, 0, 2) + struct.pack("<4s4H2LH", b"PK\x05\x06", *7 * [0]))
-    with pytest.raises(ConfigError, match="span multiple disks"):
+    with pytest.raises(ConfigError, match=wording.SPAN_MULTIPLE_DISKS):
         read_checkpoint(file)

@@ -17,6 +17,7 @@ from sim.episodes.episode import Episode
 from sim.episodes.house_list import CACHE_VARIABLE, cache_dir, house_maker, write_house_list
 from sim.episodes.splits import Split, load_split, write_split
 from sim.homes.housegen.splits.recipes import MAX_TRAIN_SEEDS, SPLITS, Recipe, train_recipe
+from tests.helpers import wording
 from tests.helpers.worlds import room, with_box
 
 STUDIO = Recipe("tiny_00", 5, "train", "studio", 50.0)
@@ -89,7 +90,7 @@ def test_a_house_that_differs_from_the_list_is_an_error_with_both_checksums(make
     assert hashlib.sha256(maker.text.encode()).hexdigest() in str(refused.value)
     assert not split.house_paths["tiny_00"].exists()
     old = replace(split.house_list, made_with=house_maker().versions() | {"mujoco": "3.9.9"})
-    with pytest.raises(HouseError, match=r"mujoco 3\.9\.9 in the list and .* here"):
+    with pytest.raises(HouseError, match=r"3\.9\.9"):
         old.fetch("tiny_00")
 
 
@@ -114,7 +115,7 @@ def test_the_hash_covers_checksums_and_episodes_but_not_the_cache(split: Split, 
 
 def test_houses_and_episodes_of_different_versions_are_an_error(split: Split, tmp_path: Path) -> None:
     write_split(tmp_path / "tiny", EPISODES, {"tiny_00": {}}, version="1.3.0")
-    with pytest.raises(ConfigError, match=r"episodes of version 1\.3\.0 but a list of houses of version 1\.2\.0"):
+    with pytest.raises(ConfigError, match=r"1\.3\.0.*1\.2\.0"):
         load_split(tmp_path / "tiny")
 
 
@@ -129,7 +130,7 @@ def test_the_error_of_a_broken_list_names_the_file(split: Split, tmp_path: Path,
 def test_a_version_that_leads_out_of_the_cache_is_refused_and_nothing_is_written(
     version: str, maker: Maker, tmp_path: Path
 ) -> None:
-    with pytest.raises(ConfigError, match="leads out of its folder"):
+    with pytest.raises(ConfigError, match=wording.LEADS_OUT_OF_ITS_FOLDER):
         listed_split(tmp_path / "tiny", maker.text.encode(), version=version)
     assert not (tmp_path / "outside").exists()
     assert not (tmp_path / "cache").exists()
@@ -138,7 +139,7 @@ def test_a_version_that_leads_out_of_the_cache_is_refused_and_nothing_is_written
 def test_a_house_name_that_leads_out_of_the_cache_is_refused(split: Split, tmp_path: Path) -> None:
     file = tmp_path / "tiny" / "houses.json"
     file.write_text(file.read_text().replace('"tiny_00"', '"../../../outside"'))
-    with pytest.raises(ConfigError, match=r"houses\.json.*leads out of its folder"):
+    with pytest.raises(ConfigError, match=r"houses\.json.*leads"):
         load_split(tmp_path / "tiny")
 
 

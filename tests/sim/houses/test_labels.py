@@ -8,6 +8,7 @@ from sim.core.errors import HouseError
 from sim.core.interface import MPCAT40, MPCAT40_ID
 from sim.gl import mujoco
 from sim.houses.labels import geoms_of, parse_label, read_labels, rendered_geoms
+from tests.helpers import wording
 
 
 def compiled(worldbody: str, assets: str = ""):
@@ -59,14 +60,14 @@ def test_an_instance_holds_all_its_geoms_and_each_geom_its_category():
 
 
 def test_a_visible_geom_without_a_label_is_refused_by_name():
-    with pytest.raises(HouseError, match="geom 'lump' is visible and has no label"):
+    with pytest.raises(HouseError, match="'lump'"):
         read_labels(compiled('<geom name="lump" size=".1"/>'))
-    with pytest.raises(HouseError, match=r"unnamed sphere number 0 at \(1\.00, 2\.00, 0\.00\) in body 'thing'"):
+    with pytest.raises(HouseError, match=r"0.*\(1\.00.*2\.00.*0\.00\).*'thing'"):
         read_labels(compiled('<body name="thing"><geom size=".1" pos="1 2 0"/></body>'))
 
 
 def test_a_misspelt_category_is_refused_with_a_suggestion():
-    with pytest.raises(HouseError, match=r"'chiar' is not a category\. Did you mean 'chair'\?"):
+    with pytest.raises(HouseError, match=r"'chiar'.*'chair'.*\?"):
         read_labels(compiled('<geom name="chiar_00" size=".1"/>'))
 
 
@@ -102,7 +103,11 @@ def test_rules_are_tried_in_order_and_before_the_pattern():
 
 @pytest.mark.parametrize(
     ("rules", "message"),
-    [({"x": "chairs"}, "Did you mean 'chair'"), ({"(": "chair"}, "not a regular expression"), ({"x": "qq"}, "mpcat40")],
+    [
+        ({"x": "chairs"}, "Did you mean 'chair'"),
+        ({"(": "chair"}, wording.NOT_A_REGULAR_EXPRESSION),
+        ({"x": "qq"}, "mpcat40"),
+    ],
 )
 def test_a_wrong_rule_is_refused(rules, message):
     with pytest.raises(HouseError, match=message):

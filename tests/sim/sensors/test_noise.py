@@ -27,6 +27,7 @@ from sim.sensors.random_fields import smooth_normal
 from sim.sensors.rgb_noise import NoisyRgb, RgbNoise
 from sim.sensors.standard import resolve_sensors
 from sim.world.world import World
+from tests.helpers import wording
 from tests.helpers.worlds import room, sofa_room, with_box
 
 CAMERA = CameraModel()
@@ -532,10 +533,10 @@ def test_a_file_may_name_a_preset_and_change_some_of_it() -> None:
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ("loud", "none, realsense, harsh"),
-        ({"preset": "loud"}, "none, realsense, harsh"),
-        ({"preset": ["harsh"]}, "none, realsense, harsh"),
-        ({"sonar": {}}, "depth, rgb, pose, actuation"),
+        ("loud", wording.NONE_REALSENSE_HARSH),
+        ({"preset": "loud"}, wording.NONE_REALSENSE_HARSH),
+        ({"preset": ["harsh"]}, wording.NONE_REALSENSE_HARSH),
+        ({"sonar": {}}, wording.DEPTH_RGB_POSE_ACTUATION),
         ({"depth": {"fog": 1.0}}, "baseline_m"),
         ({"depth": 3}, "depth"),
         ({"depth": {"hole_share": 2}}, "hole_share"),

@@ -11,6 +11,7 @@ import pytest
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, ConfigError
 from sim.training.fits.context import fit, log_losses, surroundings
 from stubborn.detection.context import OBJECTS, SHIPPED, Context, content_of, read_context
+from tests.helpers import wording
 from tests.stubborn.detection.test_tracks import PICTURE, TABLE, VIEWS, look, of, tracked
 
 SINK, TOWEL, BED, PICTURE_ID = (OBJECTS.index(name) for name in ("sink", "towel", "bed", "picture"))
@@ -107,9 +108,9 @@ def test_a_file_is_read_as_it_was_written(tmp_path: Path):
 @pytest.mark.parametrize(
     ("entry", "value", "message"),
     [
-        (("unicorn",), {"frequency": 0.1, "constant": 0.0, "nearby": {}}, "unknown object 'unicorn'; known are chair"),
-        (("bed", "nearby", "wall"), 1.0, "unknown object 'wall'; known are chair"),
-        (("bed",), None, "expected object, got null"),
+        (("unicorn",), {"frequency": 0.1, "constant": 0.0, "nearby": {}}, "'unicorn'"),
+        (("bed", "nearby", "wall"), 1.0, "'wall'"),
+        (("bed",), None, wording.EXPECTED_OBJECT_GOT_NULL),
         (("bed", "frequency"), 1e-50, "frequency"),
         (("bed", "constant"), "high", "constant"),
     ],

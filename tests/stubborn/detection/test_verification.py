@@ -11,6 +11,7 @@ from sim.core.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
 from sim.training.fits.verifier import fit, judge_by_category
 from stubborn.detection.classifiers import Features, NaiveBayes
 from stubborn.detection.verification import AcceptAll, FittedVerifier, verifier_for
+from tests.helpers import wording
 
 IMPERFECT = SegmenterSpec()
 TRUE = SegmenterSpec(needs_verification=False)
@@ -79,7 +80,7 @@ def test_the_method_none_accepts_all_and_unknown_methods_are_refused(tmp_path: P
     assert isinstance(verifier_for(IMPERFECT, method="none"), AcceptAll)
     with pytest.raises(ConfigError, match=r"Unknown verification 'hunch'\. Available: naive-bayes, none"):
         verifier_for(IMPERFECT, method="hunch")
-    with pytest.raises(ConfigError, match="cannot be read"):
+    with pytest.raises(ConfigError, match=wording.CANNOT_BE_READ):
         verifier_for(IMPERFECT, tmp_path / "none.json")
 
 
@@ -170,7 +171,7 @@ def test_a_kind_without_parameters_gets_those_of_the_shipped_network():
     assert isinstance(other, FittedVerifier)
     features = Features(12, 9.0, 0.9, 0.2)
     assert ours.probability("chair", features) == other.probability("chair", features)
-    with pytest.raises(ConfigError, match="kind is a name of letters"):
+    with pytest.raises(ConfigError, match=wording.KIND_IS_A_NAME_OF_LETTERS):
         SegmenterSpec(kind="../rednet")
 
 

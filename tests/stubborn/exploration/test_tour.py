@@ -210,7 +210,7 @@ def test_options_that_make_no_sense_are_refused():
         TourConfig(unknown_speed=0.0)
     with pytest.raises(ConfigError, match="block_cells >= 1"):
         TourConfig(block_cells=0)
-    with pytest.raises(ConfigError, match=r"PotentialConfig.alpha must lie in \[0, 1\], got 2"):
+    with pytest.raises(ConfigError, match=r"PotentialConfig.alpha.*\[0.*1\].*2"):
         PotentialConfig(alpha=2.0)
     with pytest.raises(ConfigError, match=r"TourConfig needs .*spent_m >= arrived_m \+ 0\.1, got 0\.5 and 0\.55"):
         TourConfig(arrived_m=0.5, spent_m=0.55)

@@ -8,6 +8,7 @@ import torch
 from sim.core.interface import ConfigError
 from stubborn.segmentation.calibration import Calibration, fit_calibration, fit_temperature
 from stubborn.segmentation.rednet import CLASSES
+from tests.helpers import wording
 
 
 def logits_and_truth(scale: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
@@ -42,5 +43,5 @@ def test_metadata_holds_a_calibration_or_a_temperature() -> None:
     torch.testing.assert_close(back.offset, fitted.offset, atol=1e-4, rtol=0)
     assert float(Calibration.from_metadata({"temperature": 2.0}).scale[0]) == 0.5
     assert float(Calibration.from_metadata({}).scale[0]) == 1.0
-    with pytest.raises(ConfigError, match="40 factors and offsets, got 2 and 2"):
+    with pytest.raises(ConfigError, match=wording.N_40_FACTORS_AND_OFFSETS_GOT_2_AND_2):
         Calibration.from_metadata({"calibration": {"scale": [1, 2], "offset": [0, 0]}})

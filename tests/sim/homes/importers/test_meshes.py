@@ -17,6 +17,7 @@ from sim.homes.importers.collision import CELL_M, collision_boxes, convex_parts,
 from sim.homes.importers.floors import find_levels, make_storeys
 from sim.homes.importers.surfaces import Paint, Surface, read_surfaces
 from sim.homes.importers.visual import make_skins, pixels_at, samples
+from tests.helpers import wording
 from tests.helpers.scanned import DOOR_Y_M, PIECES, Mesh, Piece, painted, triangles_of, trimesh, uneven
 
 WALLS = next(piece for piece in PIECES if piece.kind == "wall")
@@ -106,7 +107,7 @@ def test_an_uneven_floor_with_a_hole_becomes_one_flat_level() -> None:
     assert level == pytest.approx(1.0, abs=0.01)
     (storey,) = make_storeys([level], holed, np.zeros((0, 3, 3)))
     assert storey.floor.area_m2 == pytest.approx(12.0, rel=0.04)
-    with pytest.raises(HouseError, match="no level floor"):
+    with pytest.raises(HouseError, match=wording.NO_LEVEL_FLOOR):
         find_levels(corners[:3])
 
 
@@ -133,11 +134,15 @@ CORNERS = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
 @pytest.mark.parametrize(
     ("changed", "data", "reason"),
     [
-        ({"accessors": [{"componentType": 5126, "count": 10**9, "type": "VEC3"}]}, CORNERS, "announces more than"),
-        ({"nodes": [{"mesh": 0, "children": [1]}, {"children": [0]}]}, CORNERS, "its nodes form a loop"),
-        ({"nodes": [{"mesh": 0, "children": [7]}]}, CORNERS, "a child that does not exist"),
-        ({"nodes": [{"children": [2]}, {"children": [2]}, {"mesh": 0}]}, CORNERS, "the child of several"),
-        ({"buffers": [{"byteLength": 36, "uri": "../../secret.bin"}]}, b"", "outside of its folder"),
+        (
+            {"accessors": [{"componentType": 5126, "count": 10**9, "type": "VEC3"}]},
+            CORNERS,
+            wording.ANNOUNCES_MORE_THAN,
+        ),
+        ({"nodes": [{"mesh": 0, "children": [1]}, {"children": [0]}]}, CORNERS, wording.ITS_NODES_FORM_A_LOOP),
+        ({"nodes": [{"mesh": 0, "children": [7]}]}, CORNERS, wording.A_CHILD_THAT_DOES_NOT_EXIST),
+        ({"nodes": [{"children": [2]}, {"children": [2]}, {"mesh": 0}]}, CORNERS, wording.THE_CHILD_OF_SEVERAL),
+        ({"buffers": [{"byteLength": 36, "uri": "../../secret.bin"}]}, b"", wording.OUTSIDE_OF_ITS_FOLDER),
         ({"extensionsRequired": ["KHR_draco_mesh_compression"]}, CORNERS, "compressed by Draco"),
         ({"nodes": []}, CORNERS, "x.glb"),
         ({}, CORNERS[:-4] + struct.pack("<f", np.nan), "not finite"),

@@ -22,6 +22,7 @@ from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels, rendered_geoms
 from sim.houses.load import load_house
 from sim.world.check import check_own_house
+from tests.helpers import wording
 from tests.helpers.robocasa import FIXTURES, LARGE_PX, fixture, write_kitchen
 
 
@@ -153,7 +154,7 @@ def test_broken_kitchens_are_one_line_with_their_file(tmp_path: Path) -> None:
             import_kitchen(other, root=tmp_path)
         assert str(caught.value).startswith(f"Kitchen '{other}'")
         assert "\n" not in str(caught.value)
-    with pytest.raises(HouseError, match="there is no such file"):
+    with pytest.raises(HouseError, match=wording.THERE_IS_NO_SUCH_FILE):
         import_kitchen(file.with_name("none.xml"))
 
 

@@ -96,5 +96,5 @@ def test_samples_show_the_drawn_object_or_are_any_views(folder: Path) -> None:
 
 def test_views_without_objects_are_refused(tmp_path: Path) -> None:
     write_shard(tmp_path, "views-000000", [view_of(0, [], extras=False)], house="h", config={})
-    with pytest.raises(ConfigError, match="has no objects; make it with --extras instances"):
+    with pytest.raises(ConfigError, match="--extras"):
         ViewIndex.of(list_shards(tmp_path))

@@ -140,5 +140,5 @@ def test_some_views_are_spread_over_all_shards_and_no_other_is_decoded(
 def test_a_shard_that_was_copied_is_refused(tmp_path: Path) -> None:
     first, _ = two_shards(tmp_path)
     shutil.copy(first, tmp_path / "copy.tar")
-    with pytest.raises(ConfigError, match="both hold the view 's0_0'"):
+    with pytest.raises(ConfigError, match="'s0_0'"):
         list_shards(tmp_path)

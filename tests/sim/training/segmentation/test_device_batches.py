@@ -22,6 +22,7 @@ from sim.training.views.coco import annotate
 from sim.training.views.shards import write_shard
 from sim.training.views.views import View
 from stubborn.segmentation.inputs import InputKind
+from tests.helpers import wording
 
 CPU = torch.device("cpu")
 OBJECTS = Recipe(phases=(Phase(share=1.0, widths=(1.0,), whole_share=0.0),), object_share=1.0)
@@ -140,7 +141,7 @@ def test_a_tenth_of_the_samples_is_grey() -> None:
 
 
 def test_an_index_without_goals_ends_with_a_sentence() -> None:
-    with pytest.raises(ConfigError, match="No view shows an object"):
+    with pytest.raises(ConfigError, match=wording.NO_VIEW_SHOWS_AN_OBJECT):
         batches_of(ViewIndex((), {}), NONE)
 
 

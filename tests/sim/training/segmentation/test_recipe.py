@@ -18,7 +18,7 @@ def test_phases_follow_one_another_with_their_shares_and_the_last_one_has_no_end
     assert [recipe.phase(progress) for progress in (0.0, 0.24, 0.26, 0.99, 1.0, 1.5)] == [SMALL] * 2 + [LARGE] * 4
     widths = [phase.widths[0] for phase in PROGRESSIVE.phases]
     assert widths == sorted(widths)
-    with pytest.raises(ConfigError, match=r"must be > 0 and add up to 1, got \[0.25, 0.25\]"):
+    with pytest.raises(ConfigError, match=r"0.*1.*\[0.25.*0.25\]"):
         Recipe(phases=(SMALL, SMALL))
 
 

@@ -26,6 +26,7 @@ from sim.training.segmentation.samples import (
     turn_hue,
 )
 from stubborn.segmentation.inputs import INPUTS
+from tests.helpers import wording
 from tests.helpers.labelled_views import a_view
 
 
@@ -90,7 +91,7 @@ def test_windows_have_one_size_and_all_positions_and_scales() -> None:
     assert np.median(spans) == pytest.approx(80 / np.sqrt(2), abs=4)  # a zoom in is as likely as one out
     assert np.min(corners, axis=0).tolist() == [0, 0]
     assert np.max(corners, axis=0).tolist() >= [25, 35]
-    with pytest.raises(ConfigError, match="80 columns has no window of 81"):
+    with pytest.raises(ConfigError, match=wording.N_80_COLUMNS_HAS_NO_WINDOW_OF_81):
         random_window(60, 80, 81, 0.0, np.random.default_rng(0))
 
 
@@ -172,7 +173,7 @@ def test_pixels_of_small_objects_weigh_more_and_surfaces_do_not() -> None:
     assert view.instances is not None
     tiny = replace(view, instances=np.where(view.instances == 1, np.arange(96, dtype=np.uint16) + 3, 2).astype("u2"))
     assert pixel_weights(tiny, 1)[0, 0] == MOST_WEIGHT
-    with pytest.raises(ConfigError, match="has no instances"):
+    with pytest.raises(ConfigError, match=wording.HAS_NO_INSTANCES):
         pixel_weights(a_view(), 1)
 
 

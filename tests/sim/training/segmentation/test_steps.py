@@ -14,6 +14,7 @@ from sim.training.segmentation.evaluation import Iou, confusion
 from sim.training.segmentation.samples import IGNORED, Sampler
 from sim.training.segmentation.steps import exponential_average, pyramid_loss, root_class_weights, set_normalisation
 from stubborn.segmentation.rednet import CLASSES, RedNet, RedNetConfig
+from tests.helpers import wording
 from tests.helpers.labelled_views import a_view
 
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
@@ -130,5 +131,5 @@ def test_the_normalisation_becomes_that_of_the_given_views_and_the_weights_stay(
     means = torch.stack([first(rgb).mean(dim=(0, 2, 3)) for rgb, _ in batches])
     assert layer.running_mean is not None
     assert torch.allclose(layer.running_mean, means.mean(dim=0), atol=1e-4)
-    with pytest.raises(ValueError, match="at least one batch"):
+    with pytest.raises(ValueError, match=wording.AT_LEAST_ONE_BATCH):
         set_normalisation(network, [])

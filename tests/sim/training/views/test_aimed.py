@@ -13,6 +13,7 @@ from sim.env.scene import Scene
 from sim.robot.config import RobotConfig
 from sim.training.views.aimed import DISTANCE_M, FEWEST_PIXELS, RARE
 from sim.training.views.views import sample_views
+from tests.helpers import wording
 from tests.helpers.worlds import room, with_box
 
 SMALL = CameraModel(width_px=160, height_px=120)
@@ -50,7 +51,7 @@ def test_aimed_views_show_a_rare_object_from_near_by_and_name_it(scene: Scene) -
 def test_a_house_without_rare_objects_is_refused() -> None:
     scene = Scene(room(6, 5), robot=RobotConfig(), camera=SMALL, profile="fast")
     try:
-        with pytest.raises(HouseError, match="has no object of stool"):
+        with pytest.raises(HouseError, match=wording.HAS_NO_OBJECT_OF_STOOL):
             list(sample_views(scene, np.random.default_rng(0), 1, stem="v", record={}, aim="rare"))
     finally:
         scene.close()

@@ -22,6 +22,7 @@ from sim.training.segmentation.dataset import read_shard
 from sim.training.views import shards
 from sim.training.views.shards import PNG_OPTIONS, read_note, write_index, write_shard
 from sim.training.views.views import View, is_bare, sample_views
+from tests.helpers import wording
 from tests.helpers.worlds import room, with_box
 
 RECORD = {"house": "room", "seed": 0}
@@ -158,7 +159,7 @@ def test_a_full_disk_is_one_sentence_and_leaves_no_half_shard(
         return [("json", b"{}")]
 
     monkeypatch.setattr(shards, "_members", full)
-    with pytest.raises(ConfigError, match="No space left on device"):
+    with pytest.raises(ConfigError, match=wording.NO_SPACE_LEFT_ON_DEVICE):
         write_shard(tmp_path, "views-000000", views, house="room", config={})
     assert list(tmp_path.iterdir()) == []
 
