@@ -180,7 +180,7 @@ def _is_zip(stream: BinaryIO) -> bool:
         return True
 
 
-def with_weights(file: Path, given: Mapping[str, Tensor], build: Callable[[], NetworkT]) -> NetworkT:
+def with_weights(file: Path, state: Mapping[str, Tensor], build: Callable[[], NetworkT]) -> NetworkT:
     """Returns a network with these weights, in evaluation mode.
 
     Args:
@@ -193,10 +193,10 @@ def with_weights(file: Path, given: Mapping[str, Tensor], build: Callable[[], Ne
         ConfigError: a tensor is missing, is unknown, has another shape, or holds NaN (the first one is named).
     """
     with torch.device("meta"), _NoInitialNumbers():
-        wanted = build().state_dict()
-    _require_fit(file, given, wanted)
+        expected = build().state_dict()
+    _require_fit(file, state, expected)
     model = build()
-    model.load_state_dict(given)
+    model.load_state_dict(state)
     return model.eval()
 
 
@@ -212,20 +212,20 @@ class _NoInitialNumbers(TorchFunctionMode):
         return func(*args, **named)
 
 
-def _require_fit(file: Path, given: Mapping[str, Tensor], wanted: Mapping[str, Tensor]) -> None:
+def _require_fit(file: Path, state: Mapping[str, Tensor], expected: Mapping[str, Tensor]) -> None:
     """Raises ConfigError for the first tensor that is missing, is unknown, has another shape, or holds NaN."""
-    for name, tensor in wanted.items():
-        if name not in given:
+    for name, tensor in expected.items():
+        if name not in state:
             raise ConfigError(f"Weights '{file}' are of another network: '{name}' is missing.")
-        if given[name].shape != tensor.shape:
+        if state[name].shape != tensor.shape:
             raise ConfigError(
-                f"Weights '{file}' are of another network: '{name}' is {tuple(given[name].shape)}, "
+                f"Weights '{file}' are of another network: '{name}' is {tuple(state[name].shape)}, "
                 f"not {tuple(tensor.shape)}."
             )
-    for name, tensor in given.items():
-        if name not in wanted:
+    for name, tensor in state.items():
+        if name not in expected:
             raise ConfigError(f"Weights '{file}' are of another network: '{name}' is not in it.")
-        if tensor.is_complex() or (wanted[name].is_floating_point() and not tensor.is_floating_point()):
+        if tensor.is_complex() or (expected[name].is_floating_point() and not tensor.is_floating_point()):
             kind = str(tensor.dtype).removeprefix("torch.")
             raise ConfigError(f"Weights '{file}': '{name}' holds {kind} numbers; it needs floating-point ones.")
         # In 32 bits, since the bound itself is infinity in 16 bits; NaN is not within it.

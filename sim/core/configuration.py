@@ -32,9 +32,9 @@ def as_json(value: Any) -> Any:
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         return {field.name: as_json(getattr(value, field.name)) for field in dataclasses.fields(value)}
     if isinstance(value, Mapping):
-        return {str(key): as_json(each) for key, each in value.items()}
+        return {str(key): as_json(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [as_json(each) for each in value]
+        return [as_json(item) for item in value]
     if isinstance(value, Path):
         return str(value)
     if isinstance(value, float) and not math.isfinite(value):
@@ -187,8 +187,8 @@ def _converted(value: Any, hint: Any, current: Any, path: str) -> Any:
         raise ConfigError(f"'{path}' has no fields here: there is nothing to configure.")
     try:
         converted = msgspec.convert(value, hint, strict=False, dec_hook=_decoded)
-        for each in converted if isinstance(converted, tuple) else (converted,):
-            if isinstance(each, float) and not is_number(each) and not (each == current == math.inf):
+        for item in converted if isinstance(converted, tuple) else (converted,):
+            if isinstance(item, float) and not is_number(item) and not (item == current == math.inf):
                 raise TypeError(f"a finite number of at most {LARGEST:g} is allowed")
         return converted
     except (msgspec.ValidationError, TypeError) as error:

@@ -270,7 +270,7 @@ class SegmenterSpec:
     @property
     def uses_ground_truth(self) -> bool:
         """True: it reads true images, or a sensor that declares ground truth."""
-        return bool(self.truth) or any(reads_truth(each) for each in self.sensors)
+        return bool(self.truth) or any(reads_truth(sensor) for sensor in self.sensors)
 
 
 class Segmenter(Protocol):
@@ -453,9 +453,9 @@ class AgentSpec:
     def __post_init__(self) -> None:
         if self.own_segmentation:
             object.__setattr__(self, "uses_segmentation", False)
-        true = [each for each in self.sensors if reads_truth(each)]
+        true = [sensor for sensor in self.sensors if reads_truth(sensor)]
         if true and not self.uses_ground_truth:
-            names = ", ".join(f"'{each if isinstance(each, str) else each.name}'" for each in true)
+            names = ", ".join(f"'{sensor if isinstance(sensor, str) else sensor.name}'" for sensor in true)
             raise ConfigError(
                 f"AgentSpec '{self.description or self.make}': sensor {names} reads ground truth: declare "
                 "uses_ground_truth=True."

@@ -68,8 +68,8 @@ def python() -> str:
     interpreter = Path(sys.executable or "python")
     with contextlib.suppress(ValueError, OSError):  # OSError: the current folder was removed
         return str(interpreter.relative_to(Path.cwd()))
-    found = shutil.which("python")
-    return "python" if found is not None and Path(found) == interpreter else str(interpreter)
+    on_path = shutil.which("python")
+    return "python" if on_path is not None and Path(on_path) == interpreter else str(interpreter)
 
 
 def _module() -> str | None:
@@ -84,8 +84,8 @@ def _script() -> str:
     if typed.name != SCRIPT:
         return SCRIPT
     with contextlib.suppress(OSError):  # the current folder was removed
-        found = shutil.which(SCRIPT)
-        if found is not None and Path(found).absolute() == typed.absolute():
+        on_path = shutil.which(SCRIPT)
+        if on_path is not None and Path(on_path).absolute() == typed.absolute():
             return SCRIPT
     return str(typed)
 
@@ -93,8 +93,8 @@ def _script() -> str:
 def beside_python(name: str) -> str:
     """Returns an installed program of this environment as the user would type it: its name, or its path if needed."""
     program = Path(sys.executable or "python").with_name(name)
-    found = shutil.which(name)
-    if not program.is_file() or (found is not None and Path(found) == program):
+    on_path = shutil.which(name)
+    if not program.is_file() or (on_path is not None and Path(on_path) == program):
         return name
     with contextlib.suppress(ValueError, OSError):  # OSError: the current folder was removed
         return str(program.relative_to(Path.cwd()))

@@ -366,12 +366,12 @@ def read_npz(
             size = sum(member.file_size for member in archive.infolist())
             if size > most_bytes:
                 raise ValueError(f"it expands to {size >> 20} MB; at most {most_bytes >> 20} MB are read")
-            there = [name.removesuffix(".npy") for name in archive.namelist() if name.endswith(".npy")]
-            wanted = there if names is None else list(names)
-            missing = next((name for name in wanted if name not in there), None)
+            members = [name.removesuffix(".npy") for name in archive.namelist() if name.endswith(".npy")]
+            requested = members if names is None else list(names)
+            missing = next((name for name in requested if name not in members), None)
             if missing is not None:
                 raise ValueError(f"it has no '{missing}'")
-            return {name: _read_member(archive, name) for name in wanted}
+            return {name: _read_member(archive, name) for name in requested}
     except Exception as fault:  # damaged files raise many kinds of errors in zipfile and NumPy
         raise error(f"'{file}' is not a {what}: {reason_of(fault)}.") from None
 

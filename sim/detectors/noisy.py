@@ -279,9 +279,11 @@ class LabelledObjects:
         mujoco.mj_kinematics(world.model, at_rest)
         instances = world.labels.instances
         return cls.named(
-            [each.name for each in instances],
-            [each.category for each in instances],
-            np.array([at_rest.geom_xpos[list(each.geom_ids), :2].mean(axis=0) for each in instances]).reshape(-1, 2),
+            [instance.name for instance in instances],
+            [instance.category for instance in instances],
+            np.array([at_rest.geom_xpos[list(instance.geom_ids), :2].mean(axis=0) for instance in instances]).reshape(
+                -1, 2
+            ),
             world.labels.geom_instance,
         )
 

@@ -109,12 +109,12 @@ def categories_by_rules(names: Sequence[str], rules: Mapping[str, str]) -> dict[
         HouseError: a rule is not valid or takes too long.
     """
     compiled, until_s = _compile_rules(rules), time.monotonic() + RULES_S
-    found = {}
+    instances = {}
     for name in names:
         rule = _matching(name, compiled, until_s)
         if rule is not None:
-            found[name] = rule
-    return found
+            instances[name] = rule
+    return instances
 
 
 def rendered_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
@@ -204,13 +204,13 @@ def _matching(name: str, rules: list[tuple[regex.Pattern[str], str]], until_s: f
     """Returns the category of the first rule that a name matches, or None."""
     for pattern, category in rules:
         try:
-            found = pattern.search(name, timeout=max(1e-3, until_s - time.monotonic()))
+            match = pattern.search(name, timeout=max(1e-3, until_s - time.monotonic()))
         except TimeoutError:
             raise HouseError(
                 f"label rule '{pattern.pattern}' takes too long on '{name}': all rules of a house have {RULES_S:g} "
                 "s; write it without a repetition inside a repetition."
             ) from None
-        if found:
+        if match:
             return category
     return None
 

@@ -98,10 +98,10 @@ def validate_house(house: House, model: mujoco.MjModel) -> Labels:
     ):
         if count:
             raise HouseError(f"a house must not have {kind}s, but this one has {kind} {_quote(elements[0].name)}.")
-    for each in (*house.spec.bodies, *house.spec.geoms, *house.spec.joints, *house.spec.sites):
-        if each.name.startswith(ROBOT_PREFIX):
+    for element in (*house.spec.bodies, *house.spec.geoms, *house.spec.joints, *house.spec.sites):
+        if element.name.startswith(ROBOT_PREFIX):
             raise HouseError(
-                f"names with the prefix '{ROBOT_PREFIX}' are the robot's, but there is {_quote(each.name)}."
+                f"names with the prefix '{ROBOT_PREFIX}' are the robot's, but there is {_quote(element.name)}."
             )
     if model.nflex or model.nskin:
         raise HouseError("a house consists of geoms, but this one has a flex or a skin, which cannot be labelled.")
@@ -138,19 +138,19 @@ def _require_floor(model: mujoco.MjModel, labels: Labels, *, has_rules: bool) ->
     """Raises a HouseError when no collision geom is a floor at z = 0."""
     floors = np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & collidable_geoms(model))
     if floors.size == 0:
-        wanted = "get the category 'floor' from a label rule" if has_rules else "be labelled floor_<number>"
+        remedy = "get the category 'floor' from a label rule" if has_rules else "be labelled floor_<number>"
         raise HouseError(
-            f"it has no floor: at least one collision geom (a plane or a box) must {wanted}, with its top at z = 0."
+            f"it has no floor: at least one collision geom (a plane or a box) must {remedy}, with its top at z = 0."
         )
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     tops = {int(geom): _top_z_m(model, data, int(geom)) for geom in floors if model.geom_type[geom] in _FLOOR_SHAPES}
     if not any(abs(top) <= FLOOR_TOLERANCE_M for top in tops.values()):
         geom = min(tops, key=lambda g: abs(tops[g])) if tops else int(floors[0])
-        found = f"its top is at z = {tops[geom]:.3f} m" if tops else "it is neither a plane nor a box"
+        shape = f"its top is at z = {tops[geom]:.3f} m" if tops else "it is neither a plane nor a box"
         raise HouseError(
             f"the floor of the ground storey must be a plane or a box with its top at z = 0, but the nearest is "
-            f"{describe_geom(model, geom)}: {found}."
+            f"{describe_geom(model, geom)}: {shape}."
         )
 
 

@@ -127,18 +127,18 @@ def _read_spec(path: Path, scan: _Scan, depth: int = 0) -> mujoco.MjSpec:
     if attachments:
         use_absolute_paths(spec, path.parent)
     read: dict[Path, tuple[mujoco.MjSpec, float]] = {}
-    for each in attachments:
-        file = models.get(each.model)
+    for attachment in attachments:
+        file = models.get(attachment.model)
         if file is None:
-            raise error(f"attach: there is no model '{printable(each.model)}' with a file.")
+            raise error(f"attach: there is no model '{printable(attachment.model)}' with a file.")
         if file in read:
-            scan.count(read[file][1], f"attach of model '{each.model}'")
+            scan.count(read[file][1], f"attach of model '{attachment.model}'")
         else:
             before = scan.elements
             model = _read_spec(file, scan, depth + 1)
             use_absolute_paths(model, file.parent)
             read[file] = model, scan.elements - before
-        attach(spec, read[file][0], each)
+        attach(spec, read[file][0], attachment)
     return spec
 
 
@@ -173,8 +173,8 @@ def require_sizes(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseE
         bad = np.flatnonzero(~(np.abs(values) <= FARTHEST_M).all(axis=1))
         if bad.size:
             name = getattr(model, kind)(int(bad[0])).name or f"number {bad[0]}"
-            found = " ".join(f"{value:g}" for value in values[bad[0]])
-            raise error(f"{kind} '{name}': {field} is {found}; at most {FARTHEST_M:g} m are allowed.")
+            numbers = " ".join(f"{value:g}" for value in values[bad[0]])
+            raise error(f"{kind} '{name}': {field} is {numbers}; at most {FARTHEST_M:g} m are allowed.")
     if not bool((np.abs(model.mesh_vert) <= FARTHEST_M).all()):
         raise error(f"a mesh has a vertex that is not finite or beyond {FARTHEST_M:g} m.")
 
@@ -395,7 +395,7 @@ def _require_small_assets(
             f"environment variable {TEXTURE_VARIABLE} to their number."
         )
     assets = (*spec.meshes, *spec.hfields, *spec.skins)
-    size = sum(_bytes_of_asset(asset_path(spec, folder, each.file), 4) for each in assets if each.file)
+    size = sum(_bytes_of_asset(asset_path(spec, folder, asset.file), 4) for asset in assets if asset.file)
     if size > MAX_ASSET_BYTES:
         raise error(f"its meshes have {size >> 20} MB; at most {MAX_ASSET_BYTES >> 20} MB are allowed.")
 
@@ -411,10 +411,10 @@ def _texture_bytes(spec: mujoco.MjSpec, texture: mujoco.MjsTexture, folder: Path
 
 
 def _most_texture_bytes(error: type[ObjectNavError]) -> int:
-    given = os.environ.get(TEXTURE_VARIABLE, "")
-    if given and not (given.isascii() and given.isdigit() and len(given) < 9):
-        raise error(f"{TEXTURE_VARIABLE} must be a number of MB, got '{printable(given)}'.")
-    return int(given) << 20 if given else MAX_TEXTURE_BYTES
+    setting = os.environ.get(TEXTURE_VARIABLE, "")
+    if setting and not (setting.isascii() and setting.isdigit() and len(setting) < 9):
+        raise error(f"{TEXTURE_VARIABLE} must be a number of MB, got '{printable(setting)}'.")
+    return int(setting) << 20 if setting else MAX_TEXTURE_BYTES
 
 
 def _bytes_of_asset(file: Path, bytes_per_pixel: int, most_px: int | None = None) -> int:

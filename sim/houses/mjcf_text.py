@@ -31,10 +31,10 @@ def as_utf8(content: bytes) -> bytes:
     for start, encoding in ((b"<\0", "utf-16-le"), (b"\0<", "utf-16-be")):
         if content.startswith(start):
             return content.decode(encoding).encode("utf-8")
-    found = _DECLARED.match(content)
-    if found is None:
+    declaration = _DECLARED.match(content)
+    if declaration is None:
         return _checked(content)
-    declared = found[1].decode()
+    declared = declaration[1].decode()
     try:
         name = codecs.lookup(declared).name
     except LookupError:
@@ -63,8 +63,8 @@ class Composition:
 
     def end_of_tag(self, start: int) -> tuple[int, bool]:
         """Returns the end of the tag that begins at a byte, and whether the tag is a complete element (`<x/>`)."""
-        found = _TAG.match(self.content, start)
-        end = len(self.content) if found is None else found.end()
+        tag = _TAG.match(self.content, start)
+        end = len(self.content) if tag is None else tag.end()
         return end, self.content[end - 2 : end] == b"/>"
 
     def open_root(self, start: int) -> None:

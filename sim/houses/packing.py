@@ -79,9 +79,9 @@ def gather_files(spec: mujoco.MjSpec, folder: Path, *, texture_px: int | None = 
             reduced = content
             if texture and texture_px is not None:
                 reduced = reduced_image(content, texture_px, cells=square, where=f"Texture '{file}'")
-            there = f"{FOLDER}/{hashlib.sha256(reduced).hexdigest()[:_SUM_LETTERS]}_{file.name[-_NAME_LETTERS:]}"
-            files[there] = PackedFile(reduced, file if reduced is content else None)
-            names[file, square] = there
+            packed = f"{FOLDER}/{hashlib.sha256(reduced).hexdigest()[:_SUM_LETTERS]}_{file.name[-_NAME_LETTERS:]}"
+            files[packed] = PackedFile(reduced, file if reduced is content else None)
+            names[file, square] = packed
         return names[file, square]
 
     for asset in (*spec.meshes, *spec.hfields, *spec.skins):

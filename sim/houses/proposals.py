@@ -101,7 +101,7 @@ def propose(model: mujoco.MjModel) -> tuple[Proposal, ...]:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     visible, collides = rendered_geoms(model), collidable_geoms(model)
-    found: dict[str, Proposal] = {}
+    accepted: dict[str, Proposal] = {}
     unknown: list[list[str]] = []
     around: set[str] = set()  # names of bodies that hold something whose category is known
     for geom in np.flatnonzero(visible | collides).tolist():
@@ -112,11 +112,11 @@ def propose(model: mujoco.MjModel) -> tuple[Proposal, ...]:
             proposals = [Proposal(names[0], category, "size")] if category else []
             unknown += [] if category else [names]
         around |= {name for proposal in proposals for name in names[names.index(proposal.name) :]}
-        found |= {each.name: each for each in proposals if each.name not in found}
+        accepted |= {proposal.name: proposal for proposal in proposals if proposal.name not in accepted}
     for names in unknown:
         name = next((name for name in reversed(names) if name not in around), names[0])
-        found.setdefault(name, Proposal(name, VOID, "unknown"))
-    return tuple(found.values())
+        accepted.setdefault(name, Proposal(name, VOID, "unknown"))
+    return tuple(accepted.values())
 
 
 def rules_of(proposals: tuple[Proposal, ...]) -> dict[str, str]:

@@ -90,7 +90,7 @@ class Allowed:
             is_special = target.exists() and not target.is_file()
         except (OSError, ValueError, RuntimeError):
             raise self.error(f"it uses '{name}', which is not the name of a file.") from None
-        if not any(target.is_relative_to(each) for each in self.folders):
+        if not any(target.is_relative_to(folder) for folder in self.folders):
             where = "its folder" if self.root is None else f"its folder and '{self.root}'"
             raise self.error(f"it uses '{name}', which is outside of {where}. {self._remedy(target)}")
         if is_special:
@@ -158,11 +158,11 @@ def files_of(house_file: Path, root: Path | None = None) -> list[Path]:
     shipped, house_file = assets_dir().resolve(), house_file.resolve()
     allowed = Allowed(house_file, root, HouseError).folders
     read: set[Path] = set()
-    found = {house_file}
+    files = {house_file}
     names: dict[str, None] = {}
     folders: dict[str, None] = {"": None}
     bases: dict[Path, None] = {}
-    while waiting := [file for file in sorted(found - read) if file.suffix.lower() not in _ASSETS]:
+    while waiting := [file for file in sorted(files - read) if file.suffix.lower() not in _ASSETS]:
         for file in waiting:
             read.add(file)
             bases[file.parent] = None
@@ -172,16 +172,16 @@ def files_of(house_file: Path, root: Path | None = None) -> list[Path]:
         for base in list(bases)[:_MOST_FOLDERS]:  # in the folder of the house file, or of the file that names it
             for folder in list(folders)[:_MOST_FOLDERS]:
                 for name in list(names)[:MOST_FILES]:
-                    for each in {name, name.replace("\\", "/").rpartition("/")[2]}:
-                        path = path_as_read(base, folder, each)
+                    for spelling in {name, name.replace("\\", "/").rpartition("/")[2]}:
+                        path = path_as_read(base, folder, spelling)
                         if _is_plain(path) and not path.is_relative_to(shipped) and _is_below(path, allowed):
-                            found.add(path)
-    return sorted(found - {house_file})
+                            files.add(path)
+    return sorted(files - {house_file})
 
 
 def _is_below(path: Path, folders: list[Path]) -> bool:
     target = path.resolve()
-    return any(target.is_relative_to(each) for each in folders)
+    return any(target.is_relative_to(folder) for folder in folders)
 
 
 def _content(file: Path) -> bytes:

@@ -62,7 +62,7 @@ def write_house(spec: mujoco.MjSpec, folder: str | Path, name: str | None = None
         raise HouseError(f"House '{name}': {error}") from None
     files: dict[Path, bytes | str] = {path: house_text(spec, SHARED_TEXTURES)}
     for texture in spec.textures:
-        for file in (each for each in (texture.file, *texture.cubefiles) if each):
+        for file in (name for name in (texture.file, *texture.cubefiles) if name):
             if Path(file).name != file:
                 raise HouseError(f"House '{name}': texture '{file}' must be a file name without a folder.")
             source = asset_path(spec, Path(spec.modelfiledir), file, texture=True)
@@ -72,9 +72,9 @@ def write_house(spec: mujoco.MjSpec, folder: str | Path, name: str | None = None
     return path
 
 
-def _short_quat(found: re.Match[str]) -> str:
+def _short_quat(match: re.Match[str]) -> str:
     """Returns a quaternion in few digits, quarter turns in integers; MuJoCo normalizes it when reading."""
-    values = [float(number) for number in found[1].split()]
+    values = [float(number) for number in match[1].split()]
     largest = max(abs(value) for value in values)
     if all(abs(value) in (0.0, largest) for value in values):
         values = [value / largest for value in values]

@@ -158,7 +158,7 @@ def shade(
     work = np.empty((9, columns), np.float32)
     frame32, lights32, lamp32 = frame.astype(np.float32), lights.astype(np.float32), lamp.astype(np.float32)
     width = np.float32(0.5 * lamp[8] * size / lamp[9])
-    each = np.float32(1.0 / taps.shape[1])
+    weight = np.float32(1.0 / taps.shape[1])
     for i in range(rows):
         _place_on_map(points, i, frame32, lamp32, size, work)
         _lamp_share(work, lights32, lamp32, np.float32(strength))
@@ -173,7 +173,7 @@ def shade(
             if far >= front:
                 radius = width * (front / near - np.float32(1.0)) / front
                 tap = taps[(i & 1) * 2 + (j & 1)]
-                dark = each * np.float32(_hidden_taps(column, row, front, radius, maps[0], tap))
+                dark = weight * np.float32(_hidden_taps(column, row, front, radius, maps[0], tap))
             share[i, j] *= np.float32(1.0) - dark * work[8, j]
 
 

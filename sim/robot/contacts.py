@@ -114,12 +114,12 @@ class ContactLog:
             direction: direction of the motion in plan; (0, 0) for a turn, which any contact may have stopped.
         """
         turning = direction == (0.0, 0.0)
-        found = []
+        contacts = []
         for geom, touch in self._touches.items():
             along = float(direction[0] * touch.force[0] + direction[1] * touch.force[1])
             stopped = touch.last_tick >= since_tick and (turning or along <= 0.0)
-            found.append(self._contact(geom, touch, tick_s, stopped=stopped))
-        return tuple(found)
+            contacts.append(self._contact(geom, touch, tick_s, stopped=stopped))
+        return tuple(contacts)
 
     def _contact(self, geom: int, touch: _Touch, tick_s: float, *, stopped: bool) -> Contact:
         instance = int(self._labels.geom_instance[geom])

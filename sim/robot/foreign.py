@@ -149,11 +149,11 @@ def _body(sidecar: dict[str, Any], measured: RobotMeasurements) -> BodyConfig:
         )
     radius_m = _positive(sidecar, "radius_m", measured.reach_m + SKIN_M)
     height_m = _positive(sidecar, "height_m", measured.top_m + SKIN_M)
-    for name, given, needed in (("radius_m", radius_m, measured.reach_m), ("height_m", height_m, measured.top_m)):
-        if given < needed + SKIN_M - 1e-6:
+    for name, declared, needed in (("radius_m", radius_m, measured.reach_m), ("height_m", height_m, measured.top_m)):
+        if declared < needed + SKIN_M - 1e-6:
             raise ConfigError(
-                f"{name} in the sidecar is {given:.3f} m, but the collision geoms reach {needed:.3f} m and have a skin "
-                f"of {SKIN_M:.3f} m: give at least {needed + SKIN_M:.3f}."
+                f"{name} in the sidecar is {declared:.3f} m, but the collision geoms reach {needed:.3f} m and have a "
+                f"skin of {SKIN_M:.3f} m: give at least {needed + SKIN_M:.3f}."
             )
     clearance_m = min(measured.bottom_m - SKIN_M, 0.4 * height_m)
     return BodyConfig(

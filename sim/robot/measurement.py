@@ -106,15 +106,15 @@ def collision_geoms(root: mujoco.MjsBody, file: RobotFile) -> CollisionGeoms:
     bodies = [root, *root.find_all("body")]
     turning = [body for body in bodies if any(joint.name in file.wheel_joints for joint in body.joints)]
     wheel_bodies = {body.name for top in turning for body in (top, *top.find_all("body"))}
-    found = set()
+    names = set()
     for body in bodies:
         for geom in body.geoms:
             if geom.name in file.casters or body.name in file.casters:
-                found |= {geom.name, body.name}
+                names |= {geom.name, body.name}
                 casters.append(geom)
             elif geom.contype or geom.conaffinity:
                 (wheels if body.name in wheel_bodies else hull).append(geom)
-    missing = [name for name in file.casters if name not in found]
+    missing = [name for name in file.casters if name not in names]
     if missing:
         raise ConfigError(f"it has no geom and no body '{missing[0]}', which the sidecar names in casters.")
     if not hull:

@@ -35,7 +35,7 @@ def pose_joints(spec: mujoco.MjSpec, pose: tuple[tuple[str, float], ...]) -> Non
     joints = {joint.name: joint for joint in spec.joints if joint.name}
     for name, position in positions.items():
         if name not in joints:
-            known = [each for each, joint in joints.items() if _kind(joint) in _KINDS]
+            known = [joint_name for joint_name, joint in joints.items() if _kind(joint) in _KINDS]
             raise ConfigError(
                 f"it has no joint '{name}', which the sidecar names in joints. The hinges and slides are: "
                 f"{', '.join(known) or 'none that has a name'}."

@@ -105,8 +105,8 @@ class VelocityDrive:
         rate = _towards(self._rate_rad_s, command.rate_rad_s, drive.turn_acceleration_rad_s2 * self._tick_s)
         wheels = []
         for measured, side in zip(self._body.wheel_speeds(), (-1.0, 1.0), strict=True):
-            wanted = (speed + side * rate * self._half_track_m) / self._radius_m
-            wheels.append(_towards(measured, wanted, self._reach_rad_s))
+            target = (speed + side * rate * self._half_track_m) / self._radius_m
+            wheels.append(_towards(measured, target, self._reach_rad_s))
         left, right = wheels
         self._motors.command(left, right)
         self._speed_m_s = 0.5 * (left + right) * self._radius_m
@@ -129,8 +129,8 @@ class VelocityDrive:
         speed, least = (
             (command.speed_m_s, self._drive.blocked_m) if forward else (command.rate_rad_s, self._drive.blocked_rad)
         )
-        wanted = len(self._moves) * self._tick_s * abs(speed)
-        return sum(self._moves) < (FREE_SHARE * wanted if self._blocked else min(least, SLOW_SHARE * wanted))
+        expected = len(self._moves) * self._tick_s * abs(speed)
+        return sum(self._moves) < (FREE_SHARE * expected if self._blocked else min(least, SLOW_SHARE * expected))
 
     def _push_of(self, command: Velocity) -> tuple[int, int]:
         """Returns the signs of the speed and of the rate by which a command must move the robot if nothing blocks it.

@@ -143,7 +143,7 @@ def get_noise(name: str) -> NoiseConfig:
     return NOISE_PRESETS[name]
 
 
-def noise_from_dict(given: Mapping[str, Any] | str) -> NoiseConfig:
+def noise_from_dict(settings: Mapping[str, Any] | str) -> NoiseConfig:
     """Returns the noise that a file declares: a preset's name, or `{"preset": "realsense", "depth": {...}, ...}`.
 
     `preset` is `none` by default; the other keys are the fields of `NoiseConfig`, each with the fields that differ
@@ -152,14 +152,14 @@ def noise_from_dict(given: Mapping[str, Any] | str) -> NoiseConfig:
     Raises:
         ConfigError: an unknown preset, part or field, or a value that is not allowed.
     """
-    if isinstance(given, str):
-        return get_noise(given)
-    if not isinstance(given, Mapping):
-        raise ConfigError(f"Noise must be a preset's name or an object, got {given!r}.")
-    config = get_noise(str(given.get("preset", "none")))
-    parts = [each.name for each in fields(config)]
+    if isinstance(settings, str):
+        return get_noise(settings)
+    if not isinstance(settings, Mapping):
+        raise ConfigError(f"Noise must be a preset's name or an object, got {settings!r}.")
+    config = get_noise(str(settings.get("preset", "none")))
+    parts = [part.name for part in fields(config)]
     changed = {}
-    for part, values in given.items():
+    for part, values in settings.items():
         if part == "preset":
             continue
         if part not in parts:
@@ -172,7 +172,7 @@ def _changed(part: str, config: Any, values: Any) -> Any:
     """Returns the settings of one part with some fields changed."""
     if not isinstance(values, Mapping):
         raise ConfigError(f"Noise '{part}' must be an object of fields and values, got {values!r}.")
-    names = [each.name for each in fields(config)]
+    names = [part.name for part in fields(config)]
     for name in values:
         if name not in names:
             raise ConfigError(f"Noise '{part}' has no field '{name}'. Available: {', '.join(names)}.")
@@ -195,10 +195,12 @@ class SensorNoise:
         self.sensors = config.pose.sensors(sensors)
         """The sensors that are read for an observation: those given, or others of the same names and spaces."""
         self._actuation = config.actuation
-        names = [each.name for each in fields(config)]
+        names = [part.name for part in fields(config)]
         self._actuation_part = names.index("actuation")
-        parts = [getattr(config, name) for name in names] + [each.noise for each in sensors if each.noise is not None]
-        observed = {each.name for each in sensors}
+        parts = [getattr(config, name) for name in names] + [
+            sensor.noise for sensor in sensors if sensor.noise is not None
+        ]
+        observed = {sensor.name for sensor in sensors}
         self._models: list[NoiseModel | None] = []  # one for each part; None: off or not observed
         for part in parts:
             model = _model_of(part, camera, sensors)
@@ -242,6 +244,6 @@ def _model_of(part: Any, camera: CameraModel, sensors: Sequence[Sensor]) -> Nois
     if isinstance(part, ActuationNoise):
         return None
     if isinstance(part, ScanNoise):
-        scans = [each.config for each in sensors if isinstance(each, ScanSensor)]
+        scans = [sensor.config for sensor in sensors if isinstance(sensor, ScanSensor)]
         return part.model_of(scans[0]) if scans else None
     return part.model(camera)

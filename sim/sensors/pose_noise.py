@@ -37,7 +37,7 @@ class PoseNoise:
 
     def sensors(self, observed: Sequence[Sensor]) -> tuple[Sensor, ...]:
         """Returns the sensors that are read for an observation of these: with odometry in place of the true pose."""
-        return tuple(_BY_ODOMETRY.get(each.name, each) if self.from_odometry else each for each in observed)
+        return tuple(_BY_ODOMETRY.get(sensor.name, sensor) if self.from_odometry else sensor for sensor in observed)
 
     def model(self, camera: CameraModel) -> NoisyPose | None:
         """Returns a new model of the white noise; None if it is off."""

@@ -136,17 +136,18 @@ STANDARD_SENSORS: Mapping[str, Sensor] = MappingProxyType(
 """The sensors that `ObjectNavEnv(sensors=...)` takes by name; those of `POSE_SENSORS` are always present."""
 
 
-def resolve_sensors(given: Sequence[str | Sensor]) -> tuple[Sensor, ...]:
+def resolve_sensors(requested: Sequence[str | Sensor]) -> tuple[Sensor, ...]:
     """Returns the sensors of an observation, in its order: those given, then the pose sensors that are missing.
 
     Raises:
         ConfigError: an unknown name, or two different sensors with one name.
     """
-    if isinstance(given, str):
-        raise ConfigError(f"sensors must be a tuple of sensors or their names, got '{given}'.")
+    if isinstance(requested, str):
+        raise ConfigError(f"sensors must be a tuple of sensors or their names, got '{requested}'.")
     resolved: dict[str, Sensor] = {}
-    for each in given:
-        sensor = _standard_sensor(each) if isinstance(each, str) else _checked(each)
+    for name_or_sensor in requested:
+        is_name = isinstance(name_or_sensor, str)
+        sensor = _standard_sensor(name_or_sensor) if is_name else _checked(name_or_sensor)
         if resolved.setdefault(sensor.name, sensor) != sensor:
             raise ConfigError(f"Two sensors have the name '{sensor.name}'; each key of the observation needs its own.")
     for name in POSE_SENSORS:

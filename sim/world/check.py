@@ -264,7 +264,7 @@ def _goals_near(
     return {
         category
         for category in GOAL_CATEGORIES
-        if any(is_near(each.geom_ids) for each in house.labels.of_category(category))
+        if any(is_near(instance.geom_ids) for instance in house.labels.of_category(category))
     }
 
 

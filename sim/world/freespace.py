@@ -113,8 +113,8 @@ class FreeSpace:
         rim = np.array([[x_m, y_m]]) + self.radius_m * np.stack([np.cos(angles), np.sin(angles)], axis=1)
         carried = {step: np.zeros(_RIM_POINTS, dtype=np.bool_) for step in _SEAM_STEPS}
         for polygon in self._floors:
-            for step, found in carried.items():
-                found |= polygon.contains(rim + np.array(step))
+            for step, places in carried.items():
+                places |= polygon.contains(rim + np.array(step))
         here, east, west, north, south = carried.values()
         return _covers(self._floors, np.array([[x_m, y_m]])) and bool((here | (east & west) | (north & south)).all())
 
@@ -215,9 +215,9 @@ def _disc(radius_cells: int) -> NDArray[np.uint8]:
 def connected_to(free: NDArray[np.bool_], begin: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Returns the free cells that are connected over cell edges to a cell of `begin`."""
     parts = np.asarray(cv2.connectedComponents(free.astype(np.uint8), connectivity=4)[1], dtype=np.int32)
-    wanted = np.zeros(int(parts.max()) + 1, dtype=np.bool_)
-    wanted[np.unique(parts[begin & free])] = True
-    return wanted[parts]
+    kept = np.zeros(int(parts.max()) + 1, dtype=np.bool_)
+    kept[np.unique(parts[begin & free])] = True
+    return kept[parts]
 
 
 def _covers(polygons: Iterable[ConvexPolygon], here: NDArray[np.float64]) -> bool:

@@ -55,9 +55,9 @@ class PoseSearch:
     def route(self, start: Pose, goal: NDArray[np.bool_]) -> PoseRoute | None:
         """Returns a route to a cell of `goal`, a mask (rows, cols) on the frame of the free space; None without one."""
         for node_m in NODES_M:
-            found = self._route(start, goal, node_m)
-            if found is not None:
-                return found
+            route = self._route(start, goal, node_m)
+            if route is not None:
+                return route
         return None
 
     def _route(self, start: Pose, goal: NDArray[np.bool_], node_m: float) -> PoseRoute | None:

@@ -115,13 +115,13 @@ def missing_pieces(kind: str, area_m2: float, pieces: Sequence[Piece]) -> list[s
     """Returns a clause ("has no sink") for each requirement that a room of this kind and area does not meet."""
     faults = []
     for requirement in REQUIREMENTS.get(kind, ()):
-        found = requirement.counted(pieces)
-        if area_m2 < requirement.from_m2 or found >= requirement.count:
+        count = requirement.counted(pieces)
+        if area_m2 < requirement.from_m2 or count >= requirement.count:
             continue
         faults.append(
             f"has no {requirement.what}"
             if requirement.count == 1
-            else f"has {found} of {requirement.count} {requirement.what}"
+            else f"has {count} of {requirement.count} {requirement.what}"
         )
     return faults
 
@@ -136,9 +136,9 @@ def unmet_requirements(model: mujoco.MjModel, data: mujoco.MjData, labels: Label
         rooms: its rooms.
     """
     pieces: dict[str, list[Piece]] = {room.name: [] for room in rooms}
-    wanted = {name for room in rooms for need in REQUIREMENTS.get(room.kind, ()) for name in need.categories}
+    categories = {name for room in rooms for need in REQUIREMENTS.get(room.kind, ()) for name in need.categories}
     for instance in labels.instances:
-        if instance.category not in wanted:
+        if instance.category not in categories:
             continue
         low, high = _box(model, data, instance.geom_ids)
         for room in rooms:

@@ -95,8 +95,8 @@ def motion_of(pose: Pose, earlier: Pose | None, step: int) -> Float32[np.ndarray
 
 def motions(poses: Float32[np.ndarray, "n 3"]) -> Float32[np.ndarray, "n motion"]:
     """Returns the numbers that `MOTION` names, for each pose of an episode (metres and radians, from its start)."""
-    each = [Pose(*(float(value) for value in row)) for row in poses]
-    rows = [motion_of(pose, each[step - 1] if step else None, step) for step, pose in enumerate(each)]
+    path = [Pose(*(float(value) for value in row)) for row in poses]
+    rows = [motion_of(pose, path[step - 1] if step else None, step) for step, pose in enumerate(path)]
     return np.array(rows, np.float32).reshape(-1, len(MOTION))
 
 

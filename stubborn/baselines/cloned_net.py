@@ -89,8 +89,8 @@ class ClonedNet(nn.Module):
         features = self.encoder(channels.permute(0, 3, 1, 2))  # its channels stay last in memory, which is faster
         seen = self.seen(features.flatten(1)).view(steps, count, -1)
         goals = self.goal(goal).expand(steps, -1, -1)
-        given = torch.cat((seen, goals, self.before(before.long()), motion), 2)
-        hidden, after = self.memory(given, state)
+        inputs = torch.cat((seen, goals, self.before(before.long()), motion), 2)
+        hidden, after = self.memory(inputs, state)
         return self.action(hidden), after
 
 

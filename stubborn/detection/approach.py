@@ -51,9 +51,9 @@ def approach_on(
         return None
     cells = nearest(candidates)
     for viewpoints in finder.find(view, pose, cells, last_resort):
-        found = approach_to(view, viewpoints, cells.rows, cells.cols, pose, finder)
-        if found is not None:
-            return found
+        approach = approach_to(view, viewpoints, cells.rows, cells.cols, pose, finder)
+        if approach is not None:
+            return approach
     return None
 
 
@@ -87,9 +87,9 @@ def approach_to(
     `nearest_row` and `nearest_col` are the candidate cell that is nearest to each cell of the view.
     """
     here = view.frame.cell(pose.x_m, pose.y_m)
-    there = bool(viewpoints.cells[here])
-    route = None if there else finder.planner.route(Goal(viewpoints.free, viewpoints.cells), pose)
-    if route is None and not there:
+    arrived = bool(viewpoints.cells[here])
+    route = None if arrived else finder.planner.route(Goal(viewpoints.free, viewpoints.cells), pose)
+    if route is None and not arrived:
         return None
     end = here if route is None else route_end(route, pose)
     cell = int(nearest_row[end]), int(nearest_col[end])

@@ -32,14 +32,14 @@ class CandidateParts:
     def of(cls, view: NavMap, candidate_score: float, least_cells: int) -> CandidateParts:
         """Returns the candidates on a view; parts with fewer than `least_cells` cells do not count."""
         shown = view.score_max > candidate_score
-        left = shown & ~view.rejected
-        if not left.any():
+        unrejected = shown & ~view.rejected
+        if not unrejected.any():
             return cls(np.zeros(shown.shape, np.intp), 0, np.zeros(1, np.bool_))
         objects, _ = numbered_parts(_grown(shown))  # pieces of one outline, with gaps between them
-        parts, areas = numbered_parts(left)
+        parts, areas = numbered_parts(unrejected)
         rejected_cells = np.bincount(objects[shown & view.rejected], minlength=int(objects.max()) + 1)
         object_of = np.zeros(len(areas), np.intp)
-        object_of[parts[left]] = objects[left]
+        object_of[parts[unrejected]] = objects[unrejected]
         counts = (areas >= least_cells) & (areas > rejected_cells[object_of])
         counts[0] = False  # the background
         adjacent = np.bincount(parts[_grown(view.rejected)], minlength=len(areas)) > 0

@@ -86,17 +86,19 @@ def read_context(file: Path = SHIPPED) -> Context:
     Raises:
         ConfigError: the file is missing or holds something else.
     """
-    found = read_json(file, _File, what="Context file").context
-    unknown = {*found.objects, *(name for each in found.objects.values() for name in each.nearby)} - set(OBJECTS)
+    context = read_json(file, _File, what="Context file").context
+    unknown = {*context.objects, *(name for ratios in context.objects.values() for name in ratios.nearby)} - set(
+        OBJECTS
+    )
     if unknown:
         raise ConfigError(f"Context file '{file}': unknown object '{min(unknown)}'; known are {', '.join(OBJECTS)}.")
     frequency, constant = np.zeros((2, len(OBJECTS)), np.float32)
     weight = np.zeros((len(OBJECTS), len(OBJECTS)), np.float32)
-    for name, each in found.objects.items():
+    for name, ratios in context.objects.items():
         number = OBJECTS.index(name)
-        frequency[number], constant[number] = each.frequency, each.constant
-        weight[number] = [each.nearby.get(other, 0.0) for other in OBJECTS]
-    return Context(radius_m=found.radius_m, frequency=frequency, constant=constant, weight=weight)
+        frequency[number], constant[number] = ratios.frequency, ratios.constant
+        weight[number] = [ratios.nearby.get(other, 0.0) for other in OBJECTS]
+    return Context(radius_m=context.radius_m, frequency=frequency, constant=constant, weight=weight)
 
 
 def content_of(context: Context) -> dict[str, object]:

@@ -64,7 +64,7 @@ class LookConfig:
     """The count restarts when the robot moves farther than this."""
 
     def __post_init__(self) -> None:
-        steps = [left for left, _ in self.bar]
+        steps = [steps_left for steps_left, _ in self.bar]
         if not steps or steps != sorted(set(steps)) or not all(0.0 < p <= 1.0 for _, p in self.bar):
             raise ConfigError(
                 f"LookConfig.bar must be pairs of growing steps and probabilities in (0, 1], got {self.bar}."
@@ -97,8 +97,8 @@ class LookConfig:
 
     def bar_with(self, steps_left: int) -> float:
         """Returns the probability from which a track is accepted when this many steps are left."""
-        left, bar = zip(*self.bar, strict=True)
-        return float(np.interp(steps_left, left, bar))
+        steps, bar = zip(*self.bar, strict=True)
+        return float(np.interp(steps_left, steps, bar))
 
 
 def believed(

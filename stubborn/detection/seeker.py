@@ -224,12 +224,14 @@ class TargetSeeker:
         candidates = self._candidates(navmap, parts)
         acceptable = self._acceptable(navmap, parts) if self.verifier.may_refuse else None
         for choice in self._choices(candidates, acceptable, window, whole, step):
-            found = approach_on(navmap.view(choice.part), choice.candidates, pose, self._viewpoints, choice.last_resort)
-            if found is not None:
-                found = on_map(found, choice.part)
+            approach = approach_on(
+                navmap.view(choice.part), choice.candidates, pose, self._viewpoints, choice.last_resort
+            )
+            if approach is not None:
+                approach = on_map(approach, choice.part)
                 self._far = choice.part is whole
-                self._pursued = found.cell if choice.acceptable else None
-                return found
+                self._pursued = approach.cell if choice.acceptable else None
+                return approach
         self.postpone(navmap, step)
         return None
 

@@ -155,18 +155,18 @@ class TrackSeeker:
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         """See `Seeker`: accepted tracks come first, then doubtful ones; without progress another track is chosen."""
         self._count_pushes(pose)
-        found = self._pursue(navmap, window, pose, step)
+        search = self._pursue(navmap, window, pose, step)
         if navmap.times_felt != self._times_felt:  # a surface that is followed to its end takes its time
             self._times_felt, self._pursuit = navmap.times_felt, None
-        if self._is_stuck(pose, pursuing=found is not None):
+        if self._is_stuck(pose, pursuing=search is not None):
             self._leave_spot()
             self.postpone(navmap, step)
             self.pursued = None
-            found = self._pursue(navmap, window, pose, step)
+            search = self._pursue(navmap, window, pose, step)
         if self._looks_too_long():
-            found = self._pursue(navmap, window, pose, step)
-        self._drove = found is not None and found.route is not None
-        return found
+            search = self._pursue(navmap, window, pose, step)
+        self._drove = search is not None and search.route is not None
+        return search
 
     def _looks_too_long(self) -> bool:
         """Counts the steps of looks at the pursued track, and rejects it if there are too many."""
@@ -186,20 +186,20 @@ class TrackSeeker:
         while self._accepted:
             self._targets = self._best_accepted(pose)
             tracks = self._with_parts(self._targets)
-            found = self._stop_here(navmap, window, pose, tracks)
-            found = found or self._drive_to(navmap, window, pose, tracks, resort)
-            if found is not None:
+            search = self._stop_here(navmap, window, pose, tracks)
+            search = search or self._drive_to(navmap, window, pose, tracks, resort)
+            if search is not None:
                 self.pursued = None
-                return found
+                return search
             self._set_aside(self._targets)
         self._targets = []
         doubtful = [t for t in self.verdicts.doubtful if self._is_due(t) and not self._is_at_left_spot(t)]
         while doubtful:
             track = self._best_doubtful(doubtful, pose)
-            found = self._look(navmap, window, pose, track)
-            if found is not None:
+            search = self._look(navmap, window, pose, track)
+            if search is not None:
                 self.pursued = track
-                return found
+                return search
             doubtful.remove(track)
         self.pursued = None
         return None
@@ -327,12 +327,12 @@ class TrackSeeker:
         self, navmap: NavMap, window: Window, pose: Pose, tracks: list[int], resort: LastResort
     ) -> Approach | None:
         """Returns the approach to the accepted tracks, where possible to the cells around their best ones."""
-        cells, found = self.cells_of(navmap, tracks), None
+        cells, approach = self.cells_of(navmap, tracks), None
         if not self.verdicts.exact:
             near_best = cells & self._near_best(navmap, self._targets)
-            found = self._approach(navmap, window, pose, near_best, LastResort.NONE)
-        self._to_best = found is not None
-        return found or self._approach(navmap, window, pose, cells, resort)
+            approach = self._approach(navmap, window, pose, near_best, LastResort.NONE)
+        self._to_best = approach is not None
+        return approach or self._approach(navmap, window, pose, cells, resort)
 
     def _near_best(self, navmap: NavMap, tracks: Iterable[int]) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map around the best cell of each track."""
@@ -349,9 +349,9 @@ class TrackSeeker:
         """Returns the approach to some cells, on the local window if that is enough, else on the whole map."""
         for part in (window, self._known(navmap)):
             last = resort if part is not window else LastResort.NONE
-            found = approach_on(navmap.view(part), cells[part.index], pose, self.finder, last)
-            if found is not None:
-                return on_map(found, part)
+            approach = approach_on(navmap.view(part), cells[part.index], pose, self.finder, last)
+            if approach is not None:
+                return on_map(approach, part)
         return None
 
     def _stop_here(self, navmap: NavMap, window: Window, pose: Pose, tracks: list[int]) -> Approach | None:
@@ -361,8 +361,10 @@ class TrackSeeker:
         """
         if not self._pushes_on():
             return None
-        found = approach_from_here(navmap.view(window), self.cells_of(navmap, tracks)[window.index], pose, self.finder)
-        return None if found is None else on_map(found, window)
+        approach = approach_from_here(
+            navmap.view(window), self.cells_of(navmap, tracks)[window.index], pose, self.finder
+        )
+        return None if approach is None else on_map(approach, window)
 
     def _pushes_on(self) -> bool:
         """Returns True if something stops the robot here."""
@@ -389,22 +391,22 @@ class TrackSeeker:
         longest_m = away_m + look.detour_m
         looks = self.verdicts.looks.get(track, 0)
         if likely and looks == 0:
-            found = self._approach(navmap, window, pose, cells, LastResort.NONE)
-            if found is not None and found.length_m <= longest_m:
-                return found
+            approach = self._approach(navmap, window, pose, cells, LastResort.NONE)
+            if approach is not None and approach.length_m <= longest_m:
+                return approach
         for part in (window, self._known(navmap)):
             view, mask = navmap.view(part), cells[part.index]
             if not mask.any():
                 continue
-            found = look_at(view, nearest(mask), middle_xy_m, looked_from, pose, self.finder, look)
-            if found is not None and found.length_m <= longest_m:
-                return on_map(found, part)
+            approach = look_at(view, nearest(mask), middle_xy_m, looked_from, pose, self.finder, look)
+            if approach is not None and approach.length_m <= longest_m:
+                return on_map(approach, part)
         if looks or (seen_from.any() and not likely):
             self.verdicts.give_up(track)
             return None
-        found = self._approach(navmap, window, pose, cells, LastResort.VERIFY)
-        if found is not None and found.length_m <= longest_m:
-            return found
+        approach = self._approach(navmap, window, pose, cells, LastResort.VERIFY)
+        if approach is not None and approach.length_m <= longest_m:
+            return approach
         if self.probability[track] >= self.verdicts.bar:
             self.verdicts.looked(track)  # there is no place to step back to: the track is accepted now
         self._set_aside([track])

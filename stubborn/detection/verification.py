@@ -122,7 +122,7 @@ class FittedVerifier:
         if method not in methods:
             raise ConfigError(f"{where} has no method '{method}'. It has: {', '.join(methods) or 'none'}.")
         content = convert(methods[method], _Method, where=f"{where}, method '{method}'")
-        own = {name: each.classifier() for name, each in content.categories.items()}
+        own = {name: category.classifier() for name, category in content.categories.items()}
         return cls(own, content.pooled.classifier())
 
     def probability(self, goal: str, features: Features) -> float:

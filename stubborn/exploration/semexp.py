@@ -67,7 +67,9 @@ class SemExpConfig:
 
         net = load(SHIPPED if self.weights is None else Path(self.weights))
         config = net.config
-        return SemExpExplorer(self, lambda given: action_of(net, given), config.channels, cells=config.cells)
+        return SemExpExplorer(
+            self, lambda policy_input: action_of(net, policy_input), config.channels, cells=config.cells
+        )
 
 
 class SemExpExplorer:
@@ -139,10 +141,10 @@ class SemExpExplorer:
         """Returns the next long-term goal of the policy."""
         shown = {"seen": self.channels, "shuffled": self.shuffled, "none": ()}[self.config.semantics]
         goal = self.channels.index(self.policy_goal(ground.goal))
-        given = observe(ground.navmap, ground.pose, goal, shown, cells=self.cells)
-        mean, deviation = self.policy(given)
+        policy_input = observe(ground.navmap, ground.pose, goal, shown, cells=self.cells)
+        mean, deviation = self.policy(policy_input)
         action = self._rng.normal(mean, deviation) if self.config.sampled else mean
-        return given.place_xy_m(sigmoid(action))
+        return policy_input.place_xy_m(sigmoid(action))
 
 
 def sigmoid(action: Float[np.ndarray, " 2"]) -> Float[np.ndarray, " 2"]:

@@ -71,8 +71,8 @@ class SemanticPolicy(nn.Module):
         self, maps: Float[Tensor, "n layers cells cells"], heading: Tensor, goal: Tensor
     ) -> tuple[Float[Tensor, "n 256"], Float[Tensor, " n"]]:
         """Returns the features and the value; `heading` and `goal` are indices, (n,)."""
-        given = torch.cat((self.main(maps), self.orientation_emb(heading), self.goal_emb(goal)), 1)
-        features = torch.relu(self.linear2(torch.relu(self.linear1(given))))
+        inputs = torch.cat((self.main(maps), self.orientation_emb(heading), self.goal_emb(goal)), 1)
+        features = torch.relu(self.linear2(torch.relu(self.linear1(inputs))))
         return features, self.critic_linear(features)[:, 0]
 
 
@@ -134,20 +134,20 @@ class SemExpNet(nn.Module):
         return (packed.to(torch.int32)[:, None] >> self.bits[:, :count] & 1).to(packed.dtype)
 
 
-def as_arrays(given: PolicyInput) -> dict[str, np.ndarray]:
+def as_arrays(policy_input: PolicyInput) -> dict[str, np.ndarray]:
     """Returns an input as float32 arrays, by the names of the arguments of `SemExpNet`."""
     return {
-        "geometry": given.geometry.astype(np.float32),
-        "goals": given.goals.astype(np.float32),
-        "heading": np.array([given.heading], np.float32),
-        "goal": np.array([given.goal], np.float32),
+        "geometry": policy_input.geometry.astype(np.float32),
+        "goals": policy_input.goals.astype(np.float32),
+        "heading": np.array([policy_input.heading], np.float32),
+        "goal": np.array([policy_input.goal], np.float32),
     }
 
 
-def action_of(net: SemExpNet, given: PolicyInput) -> tuple[Float[np.ndarray, " 2"], Float[np.ndarray, " 2"]]:
+def action_of(net: SemExpNet, policy_input: PolicyInput) -> tuple[Float[np.ndarray, " 2"], Float[np.ndarray, " 2"]]:
     """Returns means and standard deviations of the action, before the sigmoid."""
     with torch.inference_mode():
-        tensors = {name: torch.from_numpy(array)[None] for name, array in as_arrays(given).items()}
+        tensors = {name: torch.from_numpy(array)[None] for name, array in as_arrays(policy_input).items()}
         mean, logstd, _ = net(**tensors)
         return mean[0].numpy(), logstd.exp().numpy()
 
@@ -164,15 +164,15 @@ def load(file: Path) -> SemExpNet:
     """
     if file.suffix not in (".pth", ".pt"):
         return FILES.load(file)[0]
-    given = read_checkpoint(file)
+    checkpoint = read_checkpoint(file)
     names = ("network.goal_emb.weight", "network.linear1.weight")
-    if not all(isinstance(given.get(name), Tensor) and given[name].ndim == 2 for name in names):
+    if not all(isinstance(checkpoint.get(name), Tensor) and checkpoint[name].ndim == 2 for name in names):
         raise ConfigError(f"Weights '{file}' are not of semexp: they need the tensors {' and '.join(names)}.")
-    hidden, inputs = given[names[1]].shape
+    hidden, inputs = checkpoint[names[1]].shape
     cells = _POOLINGS * round(max(inputs - 16, 0) ** 0.5 / 32**0.5)
-    sizes = {"categories": given[names[0]].shape[0], "cells": cells, "hidden": hidden}
+    sizes = {"categories": checkpoint[names[0]].shape[0], "cells": cells, "hidden": hidden}
     try:
         config = msgspec.convert(sizes, NetConfig)
     except msgspec.ValidationError as error:
         raise ConfigError(f"Weights '{file}' are not of semexp: {error}.") from None
-    return with_weights(file, given, lambda: SemExpNet(config))
+    return with_weights(file, checkpoint, lambda: SemExpNet(config))

@@ -80,8 +80,8 @@ class Drops:
         missing = near > self._through_m
         if missing.any():  # single pixels may be noise
             missing = np.asarray(cv2.erode(missing.view(np.uint8), np.ones((3, 3), np.uint8)), np.uint8).view(np.bool_)
-        found = bool(missing.any())
-        if not (found or view.drop_evidence.any()):
+        seen = bool(missing.any())
+        if not (seen or view.drop_evidence.any()):
             return
         config, evidence = self._config, view.drop_evidence
         cells = self._crossings(view.frame, camera_pose)
@@ -92,7 +92,7 @@ class Drops:
         floor &= ~hits
         evidence[floor] = np.maximum(evidence[floor] - config.miss, 0)
         evidence[hits] = np.minimum(evidence[hits] + config.hit, config.most)
-        if found:
+        if seen:
             doubtful = self._unseen_before(view, missing[-1], camera_pose)
             evidence[doubtful] = np.maximum(evidence[doubtful], config.drop_from)
         view.seen_drop[:] = evidence >= config.drop_from
@@ -114,9 +114,9 @@ class Drops:
         cells = _cells_at(view.frame, pose, depth_m[:, None], self._left[missing])
         known = ((view.frames_in_view > 0) | view.visited) & ~view.seen_drop
         unknown = ~np.logical_or.accumulate(known.reshape(-1)[cells], axis=0)
-        found = np.zeros(view.frame.shape, np.bool_)
-        found.reshape(-1)[cells[unknown]] = True
-        return found
+        drops = np.zeros(view.frame.shape, np.bool_)
+        drops.reshape(-1)[cells[unknown]] = True
+        return drops
 
 
 def _cells_at(

@@ -172,11 +172,11 @@ class Mapper:
         navmap, camera_pose, window = frame.navmap, frame.camera_pose, frame.window
         rays, score_pick = self._rays_for(scores.target.shape)
         d, target, other = rays.sample(depth), scores.target[score_pick], scores.best_other[score_pick]
-        found = target > self.config.candidate_score
-        if found.any():
-            d, confirmed = self._confirm(found, d)
-            confirmed &= self._inner(scores.target, rim_px)[score_pick] | ~found
-            target, found = np.where(confirmed, target, np.float32(0.0)), found & confirmed
+        candidates = target > self.config.candidate_score
+        if candidates.any():
+            d, confirmed = self._confirm(candidates, d)
+            confirmed &= self._inner(scores.target, rim_px)[score_pick] | ~candidates
+            target, candidates = np.where(confirmed, target, np.float32(0.0)), candidates & confirmed
         cells = rays.cells_below(d, camera_pose, window, self.config.score_max_height_m)
         if cells.span is None:
             return NOTHING_SIGHTED
@@ -185,10 +185,10 @@ class Mapper:
         navmap.grow_known(*part.index)
         scored = FrameScores(part.frame.shape, cells.rows - row, cells.cols - col, target, other)
         self.layers.add(navmap.view(part), scored, step)
-        shown = found & (cells.rows >= 0)
+        shown = candidates & (cells.rows >= 0)
         if not shown.any():
             return NOTHING_SIGHTED
-        self._drop_candidates(frame.view, d, found, rays, camera_pose)
+        self._drop_candidates(frame.view, d, candidates, rays, camera_pose)
         flat = cells.rows[shown] * np.int32(window.frame.shape[1]) + cells.cols[shown]
         return note_sighting(navmap, window, *np.divmod(np.unique(flat), window.frame.shape[1]), frame.pose)
 
@@ -214,20 +214,20 @@ class Mapper:
         enter_bits(navmap.goals_seen[window.index], points.rows, points.cols, bits[points.valid], counts)
 
     def _confirm(
-        self, found: Bool[np.ndarray, "h w"], d: Float32[np.ndarray, "h w"]
+        self, candidates: Bool[np.ndarray, "h w"], d: Float32[np.ndarray, "h w"]
     ) -> tuple[Float32[np.ndarray, "h w"], Bool[np.ndarray, "h w"]]:
         """Returns depth smoothed over the target, and False at target pixels off their neighbours' surface.
 
         At the rim of an object a noisy depth image shows points behind it or in front of it.
         """
         confirmed = np.ones(d.shape, np.bool_)
-        rows, cols = np.flatnonzero(found.any(axis=1)), np.flatnonzero(found.any(axis=0))
+        rows, cols = np.flatnonzero(candidates.any(axis=1)), np.flatnonzero(candidates.any(axis=0))
         if rows.size == 0 or self.config.occupancy.neighbours == 0:
             return d, confirmed
         box = slice(rows[0], rows[-1] + 1), slice(cols[0], cols[-1] + 1)
-        sure, smooth = agreeing(np.where(found[box], d[box], np.float32(0.0)), self.config.occupancy)
-        confirmed[box] = sure | ~found[box]
-        d[box] = np.where(found[box], smooth, d[box])
+        sure, smooth = agreeing(np.where(candidates[box], d[box], np.float32(0.0)), self.config.occupancy)
+        confirmed[box] = sure | ~candidates[box]
+        d[box] = np.where(candidates[box], smooth, d[box])
         return d, confirmed
 
     def _inner(self, target: Float32[np.ndarray, "h w"], rim_px: int) -> Bool[np.ndarray, "h w"]:
@@ -236,19 +236,24 @@ class Mapper:
         At the rim of a near object, a noisy depth image gives its distance to the target behind it. A detected outline
         that includes a part of an object in front of the target has the same effect: the agent stops too early.
         """
-        found = (target > self.config.candidate_score).view(np.uint8)
+        candidates = (target > self.config.candidate_score).view(np.uint8)
         if rim_px == 0:
-            return found.view(np.bool_)
+            return candidates.view(np.bool_)
         rim = -(-rim_px * target.shape[1] // self.camera.width_px)
         kernel = np.ones((2 * rim + 1, 2 * rim + 1), np.uint8)
-        return np.asarray(cv2.erode(found, kernel, borderType=cv2.BORDER_REPLICATE), np.uint8).view(np.bool_)
+        return np.asarray(cv2.erode(candidates, kernel, borderType=cv2.BORDER_REPLICATE), np.uint8).view(np.bool_)
 
     def _drop_candidates(
-        self, view: NavMap, d: Float32[np.ndarray, "h w"], found: Bool[np.ndarray, "h w"], rays: Rays, camera_pose: Pose
+        self,
+        view: NavMap,
+        d: Float32[np.ndarray, "h w"],
+        candidates: Bool[np.ndarray, "h w"],
+        rays: Rays,
+        camera_pose: Pose,
     ) -> None:
         """Removes candidates in free space in front of the target: a noisy image shows far targets too near."""
         rows, cols = np.divmod(np.flatnonzero(view.score_max > self.config.candidate_score), view.frame.shape[1])
-        target_m = np.where(found, d, np.float32(np.inf)).min(axis=0)
+        target_m = np.where(candidates, d, np.float32(np.inf)).min(axis=0)
         sight = SightLines.of_frame(
             d, rays.up, rays.left, camera_pose, rise_m=self._band_m[1] - self.camera.height_m
         ).towards(target_m)

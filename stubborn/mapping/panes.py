@@ -75,21 +75,21 @@ def find_panes(
     offset_m = (normals * centres[first]).sum(axis=1)
     on_line = np.abs(normals @ centres.T - offset_m[:, None]) <= rule.straight_m  # (pairs, stops)
     on_line &= normals @ headings.T >= rule.facing
-    panes, left = [], np.ones(len(centres), np.bool_)
+    panes, unassigned = [], np.ones(len(centres), np.bool_)
     while True:
-        at_most, best, pane = (on_line & left).sum(axis=1), rule.least_stops - 1, None
+        at_most, best, pane = (on_line & unassigned).sum(axis=1), rule.least_stops - 1, None
         for pair in np.argsort(-at_most, kind="stable").tolist():
             if at_most[pair] <= best:
                 break
             ends = int(first[pair]), int(second[pair])
-            stops = _linked(centres, normals[pair], on_line[pair] & left, ends, rule.link_m)
+            stops = _linked(centres, normals[pair], on_line[pair] & unassigned, ends, rule.link_m)
             if stops.sum() > best:
                 best = int(stops.sum())
                 pane = Pane(normals[pair], float((centres[stops] @ normals[pair]).mean()), stops)
         if pane is None:
             return panes
         panes.append(pane)
-        left &= ~pane.stops
+        unassigned &= ~pane.stops
 
 
 def _linked(

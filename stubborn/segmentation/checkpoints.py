@@ -82,7 +82,7 @@ def mean_of(networks: Sequence[Network]) -> Network:
     tensors = [network.state_dict() for network in networks]
     for name, last in mean.state_dict().items():
         if torch.is_floating_point(last):
-            last.copy_(torch.stack([each[name].float() for each in tensors]).mean(dim=0))
+            last.copy_(torch.stack([state[name].float() for state in tensors]).mean(dim=0))
     return mean
 
 
@@ -114,7 +114,9 @@ def _config(file: Path, metadata: dict[str, Any]) -> Architecture:
         if stored is None:
             continue
         where = f"Weights '{file}' describe no network of ours"
-        unknown = sorted(set(stored) - {each.name for each in fields(config_class)}) if isinstance(stored, dict) else ()
+        unknown = (
+            sorted(set(stored) - {field.name for field in fields(config_class)}) if isinstance(stored, dict) else ()
+        )
         if unknown:
             raise ConfigError(f"{where}: field '{unknown[0]}' is unknown.")
         config = convert(stored, config_class, where=where)
@@ -127,4 +129,4 @@ def _config(file: Path, metadata: dict[str, Any]) -> Architecture:
 
 def _whole_numbers(values: Mapping[str, Any]) -> Iterator[int]:
     for value in values.values():
-        yield from (each for each in (value if isinstance(value, tuple) else (value,)) if isinstance(each, int))
+        yield from (number for number in (value if isinstance(value, tuple) else (value,)) if isinstance(number, int))

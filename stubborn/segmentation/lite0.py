@@ -94,8 +94,8 @@ class Lite0(nn.Module):
             ) from None
         file = next(entry for entry in folder.iterdir() if entry.name.endswith(".pth"))
         with resources.as_file(file) as path:
-            given = torch.load(path, map_location="cpu", weights_only=True)
-        self.load_state_dict({name: given[name] for name in self.state_dict()})
+            checkpoint = torch.load(path, map_location="cpu", weights_only=True)
+        self.load_state_dict({name: checkpoint[name] for name in self.state_dict()})
 
 
 class _Block(nn.Module):

@@ -160,7 +160,7 @@ class NetworkSegmenter:
             images.append(np.ascontiguousarray(small_rgb[:, ::-1]))
             seconds.append(self.second.mirrored(channels))
         colour = torch.from_numpy(np.stack([normalise_rgb(image) for image in images]))
-        second = torch.from_numpy(np.stack([self.second.normalised(each, self.camera) for each in seconds]))
+        second = torch.from_numpy(np.stack([self.second.normalised(image, self.camera) for image in seconds]))
         with torch.inference_mode(), torch.autocast("cpu", torch.bfloat16, enabled=self.bf16):
             colour = colour.to(memory_format=torch.channels_last)
             second = second.to(memory_format=torch.channels_last)

@@ -70,9 +70,9 @@ def choose_cache() -> Path | None:
     numba uses `NUMBA_CACHE_DIR`, the folder of the code or the user's cache folder, and fails if it can write to none
     of them. `NUMBA_CACHE_DIR` is set to the temporary folder, so that workers share it.
     """
-    given = os.environ.get(_VARIABLE)
-    if given:
-        return Path(given) if Path(given) == _temporary() else None
+    chosen = os.environ.get(_VARIABLE)
+    if chosen:
+        return Path(chosen) if Path(chosen) == _temporary() else None
     caches = Path(os.environ.get("XDG_CACHE_HOME") or Path(os.path.expanduser("~")) / ".cache")
     if any(_can_write(folder) for folder in (Path(__file__).with_name("__pycache__"), caches)):
         return None
@@ -95,8 +95,8 @@ def _temporary() -> Path:
 
 def _can_write(folder: Path) -> bool:
     """Returns whether a folder can be written, or created if it does not exist."""
-    there = next(each for each in (folder, *folder.parents) if each.exists())
-    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
+    existing = next(parent for parent in (folder, *folder.parents) if parent.exists())
+    return existing.is_dir() and os.access(existing, os.W_OK | os.X_OK)
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
