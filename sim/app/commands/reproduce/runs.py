@@ -49,9 +49,14 @@ class AgentSetup:
     semantics: str
 
     @classmethod
-    def named(cls, name: str, semantics: str) -> AgentSetup:
-        """Returns the setup of a text such as "stubborn --explorer tour", with a source of segmentation, which the text
-        can replace.
+    def named(cls, name: str, semantics: str, *, noise: str = "none", seed: int = 0) -> AgentSetup:
+        """Returns the setup of a text such as "stubborn --explorer tour".
+
+        Args:
+            name: the text.
+            semantics: source of segmentation, which the text can replace.
+            noise: noise of sensors and drive.
+            seed: seed of the run.
 
         Raises:
             ConfigError: the text has another form than `FORM`.
@@ -59,7 +64,8 @@ class AgentSetup:
         words = _words_by_option(name)
         agent = words["agent"][0]
         source = words.get("semantics", [semantics])[0] if uses_segmentation(agent) else GROUND_TRUTH
-        values = {option: words[option][0] for option in NAMES if option in words}
+        values: dict[str, object] = {option: words[option][0] for option in NAMES if option in words}
+        values |= {"noise": noise, "seed": seed}
         return cls(agent, _options_text(values, parse_assignments(words.get("config", ()))), source)
 
     @property
@@ -212,7 +218,7 @@ def _words_by_option(name: str) -> dict[str, list[str]]:
             options[option].append(word)
             continue
         option = word.removeprefix("--")
-        if option not in ("semantics", "config", *NAMES) or option in options:
+        if option not in ("semantics", "explorer", "verification", "config") or option in options:
             raise ConfigError(f"--agents: {name!r} has the option {word}; an agent is given as {FORM}.")
         options[option] = []
     for option, values in options.items():
