@@ -119,7 +119,8 @@ def run_in_turns(runs: Sequence[TableRun], chunk: int, minutes: float | None, co
 
     Args:
         runs: those of one split one after the other.
-        chunk: number of episodes.
+        chunk: number of episodes. In the first turn complete runs are also begun, so that other options or another
+            code are refused; not those with --keep-results.
         minutes: no chunk of a split begins that would end later.
         console: for progress.
 
@@ -135,7 +136,9 @@ def run_in_turns(runs: Sequence[TableRun], chunk: int, minutes: float | None, co
                 return
             for run in of_split:
                 episodes = run.episodes[first : first + chunk]
-                if episodes and (not first or any(episode.episode_id not in run.lines for episode in episodes)):
+                is_complete = all(episode.episode_id in run.lines for episode in episodes)
+                checks_options = not first and not run.options.keep_results  # also those of a complete run
+                if checks_options or not is_complete:
                     run_missing(resolve(run.options), episodes, identity(run.split), console)
             longest_s = max(longest_s, time.monotonic() - chunk_began_s)
 
