@@ -324,7 +324,7 @@ def _read(args: Args, setup: AgentSetup, split: Split) -> Run:
         ConfigError: the folder holds a run with another agent, segmentation, split, seed or noise.
     """
     run = read_run(_folder(args, setup))
-    needed = AgentSetup.named(f"{setup.name} --noise {args.noise} --seed {args.seed}", setup.semantics)
+    needed = AgentSetup.named(setup.name, setup.semantics, noise=args.noise, seed=args.seed)
     recorded = _key_text(key_of(run), str(run.recorded("split_identity")["sha256"]))
     expected = _key_text(RunKey(split.name, needed, split.version), split.sha256)
     if recorded != expected:

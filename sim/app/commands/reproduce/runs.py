@@ -49,9 +49,14 @@ class AgentSetup:
     semantics: str
 
     @classmethod
-    def named(cls, name: str, semantics: str) -> AgentSetup:
-        """Returns the setup of a text such as "stubborn --explorer tour", with a source of segmentation, which the text
-        can replace.
+    def named(cls, name: str, semantics: str, *, noise: str = "none", seed: int = 0) -> AgentSetup:
+        """Returns the setup of a text such as "stubborn --explorer tour".
+
+        Args:
+            name: the text.
+            semantics: source of segmentation, which the text can replace.
+            noise: noise of sensors and drive.
+            seed: seed of the run.
 
         Raises:
             ConfigError: the text has another form than `FORM`.
@@ -59,7 +64,8 @@ class AgentSetup:
         words = _words_by_option(name)
         agent = words["agent"][0]
         source = words.get("semantics", [semantics])[0] if uses_segmentation(agent) else GROUND_TRUTH
-        values = {option: words[option][0] for option in NAMES if option in words}
+        values: dict[str, object] = {option: words[option][0] for option in NAMES if option in words}
+        values |= {"noise": noise, "seed": seed}
         return cls(agent, _options_text(values, parse_assignments(words.get("config", ()))), source)
 
     @property
@@ -113,7 +119,8 @@ def run_in_turns(runs: Sequence[TableRun], chunk: int, minutes: float | None, co
 
     Args:
         runs: those of one split one after the other.
-        chunk: number of episodes.
+        chunk: number of episodes. In the first turn complete runs are also begun, so that other options or another
+            code are refused; not those with --keep-results.
         minutes: no chunk of a split begins that would end later.
         console: for progress.
 
@@ -129,7 +136,9 @@ def run_in_turns(runs: Sequence[TableRun], chunk: int, minutes: float | None, co
                 return
             for run in of_split:
                 episodes = run.episodes[first : first + chunk]
-                if episodes and (not first or any(episode.episode_id not in run.lines for episode in episodes)):
+                is_complete = all(episode.episode_id in run.lines for episode in episodes)
+                checks_options = not first and not run.options.keep_results  # also those of a complete run
+                if checks_options or not is_complete:
                     run_missing(resolve(run.options), episodes, identity(run.split), console)
             longest_s = max(longest_s, time.monotonic() - chunk_began_s)
 
@@ -212,7 +221,7 @@ def _words_by_option(name: str) -> dict[str, list[str]]:
             options[option].append(word)
             continue
         option = word.removeprefix("--")
-        if option not in ("semantics", "config", *NAMES) or option in options:
+        if option not in ("semantics", "explorer", "verification", "config") or option in options:
             raise ConfigError(f"--agents: {name!r} has the option {word}; an agent is given as {FORM}.")
         options[option] = []
     for option, values in options.items():

@@ -157,6 +157,7 @@ def test_a_setup_is_written_as_on_the_command_line(name: str, setup: AgentSetup,
     [
         ("stubborn --explore tour", r"has the option --explore; an agent is given as AGENT \[--semantics SOURCE\]"),
         ("stubborn --explorer", "needs one name for explorer"),
+        ("stubborn --noise harsh", "has the option --noise"),
         ("stubborn frontier", "needs one name for agent"),
         ("--explorer tour", "needs one name for agent"),
         ("stubborn --config", "needs at least one FIELD=VALUE for config"),
