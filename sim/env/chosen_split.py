@@ -35,7 +35,7 @@ def chosen_split(
         raise ConfigError(f"houses must be a list of names or files, got '{houses}'; house= takes one file.")
     if house is not None and houses:
         raise ConfigError("house and houses exclude each other: give all files in houses.")
-    are_files = [_is_file_name(each) for each in houses]
+    are_files = [_is_file_name(house) for house in houses]
     if any(are_files) and not all(are_files):
         name = houses[are_files.index(False)]
         raise ConfigError(f"houses must be names of the split or MJCF files, not both; '{name}' is a name.")
@@ -44,7 +44,7 @@ def chosen_split(
     if labels is not None or root is not None:
         raise ConfigError("labels and root need house: the houses of a split have their own.")
     chosen = load_split(split)
-    return _with_houses(chosen, [str(each) for each in houses]) if houses else chosen
+    return _with_houses(chosen, [str(house) for house in houses]) if houses else chosen
 
 
 def _with_houses(split: Split, names: Sequence[str]) -> Split:

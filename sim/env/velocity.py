@@ -73,15 +73,15 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
 
     def _clipped(self, action: Any) -> tuple[float, float, float]:
         """Returns speed, turn rate and STOP, within the space."""
-        given = np.asarray(action, np.float64)
-        if given.shape != (3,) or not np.isfinite(given).all():
+        command = np.asarray(action, np.float64)
+        if command.shape != (3,) or not np.isfinite(command).all():
             raise ConfigError(
                 f"An action is three finite numbers: m/s forward, rad/s to the left, and STOP above 0.5; got "
                 f"{action!r}."
             )
         space = self.action_space
         assert isinstance(space, spaces.Box)
-        speed_m_s, rate_rad_s, stop = np.clip(given, space.low, space.high).tolist()
+        speed_m_s, rate_rad_s, stop = np.clip(command, space.low, space.high).tolist()
         return speed_m_s, rate_rad_s, stop
 
     def _info(self, collided: bool) -> dict[str, Any]:

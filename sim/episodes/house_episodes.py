@@ -75,9 +75,9 @@ def find_house_asks(task: Task, recipe: EpisodeRecipe, fixed: Sidecar = EMPTY_SI
     unreachable: list[str] = []
     reachable: list[Ask] = []
     for floor_z_m in storeys_of(task):
-        found = find_reachable_goals(task, max_view_points=recipe.view_points, floor_z_m=floor_z_m)
-        unreachable += found.unreachable
-        for goal, instances in found.listed.items():
+        goals = find_reachable_goals(task, max_view_points=recipe.view_points, floor_z_m=floor_z_m)
+        unreachable += goals.unreachable
+        for goal, instances in goals.listed.items():
             listed.setdefault(goal, []).extend(instances)
             reachable.append(Ask(goal, floor_z_m, len(instances)))
     if fixed.goal is not None:

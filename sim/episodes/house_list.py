@@ -118,9 +118,9 @@ class HouseList:
         if _sha256_of(path) == self.sha256[name]:
             return path
         content = self.recipes[name].house_bytes()
-        found = hashlib.sha256(content).hexdigest()
-        if found != self.sha256[name]:
-            raise HouseError(self._mismatch(name, found))
+        made_sum = hashlib.sha256(content).hexdigest()
+        if made_sum != self.sha256[name]:
+            raise HouseError(self._mismatch(name, made_sum))
         try:
             copy_textures(path.parent.parent / "textures")
             write_atomically(path, content)
@@ -131,18 +131,18 @@ class HouseList:
             ) from None
         return path
 
-    def _mismatch(self, name: str, found: str) -> str:
+    def _mismatch(self, name: str, made_sum: str) -> str:
         """Returns the message for a house whose checksum differs, with the likely reason."""
         here = house_maker().versions()
         other = [
-            f"{part} {there} in the list and {here.get(part, 'unknown')} here"
-            for part, there in self.made_with.items()
-            if here.get(part) != there
+            f"{part} {listed_version} in the list and {here.get(part, 'unknown')} here"
+            for part, listed_version in self.made_with.items()
+            if here.get(part) != listed_version
         ]
         reason = "; ".join(other) or "the versions agree, so the generator's code or the processor's arithmetic differs"
         return (
             f"The generated house '{name}' of split '{self.split}' {self.version} differs from the list: "
-            f"sha256 {found} here, {self.sha256[name]} in the list. Likely reason: {reason}."
+            f"sha256 {made_sum} here, {self.sha256[name]} in the list. Likely reason: {reason}."
         )
 
 
@@ -189,20 +189,20 @@ def read_house_list(folder: Path) -> HouseList:
         listed = convert(entry, _Entry, where=where)
         recipes.append(house_maker().recipe({key: entry[key] for key in entry if key != "sha256"}, where))
         sums[listed.name] = listed.sha256
-    found = HouseList(
+    house_list = HouseList(
         folder.resolve().name,
         content.version,
         {recipe.name: recipe for recipe in recipes},
         sums,
         content.made_with,
     )
-    if len(found.recipes) < len(recipes):
+    if len(house_list.recipes) < len(recipes):
         raise ConfigError(f"House list '{file}' has two houses of one name; names must differ.")
     try:
-        _ = found.paths
+        _ = house_list.paths
     except ConfigError as error:
         raise ConfigError(f"House list '{file}': {error}") from None
-    return found
+    return house_list
 
 
 def write_house_list(folder: Path, houses: Sequence[tuple[Recipe, str]], *, version: str) -> None:
@@ -220,9 +220,9 @@ def copy_textures(folder: Path) -> None:
         OSError: the folder cannot be written.
     """
     for source in sorted((assets_dir() / "textures").iterdir()):
-        content, there = source.read_bytes(), folder / source.name
-        if not there.is_file() or read_bytes(there, what="Texture") != content:
-            write_atomically(there, content)
+        content, target = source.read_bytes(), folder / source.name
+        if not target.is_file() or read_bytes(target, what="Texture") != content:
+            write_atomically(target, content)
 
 
 def _sha256_of(path: Path) -> str | None:

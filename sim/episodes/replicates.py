@@ -58,5 +58,5 @@ def find_episode(episodes: Mapping[str, Episode], episode_id: str) -> Episode | 
     original = episodes.get(episode_id.rpartition(MARK)[0])
     if original is None:
         return None
-    found = replicate(original, replicate_number(episode_id))
-    return found if found.episode_id == episode_id else None
+    copy = replicate(original, replicate_number(episode_id))
+    return copy if copy.episode_id == episode_id else None

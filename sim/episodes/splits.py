@@ -107,9 +107,9 @@ class Split:
         Raises:
             EpisodeError: there is no such episode.
         """
-        found = find_episode({episode.episode_id: episode for episode in self.episodes}, str(episode_id))
-        if found is not None:
-            return found
+        match = find_episode({episode.episode_id: episode for episode in self.episodes}, str(episode_id))
+        if match is not None:
+            return match
         near = difflib.get_close_matches(str(episode_id), [episode.episode_id for episode in self.episodes], n=1)
         hint = f" Did you mean '{near[0]}'?" if near else ""
         raise EpisodeError(f"Split '{self.name}' has no episode '{episode_id}'.{hint}")
@@ -137,13 +137,17 @@ def load_split(name_or_path: str | Path) -> Split:
         ConfigError: there is no such split or folder, or its files have another format.
     """
     shipped = shipped_splits()
-    given = Path(name_or_path)
-    if str(name_or_path) in shipped and _index_of(given).is_file() and given.resolve().parent != assets_dir().resolve():
+    folder_given = Path(name_or_path)
+    if (
+        str(name_or_path) in shipped
+        and _index_of(folder_given).is_file()
+        and folder_given.resolve().parent != assets_dir().resolve()
+    ):
         raise ConfigError(
             f"'{name_or_path}' is a shipped split and a folder here: write ./{name_or_path} for the folder, or run the "
             "command elsewhere."
         )
-    folder = assets_dir() / name_or_path if str(name_or_path) in shipped else given
+    folder = assets_dir() / name_or_path if str(name_or_path) in shipped else folder_given
     if not folder.is_dir():
         there_is = ", ".join(shipped) or "none"
         raise ConfigError(
@@ -258,14 +262,14 @@ def house_files(folder: Path) -> dict[str, Path]:
     Raises:
         ConfigError: the names of two files differ only in their suffix.
     """
-    found = dict[str, Path]()
+    files = dict[str, Path]()
     for path in sorted(folder.iterdir()) if folder.is_dir() else ():
         if path.suffix.lower() not in HOUSE_SUFFIXES:
             continue
-        if path.stem in found:
-            raise ConfigError(f"The houses '{found[path.stem]}' and '{path}' have one name; rename one of them.")
-        found[path.stem] = path
-    return found
+        if path.stem in files:
+            raise ConfigError(f"The houses '{files[path.stem]}' and '{path}' have one name; rename one of them.")
+        files[path.stem] = path
+    return files
 
 
 def labels_of(folder: Path) -> Path | None:
@@ -313,13 +317,13 @@ def _read_split(folder: Path) -> Split:
             if episode.episode_id in episodes:
                 raise ConfigError(f"Episode file '{file}': there are two episodes '{episode.episode_id}'.")
             episodes[episode.episode_id] = episode
-    order = sorted(episodes) if index.order is None else [str(each) for each in index.order]
+    order = sorted(episodes) if index.order is None else [str(episode_id) for episode_id in index.order]
     for number, episode_id in enumerate(order):
         if episode_id not in episodes:
             raise ConfigError(f"Episode file '{index_file}', field 'order[{number}]': no episode '{episode_id}'.")
     if len(set(order)) < len(order):
         raise ConfigError(f"Episode file '{index_file}', field 'order': an episode is listed twice.")
-    ordered = tuple(episodes[each] for each in order)
+    ordered = tuple(episodes[episode_id] for episode_id in order)
     house_list = read_house_list(folder) if has_house_list(folder) else None
     houses = house_list.paths if house_list else house_files(folder)
     if (bad := first_unprintable(houses)) is not None:

@@ -159,8 +159,8 @@ class TimedTraining(ABC):
         progress, began_s = self.progress, time.perf_counter()
         progress.evaluated_s = progress.spent_s
         model: Any = self.average.module.eval()
-        loss, found, message = self.evaluate(model)
-        row = {"step": progress.step, "minutes": round(progress.spent_s / 60, 2)} | found
+        loss, result, message = self.evaluate(model)
+        row = {"step": progress.step, "minutes": round(progress.spent_s / 60, 2)} | result
         row = {key: round(value, 4) if isinstance(value, float) else value for key, value in row.items()}
         append_row(self.out / "val.csv", row)
         print(f"held back, step {progress.step}: {message}", flush=True)
@@ -188,7 +188,7 @@ class TimedTraining(ABC):
             self.out / "state.pt",
             self._parts(),
             Progress,
-            check=lambda found: require_options(self.out, found.options, now),
+            check=lambda progress: require_options(self.out, progress.options, now),
         )
         if done is not None:
             self.progress = done

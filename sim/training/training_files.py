@@ -97,11 +97,11 @@ def _list_of(files: Sequence[Path]) -> str:
 def require_options(out: Path, before: Mapping[str, str], now: Mapping[str, str]) -> None:
     """Raises ConfigError if options of a run differ from those of its start; both are of `options_of`."""
     for name in sorted({*before, *now}):
-        was, given = (options.get(name, "(absent)") for options in (before, now))
-        if was != given:
+        start, present = (options.get(name, "(absent)") for options in (before, now))
+        if start != present:
             raise ConfigError(
-                f"--out '{out}' holds a run with --{name.replace('_', '-')} = {was}, this command has {given}; take "
-                "another folder, or continue with the options of that run."
+                f"--out '{out}' holds a run with --{name.replace('_', '-')} = {start}, this command has {present}; "
+                "take another folder, or continue with the options of that run."
             )
 
 

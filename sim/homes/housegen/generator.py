@@ -101,9 +101,9 @@ def generate(
         ConfigError: a field does not exist, or a value is not allowed.
         HouseError: no try within the bound gave a house without a fault.
     """
-    unknown = sorted(set(fields) - {each.name for each in dataclasses.fields(HouseConfig)})
+    unknown = sorted(set(fields) - {field.name for field in dataclasses.fields(HouseConfig)})
     if unknown:
-        there_is = ", ".join(each.name for each in dataclasses.fields(HouseConfig))
+        there_is = ", ".join(field.name for field in dataclasses.fields(HouseConfig))
         raise ConfigError(f"generate has no option '{unknown[0]}'. Available: {there_is}.")
     return generate_house(seed, replace(config or HouseConfig(), **fields), catalogue).spec
 
@@ -232,14 +232,14 @@ def _draw_plan(
     Raises:
         PlanError: none fits.
     """
-    given = config.exact and config.area_m2 is not None
+    must_match = config.exact and config.area_m2 is not None
     rooms, error = config.wanted_rooms, PlanError("no plan was drawn")
     for _ in range(MAX_PLAN_TRIES):
         try:
-            drawn_m2 = area_m2 * float(rng.uniform(*DRAWN_AREAS)) if given else area_m2
+            drawn_m2 = area_m2 * float(rng.uniform(*DRAWN_AREAS)) if must_match else area_m2
             plan = draw_floor_plan(rng, kind, drawn_m2, rooms)
             if config.exact:
-                _require_as_asked(plan, area_m2 if given else None, rooms)
+                _require_as_asked(plan, area_m2 if must_match else None, rooms)
             return plan, cut_openings(rng, plan)
         except PlanError as fault:
             error = fault

@@ -190,17 +190,17 @@ def _rooms_around(plan: FloorPlan, hall: int) -> list[int]:
 
 def _draw_kinds(rng: np.random.Generator, rooms: Sequence[Room]) -> list[str]:
     """Returns a kind for each room, "" for one that suits none; bedrooms and bathrooms come first."""
-    wanted = list(_PRIVATE)
+    private_kinds = list(_PRIVATE)
     kinds = []
     for room in rooms:
         if room.kind in _PUBLIC:
             kinds.append(room.kind)
             continue
-        fitting = [kind for kind in wanted if _fits(kind, room.rect)]
+        fitting = [kind for kind in private_kinds if _fits(kind, room.rect)]
         fitting = fitting or [kind for kind in dict.fromkeys(_PRIVATE) if _fits(kind, room.rect)]
         kind = fitting[int(rng.integers(min(2, len(fitting))))] if fitting else ""
-        if kind in wanted:
-            wanted.remove(kind)
+        if kind in private_kinds:
+            private_kinds.remove(kind)
         kinds.append(kind)
     return kinds
 

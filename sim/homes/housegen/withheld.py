@@ -42,7 +42,7 @@ def restricted(catalogue: Catalogue, which: Withheld | None) -> Catalogue:
     if which == "without":
         return Catalogue(style for style in styles if not is_withheld(style))
     others = (style for style in styles if not is_withheld(style))
-    kept = (left for style in others if (left := without_covered(style, withheld)) is not None)
+    kept = (remaining for style in others if (remaining := without_covered(style, withheld)) is not None)
     return Catalogue([*kept, *withheld])
 
 
@@ -78,12 +78,12 @@ def _withheld_own() -> frozenset[tuple[str, str]]:
     """Returns category and name of our own withheld styles: each use keeps a style of its pool."""
     chosen = []
     for category in GOAL_CATEGORIES:
-        left = [style for style in CATALOGUE.styles(category) if style.pool != "heldout"]
-        wanted = max(1, len(left) // WITHHELD_PART)
-        for style in sorted(left, key=lambda style: _drawn(style.category, style.name) % WITHHELD_PART):
-            rest = [other for other in left if other is not style]
-            if wanted and _covers(rest, style):
-                left, wanted = rest, wanted - 1
+        candidates = [style for style in CATALOGUE.styles(category) if style.pool != "heldout"]
+        count = max(1, len(candidates) // WITHHELD_PART)
+        for style in sorted(candidates, key=lambda style: _drawn(style.category, style.name) % WITHHELD_PART):
+            rest = [other for other in candidates if other is not style]
+            if count and _covers(rest, style):
+                candidates, count = rest, count - 1
                 chosen.append((style.category, style.name))
     return frozenset(chosen)
 

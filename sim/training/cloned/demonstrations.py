@@ -138,7 +138,7 @@ def list_demonstrations(folders: Sequence[Path]) -> list[Path]:
     Raises:
         ConfigError: a folder has no demonstration.
     """
-    found: list[Path] = []
+    demonstrations: list[Path] = []
     for folder in folders:
         files = sorted(file.resolve() for file in folder.rglob("*.npz"))
         if not files:
@@ -146,8 +146,8 @@ def list_demonstrations(folders: Sequence[Path]) -> list[Path]:
                 f"No demonstration in '{folder}': `python -m tools.training.render_demonstrations` "
                 "of the repository writes them."
             )
-        found += files
-    return list(dict.fromkeys(found))
+        demonstrations += files
+    return list(dict.fromkeys(demonstrations))
 
 
 def _check(arrays: Mapping[str, NDArray[Any]], goal: str) -> None:

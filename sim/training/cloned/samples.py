@@ -62,12 +62,12 @@ class Streams:
     def __init__(self, shown: Sequence[LabelledSteps], *, width: int, length: int, seed: int) -> None:
         self._shown, self._length = shown, length
         self._rng = np.random.default_rng(seed)
-        changes = sum(int(np.count_nonzero(each.changes)) for each in shown)
-        self.inflection = sum(len(each.actions) for each in shown) / max(changes, 1)
+        changes = sum(int(np.count_nonzero(steps.changes)) for steps in shown)
+        self.inflection = sum(len(steps.actions) for steps in shown) / max(changes, 1)
         """Weight of an action that differs from the previous one."""
         self._now = [self._draw() for _ in range(width)]
         # Each stream begins in the middle of an episode, so that the streams do not all end at once.
-        self._at = [int(self._rng.integers(len(each.actions))) // length * length for each in self._now]
+        self._at = [int(self._rng.integers(len(steps.actions))) // length * length for steps in self._now]
 
     def next_piece(self) -> Piece:
         """Returns the next piece."""

@@ -63,9 +63,9 @@ def read_all(files: Sequence[Path]) -> tuple[list[LabelledSteps], list[LabelledS
         if time.monotonic() - printed_s >= PRINT_EVERY_S:
             printed_s = time.monotonic()
             print(f"{number} of {len(files)} demonstrations read", flush=True)
-        given = read_demonstration(file)
-        held_back = zlib.crc32(given.house.encode()) % HELD_BACK == 0
-        (val if held_back else train).append(labelled_steps_of(given, file))
+        demonstration = read_demonstration(file)
+        held_back = zlib.crc32(demonstration.house.encode()) % HELD_BACK == 0
+        (val if held_back else train).append(labelled_steps_of(demonstration, file))
     if not train or not val:
         raise ConfigError(
             f"{len(train)} demonstrations to train on and {len(val)} held back: both are needed. One house in "
@@ -101,7 +101,7 @@ class Trainer(TimedTraining):
         self, args: Args, train: Sequence[LabelledSteps], val: Sequence[LabelledSteps], files: Sequence[Path]
     ) -> None:
         self.val = val[:: stride(len(val), args.val_count)]
-        self.counts = {"demonstrations": len(train), "frames": sum(len(each.actions) for each in train)}
+        self.counts = {"demonstrations": len(train), "frames": sum(len(steps.actions) for steps in train)}
         torch.manual_seed(args.seed)
         samples = args.streams * args.length
         super().__init__(
@@ -133,15 +133,15 @@ class Trainer(TimedTraining):
 
     def evaluate(self, model: torch.nn.Module) -> tuple[float, dict[str, Any], str]:
         """See `TimedTraining.evaluate`."""
-        found, true, changes, losses = [], [], [], []
+        predicted, true, changes, losses = [], [], [], []
         for one in self.val:
             logits = self._logits(model, one.steps, None)[0][:, 0]
             actions = torch.from_numpy(one.actions).long()
             losses.append(functional.cross_entropy(logits, actions, reduction="none").numpy())
-            found.append(logits.argmax(1).numpy())
+            predicted.append(logits.argmax(1).numpy())
             true.append(one.actions)
             changes.append(one.changes)
-        row = agreement(*(np.concatenate(each) for each in (found, true, changes, losses)))
+        row = agreement(*(np.concatenate(parts) for parts in (predicted, true, changes, losses)))
         loss = row["cross_entropy"]
         assert loss is not None
         return loss, row, ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in row.items())
@@ -162,7 +162,7 @@ class Trainer(TimedTraining):
 
 
 def agreement(
-    found: np.ndarray, true: np.ndarray, changes: np.ndarray, losses: np.ndarray
+    predicted: np.ndarray, true: np.ndarray, changes: np.ndarray, losses: np.ndarray
 ) -> dict[str, float | int | None]:
     """Returns how often the most probable actions are those of the demonstrator.
 
@@ -172,7 +172,7 @@ def agreement(
         changes: (n,) whether the demonstrator's action differs from the previous one.
         losses: (n,) cross entropies.
     """
-    right = found == true
+    right = predicted == true
 
     def share(among: np.ndarray) -> float | None:
         return round(float(right[among].mean()), 4) if among.any() else None
@@ -183,7 +183,7 @@ def agreement(
         "right": share(np.ones(len(true), np.bool_)),
         "right_at_changes": share(changes),
         "stops_found": share(true == Action.STOP),
-        "stops_right": share(found == Action.STOP),
+        "stops_right": share(predicted == Action.STOP),
     }
 
 

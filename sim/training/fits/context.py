@@ -44,7 +44,7 @@ def surroundings(
         rng: chooses what is seen.
     """
     number = _NUMBER[category]
-    x_m, y_m, number = (each[number >= 0] for each in (x_m, y_m, number))
+    x_m, y_m, number = (values[number >= 0] for values in (x_m, y_m, number))
     near = np.hypot(x_m[:, None] - x_m, y_m[:, None] - y_m) < radius_m
     np.fill_diagonal(near, False)
     near &= rng.random(near.shape) < rng.uniform(LEAST_SEEN, 1.0, (len(near), 1))
@@ -78,7 +78,7 @@ def fit(houses: Sequence[Surroundings], radius_m: float, *, steps: int = 400) ->
     count = sum(len(category) for _, category in houses)
     if count < 100:
         raise ConfigError(f"The plans have {count} objects; 100 are needed: give more plans.")
-    nearby, category = (np.concatenate(each) for each in zip(*houses, strict=True))
+    nearby, category = (np.concatenate(parts) for parts in zip(*houses, strict=True))
     counts = np.bincount(category, minlength=len(OBJECTS)) + 0.5
     known = counts >= LEAST_OBJECTS
     nearby, category = nearby[known[category]], category[known[category]]
@@ -108,7 +108,7 @@ def log_losses(context: Context, houses: Sequence[Surroundings]) -> tuple[float,
     Raises:
         ConfigError: the houses have no object of a known category.
     """
-    nearby, category = (np.concatenate(each) for each in zip(*houses, strict=True))
+    nearby, category = (np.concatenate(parts) for parts in zip(*houses, strict=True))
     known = context.frequency[category] > 0.0
     if not known.any():
         raise ConfigError("The plans held back have no object of a category that the others have: give more plans.")

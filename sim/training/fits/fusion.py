@@ -106,15 +106,15 @@ def fit(samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors, ste
         "surface": torch.tensor([-3.0, 1.0, 0.0]),
         "offsets": torch.zeros(len(names)),
     }
-    for each in free.values():
-        each.requires_grad_(True)
+    for parameter in free.values():
+        parameter.requires_grad_(True)
     optimizer = torch.optim.Adam(free.values(), lr=0.05)
     for _ in range(steps):
         optimizer.zero_grad()
         loss = torch.nn.functional.cross_entropy(data.log_odds(free), data.category)
         (loss + OFFSET_PRIOR * (free["offsets"] ** 2).sum() / len(samples)).backward()
         optimizer.step()
-    value = {name: each.detach().numpy().astype(np.float64) for name, each in free.items()}
+    value = {name: parameter.detach().numpy().astype(np.float64) for name, parameter in free.items()}
     rings = np.exp(value["rings"] - value["rings"][EvidenceConfig.near_ring])
     return Fusion(
         ring_weights=tuple(rings.round(4).tolist()),
@@ -122,7 +122,7 @@ def fit(samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors, ste
         growth=round(float(np.clip(value["growth"], 0.0, 1.0)), 4),
         floor=float(f"{np.exp(value['floor']):.4g}"),
         surface=tuple(value["surface"].round(4).tolist()),
-        offsets={name: round(float(each), 3) for name, each in zip(names, value["offsets"], strict=True)},
+        offsets={name: round(float(offset), 3) for name, offset in zip(names, value["offsets"], strict=True)},
     )
 
 
@@ -146,16 +146,16 @@ class _Data:
         behind, weight = (np.zeros((len(samples), rings), np.float32) for _ in range(2))
         category = np.full(len(samples), kinds, np.int64)
         number = np.cumsum(~IS_SURFACE) - 1
-        for i, each in enumerate(samples):
-            inside, surface = each.mean[:, ~IS_SURFACE], each.mean[:, IS_SURFACE].sum(axis=1)
+        for i, sample in enumerate(samples):
+            inside, surface = sample.mean[:, ~IS_SURFACE], sample.mean[:, IS_SURFACE].sum(axis=1)
             of_objects = inside.sum(axis=1)
-            ring = each.view // sectors
-            np.add.at(objects[i], ring, (each.weight / np.maximum(of_objects, 1e-3))[:, None] * inside)
-            np.add.at(behind[i], ring, each.weight * surface / np.maximum(surface + of_objects, 1e-6))
-            np.add.at(weight[i], ring, each.weight)
-            if each.category >= 0:
-                category[i] = number[each.category]
-        return cls(*(torch.from_numpy(each) for each in (objects, behind, weight, category)))
+            ring = sample.view // sectors
+            np.add.at(objects[i], ring, (sample.weight / np.maximum(of_objects, 1e-3))[:, None] * inside)
+            np.add.at(behind[i], ring, sample.weight * surface / np.maximum(surface + of_objects, 1e-6))
+            np.add.at(weight[i], ring, sample.weight)
+            if sample.category >= 0:
+                category[i] = number[sample.category]
+        return cls(*(torch.from_numpy(array) for array in (objects, behind, weight, category)))
 
     def log_odds(self, free: Mapping[str, Tensor]) -> Tensor:
         """Returns the values of `Fusion.probabilities` before the softmax, (n, objects + 1); the last is no object."""
@@ -177,20 +177,23 @@ def probabilities(
     """Returns the probability of each category of `MPCAT40[1:]`, for each sample."""
     rings = np.array(fusion.ring_weights, np.float32)
     return np.concatenate(
-        [fusion.probabilities(each.mean[None], (each.weight * rings[each.view // sectors])[None]) for each in samples]
+        [
+            fusion.probabilities(sample.mean[None], (sample.weight * rings[sample.view // sectors])[None])
+            for sample in samples
+        ]
     )
 
 
 def left_out(samples: Sequence[Sample]) -> Float32[np.ndarray, "n classes"]:
     """Returns the probabilities of each sample with parameters that were fitted to other houses; see `fit`."""
-    houses = sorted({each.house for each in samples})
+    houses = sorted({sample.house for sample in samples})
     if len(houses) < 2:
         raise ConfigError("Tracks of at least two houses are needed, got those of one: run more episodes.")
     fold = {house: number % min(FOLDS, len(houses)) for number, house in enumerate(houses)}
     result = np.zeros((len(samples), len(IS_SURFACE)), np.float32)
     for number in sorted(set(fold.values())):
-        test = [i for i, each in enumerate(samples) if fold[each.house] == number]
-        others = [each for each in samples if fold[each.house] != number]
+        test = [i for i, sample in enumerate(samples) if fold[sample.house] == number]
+        others = [sample for sample in samples if fold[sample.house] != number]
         result[test] = probabilities(fit(others), [samples[i] for i in test])
     return result
 
@@ -208,7 +211,7 @@ def judge(
     from sklearn.metrics import average_precision_score
 
     goals = np.array([MPCAT40_ID[name] - 1 for name in GOAL_CATEGORIES])
-    truth = np.array([each.category for each in samples])[:, None] == goals
+    truth = np.array([sample.category for sample in samples])[:, None] == goals
     among = p[:, goals] >= PLAUSIBLE if among is None else among
     if not among.any():
         raise ConfigError("No track of the log may be a goal: run more episodes.")

@@ -118,7 +118,7 @@ def _left_out(table: Candidates, separate: Sequence[str]) -> Float64[np.ndarray,
             continue
         content = _classifiers(goals[train], features[train], truth[train], separate)
         pooled = NaiveBayes.of(**content["pooled"])
-        own = {goal: NaiveBayes.of(**each) for goal, each in content["categories"].items()}
+        own = {goal: NaiveBayes.of(**parameters) for goal, parameters in content["categories"].items()}
         for i in test:
             probability[i] = own.get(str(goals[i]), pooled).probability(Features(*features[i]))
     return probability
@@ -185,10 +185,10 @@ def _completed(lines: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
 
 def _candidates(lines: Sequence[Mapping[str, Any]]) -> Candidates:
     """Returns the candidates of all lines, without repetitions."""
-    met = [(line, each) for line in lines for each in _without_repetitions(line)]
+    met = [(line, candidate) for line in lines for candidate in _without_repetitions(line)]
     goals = np.array([line["goal"] for line, _ in met], np.str_)
     houses = np.array([line["house"] for line, _ in met], np.str_)
-    values = np.array([each for _, each in met], np.float64).reshape(-1, len(Features._fields) + 1)
+    values = np.array([candidate for _, candidate in met], np.float64).reshape(-1, len(Features._fields) + 1)
     return Candidates(goals, houses, values[:, :-1], values[:, -1] > 0.5)
 
 

@@ -250,11 +250,11 @@ class PlanEnv(gymnasium.Env[Any, Any]):
                     raise
         raise EpisodeError(f"None of the {len(self.files)} plans has a '{goal}' that can be reached.")
 
-    def _number(self, given: Any) -> int:
+    def _number(self, action: Any) -> int:
         """Returns the number of a plan; raises ConfigError if there is none."""
-        if not isinstance(given, (int, np.integer)) or not 0 <= given < len(self.files):
-            raise ConfigError(f"options['plan'] must be 0 to {len(self.files) - 1}, got {given!r}.")
-        return int(given)
+        if not isinstance(action, (int, np.integer)) or not 0 <= action < len(self.files):
+            raise ConfigError(f"options['plan'] must be 0 to {len(self.files) - 1}, got {action!r}.")
+        return int(action)
 
     @property
     def _terminated(self) -> bool:

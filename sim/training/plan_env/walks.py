@@ -84,22 +84,22 @@ def search(camera: PlanCamera, goal: str, start: Pose, rng: np.random.Generator)
     robot.pose = start
     everywhere, stops = reachable(plan, start), plan.success_cells(goal)
     near = np.zeros(everywhere.shape, np.bool_)
-    target, found = (0, 0), False
+    target, is_found = (0, 0), False
     times: NDArray[np.float32] | None = None
     poses: list[Pose] = []
     actions: list[Action] = []
     while len(actions) < MAX_STEPS:
         look = camera.look(robot.pose, goal, layers, robot.pose, len(actions))
-        if not found and look.goal_share >= EXPLORED_SHARE:
-            found, times = True, _times_to(plan, stops & everywhere, everywhere, robot.pose)
+        if not is_found and look.goal_share >= EXPLORED_SHARE:
+            is_found, times = True, _times_to(plan, stops & everywhere, everywhere, robot.pose)
         poses.append(robot.pose)
         index, inside = cells_near_segment(plan.frame, robot.pose.xy_m, robot.pose.xy_m, BLIND_M)
         near[index] |= inside
-        if found and stops[_at(plan, robot.pose)]:
+        if is_found and stops[_at(plan, robot.pose)]:
             actions.append(Action.STOP)
             break
         seen = camera.seen_floor | near
-        if times is None or (not found and _is_over(seen, plan, times, target, robot.pose)):
+        if times is None or (not is_found and _is_over(seen, plan, times, target, robot.pose)):
             target = _nearest_unseen(everywhere, everywhere & ~seen, plan, robot.pose)
             times = _times_to(plan, _only(everywhere, target), everywhere, robot.pose)
         turns = _best_turns(plan, times, robot.pose)
@@ -108,7 +108,7 @@ def search(camera: PlanCamera, goal: str, start: Pose, rng: np.random.Generator)
         if actions[-1] is Action.MOVE_FORWARD and moved_m == 0.0:
             target = _any_cell(everywhere, rng)
             times = _times_to(plan, _only(everywhere, target), everywhere, robot.pose)
-            found = False  # it sees the goal again from where it can be reached
+            is_found = False  # it sees the goal again from where it can be reached
     return poses, actions
 
 
@@ -126,10 +126,10 @@ def _nearest_unseen(
     here = _only(everywhere, _at(plan, pose))
     times = travel_times(here, everywhere | here, _speed(plan), plan.frame.cell_m)
     large = cv2.erode(unseen.astype(np.uint8), np.ones((SPECK_CELLS, SPECK_CELLS), np.uint8)) > 0
-    wanted = np.where(large, times, np.inf)
-    if not np.isfinite(wanted).any():
-        wanted = -np.where(np.isfinite(times), times, -np.inf)
-    row, col = np.unravel_index(int(np.argmin(wanted)), wanted.shape)
+    priority = np.where(large, times, np.inf)
+    if not np.isfinite(priority).any():
+        priority = -np.where(np.isfinite(times), times, -np.inf)
+    row, col = np.unravel_index(int(np.argmin(priority)), priority.shape)
     return int(row), int(col)
 
 
@@ -173,8 +173,8 @@ def _leg(
 ) -> tuple[tuple[int, int], NDArray[np.float32]]:
     """Returns the end of the next leg, a cell, and the travel times to it."""
     unseen = everywhere & ~camera.seen_floor
-    wanted = unseen if rng.random() < config.unseen_share and np.count_nonzero(unseen) > 100 else everywhere
-    cell = _any_cell(wanted, rng)
+    eligible = unseen if rng.random() < config.unseen_share and np.count_nonzero(unseen) > 100 else everywhere
+    cell = _any_cell(eligible, rng)
     return cell, _times_to(camera.plan, _only(everywhere, cell), everywhere, pose)
 
 

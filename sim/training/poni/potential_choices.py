@@ -40,8 +40,8 @@ class Choices:
 
     def shares(self) -> dict[str, float]:
         """Returns the share of best choices, and the potential of the choices as a share of the best ones."""
-        found = {f"{name}_best": value / max(self.count, 1) for name, value in self.hits.items()}
-        return found | {f"{name}_potential": value / max(self.most, 1e-9) for name, value in self.gained.items()}
+        shares = {f"{name}_best": value / max(self.count, 1) for name, value in self.hits.items()}
+        return shares | {f"{name}_potential": value / max(self.most, 1e-9) for name, value in self.gained.items()}
 
 
 def add_choices(batch: Batch, predicted: Float[np.ndarray, "m maps"], area: Choices, objects: Choices) -> None:

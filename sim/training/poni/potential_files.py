@@ -125,7 +125,7 @@ class SampleSet:
         self._arrays, self.cells = arrays, cells
         order = np.arange(cells * cells).reshape(cells, cells)
         turned = [np.rot90(order, turns) for turns in range(4)]
-        sources = [each.reshape(-1) for turn in turned for each in (turn, turn[:, ::-1])]
+        sources = [image.reshape(-1) for turn in turned for image in (turn, turn[:, ::-1])]
         self._sources = np.stack(sources)
         """(symmetries, cells) The cell from which each cell of a turned patch comes."""
         self._targets = np.argsort(self._sources, axis=1)
@@ -252,9 +252,9 @@ def _check(arrays: Mapping[str, NDArray], cells: int) -> None:
     }
     for name, shape in shapes.items():
         _size(arrays, name)
-        kind, found = _KINDS.get(name, "u"), arrays[name]
-        if found.dtype.kind != kind or found.shape != shape:
-            raise ValueError(f"'{name}' is {found.dtype} {found.shape} for {samples} samples")
+        kind, array = _KINDS.get(name, "u"), arrays[name]
+        if array.dtype.kind != kind or array.shape != shape:
+            raise ValueError(f"'{name}' is {array.dtype} {array.shape} for {samples} samples")
     for name, end in (("goal_start", goal_cells), ("start", frontiers)):
         if arrays[name][0] != 0 or arrays[name][-1] != end or bool((np.diff(arrays[name]) < 0).any()):
             raise ValueError(f"'{name}' does not count the cells of the samples")

@@ -122,10 +122,10 @@ class _ShardIndex(Dataset):
         objects: list[tuple[str, str, int, int]] = []
         with open_plain(shard, what="Shard") as stream:
             for key, members in read_members(shard):
-                for each in _annotations(decoder, shard, key, members, stream):
-                    category = MPCAT40[each.category_id]
-                    if category in GOAL_CATEGORIES and each.area >= SMALLEST_PX:
-                        objects.append((category, each.style, len(views), each.id))
+                for annotation in _annotations(decoder, shard, key, members, stream):
+                    category = MPCAT40[annotation.category_id]
+                    if category in GOAL_CATEGORIES and annotation.area >= SMALLEST_PX:
+                        objects.append((category, annotation.style, len(views), annotation.id))
                 views.append(StoredView(shard, key, tuple((name, *place) for name, place in members.items())))
         return views, objects
 

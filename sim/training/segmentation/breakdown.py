@@ -82,18 +82,18 @@ class Breakdown:
         """
         rows = []
         for low, high in itertools.pairwise(EDGES_PX):
-            found = [seen.right >= FOUND_SHARE for seen in self.objects if low <= seen.edge_px < high]
-            if found:
-                rows.append((low, high, len(found), float(np.mean(found))))
+            hits = [seen.right >= FOUND_SHARE for seen in self.objects if low <= seen.edge_px < high]
+            if hits:
+                rows.append((low, high, len(hits), float(np.mean(hits))))
         return rows
 
     def found_by_category(self) -> dict[str, tuple[int, float]]:
         """Returns the number of objects and the share that is found, of each goal category in the views."""
         result = {}
         for name in GOAL_CATEGORIES:
-            found = [seen.right >= FOUND_SHARE for seen in self.objects if seen.category == name]
-            if found:
-                result[name] = (len(found), float(np.mean(found)))
+            hits = [seen.right >= FOUND_SHARE for seen in self.objects if seen.category == name]
+            if hits:
+                result[name] = (len(hits), float(np.mean(hits)))
         return result
 
 
@@ -101,7 +101,7 @@ def _objects(
     predicted: Int64[np.ndarray, "h w"], semantic: UInt8[np.ndarray, "h w"], block_px: int
 ) -> list[SeenObject]:
     """Returns the objects of goal categories in one view."""
-    found = []
+    objects = []
     for name, category in zip(GOAL_CATEGORIES, GOAL_IDS, strict=True):
         mask = semantic == category
         if not mask.any():
@@ -111,5 +111,5 @@ def _objects(
         right_px = np.bincount(regions[predicted == category - 1], minlength=count)[1:]
         for area, right in zip(area_px, right_px, strict=True):
             if area >= FEWEST_PIXELS:
-                found.append(SeenObject(name, float(np.sqrt(area)) * block_px, float(right / area)))
-    return found
+                objects.append(SeenObject(name, float(np.sqrt(area)) * block_px, float(right / area)))
+    return objects

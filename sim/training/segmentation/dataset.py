@@ -162,7 +162,7 @@ def read_shard(file: Path) -> Iterator[LabelledView]:
         yield decode_view(file, key, parts)
 
 
-def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tuple[str, dict[str, bytes]]]:
+def _members(file: Path, numbers: Collection[int] | None = None) -> Iterator[tuple[str, dict[str, bytes]]]:
     """Yields key and members of the views of a shard in their order; {} for views that are not in `wanted`.
 
     Raises:
@@ -184,7 +184,7 @@ def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tupl
                     if number >= 0:
                         yield key, parts
                     key, number, parts = name, number + 1, {}
-                if wanted is None or number in wanted:
+                if numbers is None or number in numbers:
                     content = archive.extractfile(member)
                     parts[suffix.split(".")[0]] = b"" if content is None else content.read()
             if number >= 0:
@@ -370,8 +370,8 @@ def spread_views(shards: Sequence[Path], count: int) -> list[LabelledView]:
             continue
         views = sum(1 for _ in _members(shard, frozenset()))
         share = min(math.ceil((count - len(picked)) / (len(shards) - number)), views)
-        wanted = frozenset(np.linspace(0, views - 1, share).round().astype(int).tolist())
-        picked += [decode_view(shard, key, parts) for key, parts in _members(shard, wanted) if parts]
+        numbers = frozenset(np.linspace(0, views - 1, share).round().astype(int).tolist())
+        picked += [decode_view(shard, key, parts) for key, parts in _members(shard, numbers) if parts]
     return picked
 
 

@@ -112,8 +112,8 @@ class DeviceBatches(Dataset):
         width_px = self.recipe.width_px(phase, used_px, stored_px, rng)
         share, count = self.recipe.object_share, phase.batches * self.batch
         drawn = [self.index.draw(rng, object_share=share) for _ in range(count)]
-        views = torch.tensor([each.view for each in drawn], device=self._device)
-        shown = torch.tensor([each.number for each in drawn], device=self._device)
+        views = torch.tensor([sample.view for sample in drawn], device=self._device)
+        shown = torch.tensor([sample.number for sample in drawn], device=self._device)
         random = torch.Generator(self._device).manual_seed(int(rng.integers(2**62)))
         windows = random_windows(
             self._views.instances[views], shown, width_px, phase.whole_share, rng, random=random
@@ -130,8 +130,8 @@ class DeviceBatches(Dataset):
         depth_m = jitter_depth(held.depth_mm[views].float() / 1000.0, augmentation, random)
         channels = _second_channels(depth_m, self.sampler.second, camera)
         row, col = windows.pixels(size_px)
-        each = torch.arange(len(views), device=self._device)[:, None, None]
-        cut = channels.permute(0, 2, 3, 1)[each, row, col].permute(0, 3, 1, 2)
+        rows = torch.arange(len(views), device=self._device)[:, None, None]
+        cut = channels.permute(0, 2, 3, 1)[rows, row, col].permute(0, 3, 1, 2)
         enlargement = size_px[1] * (self.sampler.used_block_px or 1) / windows.cols
         second = _normalised(cut, enlargement[:, None, None], self.sampler.second, camera)
         target = held.semantic[views[:, None, None], row, col].long() - 1
@@ -290,11 +290,11 @@ def _towards_neighbour(
     size = points.shape[dim]
     index = torch.arange(size, device=points.device)
     for sign in (1, -1):
-        there = index + sign * step
-        inside = ((there >= 0) & (there < size)).view([-1 if d == dim - 1 else 1 for d in range(3)])
-        there = there.clamp(0, size - 1)
-        difference = points.index_select(dim, there) - points
-        usable = valid.index_select(dim - 1, there) & inside
+        neighbour = index + sign * step
+        inside = ((neighbour >= 0) & (neighbour < size)).view([-1 if d == dim - 1 else 1 for d in range(3)])
+        neighbour = neighbour.clamp(0, size - 1)
+        difference = points.index_select(dim, neighbour) - points
+        usable = valid.index_select(dim - 1, neighbour) & inside
         differences.append(difference)
         gaps.append(torch.where(usable, difference[:, 2].abs(), torch.inf))
     second = gaps[1] < gaps[0]

@@ -165,6 +165,6 @@ def calibrated_iou(views: Sequence[tuple[Tensor, Tensor]]) -> Iou:
         if not (truth >= 0).any():
             continue
         calibration = fit_calibration(logits[truth >= 0].clone(), truth[truth >= 0].clone())
-        for each, target in judged:
-            matrix += confusion(calibration.applied(each.float()).argmax(dim=0).numpy(), target.numpy())
+        for view, target in judged:
+            matrix += confusion(calibration.applied(view.float()).argmax(dim=0).numpy(), target.numpy())
     return Iou.of(matrix)

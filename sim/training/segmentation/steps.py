@@ -40,9 +40,11 @@ def pyramid_loss(
             loss = nn.functional.cross_entropy(logits, small, weight=weights, ignore_index=IGNORED)
         else:
             own = pixels[:, row::step, column::step].reshape(-1)
-            each = nn.functional.cross_entropy(logits, small, weight=weights, ignore_index=IGNORED, reduction="none")
+            by_pixel = nn.functional.cross_entropy(
+                logits, small, weight=weights, ignore_index=IGNORED, reduction="none"
+            )
             counted = torch.where(small == IGNORED, 0.0, weights[small.clamp(min=0)])
-            loss = (each * own).sum() / (counted * own).sum()
+            loss = (by_pixel * own).sum() / (counted * own).sum()
         total = total + torch.nan_to_num(loss)  # a scale whose labels are all void gives 0 / 0
     return total
 

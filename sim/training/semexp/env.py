@@ -116,5 +116,5 @@ class SemExpEnv(PlanEnv):
 
     def _observe(self) -> dict[str, NDArray]:
         goal = GOAL_CATEGORIES.index(self.episode.goal)
-        self._given = given = observe(self.navmap, self._pose, goal, cells=self.cells)
-        return as_arrays(given)
+        self._given = policy_input = observe(self.navmap, self._pose, goal, cells=self.cells)
+        return as_arrays(policy_input)

@@ -128,7 +128,7 @@ class Run:
             self.args.out / "state.pt",
             self._parts(),
             _Progress,
-            check=lambda found: require_options(self.args.out, found.options, self.options),
+            check=lambda progress: require_options(self.args.out, progress.options, self.options),
         )
         if done is not None:
             self.goals, self.steps, self.spent_s = done.goals, done.steps, done.spent_s
@@ -187,7 +187,9 @@ class _Watch(BaseCallback):
         row = {"minutes": round(run.spent_s / 60, 2), "goals": run.goals, "steps": run.steps}
         row |= {"steps_per_s": round(rate), "episodes": len(self._episodes)}
         for name in ("return", *_KEYS):
-            row[name] = round(float(np.mean([each[name] for each in self._episodes])), 4) if self._episodes else ""
+            row[name] = (
+                round(float(np.mean([episode[name] for episode in self._episodes])), 4) if self._episodes else ""
+            )
         for name in ("entropy_loss", "value_loss", "explained_variance", "approx_kl"):  # of the update before
             row[name] = round(float(logged.get(f"train/{name}", np.nan)), 4)
         append_row(run.args.out / "train.csv", row)

@@ -78,13 +78,13 @@ def shows(geom: NDArray[np.int32], labels: Labels, name: str, camera: CameraMode
 def _objects(world: World, weights: Mapping[str, float]) -> dict[str, list[tuple[Instance, list[int]]]]:
     """Returns the objects of each category that has some, with their rendered geoms."""
     seen = rendered_geoms(world.model)
-    found: dict[str, list[tuple[Instance, list[int]]]] = {}
+    targets: dict[str, list[tuple[Instance, list[int]]]] = {}
     for category in weights:
         for instance in world.labels.of_category(category):
             geoms = [geom for geom in instance.geom_ids if seen[geom]]
             if geoms:
-                found.setdefault(category, []).append((instance, geoms))
-    return found
+                targets.setdefault(category, []).append((instance, geoms))
+    return targets
 
 
 def _even_in_distance(far_m: NDArray[np.float64], rng: np.random.Generator, cells: NDArray[np.intp]) -> int:

@@ -45,13 +45,13 @@ def annotate(
         For each object `id` (its number), `name`, `category_id` (mpcat40), `bbox` (x, y, width and height in pixels),
         `area` (visible pixels), `iscrowd` 0 and `segmentation`, a run-length encoded mask; `style` where it is known.
     """
-    found = []
+    annotations = []
     for number in np.unique(instance_ids[instance_ids > 0]).tolist():
         instance = instances[number - 1]
         if instance.category in STUFF:
             continue
         mask = instance_ids == number
-        found.append(
+        annotations.append(
             {
                 "id": number,
                 "name": instance.name,
@@ -63,7 +63,7 @@ def annotate(
             }
             | ({"style": styles[instance.name]} if styles and instance.name in styles else {})
         )
-    return found
+    return annotations
 
 
 def bounding_box(mask: NDArray[np.bool_]) -> list[int]:

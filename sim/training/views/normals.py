@@ -58,10 +58,10 @@ def _difference(points: NDArray[np.float32], surface: NDArray[np.int32], axis: i
     after, before = ([*none] for _ in range(2))
     after[axis], before[axis] = (0, 1), (1, 0)
     sides = [np.pad(step, pad) for pad in (after, before)]
-    there = [np.pad(same, pad[:2]) for pad in (after, before)]
-    bend = [np.where(side, np.abs(each[..., 2]), _FAR_M) for each, side in zip(sides, there, strict=True)]
-    both = there[0] & there[1] & (np.abs(bend[0] - bend[1]) < 0.25 * np.minimum(*bend) + 1e-4)
+    sides_seen = [np.pad(same, pad[:2]) for pad in (after, before)]
+    bend = [np.where(side, np.abs(bends[..., 2]), _FAR_M) for bends, side in zip(sides, sides_seen, strict=True)]
+    both = sides_seen[0] & sides_seen[1] & (np.abs(bend[0] - bend[1]) < 0.25 * np.minimum(*bend) + 1e-4)
     nearer = np.where((bend[0] <= bend[1])[..., None], sides[0], sides[1])
     mean = 0.5 * (sides[0] + sides[1])
     chosen = np.where(both[..., None], mean, nearer)
-    return np.where((there[0] | there[1])[..., None], chosen, 0.0).astype(np.float32)
+    return np.where((sides_seen[0] | sides_seen[1])[..., None], chosen, 0.0).astype(np.float32)

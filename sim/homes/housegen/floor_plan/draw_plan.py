@@ -34,7 +34,9 @@ EXTRA_DOORS = {
 """Probability that two neighbouring rooms get a door, by their kinds."""
 
 
-def draw_floor_plan(rng: np.random.Generator, kind: PlanKind, area_m2: float, wanted: Sequence[str] = ()) -> FloorPlan:
+def draw_floor_plan(
+    rng: np.random.Generator, kind: PlanKind, area_m2: float, required: Sequence[str] = ()
+) -> FloorPlan:
     """Returns a plan of this kind and about this area, with the private rooms `wanted` if they fit.
 
     Raises:
@@ -43,16 +45,16 @@ def draw_floor_plan(rng: np.random.Generator, kind: PlanKind, area_m2: float, wa
     low_m, high_m = next(widths for above_m2, widths in CORRIDOR_M if area_m2 >= above_m2)
     corridor_m = draw_length_m(rng, low_m, high_m)
     if kind in ("greatroom", "split", "loop", "estate"):
-        draft, entry = _draw_new_kind(rng, kind, area_m2, wanted, corridor_m)
+        draft, entry = _draw_new_kind(rng, kind, area_m2, required, corridor_m)
     else:
-        draft, entry = _draw_rows(rng, kind, area_m2, wanted, corridor_m)
+        draft, entry = _draw_rows(rng, kind, area_m2, required, corridor_m)
     _add_loops(rng, draft)
     check_draft(draft, area_m2)
     return finish_draft(rng, draft, kind, entry)
 
 
 def _draw_new_kind(
-    rng: np.random.Generator, kind: PlanKind, area_m2: float, wanted: Sequence[str], corridor_m: float
+    rng: np.random.Generator, kind: PlanKind, area_m2: float, required: Sequence[str], corridor_m: float
 ) -> tuple[Draft, int]:
     """Returns a draft of a kind whose rooms are not all in rows along corridors, and the room with the front door.
 
@@ -61,14 +63,14 @@ def _draw_new_kind(
     """
     scale = float(np.clip(rng.uniform(0.95, 1.1) + (area_m2 - 150.0) / 1000.0, 0.95, 1.35))
     if kind == "greatroom":
-        draft, entry = draw_great_room(rng, area_m2, wanted, corridor_m, scale)
+        draft, entry = draw_great_room(rng, area_m2, required, corridor_m, scale)
     elif kind == "split":
-        draft, entry = draw_split(rng, area_m2, wanted, corridor_m, scale)
+        draft, entry = draw_split(rng, area_m2, required, corridor_m, scale)
     elif kind == "loop" and rng.random() < (170.0 - area_m2) / 40.0 + 0.5:
-        draft, entry = draw_chain(rng, area_m2, wanted, corridor_m, scale)
+        draft, entry = draw_chain(rng, area_m2, required, corridor_m, scale)
     else:
-        draft, entry = draw_ring(rng, area_m2, wanted, corridor_m, scale, estate=kind == "estate")
-    missing = Counter(wanted) | Counter(NEEDED_ROOMS)
+        draft, entry = draw_ring(rng, area_m2, required, corridor_m, scale, estate=kind == "estate")
+    missing = Counter(required) | Counter(NEEDED_ROOMS)
     missing.subtract(draft.kinds)
     if lacking := [room for room, count in missing.items() if count > 0]:
         raise PlanError(f"no place for {lacking[0]}")
@@ -79,14 +81,14 @@ def _draw_new_kind(
 
 
 def _draw_rows(
-    rng: np.random.Generator, kind: PlanKind, area_m2: float, wanted: Sequence[str], corridor_m: float
+    rng: np.random.Generator, kind: PlanKind, area_m2: float, required: Sequence[str], corridor_m: float
 ) -> tuple[Draft, int]:
     """Returns a draft of a kind with rooms in rows along corridors, and the index of its main corridor.
 
     Raises:
         PlanError: the rooms do not fit.
     """
-    program = draw_program(rng, kind, area_m2, wanted)
+    program = draw_program(rng, kind, area_m2, required)
     draft = Draft()
     scale = float(np.clip(0.85 * area_m2 / program.usual_area_m2, 0.85, 1.7))
     public_at_end = kind in ("studio", "flat", "openplan", "large") or (kind == "lshape" and rng.random() < 0.6)

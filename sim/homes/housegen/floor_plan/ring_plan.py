@@ -45,7 +45,7 @@ class Ring:
 
 
 def draw_ring(
-    rng: np.random.Generator, area_m2: float, wanted: Sequence[str], corridor_m: float, scale: float, *, estate: bool
+    rng: np.random.Generator, area_m2: float, required: Sequence[str], corridor_m: float, scale: float, *, estate: bool
 ) -> tuple[Draft, int]:
     """Returns a draft and the index of the corridor with the front door.
 
@@ -63,7 +63,7 @@ def draw_ring(
     _add_public_rooms(rng, draft, ring, north, south)
     rows_m2 = w * (ring.rows[0] + ring.rows[1]) + (d + 2 * c) * ring.rows[2]
     wings_m2 = 2 * len(ring.wings) * ring.wing_length * ring.wing_depth
-    queue = RoomQueue(rng, (rows_m2 + wings_m2 + 0.6 * w * d) / max(scale, 1.0), wanted, large=estate)
+    queue = RoomQueue(rng, (rows_m2 + wings_m2 + 0.6 * w * d) / max(scale, 1.0), required, large=estate)
     add_core(rng, draft, queue, Core(Rect(0.0, 0.0, w, d), north, south, c), scale, estate=estate)
     _add_rows(rng, draft, queue, ring, (north, south, east), scale, estate)
     return draft, east

@@ -41,21 +41,21 @@ MORE_M = 2.5
 class RoomQueue:
     """Groups of private rooms in the order in which they are placed."""
 
-    def __init__(self, rng: np.random.Generator, area_m2: float, wanted: Sequence[str], *, large: bool) -> None:
+    def __init__(self, rng: np.random.Generator, area_m2: float, required: Sequence[str], *, large: bool) -> None:
         """Makes a queue of rooms of about this usual area; the rooms `wanted`, a bathroom and a bedroom come first."""
         order = _LARGE_HOME if large else _SMALL_HOME
-        first = [(Column(kind),) for kind in wanted] + [_BATHROOM, _BEDROOM]
-        left = area_m2 - sum(map(_area_m2, first))
-        missing = list(wanted)
+        first = [(Column(kind),) for kind in required] + [_BATHROOM, _BEDROOM]
+        rest_m2 = area_m2 - sum(map(_area_m2, first))
+        missing = list(required)
         rest: list[Group] = []
         for group in itertools.islice(itertools.cycle(order), 2, 3 * len(order)):
-            if left < 4.0:
+            if rest_m2 < 4.0:
                 break
             if group[0].front in missing:
                 missing.remove(group[0].front)
                 continue
             rest.append(group)
-            left -= _area_m2(group)
+            rest_m2 -= _area_m2(group)
         self._groups = [first[i] for i in rng.permutation(len(first))] + [rest[i] for i in rng.permutation(len(rest))]
         self._placed: Counter[str] = Counter()
 

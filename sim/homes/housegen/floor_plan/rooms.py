@@ -120,7 +120,7 @@ def draw_plan_kind(rng: np.random.Generator, area_m2: float) -> PlanKind:
     return fitting[int(rng.integers(len(fitting)))]
 
 
-def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float, wanted: Sequence[str] = ()) -> Program:
+def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float, required: Sequence[str] = ()) -> Program:
     """Returns the rooms of a home of this plan kind and area; larger homes have more of the rarer rooms.
 
     The private rooms `wanted` are added first, to the extent that the area allows.
@@ -131,22 +131,24 @@ def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float, wante
     public = ["living_room", "kitchen"]
     if area_m2 > 150 or (area_m2 > 80 and rng.random() < 0.6):
         public.append("dining_room")
-    left = 0.84 * area_m2 - sum(ROOM_RULES[room].area_m2[1] for room in public) * (1.25 if kind == "openplan" else 1.0)
+    rest_m2 = 0.84 * area_m2 - sum(ROOM_RULES[room].area_m2[1] for room in public) * (
+        1.25 if kind == "openplan" else 1.0
+    )
     groups: list[tuple[Column, ...]] = [(Column("bathroom"),)]
-    candidates = [(Column(room),) for room in wanted] + _candidates(rng, area_m2, wanted)
-    left -= 6.5
+    candidates = [(Column(room),) for room in required] + _candidates(rng, area_m2, required)
+    rest_m2 -= 6.5
     rooms = len(public) + 1
     for group in candidates:
         need = sum(column.usual_area_m2 for column in group)
         count = sum(1 + (column.back is not None) for column in group)
-        if need <= left + 4.0 and rooms + count <= MAX_ROOMS[kind] - HALLWAYS[kind]:
+        if need <= rest_m2 + 4.0 and rooms + count <= MAX_ROOMS[kind] - HALLWAYS[kind]:
             groups.append(group)
-            left -= need
+            rest_m2 -= need
             rooms += count
     return Program(tuple(public), tuple(groups))
 
 
-def _candidates(rng: np.random.Generator, area_m2: float, wanted: Sequence[str]) -> list[tuple[Column, ...]]:
+def _candidates(rng: np.random.Generator, area_m2: float, required: Sequence[str]) -> list[tuple[Column, ...]]:
     """Returns private rooms in the order in which they are added while area is left."""
     ensuite = (Column("bedroom"), Column("closet", "bathroom"))
     beside = (Column("bedroom"), Column("bathroom", "closet"))
@@ -157,6 +159,6 @@ def _candidates(rng: np.random.Generator, area_m2: float, wanted: Sequence[str])
     rooms = [first, rare[0], second, rare[1], bedroom, rare[2]]
     if area_m2 < 105 and rng.random() < 0.5:
         rooms = [first, second, *rare]
-    rooms = [group for group in rooms if group[0].front not in wanted]
+    rooms = [group for group in rooms if group[0].front not in required]
     rooms += [ensuite, bedroom, (Column("office"),), beside, (Column("closet"),), bedroom]
     return rooms

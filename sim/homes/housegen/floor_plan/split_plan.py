@@ -15,7 +15,7 @@ from sim.homes.housegen.floor_plan.rows import draw_length_m
 
 
 def draw_split(
-    rng: np.random.Generator, area_m2: float, wanted: Sequence[str], corridor_m: float, scale: float
+    rng: np.random.Generator, area_m2: float, required: Sequence[str], corridor_m: float, scale: float
 ) -> tuple[Draft, int]:
     """Returns a draft and the index of the room with the front door, the living room.
 
@@ -30,7 +30,7 @@ def draw_split(
     back_m = round(max(depth_m - living_m, 2.8), 1)
     living = draft.add("living_room", Rect(0.0, 0.0, width_m, living_m))
     _add_back_rooms(rng, draft, living, back_m, with_dining=area_m2 > 105.0)
-    queue = RoomQueue(rng, 0.75 * (area_m2 - core_m2), wanted, large=area_m2 > 200.0)
+    queue = RoomQueue(rng, 0.75 * (area_m2 - core_m2), required, large=area_m2 > 200.0)
     for side in ("west", "east"):
         depths_m = (draw_length_m(rng, 3.3, 3.9), draw_length_m(rng, 3.3, 3.9))
         depths_m = (round(depths_m[0] * scale**0.5, 1), round(depths_m[1] * scale**0.5, 1))

@@ -53,8 +53,8 @@ def add_clutter(layout: RoomLayout, source: FurnitureSource) -> None:
     uses = ON_FLOOR.get(layout.kind)
     if uses is None:
         return
-    wanted = source.clutter * min(FLOOR_PER_M2 * layout.inner.area_m2, MOST_ON_FLOOR)
-    for _ in range(int(wanted + source.uniform(0.0, 1.0))):
+    count = source.clutter * min(FLOOR_PER_M2 * layout.inner.area_m2, MOST_ON_FLOOR)
+    for _ in range(int(count + source.uniform(0.0, 1.0))):
         _put_on_floor(layout, source, source.pick(uses))
 
 
@@ -64,8 +64,8 @@ def _fill_tops(layout: RoomLayout, source: FurnitureSource, host: Placement) -> 
         if surface.kind != "top":
             continue
         area_m2 = 4.0 * surface.half_size_m[0] * surface.half_size_m[1]
-        wanted = source.clutter * min(PER_TOP + PER_TOP_M2 * area_m2, MOST_ON_TOP)
-        for _ in range(int(wanted + source.uniform(0.0, 1.0))):
+        count = source.clutter * min(PER_TOP + PER_TOP_M2 * area_m2, MOST_ON_TOP)
+        for _ in range(int(count + source.uniform(0.0, 1.0))):
             item = source.make("objects", source.pick(top_uses(layout, source, host)))
             if item is not None and item.mount == "top":
                 face = source.uniform(-0.35, 0.35) + (math.pi if host.side is None and source.chance(0.5) else 0.0)

@@ -39,16 +39,16 @@ def fill_room(layout: RoomLayout, source: FurnitureSource) -> None:
     if rule is None:
         fill_middle(layout, source)
         return
-    wanted = rule.share * (0.5 + 0.5 * source.clutter)
+    share = rule.share * (0.5 + 0.5 * source.clutter)
     fill_middle(layout, source)
-    left = list(rule.additions)
+    additions = list(rule.additions)
     for _ in range(rule.rounds):
-        order = [left[n] for n in source.rng.permutation(len(left)).tolist()]
+        order = [additions[n] for n in source.rng.permutation(len(additions)).tolist()]
         for add in order:
-            if layout.filled_share() >= wanted:
+            if layout.filled_share() >= share:
                 return
             if not add(layout, source):
-                left.remove(add)
+                additions.remove(add)
 
 
 def console(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
@@ -108,10 +108,10 @@ def _machine(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
         item = source.make("gym_equipment")
         if item is None or item.mount != "floor" or item.walk_over or styles.count(item.style) >= most:
             continue
-        found = None
+        placed = None
         if layout.inner.short_m > 4.0:
-            found = put_in_middle(layout, source.rng, item, (), around_m=1.2, apart_m=0.5)
-        return found or put_against_wall(layout, source.rng, item, front_m=0.6)
+            placed = put_in_middle(layout, source.rng, item, (), around_m=1.2, apart_m=0.5)
+        return placed or put_against_wall(layout, source.rng, item, front_m=0.6)
     return None
 
 

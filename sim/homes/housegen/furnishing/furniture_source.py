@@ -198,16 +198,16 @@ class FurnitureSource:
         tried = self._tried.setdefault(key, set())
         if not fresh:
             tried.clear()
-        left = [n for n in names if n not in tried] or [n for n in others if n not in tried] or names
+        untried = [n for n in names if n not in tried] or [n for n in others if n not in tried] or names
         if category == "objects" and len(self._small_styles) >= MOST_SMALL_STYLES:
-            left = [name for name in left if name in self._small_styles] or left
+            untried = [name for name in untried if name in self._small_styles] or untried
 
         def weight(name: str) -> float:
             count = placed[category, name]
             return count + _MISFIT * max(0, self._returned[category, name] - count)
 
-        least = min(weight(name) for name in left)
-        chosen = self.pick([name for name in left if weight(name) <= least + 0.05])
+        least = min(weight(name) for name in untried)
+        chosen = self.pick([name for name in untried if weight(name) <= least + 0.05])
         tried.add(chosen)
         return chosen
 

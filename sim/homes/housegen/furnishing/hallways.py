@@ -76,11 +76,11 @@ def _place_near(
     if item is None or item.mount != "floor" or layout.inner.short_m - item.size_m[0] - WALL_GAP_M < PATH_M:
         return None
     for side in sides:
-        found = put_near(layout, item, side, at, front_m=PATH_M)
-        if found is None:
+        placed = put_near(layout, item, side, at, front_m=PATH_M)
+        if placed is None:
             continue
         if item.category in ("table", "cabinet", "chest_of_drawers"):
-            put_on_top(layout, source, found, ("objects", "plant", "lighting"), (0.6, 0.4, 0.3))
-            hang_above(layout, source, found, "mirror" if source.chance(0.5) else "picture")
-        return found
+            put_on_top(layout, source, placed, ("objects", "plant", "lighting"), (0.6, 0.4, 0.3))
+            hang_above(layout, source, placed, "mirror" if source.chance(0.5) else "picture")
+        return placed
     return None

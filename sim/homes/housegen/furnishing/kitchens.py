@@ -101,15 +101,15 @@ def _place_run(layout: RoomLayout, source: FurnitureSource, side: Side, looks: d
     free_m = min(layout.walls.longest_stretch_m(side) - 0.02, 5.0)
     fridge, cooker = source.make("appliances", "fridge"), source.make("appliances", "stove")
     for share in (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4):
-        wanted = _run_items(source, fridge, cooker, share * free_m, looks)
-        if not wanted:
+        items = _run_items(source, fridge, cooker, share * free_m, looks)
+        if not items:
             break
-        run = place_row(layout, source, [item for item in wanted if item is not None], side)
+        run = place_row(layout, source, [item for item in items if item is not None], side)
         for unit in run:
             if unit.item.category == "counter":
                 put_on_top(layout, source, unit, ("objects", "appliances", "objects", "plant"), (0.8, 0.3, 0.5, 0.2))
         if run:
-            if len(wanted) == 1 and fridge is not None:
+            if len(items) == 1 and fridge is not None:
                 put_against_wall(layout, source.rng, fridge, along="corner", front_m=0.6)
             return run
     return []

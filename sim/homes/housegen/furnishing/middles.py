@@ -47,9 +47,9 @@ def _machine(layout: RoomLayout, source: FurnitureSource, spot: Spot) -> Placeme
     for n in range(4):
         item = source.make("gym_equipment", "machine" if source.chance(0.6) else "weights", fresh=n > 0)
         if item is not None and item.mount == "floor" and not item.walk_over:
-            found = put_in_middle(layout, source.rng, item, (), around_m=0.8, apart_m=0.6, near=spot)
-            if found is not None:
-                return found
+            placed = put_in_middle(layout, source.rng, item, (), around_m=0.8, apart_m=0.6, near=spot)
+            if placed is not None:
+                return placed
     return None
 
 
@@ -81,13 +81,13 @@ def _alone(
     item = source.make(category, use)
     if item is None or item.mount != "floor":
         return None
-    found = put_in_middle(layout, source.rng, item, (), around_m=0.8, apart_m=0.65, near=spot)
-    if found is not None and rug:
+    placed = put_in_middle(layout, source.rng, item, (), around_m=0.8, apart_m=0.65, near=spot)
+    if placed is not None and rug:
         turn = 0.0 if layout.inner.width_m < layout.inner.depth_m else math.pi / 2
-        lay_rug(layout, source, found.placed.x_m, found.placed.y_m, turn, runner=False)
-    if found is not None and item.surfaces:
-        put_on_top(layout, source, found, ("objects", "plant"), (0.6, 0.3))
-    return found
+        lay_rug(layout, source, placed.placed.x_m, placed.placed.y_m, turn, runner=False)
+    if placed is not None and item.surfaces:
+        put_on_top(layout, source, placed, ("objects", "plant"), (0.6, 0.3))
+    return placed
 
 
 MIDDLES: Mapping[str, tuple[Callable[[RoomLayout, FurnitureSource, Spot], Placement | None], ...]] = MappingProxyType(

@@ -49,11 +49,11 @@ def place(
         if item is None:
             return None
         if item.mount == "wall":
-            found = hang_on_wall(layout, source.rng, item, along=along)
+            placed = hang_on_wall(layout, source.rng, item, along=along)
         else:
-            found = put_against_wall(layout, source.rng, item, along=along, front_m=front_m)
-        if found is not None:
-            return found
+            placed = put_against_wall(layout, source.rng, item, along=along, front_m=front_m)
+        if placed is not None:
+            return placed
     return None
 
 
@@ -161,9 +161,9 @@ def place_row(
             continue
         placed = []
         for item in order:
-            found = put_near(layout, item, side, at + item.size_m[1] / 2, front_m=front_m, slide_m=0.0)
-            if found is not None:
-                placed.append(found)
+            spot = put_near(layout, item, side, at + item.size_m[1] / 2, front_m=front_m, slide_m=0.0)
+            if spot is not None:
+                placed.append(spot)
             at += item.size_m[1] + ROW_GAP_M
         if placed:
             return placed

@@ -43,10 +43,10 @@ def _bedding(w: Workbench, x0: float, length: float, width: float, top: float) -
         w.new_look("linen"),
     )
     count = 2 if width > 1.1 else 1
-    each = min(0.72, width / count - 0.06)
+    pitch = min(0.72, width / count - 0.06)
     for i in range(count):
         y = (i - 0.5 * (count - 1)) * width / count
-        w.mesh(pillow((0.46, each, 0.16), 4.0), (x0 + 0.27, y, top + 0.055), linen, tilt=-0.12)
+        w.mesh(pillow((0.46, pitch, 0.16), 4.0), (x0 + 0.27, y, top + 0.055), linen, tilt=-0.12)
     w.top(
         (x0 + length - cover + 0.3, x0 + length - 0.15), (-0.5 * width + 0.15, 0.5 * width - 0.15), top + 0.045, "seat"
     )
@@ -87,11 +87,11 @@ def upholstered(w: Workbench) -> None:
     w.box((0.0, length + 0.03), (-half, half), (0.07, top - 0.14), cloth)
     w.legs((0.05, length - 0.02), (-half + 0.04, half - 0.04), (0.0, 0.08), 0.05, w.look("dark"))
     columns = max(2, round(2 * half / 0.42))
-    each = 2 * half / columns
+    pitch = 2 * half / columns
     for i in range(columns):
         w.mesh(
-            chamfered_box((0.10, round(each - 0.004, 3), head - 0.07), 0.025),
-            (-0.05, (i + 0.5) * each - half, 0.5 * (head + 0.07)),
+            chamfered_box((0.10, round(pitch - 0.004, 3), head - 0.07), 0.025),
+            (-0.05, (i + 0.5) * pitch - half, 0.5 * (head + 0.07)),
             cloth,
         )
     _bedding(w, 0.005, length, width, top)

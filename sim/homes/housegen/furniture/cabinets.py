@@ -32,11 +32,11 @@ def wardrobe_sliding(w: Workbench) -> None:
     w.box((0.5 * depth - 0.06, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.05), body)
     w.box((0.5 * depth - 0.06, 0.5 * depth), (-0.5 * width, 0.5 * width), (height - 0.05, height), body)
     leaves = 2 if width < 1.8 else 3
-    each = width / leaves
+    pitch = width / leaves
     glazed = w.whole(0, leaves - 1)
     for i in range(leaves):
         x = 0.5 * depth - 0.06 + 0.025 * (i % 2)
-        y = (-0.5 * width + i * each, -0.5 * width + (i + 1) * each)
+        y = (-0.5 * width + i * pitch, -0.5 * width + (i + 1) * pitch)
         w.box((x, x + 0.022), y, (0.05, height - 0.05), w.look("screen") if i == glazed else front)
         for edge in (y[0] + 0.012, y[1] - 0.012):
             w.box((x + 0.022, x + 0.030), (edge - 0.012, edge + 0.012), (0.05, height - 0.05), metal, solid=False)
@@ -199,9 +199,9 @@ def wall_unit_glazed(w: Workbench) -> None:
     for z in ((0.0, 0.02), (0.5 * height - 0.008, 0.5 * height + 0.008), (height - 0.02, height)):
         w.box((0.02, depth - 0.02), y, z, look)
     count = max(1, round(width / 0.5))
-    each = width / count
+    pitch = width / count
     for i in range(count + 1):
-        c = min(max(y[0] + i * each, y[0] + 0.02), y[1] - 0.02)
+        c = min(max(y[0] + i * pitch, y[0] + 0.02), y[1] - 0.02)
         w.box((0.02, depth), (c - 0.02, c + 0.02), (0.0, height), look)
     w.box((depth - 0.012, depth - 0.006), (y[0] + 0.04, y[1] - 0.04), (0.02, height - 0.02), w.look("glass"))
     for z in ((0.0, 0.045), (height - 0.045, height)):

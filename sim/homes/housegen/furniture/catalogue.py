@@ -209,5 +209,7 @@ class Catalogue:
         if fitting:
             return fitting[int(rng.integers(len(fitting)))]
         uses = sorted({use for style in self.styles(category, pool) for use in style.uses})
-        wanted = "" if use is None else f" for use '{use}'"
-        raise ConfigError(f"'{category}' has no style{wanted} in pool '{pool}'. Its uses: {', '.join(uses) or 'none'}.")
+        for_use = "" if use is None else f" for use '{use}'"
+        raise ConfigError(
+            f"'{category}' has no style{for_use} in pool '{pool}'. Its uses: {', '.join(uses) or 'none'}."
+        )

@@ -47,11 +47,11 @@ def kitchen_run(w: Workbench) -> None:
     _run_base(w, (x[0], face), y, under, front, hole)
     parts.worktop(w, x, y, (height - _TOP, height), top, hole)
     count = max(1, round(width / 0.6))
-    each = width / count
+    pitch = width / count
     drawer_unit = w.whole(0, count - 1)
     metal = w.look("metal")
     for i in range(count):
-        span = (y[0] + i * each, y[0] + (i + 1) * each)
+        span = (y[0] + i * pitch, y[0] + (i + 1) * pitch)
         if i == drawer_unit:
             parts.plain_drawers(w, face, span, (0.11, under), 3, 1, front, metal, "bar")
         else:
@@ -68,10 +68,10 @@ def island(w: Workbench) -> None:
     w.box((x[0] + 0.08, x[1] - 0.32), (y[0] + 0.08, y[1] - 0.08), (0.0, 0.08), w.look("dark"))
     w.box(x, y, (height - 0.045, height), top)
     panels = max(2, round(width / 0.6))
-    each = (width - 0.06) / panels
+    pitch = (width - 0.06) / panels
     for i in range(panels):
-        y0 = y[0] + 0.03 + i * each
-        w.box((x[1] - 0.28, x[1] - 0.265), (y0 + 0.03, y0 + each - 0.03), (0.14, height - 0.10), body, solid=False)
+        y0 = y[0] + 0.03 + i * pitch
+        w.box((x[1] - 0.28, x[1] - 0.265), (y0 + 0.03, y0 + pitch - 0.03), (0.14, height - 0.10), body, solid=False)
     w.top((x[0] + 0.1, x[1] - 0.1), (y[0] + 0.1, y[1] - 0.1), height)
 
 
@@ -106,10 +106,10 @@ def slab_run(w: Workbench) -> None:
     parts.worktop(w, x, y, (height - _TOP, height), top, hole)
     w.box((x[0], x[0] + 0.018), y, (height, height + 0.12), top)
     count = max(1, round(width / 0.9))
-    each = width / count
+    pitch = width / count
     split = 0.11 + 0.62 * (under - 0.11)
     for i in range(count):
-        span = (y[0] + i * each + 0.003, y[0] + (i + 1) * each - 0.003)
+        span = (y[0] + i * pitch + 0.003, y[0] + (i + 1) * pitch - 0.003)
         w.box((face, face + 0.02), span, (0.105, split - 0.015), front, solid=False)
         w.box((face, face + 0.02), span, (split + 0.003, under - 0.02), front, solid=False)
     _free_tops(w, x, free, height, back=0.06)
@@ -172,9 +172,9 @@ def curtained_run(w: Workbench) -> None:
     parts.worktop(w, x, y, (height - _TOP, height), wood, hole)
     w.box((x[0], x[0] + 0.03), y, (0.0, under), pier)
     bays = max(1, round(width / 0.8))
-    each = (width - 0.10) / bays
+    pitch = (width - 0.10) / bays
     for i in range(bays + 1):
-        c = y[0] + 0.05 + i * each
+        c = y[0] + 0.05 + i * pitch
         beside_sink = hole is None or not hole[1][0] - 0.06 < c < hole[1][1] + 0.06
         w.box((x[0] + 0.03 if beside_sink else x[1] - 0.10, x[1] - 0.03), (c - 0.05, c + 0.05), (0.0, under), pier)
     w.rod(
@@ -185,9 +185,9 @@ def curtained_run(w: Workbench) -> None:
         solid=False,
     )
     for i in range(bays):
-        c = y[0] + 0.05 + (i + 0.5) * each
+        c = y[0] + 0.05 + (i + 0.5) * pitch
         w.mesh(
-            drape(round(each - 0.11, 3), round(under - 0.08, 3), 0.035, 6), (x[1] - 0.07, c, 0.05), cloth, solid=False
+            drape(round(pitch - 0.11, 3), round(under - 0.08, 3), 0.035, 6), (x[1] - 0.07, c, 0.05), cloth, solid=False
         )
     w.box((x[0] + 0.03, x[1] - 0.10), (y[0] + 0.1, y[1] - 0.1), (0.0, 0.45), w.look("dark"))
     _free_tops(w, x, free, height)

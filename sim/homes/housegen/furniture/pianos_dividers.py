@@ -52,22 +52,22 @@ def upright_piano(w: Workbench) -> None:
 
 def folding_screen(w: Workbench) -> None:
     """Builds a room divider of three or four panels in zigzag."""
-    panels, each, high = w.whole(3, 4), w.length(0.42, 0.50), w.length(1.65, 1.80)
+    panels, panel_m, high = w.whole(3, 4), w.length(0.42, 0.50), w.length(1.65, 1.80)
     wood, cloth = w.look("wood"), w.look("curtain")
     fold = 0.35
-    run = each * math.cos(fold)
+    run = panel_m * math.cos(fold)
     for i in range(panels):
         sign = 1 if i % 2 == 0 else -1
         c = (i + 0.5 - 0.5 * panels) * run
         dx, dy = -math.sin(sign * fold), math.cos(sign * fold)
         w.box(
             (-0.008, 0.008),
-            (c - 0.5 * each + 0.02, c + 0.5 * each - 0.02),
+            (c - 0.5 * panel_m + 0.02, c + 0.5 * panel_m - 0.02),
             (0.10, high - 0.03),
             cloth,
             turn=sign * fold,
         )
-        for t in (-0.5 * each + 0.015, 0.5 * each - 0.015):
+        for t in (-0.5 * panel_m + 0.015, 0.5 * panel_m - 0.015):
             w.box(
                 (t * dx - 0.014, t * dx + 0.014),
                 (c + t * dy - 0.014, c + t * dy + 0.014),
@@ -78,7 +78,7 @@ def folding_screen(w: Workbench) -> None:
         for z in (0.10, high - 0.03):
             w.box(
                 (-0.012, 0.012),
-                (c - 0.5 * each + 0.02, c + 0.5 * each - 0.02),
+                (c - 0.5 * panel_m + 0.02, c + 0.5 * panel_m - 0.02),
                 (z - 0.02, z + 0.02),
                 wood,
                 turn=sign * fold,
@@ -87,15 +87,15 @@ def folding_screen(w: Workbench) -> None:
 
 def shoji_screen(w: Workbench) -> None:
     """Builds a room divider of four upright lattice panels of wood and paper in zigzag."""
-    panels, each, high, fold = 4, w.length(0.40, 0.46), w.length(1.60, 1.75), 0.30
+    panels, panel_m, high, fold = 4, w.length(0.40, 0.46), w.length(1.60, 1.75), 0.30
     wood, paper = w.look("wood"), w.look("paper")
-    run = each * math.cos(fold)
+    run = panel_m * math.cos(fold)
     for i in range(panels):
         sign = 1 if i % 2 == 0 else -1
         c = (i + 0.5 - 0.5 * panels) * run
         dx, dy = -math.sin(sign * fold), math.cos(sign * fold)
-        w.box((-0.004, 0.004), (c - 0.5 * each, c + 0.5 * each), (0.05, high - 0.02), paper, turn=sign * fold)
-        for t in (-0.5 * each + 0.012, 0.0, 0.5 * each - 0.012):
+        w.box((-0.004, 0.004), (c - 0.5 * panel_m, c + 0.5 * panel_m), (0.05, high - 0.02), paper, turn=sign * fold)
+        for t in (-0.5 * panel_m + 0.012, 0.0, 0.5 * panel_m - 0.012):
             w.box(
                 (t * dx - 0.011, t * dx + 0.011),
                 (c + t * dy - 0.011, c + t * dy + 0.011),
@@ -104,7 +104,7 @@ def shoji_screen(w: Workbench) -> None:
                 turn=sign * fold,
             )
         for z in (0.05, 0.36 * high, 0.68 * high, high - 0.03):
-            w.box((-0.010, 0.010), (c - 0.5 * each, c + 0.5 * each), (z, z + 0.03), wood, turn=sign * fold)
+            w.box((-0.010, 0.010), (c - 0.5 * panel_m, c + 0.5 * panel_m), (z, z + 0.03), wood, turn=sign * fold)
 
 
 STYLES = (

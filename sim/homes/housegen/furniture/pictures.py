@@ -85,14 +85,14 @@ def triptych(w: Workbench) -> None:
     """Builds three unframed canvases side by side that share one composition of bands."""
     width, height = w.width(0.80, 1.40), w.height(0.45, 0.75)
     w.mount_height_m = 1.52 - 0.5 * height
-    each, gap = (width - 0.08) / 3, 0.04
+    pitch, gap = (width - 0.08) / 3, 0.04
     ground, *bands = distinct_looks(w, "paint", 3)
     for i in range(3):
-        y0 = -0.5 * width + i * (each + gap)
-        w.box((0.0, 0.030), (y0, y0 + each), (0.0, height), ground)
+        y0 = -0.5 * width + i * (pitch + gap)
+        w.box((0.0, 0.030), (y0, y0 + pitch), (0.0, height), ground)
         level = height * (0.62 - 0.12 * i)
-        w.box((0.025, 0.033), (y0, y0 + each), (0.0, level), bands[0], solid=False)
-        w.box((0.025, 0.036), (y0, y0 + each), (0.0, 0.45 * level), bands[1], solid=False)
+        w.box((0.025, 0.033), (y0, y0 + pitch), (0.0, level), bands[0], solid=False)
+        w.box((0.025, 0.036), (y0, y0 + pitch), (0.0, 0.45 * level), bands[1], solid=False)
     w.rod(
         (0.025, 0.30 * width, 0.75 * height),
         (0.033, 0.30 * width, 0.75 * height),

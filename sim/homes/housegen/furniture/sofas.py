@@ -46,22 +46,22 @@ def _measure(w: Workbench, arm: tuple[float, float], height: tuple[float, float]
 
 def _seat_cushions(w: Workbench, s: _Sofa, look: Look, thick: float, *, tufts: bool = False) -> None:
     """Adds a row of seat cushions in front of the back."""
-    each = s.inner / s.seats
-    shape = chamfered_box((s.depth - s.back, each - 0.006, thick), 0.03)
+    pitch = s.inner / s.seats
+    shape = chamfered_box((s.depth - s.back, pitch - 0.006, thick), 0.03)
     for i in range(s.seats):
-        w.mesh(shape, (0.5 * s.back, (i + 0.5) * each - 0.5 * s.inner, s.seat - 0.5 * thick), look)
+        w.mesh(shape, (0.5 * s.back, (i + 0.5) * pitch - 0.5 * s.inner, s.seat - 0.5 * thick), look)
     w.top((-0.5 * s.depth + s.back, 0.5 * s.depth), (-0.5 * s.inner, 0.5 * s.inner), s.seat, "seat")
 
 
 def _back_cushions(w: Workbench, s: _Sofa, look: Look, thick: float = 0.14) -> None:
     """Adds a row of loose back cushions that lean on the back."""
-    each = s.inner / s.seats
+    pitch = s.inner / s.seats
     high = s.height - s.seat + 0.02
-    shape = chamfered_box((thick, each - 0.01, high), 0.04)
+    shape = chamfered_box((thick, pitch - 0.01, high), 0.04)
     for i in range(s.seats):
         w.mesh(
             shape,
-            (-0.5 * s.depth + s.back + 0.4 * thick, (i + 0.5) * each - 0.5 * s.inner, s.seat + 0.5 * high - 0.01),
+            (-0.5 * s.depth + s.back + 0.4 * thick, (i + 0.5) * pitch - 0.5 * s.inner, s.seat + 0.5 * high - 0.01),
             look,
             tilt=-0.12,
         )
@@ -229,11 +229,11 @@ def corner(w: Workbench) -> None:
             (0.5 * s.back, y, s.seat - 0.075),
             cloth,
         )
-    total, each = width - s.arm, (width - s.arm) / (seats + 1)
+    total, pitch = width - s.arm, (width - s.arm) / (seats + 1)
     for i in range(seats + 1):
-        y = -far + side * (s.arm + (i + 0.5) * each)
+        y = -far + side * (s.arm + (i + 0.5) * pitch)
         w.mesh(
-            chamfered_box((0.14, round(each - 0.01, 3), s.height - s.seat + 0.02), 0.04),
+            chamfered_box((0.14, round(pitch - 0.01, 3), s.height - s.seat + 0.02), 0.04),
             (x0 + s.back + 0.055, y, 0.5 * (s.height + s.seat)),
             cloth,
             tilt=-0.12,
@@ -269,10 +269,10 @@ def daybed(w: Workbench) -> None:
             w.rod((x, y, seat - 0.2), (x, y, top - 0.01), 0.008, metal)
     w.rod((x0 + 0.015, -half + 0.015, top - 0.01), (x0 + 0.015, half - 0.015, top - 0.01), 0.012, metal)
     for i in range(3):
-        each = (width - 0.08) / 3
+        pitch = (width - 0.08) / 3
         w.mesh(
-            chamfered_box((0.18, round(each - 0.01, 3), 0.38), 0.06),
-            (x0 + 0.14, (i - 1) * each, seat + 0.18),
+            chamfered_box((0.18, round(pitch - 0.01, 3), 0.38), 0.06),
+            (x0 + 0.14, (i - 1) * pitch, seat + 0.18),
             w.look("bedding"),
             tilt=-0.12,
         )

@@ -70,9 +70,9 @@ def _shoes(w: Workbench, x: float, y: float, z: float) -> None:
 def _stock(w: Workbench, x: float, y: Range, z: float, room: float, *, linen: bool) -> None:
     """Fills a board at height z, with `room` metres above it, with the goods of a closet (`linen`) or of a laundry."""
     count = max(1, int((y[1] - y[0]) / 0.31))
-    each = (y[1] - y[0]) / count
+    pitch = (y[1] - y[0]) / count
     for i in range(count):
-        at = y[0] + (i + 0.5) * each
+        at = y[0] + (i + 0.5) * pitch
         if linen:
             kind = w.choice(("folded", "folded", "boxes", "shoes"))
             if kind == "folded" or (kind == "boxes" and room < 0.14):
@@ -89,7 +89,7 @@ def _stock(w: Workbench, x: float, y: Range, z: float, room: float, *, linen: bo
             elif kind == "carton":
                 _carton(w, x, at, z)
             elif kind == "basket":
-                _basket(w, x, at, z, each - 0.05, w.choice((0.15, 0.18)))
+                _basket(w, x, at, z, pitch - 0.05, w.choice((0.15, 0.18)))
             else:
                 _folded(w, x, at, z, room)
 
@@ -225,11 +225,11 @@ def shoe_bench(w: Workbench) -> None:
 def _hung(w: Workbench, x: float, z: float, y: Range, long: float) -> None:
     """Adds two or three cloths that hang over a bar along y."""
     count = w.whole(2, 3)
-    each = (y[1] - y[0]) / count
+    pitch = (y[1] - y[0]) / count
     for i in range(count):
-        wide, high = w.length(0.65, 0.85) * each, w.length(0.6, 1.0) * long
+        wide, high = w.length(0.65, 0.85) * pitch, w.length(0.6, 1.0) * long
         cloth = w.new_look(w.choice(("towel", "bright", "linen")))
-        at = y[0] + (i + 0.5) * each
+        at = y[0] + (i + 0.5) * pitch
         for side in BOTH_SIDES:
             w.box(
                 (x + 0.012 * side - 0.005, x + 0.012 * side + 0.005), (at - 0.5 * wide, at + 0.5 * wide),

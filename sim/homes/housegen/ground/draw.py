@@ -81,8 +81,8 @@ class Ground:
 
 def material_of(room: RoomFloor) -> str:
     """Returns the material of a floor, a key of `FRICTION`: that of its texture; dark carpet of gyms is rubber."""
-    found = next((material for start, material in _TEXTURES if room.texture.startswith(start)), "wood")
-    return "rubber" if found == "carpet" and room.kind == "gym" else found
+    material_of_floor = next((material for start, material in _TEXTURES if room.texture.startswith(start)), "wood")
+    return "rubber" if material_of_floor == "carpet" and room.kind == "gym" else material_of_floor
 
 
 def draw_ground(rng: np.random.Generator, house: Survey) -> Ground:

@@ -130,7 +130,7 @@ def _texture(spec: mujoco.MjSpec, material: str) -> str:
 def _doorways(spec: mujoco.MjSpec, bodies: list[mujoco.MjsBody], rooms: tuple[RoomFloor, ...]) -> tuple[Doorway, ...]:
     """Returns the doorways between two rooms; those where a hazard stands are left out."""
     hazards = [site for site in spec.worldbody.sites if site.name.startswith("hazard_")]
-    found = []
+    grounds = []
     for body in bodies:
         jambs = [geom for geom in body.geoms if geom.type == _BOX and geom.contype]
         if not body.name.startswith("door_") or len(jambs) != 2:
@@ -144,8 +144,8 @@ def _doorways(spec: mujoco.MjSpec, bodies: list[mujoco.MjsBody], rooms: tuple[Ro
         if sides[0] is None or sides[1] is None or any(inside.all() for inside in near):
             continue
         inner = [abs(geom.pos[0]) - geom.size[0] for geom in jambs]
-        found.append(Doorway(x, y, yaw, float(sum(inner)), jambs[0].material, (sides[0], sides[1])))
-    return tuple(found)
+        grounds.append(Doorway(x, y, yaw, float(sum(inner)), jambs[0].material, (sides[0], sides[1])))
+    return tuple(grounds)
 
 
 def _rug(body: mujoco.MjsBody) -> RugShape | None:
@@ -164,15 +164,15 @@ def _rug(body: mujoco.MjsBody) -> RugShape | None:
 
 
 def _fixtures(bodies: list[mujoco.MjsBody], rooms: tuple[RoomFloor, ...]) -> tuple[Fixture, ...]:
-    found = []
+    grounds = []
     for body in bodies:
         if body.name.rsplit("_", 1)[0] not in _FIXTURES:
             continue
         x, y, z = body.pos.tolist()
         room = next((r for r in rooms if r.contains(x, y) and -_EPS_M < z - r.z_m < 1.5), None)
         if room is not None:
-            found.append(Fixture(x, y, _yaw(body), room))
-    return tuple(found)
+            grounds.append(Fixture(x, y, _yaw(body), room))
+    return tuple(grounds)
 
 
 def axis_sizes(geom: mujoco.MjsGeom) -> np.ndarray:

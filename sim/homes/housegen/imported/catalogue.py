@@ -65,7 +65,7 @@ class ImportedFurniture:
 
 def add_credits(spec: mujoco.MjSpec, models: Sequence[Model]) -> None:
     """Writes name, author, licence and origin of every imported model of a house into the comment of its file."""
-    keys = {found[1] for mesh in spec.meshes if (found := _MESH_NAME.fullmatch(mesh.name))}
+    keys = {match[1] for mesh in spec.meshes if (match := _MESH_NAME.fullmatch(mesh.name))}
     lines = [
         f"{model.key}: {model.name} ({model.category}), author: {model.author or 'not given'}, "
         f"licence: {model.licence or 'not given'}, from {model.origin}"
@@ -89,7 +89,7 @@ def _catalogue(folder: Path, split: ModelSplit, pool: Pool, alone: bool) -> Cata
     if not alone:
         return CATALOGUE.with_styles(*styles)
     own = (style for category in CATALOGUE.categories for style in CATALOGUE.styles(category))
-    kept = (left for style in own if (left := without_covered(style, models)) is not None)
+    kept = (remaining for style in own if (remaining := without_covered(style, models)) is not None)
     return Catalogue([*kept, *styles])
 
 

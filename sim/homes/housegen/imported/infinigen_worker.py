@@ -77,7 +77,7 @@ def joined(bpy: Any, asset: Any) -> Any:
     family = {asset, *asset.children_recursive}
     bpy.context.view_layer.update()
     graph = bpy.context.evaluated_depsgraph_get()
-    found = []
+    objects_found = []
     for instance in graph.object_instances:
         owner = instance.parent if instance.is_instance else instance.object
         if owner is None or owner.original not in family or instance.object.type not in ("MESH", "CURVE", "SURFACE"):
@@ -87,20 +87,20 @@ def joined(bpy: Any, asset: Any) -> Any:
         mesh = bpy.data.meshes.new_from_object(instance.object, depsgraph=graph)
         if len(mesh.polygons):
             mesh.transform(instance.matrix_world.copy())
-            found.append(mesh)
-    if not found:
+            objects_found.append(mesh)
+    if not objects_found:
         raise ValueError("the asset has no triangles")
-    for each in list(bpy.data.objects):
-        bpy.data.objects.remove(each)
-    objects = [bpy.data.objects.new(f"part_{n}", mesh) for n, mesh in enumerate(found)]
+    for element in list(bpy.data.objects):
+        bpy.data.objects.remove(element)
+    objects = [bpy.data.objects.new(f"part_{n}", mesh) for n, mesh in enumerate(objects_found)]
     plain = bpy.data.materials.new("plain")
     plain.use_nodes = True
-    for each in objects:
-        bpy.context.scene.collection.objects.link(each)
-        each.select_set(True)
-        if not each.data.materials:
-            each.data.materials.append(plain)
-        for slot in each.material_slots:  # Cycles does not bake an empty slot
+    for element in objects:
+        bpy.context.scene.collection.objects.link(element)
+        element.select_set(True)
+        if not element.data.materials:
+            element.data.materials.append(plain)
+        for slot in element.material_slots:  # Cycles does not bake an empty slot
             slot.material = slot.material or plain
     bpy.context.view_layer.objects.active = objects[0]
     if len(objects) > 1:
@@ -180,8 +180,8 @@ def is_glass(material: Any) -> bool:
 
 def transmission(node: Any) -> float:
     """Returns the transmission of a principled shader; 0 where it depends on other nodes."""
-    given = node.inputs.get("Transmission Weight")
-    return 0.0 if given is None or given.is_linked else float(given.default_value)
+    socket = node.inputs.get("Transmission Weight")
+    return 0.0 if socket is None or socket.is_linked else float(socket.default_value)
 
 
 def emit_base_colours(tree: Any, seen: set[int]) -> None:
@@ -199,12 +199,12 @@ def emit_base_colours(tree: Any, seen: set[int]) -> None:
                 tree.links.remove(link)
             node.inputs["Strength"].default_value = 1.0
         elif node.type.startswith("BSDF_") or node.type == "SUBSURFACE_SCATTERING":
-            given = node.inputs.get("Base Color") or node.inputs.get("Color")
-            if given is None:
+            socket = node.inputs.get("Base Color") or node.inputs.get("Color")
+            if socket is None:
                 continue
             emission = tree.nodes.new("ShaderNodeEmission")
-            emission.inputs["Color"].default_value = tuple(given.default_value)
-            for link in list(given.links):
+            emission.inputs["Color"].default_value = tuple(socket.default_value)
+            for link in list(socket.links):
                 tree.links.new(link.from_socket, emission.inputs["Color"])
             for link in list(node.outputs[0].links):
                 tree.links.new(emission.outputs[0], link.to_socket)

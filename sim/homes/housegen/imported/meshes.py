@@ -125,10 +125,10 @@ def _coloured(mesh: Any) -> Part:
 
 def _opacity(material: Any, usual: float) -> float:
     """Returns the opacity of a material; OBJ files have `d`, or `Tr` for its opposite."""
-    given = getattr(material, "kwargs", None) or {}
+    settings = getattr(material, "kwargs", None) or {}
     for key, opposite in (("d", False), ("tr", True)):
         try:
-            value = float(np.atleast_1d(given[key])[-1])
+            value = float(np.atleast_1d(settings[key])[-1])
         except (KeyError, TypeError, ValueError, IndexError):
             continue
         return 1.0 - value if opposite else value

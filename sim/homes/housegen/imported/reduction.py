@@ -33,7 +33,7 @@ def reduced(parts: Sequence[Part], most: int = MAX_TRIANGLES) -> tuple[Part, ...
         Skipped: nothing is left of the model.
     """
     pieces = [(n, piece) for n, part in enumerate(parts) for piece in _pieces(_clean(part))]
-    pieces.sort(key=lambda found: -float(areas(found[1].vertices_m, found[1].faces).sum()))
+    pieces.sort(key=lambda entry: -float(areas(entry[1].vertices_m, entry[1].faces).sum()))
     least = np.cumsum([min(LEAST_TRIANGLES, len(piece.faces)) for _, piece in pieces])
     pieces = pieces[: int((least <= most).sum())]
     weights = np.sqrt([len(piece.faces) * areas(piece.vertices_m, piece.faces).sum() for _, piece in pieces])
@@ -61,15 +61,15 @@ def _pieces(part: Part) -> list[Part]:
     return [_used(Part(part.vertices_m, faces, part.rgba)) for faces in groups]
 
 
-def _simplified(piece: Part, wanted: int) -> Part:
+def _simplified(piece: Part, faces_wanted: int) -> Part:
     """Returns a piece with about `wanted` triangles, or more where it would lose its extent.
 
     The library fails on some pieces that are no surface of a body; their vertices are joined on a grid instead.
     """
     simplify = library("fast_simplification").simplify
-    if wanted >= len(piece.faces):
+    if faces_wanted >= len(piece.faces):
         return piece
-    for target in (wanted, 2 * wanted, 4 * wanted):
+    for target in (faces_wanted, 2 * faces_wanted, 4 * faces_wanted):
         if target >= len(piece.faces):
             return piece
         # Its limits on the error are for lengths of about 100.
@@ -78,7 +78,7 @@ def _simplified(piece: Part, wanted: int) -> Part:
         made = _clean(Part(np.asarray(vertices) / scale, np.asarray(faces, dtype=np.int32), piece.rgba))
         if len(made.faces) <= 2 * target and is_alike(made, piece):
             return made
-    return _clustered(piece, 2 * wanted)
+    return _clustered(piece, 2 * faces_wanted)
 
 
 def is_alike(made: Part, piece: Part) -> bool:
@@ -107,7 +107,7 @@ def _scattered(part: Part) -> NDArray[np.float64]:
     return (part.vertices_m[chosen] * shares[:, :, None]).sum(axis=1)
 
 
-def _clustered(piece: Part, wanted: int) -> Part:
+def _clustered(piece: Part, faces_wanted: int) -> Part:
     """Returns a piece with all vertices in a cell of a grid joined, the grid as fine as the number allows."""
     low, extent = piece.vertices_m.min(axis=0), float(np.ptp(piece.vertices_m, axis=0).max())
     made = piece
@@ -118,7 +118,7 @@ def _clustered(piece: Part, wanted: int) -> Part:
         middle = np.stack([np.bincount(group, piece.vertices_m[:, k]) for k in range(3)], axis=1)
         joined = np.asarray(middle / np.bincount(group)[:, None], dtype=np.float64)
         made = _clean(Part(joined, group[piece.faces].astype(np.int32), piece.rgba))
-        if len(made.faces) <= wanted:
+        if len(made.faces) <= faces_wanted:
             return made
     return made
 

@@ -182,7 +182,7 @@ def _volumes(low: NDArray, high: NDArray, cell_m: NDArray[np.float64]) -> NDArra
 
 def _largest_rectangle(cells: NDArray[np.bool_]) -> tuple[int, int, int, int]:
     """Returns the range of rows and columns of the largest rectangle of true cells."""
-    best, found = 0, (0, 0, 0, 0)
+    best, rectangle = 0, (0, 0, 0, 0)
     above = np.zeros(cells.shape[1], dtype=int)
     for row in range(cells.shape[0]):
         above = np.where(cells[row], above + 1, 0)
@@ -194,5 +194,5 @@ def _largest_rectangle(cells: NDArray[np.bool_]) -> tuple[int, int, int, int]:
                     break
                 if high * (right - left + 1) > best:
                     best = high * (right - left + 1)
-                    found = (row - high + 1, left, row + 1, right + 1)
-    return found
+                    rectangle = (row - high + 1, left, row + 1, right + 1)
+    return rectangle

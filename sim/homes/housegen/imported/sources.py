@@ -96,37 +96,37 @@ def _sweet_home(file: Path) -> Iterator[Found]:
     except (zipfile.BadZipFile, OSError, ValueError, ConfigError, Skipped) as error:
         yield file.name, f"the file cannot be read ({error})"
         return
-    header = {found[1]: found[2] for line in text.splitlines() if (found := _HEADER.fullmatch(line))}
+    header = {match[1]: match[2] for line in text.splitlines() if (match := _HEADER.fullmatch(line))}
     models: dict[int, dict[str, str]] = {}
     for line in text.splitlines():
-        if found := _PROPERTY.fullmatch(line):
-            models.setdefault(int(found[2]), {})[found[1]] = _unescaped(found[3].strip())
-    for _, given in sorted(models.items()):
-        yield _sweet_home_entry(file, archive, given, _unescaped(header.get("license", "")))
+        if match := _PROPERTY.fullmatch(line):
+            models.setdefault(int(match[2]), {})[match[1]] = _unescaped(match[3].strip())
+    for _, properties in sorted(models.items()):
+        yield _sweet_home_entry(file, archive, properties, _unescaped(header.get("license", "")))
 
 
-def _sweet_home_entry(file: Path, archive: zipfile.ZipFile, given: Mapping[str, str], licence: str) -> Found:
-    name = given.get("name", "?")
+def _sweet_home_entry(file: Path, archive: zipfile.ZipFile, properties: Mapping[str, str], licence: str) -> Found:
+    name = properties.get("name", "?")
     try:
-        width, depth, height = (float(given[key]) / 100.0 for key in ("width", "depth", "height"))
-        elevation_m = float(given.get("elevation", 0.0)) / 100.0
-        turn = np.array(given.get("modelRotation", "1 0 0 0 1 0 0 0 1").split(), dtype=float).reshape(3, 3)
+        width, depth, height = (float(properties[key]) / 100.0 for key in ("width", "depth", "height"))
+        elevation_m = float(properties.get("elevation", 0.0)) / 100.0
+        turn = np.array(properties.get("modelRotation", "1 0 0 0 1 0 0 0 1").split(), dtype=float).reshape(3, 3)
         _finite(elevation_m, *turn.ravel())
         size_m = _allowed((depth, width, height))
-        model = given["model"].lstrip("/")
+        model = properties["model"].lstrip("/")
     except Skipped as reason:
         return name, str(reason)
     except (KeyError, ValueError) as error:
         return name, f"its entry cannot be read ({error})"
-    if given.get("doorOrWindow") == "true":
+    if properties.get("doorOrWindow") == "true":
         return name, "a door or a window"
-    label = label_of(name, given.get("category", ""), size_m, elevation_m)
+    label = label_of(name, properties.get("category", ""), size_m, elevation_m)
     if label is None:
-        return name, f"no category for it (group {given.get('category', '')})"
+        return name, f"no category for it (group {properties.get('category', '')})"
     return Entry(
-        ident=given.get("id", f"{file.stem}#{model}"), name=name, file=model, origin=f"{file.stem}:{model}",
-        label=label, size_m=size_m, elevation_m=elevation_m, author=given.get("creator", ""),
-        licence=given.get("license", licence), read=lambda path: _read_zip(archive, path), rotation=turn,
+        ident=properties.get("id", f"{file.stem}#{model}"), name=name, file=model, origin=f"{file.stem}:{model}",
+        label=label, size_m=size_m, elevation_m=elevation_m, author=properties.get("creator", ""),
+        licence=properties.get("license", licence), read=lambda path: _read_zip(archive, path), rotation=turn,
     )  # fmt: skip
 
 
@@ -147,7 +147,7 @@ def _read_zip(archive: zipfile.ZipFile, path: str) -> bytes:
 
 def _unescaped(text: str) -> str:
     """Returns a value of a properties file, in which other letters are written as \\uXXXX."""
-    return re.sub(r"\\u([0-9a-fA-F]{4})", lambda found: chr(int(found[1], 16)), text)
+    return re.sub(r"\\u([0-9a-fA-F]{4})", lambda match: chr(int(match[1], 16)), text)
 
 
 # ---- folders with a table --------------------------------------------------------------------------------------------

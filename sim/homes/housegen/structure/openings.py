@@ -206,18 +206,18 @@ def _cut_windows(
             continue
         size = {"bathroom": small, "living_room": large, "studio": large, "dining_room": large}.get(room.kind, usual)
         width_m = size[0] if room.kind != "hallway" else 0.7
-        found: list[tuple[bool, Opening]] = []
+        holes: list[tuple[bool, Opening]] = []
         for side in SIDES:
             taken = [o.span for o in others if o.a == i and o.side == side]
             for lo, hi in outer_spans(rects, i, side):
                 if room.kind == "hallway" and taken:
                     continue
-                wanted = bool(rng.random() > 0.12)
+                is_kept = bool(rng.random() > 0.12)
                 for span in _window_spans((lo, hi), width_m, taken, most=1 if room.kind == "bathroom" else 3):
                     hole = Opening("window", i, None, side, room.rect.line(side), span, size[1], HEAD_M)
-                    found.append((wanted, hole))
-        wanted_ones = [hole for wanted, hole in found if wanted]
-        windows += wanted_ones or [hole for _, hole in found[:1]]
+                    holes.append((is_kept, hole))
+        wanted_ones = [hole for is_kept, hole in holes if is_kept]
+        windows += wanted_ones or [hole for _, hole in holes[:1]]
     return windows
 
 

@@ -90,10 +90,10 @@ def prism(outline: Sequence[tuple[float, float]], height: float) -> MeshShape:
 
 def shelf_objects(w: Workbench, x: Range, y: Range, z: float, count: int, room: float) -> None:
     """Adds a row of up to `count` books, boxes, bowls and vases to a shelf with `room` metres of free height."""
-    each = (y[1] - y[0]) / count
+    pitch = (y[1] - y[0]) / count
     for i in range(count):
-        at, tallest = y[0] + (i + 0.5) * each, min(0.8 * room, 0.24)
-        half = min(0.42 * each, 0.09)
+        at, tallest = y[0] + (i + 0.5) * pitch, min(0.8 * room, 0.24)
+        half = min(0.42 * pitch, 0.09)
         middle = 0.5 * (x[0] + x[1])
         kind = w.choice(("book", "pot", "ceramic", "cardboard", "none"))
         if kind in ("book", "cardboard"):

@@ -43,7 +43,7 @@ def plain_doors(
     low_handles: bool = False,
 ) -> None:
     """Adds flat hinged doors side by side, with handles near the upper or lower edge, or half-way up tall doors."""
-    each = (y[1] - y[0]) / count
+    pitch = (y[1] - y[0]) / count
     if count > 1:
         _plain_joints(w, x, y, z, look)
     tall = z[1] - z[0]
@@ -52,9 +52,9 @@ def plain_doors(
     if tall > 1.2:
         grip = z[0] + 0.52 * tall
     for i in range(count):
-        left = y[0] + i * each
-        w.box((x, x + FRONT_M), (left + GAP_M, left + each - GAP_M), (z[0] + GAP_M, z[1] - GAP_M), look, solid=False)
-        hand = left + (each - 0.045 if i % 2 == 0 and count > 1 else 0.045)
+        left = y[0] + i * pitch
+        w.box((x, x + FRONT_M), (left + GAP_M, left + pitch - GAP_M), (z[0] + GAP_M, z[1] - GAP_M), look, solid=False)
+        hand = left + (pitch - 0.045 if i % 2 == 0 and count > 1 else 0.045)
         length = min(0.16, 0.4 * tall)
         _plain_handle(w, handle, (x + FRONT_M, hand, grip), (0.0, length), metal)
 
@@ -105,12 +105,12 @@ def styled_doors(
 ) -> None:
     """Adds hinged doors side by side, with handles where they meet."""
     _styled_joints(w, x, y, z, look)
-    each, tall = (y[1] - y[0]) / count, z[1] - z[0]
+    pitch, tall = (y[1] - y[0]) / count, z[1] - z[0]
     up = z[0] + (0.5 if tall > 1.0 else 0.68) * tall
     for i in range(count):
-        left = y[0] + i * each
-        face = min(front_panel(w, x, (left, left + each), z, look, front), x + FRONT_M + 0.002)
-        hand = left + (each - 0.035 if i % 2 == 0 and count > 1 else 0.035)
+        left = y[0] + i * pitch
+        face = min(front_panel(w, x, (left, left + pitch), z, look, front), x + FRONT_M + 0.002)
+        hand = left + (pitch - 0.035 if i % 2 == 0 and count > 1 else 0.035)
         handle(w, grip, (face, hand, up), min(0.5 * tall if grip == "rail" else 0.18, 0.5 * tall), metal, upright=True)
 
 
@@ -127,19 +127,19 @@ def styled_drawers(
 ) -> None:
     """Adds drawers in rows between the heights `edges`, in columns side by side."""
     _styled_joints(w, x, y, (edges[0], edges[-1]), look)
-    each = (y[1] - y[0]) / columns
+    pitch = (y[1] - y[0]) / columns
     for low, high in itertools.pairwise(edges):
         for column in range(columns):
-            left = y[0] + column * each
-            face = front_panel(w, x, (left, left + each), (low, high), look, front)
-            middle, up = left + 0.5 * each, 0.5 * (low + high)
+            left = y[0] + column * pitch
+            face = front_panel(w, x, (left, left + pitch), (low, high), look, front)
+            middle, up = left + 0.5 * pitch, 0.5 * (low + high)
             if grip in ("slot", "rail") or high - low < 0.09:
                 up, face = high - 0.025, min(face, x + FRONT_M + 0.002)
-            if grip == "knob" and each > 0.5:
+            if grip == "knob" and pitch > 0.5:
                 for side in BOTH_SIDES:
-                    handle(w, grip, (face, middle + side * 0.28 * each, up), 0.0, metal)
+                    handle(w, grip, (face, middle + side * 0.28 * pitch, up), 0.0, metal)
             else:
-                wide = 0.9 * each if grip == "rail" else min(0.4 * each, 0.26)
+                wide = 0.9 * pitch if grip == "rail" else min(0.4 * pitch, 0.26)
                 handle(w, grip, (face, middle, up), wide, metal)
 
 

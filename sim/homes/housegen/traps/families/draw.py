@@ -106,8 +106,8 @@ def _extent(task: Task, site: TrapSite) -> tuple[float, int]:
     """Returns the length in plan of all hidden bodies, and the number of their collision geoms; a pit is one."""
     world, solid = task.world, collidable_geoms(task.world.model)
     length_m, count = (site.pit.rect.long_m, 1) if site.pit else (0.0, 0)
-    for each in world.labels.instances:
-        geoms = [geom for geom in each.geom_ids if solid[geom]] if each.name in site.hidden else []
+    for instance in world.labels.instances:
+        geoms = [geom for geom in instance.geom_ids if solid[geom]] if instance.name in site.hidden else []
         if geoms:
             corners_m = [geom_polytope(world.model, world.data, geom).vertices_m[:, :2] for geom in geoms]
             length_m += max(cv2.minAreaRect(np.concatenate(corners_m).astype(np.float32))[1])
