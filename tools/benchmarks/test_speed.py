@@ -158,10 +158,10 @@ def test_workers(benchmark: BenchmarkFixture, workers: int) -> None:
 
 @pytest.mark.parametrize(("semantics", "limit_mb"), [("gt", 500.0), ("rednet", 800.0)])
 def test_memory_of_a_worker(semantics: str, limit_mb: float) -> None:
-    """The largest resident memory of a process in 3,000 steps."""
+    """The largest resident memory of a process in 1,000 steps."""
     code = (
         "from tools.benchmarks import test_speed as t\n"
-        f"for _ in zip(range(3000), t._steps({semantics!r})): pass\nprint(t.peak_mb())"
+        f"for _ in zip(range(1000), t._steps({semantics!r})): pass\nprint(t.peak_mb())"
     )
     peak_mb = float(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)
     print(f"{semantics}: {peak_mb:.0f} MB")
