@@ -137,10 +137,10 @@ def _on_edges(corners_m: NDArray[np.float64], spacing_m: float) -> NDArray[np.fl
 def _around(points: NDArray[np.float64], group: NDArray[np.int64], count: int) -> NDArray[np.float64]:
     """Returns the boxes (count, 6) around groups of points; those without a point are turned inside out."""
     order = np.argsort(group, kind="stable")
-    there, start = np.unique(group[order], return_index=True)
+    firsts, start = np.unique(group[order], return_index=True)
     boxes = np.hstack([np.full((count, 3), np.inf), np.full((count, 3), -np.inf)])
-    boxes[there, :3] = np.minimum.reduceat(points[order], start, axis=0)
-    boxes[there, 3:] = np.maximum.reduceat(points[order], start, axis=0)
+    boxes[firsts, :3] = np.minimum.reduceat(points[order], start, axis=0)
+    boxes[firsts, 3:] = np.maximum.reduceat(points[order], start, axis=0)
     return boxes
 
 
@@ -160,10 +160,10 @@ def joined_cells(filled: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[
     """
     best: NDArray[np.int64] | None = None
     for axes in ((2, 0, 1), (0, 1, 2), (1, 0, 2)):
-        found = _boxes_along(np.transpose(filled, axes))
-        if best is None or len(found) < len(best):
+        boxes = _boxes_along(np.transpose(filled, axes))
+        if best is None or len(boxes) < len(best):
             back = np.argsort(axes)
-            best = np.hstack([found[:, :3][:, back], found[:, 3:][:, back]])
+            best = np.hstack([boxes[:, :3][:, back], boxes[:, 3:][:, back]])
     assert best is not None
     of_cell = np.full(filled.shape, -1, dtype=np.int64)
     for number, (x0, y0, z0, x1, y1, z1) in enumerate(best.tolist()):
@@ -204,13 +204,13 @@ def convex_parts(surfaces: Sequence[Surface]) -> list[NDArray[np.float64]]:
     vertices, faces = welded(surfaces)
     coacd.set_log_level("error")
     try:
-        found = coacd.run_coacd(
+        hulls = coacd.run_coacd(
             coacd.Mesh(vertices, faces), threshold=CONCAVITY_M, real_metric=True, max_convex_hull=MOST_PARTS,
             preprocess_resolution=40, mcts_iterations=60, mcts_nodes=10, max_ch_vertex=32, seed=0,
         )  # fmt: skip
     except Exception as error:  # it is compiled code that raises what it likes
         raise HouseError(f"CoACD cannot divide an object into convex parts ({type(error).__name__}).") from None
-    parts = [np.asarray(points, dtype=np.float64) for points, _ in found]
+    parts = [np.asarray(points, dtype=np.float64) for points, _ in hulls]
     return [part for part in parts if _has_volume(part)]
 
 

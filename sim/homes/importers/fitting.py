@@ -82,7 +82,7 @@ class Fitter:
     def _best(self, category: str, use: str | None, size_m: tuple[float, float, float]) -> tuple[Item, float]:
         """Returns the item, of those drawn, that needs the least stretching, and its largest factor."""
         hints: dict[str, Any] = {**_HINTS.get(category, {}), **({} if use is None else {"use": use})}
-        found: list[tuple[float, int, Item]] = []
+        fits: list[tuple[float, int, Item]] = []
         for number in range(DRAWS):
             item = CATALOGUE.make_item(category, self._rng, pool=self._pool, **hints)
             asked: dict[str, Any] = {
@@ -90,9 +90,9 @@ class Fitter:
                 for name, new, old in zip(("depth_m", "width_m", "height_m"), size_m, item.size_m, strict=True)
             }
             again = CATALOGUE.make_item(category, self._rng, pool=self._pool, style=item.style, **hints, **asked)
-            for each in (item, again):
-                found.append((_stretch(each, size_m), 2 * number + (each is again), each))
-        stretch, _, best = min(found, key=lambda each: each[:2])
+            for item_tried in (item, again):
+                fits.append((_stretch(item_tried, size_m), 2 * number + (item_tried is again), item_tried))
+        stretch, _, best = min(fits, key=lambda fit: fit[:2])
         return best, stretch
 
     def _solid(self, category: str, shape: str, size_m: tuple[float, float, float]) -> Item:

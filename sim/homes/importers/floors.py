@@ -51,11 +51,11 @@ class Plan:
             covered: share of the cells at which no more are added.
             most: largest number.
         """
-        found = [] if not self.mask.any() else self._joined()
-        found.sort(key=lambda rect: -rect.area_m2)
-        total, chosen = sum(rect.area_m2 for rect in found), []
-        for rect in found[:most]:
-            if sum(each.area_m2 for each in chosen) >= covered * total:
+        rectangles = [] if not self.mask.any() else self._joined()
+        rectangles.sort(key=lambda rect: -rect.area_m2)
+        total, chosen = sum(rect.area_m2 for rect in rectangles), []
+        for rect in rectangles[:most]:
+            if sum(rectangle.area_m2 for rectangle in chosen) >= covered * total:
                 break
             chosen.append(rect)
         return chosen
@@ -115,7 +115,7 @@ def find_levels(floors_m: NDArray[np.float64]) -> list[float]:
     level = floors_m[level_triangles(floors_m)] if len(floors_m) else floors_m
     area = 0.5 * np.abs(np.cross(level[:, 1] - level[:, 0], level[:, 2] - level[:, 0])[:, 2])
     z = level[:, :, 2].mean(axis=1)
-    found: list[tuple[float, float]] = []
+    intervals: list[tuple[float, float]] = []
     left = np.ones(len(z), dtype=np.bool_)
     while left.any():
         edges = np.arange(z[left].min() - 0.05, z[left].max() + 0.1, 0.05)
@@ -124,13 +124,13 @@ def find_levels(floors_m: NDArray[np.float64]) -> list[float]:
         near = left & (np.abs(z - peak) <= LEVEL_M)
         height = _weighted_median(z[near], area[near]) if near.any() else peak
         size_m2 = float(area[near].sum())
-        if size_m2 < LEAST_STOREY_M2 or (found and size_m2 < LEAST_SHARE * found[0][0]):
+        if size_m2 < LEAST_STOREY_M2 or (intervals and size_m2 < LEAST_SHARE * intervals[0][0]):
             break
-        found.append((size_m2, height))
+        intervals.append((size_m2, height))
         left &= np.abs(z - height) > STOREYS_APART_M
-    if not found:
+    if not intervals:
         raise HouseError(f"it has no level floor of {LEAST_STOREY_M2:g} m2 or more.")
-    return sorted(height for _, height in found)
+    return sorted(height for _, height in intervals)
 
 
 def _weighted_median(values: NDArray[np.float64], weights: NDArray[np.float64]) -> float:

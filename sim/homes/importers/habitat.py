@@ -41,7 +41,7 @@ class Source:
             return [self.dataset.file, self.file, *used_files(self.file, self.dataset)]
         stem = self.file.name.removesuffix(HM3D).removesuffix(MP3D)
         names = (".semantic.txt", ".semantic.glb", ".glb", ".basis.glb", ".house", "_semantic.ply")
-        return [each for name in names if (each := self.file.with_name(f"{stem}{name}")).is_file()]
+        return [sibling for name in names if (sibling := self.file.with_name(f"{stem}{name}")).is_file()]
 
 
 def find_sources(path: Path) -> list[Source]:
@@ -53,24 +53,26 @@ def find_sources(path: Path) -> list[Source]:
     name = path.name
     if path.is_dir():
         configs = sorted(path.glob(f"*{DATASET}"))
-        found = list(itertools.chain.from_iterable(_scenes(read_dataset(config)) for config in configs))
-        found = found or list(_scans(path))
+        sources = list(itertools.chain.from_iterable(_scenes(read_dataset(config)) for config in configs))
+        sources = sources or list(_scans(path))
     elif name.endswith(DATASET):
-        found = list(_scenes(read_dataset(path))) or list(_scans(path.parent))
+        sources = list(_scenes(read_dataset(path))) or list(_scans(path.parent))
     elif name.endswith(SCENE):
-        found = [Source(name.removesuffix(SCENE), "scene", path, read_dataset(dataset_of(path)))]
+        sources = [Source(name.removesuffix(SCENE), "scene", path, read_dataset(dataset_of(path)))]
     elif name.endswith((HM3D, MP3D)):
-        found = [_scan(path)]
+        sources = [_scan(path)]
     else:
-        found = []
-    if not found:
+        sources = []
+    if not sources:
         raise ConfigError(
             f"'{path}' has no house of Habitat's data sets: *{DATASET} with scenes, *{HM3D} or *{MP3D} with its meshes."
         )
-    twice = next((a.name for a, b in itertools.pairwise(sorted(found, key=lambda s: s.name)) if a.name == b.name), None)
+    twice = next(
+        (a.name for a, b in itertools.pairwise(sorted(sources, key=lambda s: s.name)) if a.name == b.name), None
+    )
     if twice is not None:
         raise ConfigError(f"'{path}' has two houses of the name '{twice}'.")
-    return sorted(found, key=lambda source: source.name)
+    return sorted(sources, key=lambda source: source.name)
 
 
 def _scenes(dataset: SceneDataset) -> Iterator[Source]:

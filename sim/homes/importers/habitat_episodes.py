@@ -130,10 +130,10 @@ def _fitted(task: Task, entry: habitat.EpisodeEntry, lowered_m: float, counts: C
     if goal is None or goal not in task.truth.goals():
         counts[f"Episode left out: the house has no {entry.object_category[:40]}."] += 1
         return None
-    there = habitat.from_agent_state(entry.start_position, entry.start_rotation)
-    height_m = there.floor_z_m - lowered_m
+    stated = habitat.from_agent_state(entry.start_position, entry.start_rotation)
+    height_m = stated.floor_z_m - lowered_m
     floor_z_m = min(storeys_of(task), key=lambda z_m: abs(z_m - height_m))
-    pose = _free_pose(task, replace(there, floor_z_m=floor_z_m))
+    pose = _free_pose(task, replace(stated, floor_z_m=floor_z_m))
     if pose is None:
         counts["Episode left out: no free place is near its start."] += 1
         return None
@@ -145,7 +145,7 @@ def _fitted(task: Task, entry: habitat.EpisodeEntry, lowered_m: float, counts: C
     if distance_m is None:
         counts["Episode left out: its goal cannot be reached from its start."] += 1
         return None
-    if (pose.x_m, pose.y_m) != (there.x_m, there.y_m):
+    if (pose.x_m, pose.y_m) != (stated.x_m, stated.y_m):
         counts["A start was moved to a free place."] += 1
     name = f"{task.world.house.name}_{entry.episode_id}"
     return Episode(name, task.world.house.name, goal, pose, distance_m)
@@ -176,11 +176,15 @@ def _free_pose(task: Task, pose: Pose) -> Pose | None:
 def _match(task: Task, name: str, goals: Sequence[Goal], lowered_m: float) -> Iterator[str]:
     """Yields a sentence for each goal of a category: whether an instance of the house is there."""
     goal = _goal(name)
-    for each in goals:
-        x, y, z = habitat.from_position(each.position)
+    for place in goals:
+        x, y, z = habitat.from_position(place.position)
         floor_z_m = min(storeys_of(task), key=lambda z_m: (z_m > z - lowered_m, abs(z_m - (z - lowered_m))))
         known = goal is not None and goal in task.truth.goals()
-        boxes = [each.bounds_m for each in task.truth.region(goal, floor_z_m).footprints] if goal and known else []
+        boxes = (
+            [footprint.bounds_m for footprint in task.truth.region(goal, floor_z_m).footprints]
+            if goal and known
+            else []
+        )
         gaps = [np.hypot(max(x0 - x, x - x1, 0.0), max(y0 - y, y - y1, 0.0)) for x0, y0, x1, y1 in boxes]
         near = min(gaps, default=np.inf) <= SAME_PLACE_M
         yield "Goals of the files that fit." if near else f"Goal without an instance at its place: {name[:40]}."

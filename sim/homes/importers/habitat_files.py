@@ -135,8 +135,8 @@ class SceneDataset:
 
     def scenes(self) -> list[Path]:
         """Returns the scenes, sorted."""
-        found = set(_listed(self.file, self.content.scene_instances.paths, SCENE))
-        return sorted(found)
+        scenes = set(_listed(self.file, self.content.scene_instances.paths, SCENE))
+        return sorted(scenes)
 
     def template(self, kind: str, name: str, where: str) -> Template:
         """Returns the configuration that a scene names.
@@ -214,19 +214,19 @@ class SceneDataset:
         where = f"Data set '{self.file}'"
         listed = _listed(self.file, convert(paths, dict[str, list[str]], where=where), "")
         own = next((file for file in listed if name and file.name in (name, f"{name}.semantic_config.json")), None)
-        found = Semantics() if own is None else read_json(own, Semantics, what="Semantics", error=HouseError)
+        semantics = Semantics() if own is None else read_json(own, Semantics, what="Semantics", error=HouseError)
         shared = section.get(name) or (
             defaults.get("semantic_descriptor_filename") if isinstance(defaults, dict) else ""
         )
-        if found.classes or not isinstance(shared, str) or not shared:
-            return found
+        if semantics.classes or not isinstance(shared, str) or not shared:
+            return semantics
         # A default is relative to the descriptor of the scene, another name to the data set.
         base = self.folder if own is None else own.parent
-        file = next((each for each in (base / shared, self.folder / shared) if self._has(each)), None)
+        file = next((candidate for candidate in (base / shared, self.folder / shared) if self._has(candidate)), None)
         if file is None:
-            return found
+            return semantics
         more = read_json(file, Semantics, what="Semantics", error=HouseError)
-        return Semantics(more.classes, found.region_annotations or more.region_annotations)
+        return Semantics(more.classes, semantics.region_annotations or more.region_annotations)
 
 
 def read_dataset(file: Path) -> SceneDataset:
@@ -239,11 +239,11 @@ def read_dataset(file: Path) -> SceneDataset:
     files: dict[str, dict[str, Path]] = {}
     for kind, suffix in SUFFIXES.items():
         section: _Section = getattr(content, kind)
-        found = files.setdefault(kind, {})
-        for each in _listed(file, {".glb": section.paths.get(".glb", [])}, ".glb"):
-            found[each.name.removesuffix(".glb")] = each
-        for each in _listed(file, {".json": section.paths.get(".json", [])}, suffix):
-            found[each.name.removesuffix(suffix)] = each
+        templates = files.setdefault(kind, {})
+        for name in _listed(file, {".glb": section.paths.get(".glb", [])}, ".glb"):
+            templates[name.name.removesuffix(".glb")] = name
+        for name in _listed(file, {".json": section.paths.get(".json", [])}, suffix):
+            templates[name.name.removesuffix(suffix)] = name
     return SceneDataset(file, content, files, _tables(file.parent))
 
 
@@ -257,9 +257,9 @@ def _listed(file: Path, paths: Mapping[str, list[str]], suffix: str) -> Iterator
             matches = itertools.islice(file.parent.glob(pattern.rstrip("/")), MAX_FILES)
             for match in matches:
                 inner = itertools.islice(match.iterdir(), MAX_FILES) if match.is_dir() else [match]
-                for each in inner:
-                    if each.name.endswith(suffix) and each.is_file() and each.resolve().is_relative_to(base):
-                        yield each
+                for entry in inner:
+                    if entry.name.endswith(suffix) and entry.is_file() and entry.resolve().is_relative_to(base):
+                        yield entry
         except (OSError, ValueError, NotImplementedError):
             raise ConfigError(
                 f"Scene data set '{file}': '{printable(pattern)[:80]}' is not a pattern of files."
@@ -268,7 +268,7 @@ def _listed(file: Path, paths: Mapping[str, list[str]], suffix: str) -> Iterator
 
 def _tables(folder: Path) -> dict[str, str]:
     """Returns the categories of objects by id, from the tables of HSSD (`semantics/*.csv`, `metadata/*.csv`)."""
-    found: dict[str, str] = {}
+    names: dict[str, str] = {}
     for file in sorted([*folder.glob("semantics/*.csv"), *folder.glob("metadata/*.csv")])[:20]:
         for row in read_csv(file, what="Table of objects"):
             ident = next((row[name] for name in ("id", "object_id", "object_hash") if row.get(name)), "")
@@ -276,8 +276,8 @@ def _tables(folder: Path) -> dict[str, str]:
                 (row[name] for name in ("main_category", "clean_category", "category") if row.get(name)), ""
             )
             if ident and category:
-                found.setdefault(ident, category)
-    return found
+                names.setdefault(ident, category)
+    return names
 
 
 def dataset_of(scene: Path) -> Path:
@@ -287,9 +287,9 @@ def dataset_of(scene: Path) -> Path:
         ConfigError: there is none, or there are several.
     """
     for folder in list(scene.resolve().parents)[:LEVELS_UP]:
-        found = sorted(folder.glob(f"*{DATASET}"))
-        if len(found) == 1:
-            return found[0]
-        if found:
+        configs = sorted(folder.glob(f"*{DATASET}"))
+        if len(configs) == 1:
+            return configs[0]
+        if configs:
             raise ConfigError(f"Scene '{scene}': '{folder}' has several data sets; give the path of one of them.")
     raise ConfigError(f"Scene '{scene}': no folder above has a *{DATASET}.")

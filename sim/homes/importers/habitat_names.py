@@ -32,9 +32,9 @@ def category_of(name: str) -> str | None:
     label = key.replace(" ", "_")
     if label in MPCAT40 or label in _LABELS:
         return _LABELS.get(label, label)
-    found = entries("habitat").get(key)
-    if found is not None:
-        return found.category
+    entry = entries("habitat").get(key)
+    if entry is not None:
+        return entry.category
     first, slash, _ = name.partition("/")
     return category_of(first) if slash and first.strip() else category_of_name(name)
 

@@ -69,7 +69,8 @@ def read_hm3d(file: Path, losses: Losses, texture_px: int) -> Scan:
     stem = file.name.removesuffix(".semantic.txt")
     notes, colours = read_hm3d_text(file, losses)
     shown = next(
-        (each for name in (f"{stem}.glb", f"{stem}.basis.glb") if (each := file.with_name(name)).is_file()), None
+        (candidate for name in (f"{stem}.glb", f"{stem}.basis.glb") if (candidate := file.with_name(name)).is_file()),
+        None,
     )
     if shown is None:
         raise HouseError(f"Scan '{file}': there is no '{stem}.glb' and no '{stem}.basis.glb' next to it.")
@@ -85,9 +86,9 @@ def read_mp3d(file: Path, losses: Losses, texture_px: int) -> Scan:
     notes, kinds = read_house_text(file)
     ply, glb = file.with_name(f"{stem}_semantic.ply"), file.with_name(f"{stem}.glb")
     labelled = read_surfaces(ply)
-    if any(each.face_ids is None for each in labelled):
+    if any(surface.face_ids is None for surface in labelled):
         raise HouseError(f"Mesh '{ply}' has no property 'object_id' of its faces.")
-    ids = [each.face_ids for each in labelled if each.face_ids is not None]
+    ids = [surface.face_ids for surface in labelled if surface.face_ids is not None]
     surfaces = labelled
     if glb.is_file():
         surfaces = read_surfaces(glb, texture_px=texture_px, losses=losses.changes)
@@ -145,7 +146,7 @@ def read_house_text(file: Path) -> tuple[dict[int, Annotation], dict[int, str]]:
         raise HouseError(f"{what}, line 1: it must be 'ASCII 1.1'.")
     categories: dict[int, tuple[str, str]] = {}
     kinds: dict[int, str] = {}
-    found: list[tuple[int, int, int]] = []
+    regions: list[tuple[int, int, int]] = []
     for number, line in enumerate(lines[1:], start=2):
         words = line.split()
         try:
@@ -154,13 +155,13 @@ def read_house_text(file: Path) -> tuple[dict[int, Annotation], dict[int, str]]:
             elif words[:1] == ["R"]:
                 kinds[int(words[1])] = kind_of_region(words[5])
             elif words[:1] == ["O"]:
-                found.append((int(words[1]), int(words[2]), int(words[3])))
+                regions.append((int(words[1]), int(words[2]), int(words[3])))
         except (ValueError, IndexError):
             raise HouseError(f"{what}, line {number} is not a line of this format: '{printable(line)[:60]}'.") from None
-        if max(len(found), len(categories), len(kinds)) > MAX_OBJECTS:
+        if max(len(regions), len(categories), len(kinds)) > MAX_OBJECTS:
             raise HouseError(f"{what} has more than {MAX_OBJECTS} objects.")
     unknown = ("no category", UNKNOWN)
-    return {ident: Annotation(*categories.get(category, unknown), region) for ident, region, category in found}, kinds
+    return {ident: Annotation(*categories.get(category, unknown), region) for ident, region, category in regions}, kinds
 
 
 def _instances(surface: Surface, colours: Mapping[int, int]) -> NDArray[np.int64]:
@@ -193,13 +194,13 @@ def _scan(
     if surfaces is labelled:
         of_surface = list(ids)
     else:
-        tree = KDTree(np.concatenate([each.corners_m.mean(axis=1) for each in labelled]))
+        tree = KDTree(np.concatenate([surface.corners_m.mean(axis=1) for surface in labelled]))
         of_face = np.append(np.concatenate(ids), -1)
         of_surface = [
-            of_face[tree.query(each.corners_m.mean(axis=1), distance_upper_bound=NEAR_M)[1]] for each in surfaces
+            of_face[tree.query(surface.corners_m.mean(axis=1), distance_upper_bound=NEAR_M)[1]] for surface in surfaces
         ]
     turn = _upright(surfaces, of_surface, notes)
-    surfaces = [each.moved(turn) for each in surfaces]
+    surfaces = [surface.moved(turn) for surface in surfaces]
     yaw = _yaw_of_walls(surfaces, of_surface, notes)
     back, quaternion = np.eye(4), (math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2))
     back[:2, :2] = [[math.cos(yaw), math.sin(yaw)], [-math.sin(yaw), math.cos(yaw)]]
@@ -207,7 +208,9 @@ def _scan(
     floors: dict[int, list[NDArray[np.float64]]] = {}
     everything = np.unique(np.concatenate(of_surface)).tolist()
     for ident in everything:
-        parts = [each.part(of == ident) for each, of in zip(surfaces, of_surface, strict=True) if (of == ident).any()]
+        parts = [
+            surface.part(of == ident) for surface, of in zip(surfaces, of_surface, strict=True) if (of == ident).any()
+        ]
         note = notes.get(ident, Annotation("no instance", UNKNOWN, -1))
         if note.category == "floor":
             floors.setdefault(note.region, []).extend(part.corners_m for part in parts)

@@ -70,35 +70,39 @@ def read_scene(file: Path, dataset: SceneDataset, losses: Losses, texture_px: in
         raise HouseError(str(error)) from None
     reader = _Reader(dataset, semantics, scene, losses, texture_px, f"Scene '{file}'")
     stage = reader.placed(scene.stage_instance, "stages")
-    found = []
-    for each in scene.object_instances:
+    instances = []
+    for entry in scene.object_instances:
         try:
-            found.append((each, reader.placed(each, "objects")))
+            instances.append((entry, reader.placed(entry, "objects")))
         except HouseError as error:
-            losses.left_out[f"{printable(each.template_name)[:60]}: {error}"] += 1
-    for each in scene.articulated_object_instances:
-        name = each.get("template_name", "") if isinstance(each, dict) else ""
+            losses.left_out[f"{printable(entry.template_name)[:60]}: {error}"] += 1
+    for entry in scene.articulated_object_instances:
+        name = entry.get("template_name", "") if isinstance(entry, dict) else ""
         losses.left_out[f"{printable(str(name))[:60]}: it is articulated (URDF), which is not read"] += 1
-    parts = _parts_of_stage(stage, [each for _, each in found])
-    floors = [each.corners_m for each in parts if each.category == "floor"]
+    parts = _parts_of_stage(stage, [item for _, item in instances])
+    floors = [part.corners_m for part in parts if part.category == "floor"]
     ground = find_levels(np.concatenate(floors))[0] if floors else 0.0
-    objects = [reader.movable(instance, each, ground) for instance, each in found]
+    objects = [reader.movable(instance, item, ground) for instance, item in instances]
     return Scene([*parts, *objects], [_room(region) for region in semantics.region_annotations])
 
 
 def used_files(file: Path, dataset: SceneDataset) -> list[Path]:
     """Returns the meshes of a scene that exist, sorted; those of a broken scene are left out."""
-    found: set[Path] = set()
+    files: set[Path] = set()
     try:
         scene = read_json(file, SceneInstance, what="Scene", error=HouseError)
-        names = {("objects", each.template_name) for each in scene.object_instances}
+        names = {("objects", instance.template_name) for instance in scene.object_instances}
         for kind, name in {*names, ("stages", scene.stage_instance.template_name)}:
             with contextlib.suppress(HouseError):
                 template = dataset.template(kind, name, str(file))
-                found |= {each for each in (template.asset, template.file) if each is not None and each.is_file()}
+                files |= {
+                    template_file
+                    for template_file in (template.asset, template.file)
+                    if template_file is not None and template_file.is_file()
+                }
     except HouseError:
         return []
-    return sorted(found)
+    return sorted(files)
 
 
 class _Reader:
@@ -110,7 +114,7 @@ class _Reader:
     ) -> None:  # fmt: skip
         self._dataset, self._scene, self._losses = dataset, scene, losses
         self._texture_px, self._where = texture_px, where
-        self._classes = {each.id: each.name for each in semantics.classes}
+        self._classes = {entry.id: entry.name for entry in semantics.classes}
         self._templates: dict[tuple[str, str], Template] = {}
         self._meshes: dict[Path, list[Surface]] = {}
         self._shapes: dict[tuple[object, ...], Shape] = {}
@@ -138,8 +142,8 @@ class _Reader:
 
     def _name(self, template: Template) -> str:
         """Returns the name that says the category of an object."""
-        found = self._classes.get(template.attributes.semantic_id) if template.attributes.semantic_id else None
-        return found or self._dataset.category_of_id.get(template.name) or template.name
+        name = self._classes.get(template.attributes.semantic_id) if template.attributes.semantic_id else None
+        return name or self._dataset.category_of_id.get(template.name) or template.name
 
     def _shape(self, template: Template, scale: tuple[float, ...]) -> Shape:
         """Returns the surfaces of a mesh in our frame, turned and scaled by its configuration and its instance."""
@@ -159,18 +163,18 @@ class _Reader:
             )
             if abs(np.linalg.det(matrix)) < 1e-9:
                 raise HouseError(f"{self._where}: '{printable(template.name)}' has a scale of 0.")
-            self._shapes[key] = Shape(tuple(each.moved(matrix) for each in self._meshes[template.asset]))
+            self._shapes[key] = Shape(tuple(surface.moved(matrix) for surface in self._meshes[template.asset]))
         return self._shapes[key]
 
-    def movable(self, instance: ObjectInstance, each: MeshObject, ground_m: float) -> MeshObject:
+    def movable(self, instance: ObjectInstance, item: MeshObject, ground_m: float) -> MeshObject:
         """Returns the object, with its mass if the robot can push it."""
         mass = self._templates["objects", instance.template_name].attributes.mass
         if instance.motion_type.lower() != "dynamic" or mass is None or not 0.0 < mass < PUSHED_KG:
-            return each
-        if abs(float(each.corners_m[..., 2].min()) - ground_m) > STANDS_M or each.category in STRUCTURE:
+            return item
+        if abs(float(item.corners_m[..., 2].min()) - ground_m) > STANDS_M or item.category in STRUCTURE:
             self._losses.changes["An object that the source moves is fixed: it does not stand on the floor."] += 1
-            return each
-        return MeshObject(each.category, each.source, each.shape, each.position_m, each.quaternion, mass, each.is_solid)
+            return item
+        return MeshObject(item.category, item.source, item.shape, item.position_m, item.quaternion, mass, item.is_solid)
 
 
 def _rotation(rotation: Sequence[float], where: str) -> tuple[NDArray[np.float64], tuple[float, float, float, float]]:
@@ -217,24 +221,24 @@ def _parts_of_stage(stage: MeshObject, objects: Sequence[MeshObject]) -> list[Me
     mujoco.mju_quat2Mat(turn, np.asarray(stage.quaternion))
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = turn.reshape(3, 3), stage.position_m
-    surfaces = [each.moved(pose) for each in stage.shape.surfaces]
-    named = [_category_of_part(each) for each in surfaces]
+    surfaces = [surface.moved(pose) for surface in stage.shape.surfaces]
+    named = [_category_of_part(surface) for surface in surfaces]
     if "floor" in named:
         return [
-            MeshObject(category or "wall", each.node, Shape((each,)), is_solid=stage.is_solid)
-            for each, category in zip(surfaces, named, strict=True)
+            MeshObject(category or "wall", surface.node, Shape((surface,)), is_solid=stage.is_solid)
+            for surface, category in zip(surfaces, named, strict=True)
         ]
     parts: list[MeshObject] = []
-    bottoms = np.array([each.corners_m[..., 2].min() for each in objects])
-    levels = _floor_levels(np.concatenate([each.corners_m for each in surfaces]), bottoms)
-    for each, category in zip(surfaces, named, strict=True):
+    bottoms = np.array([item.corners_m[..., 2].min() for item in objects])
+    levels = _floor_levels(np.concatenate([surface.corners_m for surface in surfaces]), bottoms)
+    for surface, category in zip(surfaces, named, strict=True):
         if category is not None:
-            parts.append(MeshObject(category, each.node, Shape((each,)), is_solid=stage.is_solid))
+            parts.append(MeshObject(category, surface.node, Shape((surface,)), is_solid=stage.is_solid))
             continue
-        kinds = _kinds(each.corners_m, levels)
+        kinds = _kinds(surface.corners_m, levels)
         for number, kind in enumerate(("wall", "floor", "ceiling")):
             if (kinds == number).any():
-                shape = Shape((each.part(kinds == number),))
+                shape = Shape((surface.part(kinds == number),))
                 parts.append(MeshObject(kind, "stage", shape, is_solid=stage.is_solid))
     return parts
 

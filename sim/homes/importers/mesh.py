@@ -52,7 +52,7 @@ class _Node:
     @property
     def corners_m(self) -> NDArray[np.float64]:
         """All triangles (m, 3, 3)."""
-        return np.concatenate([each.corners_m for each in self.surfaces])
+        return np.concatenate([surface.corners_m for surface in self.surfaces])
 
 
 def find_files(path: Path) -> list[Path]:
@@ -63,13 +63,13 @@ def find_files(path: Path) -> list[Path]:
     """
     if not path.is_dir():
         return [path]
-    found = sorted(file for file in path.iterdir() if file.suffix.lower().lstrip(".") in FORMATS)[:MAX_HOUSES]
-    if not found:
+    files = sorted(file for file in path.iterdir() if file.suffix.lower().lstrip(".") in FORMATS)[:MAX_HOUSES]
+    if not files:
         raise ConfigError(f"'{path}' has no file of a home: {', '.join(f'.{kind}' for kind in FORMATS)}.")
-    twice = next((b.name for a, b in itertools.pairwise(found) if a.stem == b.stem), None)
+    twice = next((b.name for a, b in itertools.pairwise(files) if a.stem == b.stem), None)
     if twice is not None:
         raise ConfigError(f"'{path}' has two homes of the name '{Path(twice).stem}', one of them '{twice}'.")
-    return found
+    return files
 
 
 def files_of(file: Path) -> list[Path]:
@@ -96,10 +96,10 @@ def import_mesh(file: Path, *, rules: Mapping[str, str], up: Axis, config: MeshC
     try:
         surfaces = _read(file, axis, config.texture_px, losses)
         nodes = _nodes(surfaces)
-        given = categories_by_rules([node.name for node in nodes], rules)
-        proposals = _proposals(nodes, given)
-        found = {each.name: each.category for each in proposals}
-        objects = _objects(nodes, {**found, **given}, losses)
+        by_rule = categories_by_rules([node.name for node in nodes], rules)
+        proposals = _proposals(nodes, by_rule)
+        proposed = {proposal.name: proposal.category for proposal in proposals}
+        objects = _objects(nodes, {**proposed, **by_rule}, losses)
         house = build_house(file.stem, str(file), objects, (), config, losses)
     except HouseError as error:
         said = str(error)
@@ -127,17 +127,17 @@ def _nodes(surfaces: Sequence[Surface]) -> list[_Node]:
         for number in np.unique(surface.face_ids).tolist():
             piece = surface.part(surface.face_ids == number)
             parts.setdefault(f"{surface.node}_{number}", []).append(replace(piece, face_ids=None))
-    return [_Node(name, tuple(found)) for name, found in parts.items()]
+    return [_Node(name, tuple(surfaces)) for name, surfaces in parts.items()]
 
 
-def _proposals(nodes: Sequence[_Node], given: Mapping[str, str]) -> tuple[Proposal, ...]:
+def _proposals(nodes: Sequence[_Node], by_rule: Mapping[str, str]) -> tuple[Proposal, ...]:
     """Returns a proposal for each node that no rule names: by its name, its material, else by its size."""
     named = {}
     for node in nodes:
         words = category_of_name(node.name) or next(filter(None, map(category_of_name, _materials(node))), None)
-        if node.name not in given and words is not None:
+        if node.name not in by_rule and words is not None:
             named[node.name] = Proposal(node.name, words, "name")
-    categories = {**{name: each.category for name, each in named.items()}, **given}
+    categories = {**{name: proposal.category for name, proposal in named.items()}, **by_rule}
     floors = [node.corners_m for node in nodes if categories.get(node.name) == "floor"]
     everything = np.concatenate([node.corners_m for node in nodes])
     lowest_m = find_levels(np.concatenate(floors) if floors else everything)[0]
@@ -153,7 +153,7 @@ def _proposals(nodes: Sequence[_Node], given: Mapping[str, str]) -> tuple[Propos
 
 
 def _materials(node: _Node) -> list[str]:
-    return list(dict.fromkeys(each.material for each in node.surfaces if each.material))
+    return list(dict.fromkeys(surface.material for surface in node.surfaces if surface.material))
 
 
 def _is_whole(node: _Node, everything: NDArray[np.float64]) -> bool:
@@ -173,12 +173,12 @@ def _objects(nodes: Sequence[_Node], categories: Mapping[str, str], losses: Loss
             continue
         objects.append(MeshObject(category, node.name, Shape(node.surfaces)))
         losses.furniture[category] += 1
-    if not objects or any(each.category == "floor" for each in objects):
+    if not objects or any(item.category == "floor" for item in objects):
         return objects
-    lowest_m = find_levels(np.concatenate([each.corners_m for each in objects]))[0]
+    lowest_m = find_levels(np.concatenate([item.corners_m for item in objects]))[0]
     cut: list[MeshObject] = []
-    for each in objects:
-        cut += _cut(each, lowest_m) if each.category == "wall" else [each]
+    for item in objects:
+        cut += _cut(item, lowest_m) if item.category == "wall" else [item]
     losses.changes["No node is a floor; the level triangles of the walls at the lowest level became one."] += 1
     return cut
 
@@ -193,4 +193,4 @@ def _cut(walls: MeshObject, lowest_m: float) -> list[MeshObject]:
         floor += [surface.part(level)] if level.any() else []
         rest += [surface.part(~level)] if not level.all() else []
     parts = (("floor", floor), ("wall", rest))
-    return [replace(walls, category=name, shape=Shape(tuple(found))) for name, found in parts if found]
+    return [replace(walls, category=name, shape=Shape(tuple(surfaces))) for name, surfaces in parts if surfaces]

@@ -68,7 +68,7 @@ class Shape:
     @property
     def corners_m(self) -> NDArray[np.float64]:
         """All triangles (m, 3, 3)."""
-        return np.concatenate([each.corners_m for each in self.surfaces])
+        return np.concatenate([surface.corners_m for surface in self.surfaces])
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,16 +134,16 @@ def build_house(
     Raises:
         HouseError: there is no floor, or MuJoCo cannot build the house; the message does not name the house.
     """
-    floors = _together([each for each in objects if each.category == "floor"])
+    floors = _together([item for item in objects if item.category == "floor"])
     levels = find_levels(floors)
-    solids = [each for each in objects if each.is_solid and each.category not in ("floor", "ceiling")]
-    storeys = make_storeys(levels, floors, _together([each for each in solids if each.category not in STRUCTURE]))
+    solids = [item for item in objects if item.is_solid and item.category not in ("floor", "ceiling")]
+    storeys = make_storeys(levels, floors, _together([item for item in solids if item.category not in STRUCTURE]))
     builder = _Builder(name, config, levels, losses)
     if ambient is not None:
         builder.set_ambient(ambient)
     builder.add_floors(storeys)
     builder.add_objects(objects)
-    top_m = max(float(each.corners_m[..., 2].max()) for each in objects) - levels[-1]
+    top_m = max(float(item.corners_m[..., 2].max()) for item in objects) - levels[-1]
     areas_m2 = builder.add_rooms(rooms or _whole_storeys(storeys, top_m), storeys)
     report = {
         "house": name, "source": source, "rooms": len(areas_m2), "area_m2": round(sum(areas_m2), 2),
@@ -156,7 +156,7 @@ def build_house(
 
 def _together(objects: Sequence[MeshObject]) -> NDArray[np.float64]:
     """Returns the triangles (m, 3, 3) of several objects in the world."""
-    return np.concatenate([each.corners_m for each in objects]) if objects else np.zeros((0, 3, 3))
+    return np.concatenate([item.corners_m for item in objects]) if objects else np.zeros((0, 3, 3))
 
 
 def _whole_storeys(storeys: Sequence[Storey], top_m: float) -> list[RoomArea]:
@@ -236,9 +236,9 @@ class _Builder:
 
     def add_rooms(self, rooms: Sequence[RoomArea], storeys: Sequence[Storey]) -> list[float]:
         """Adds the sites of rooms; returns the area of each, m2."""
-        found, counts = [], Counter[str]()
+        rooms_found, counts = [], Counter[str]()
         for room in rooms:
-            storey = min(storeys, key=lambda each: abs(each.z_m - room.z_m))
+            storey = min(storeys, key=lambda level: abs(level.z_m - room.z_m))
             rects = storey.floor.within(room.rects)
             kind = _KIND.sub("_", room.kind.lower()).strip("_") or "room"
             for part, rect in enumerate(rects):
@@ -251,25 +251,25 @@ class _Builder:
                 )  # fmt: skip
             if rects:
                 counts[kind] += 1
-                found.append(sum(rect.area_m2 for rect in rects))
-        return found
+                rooms_found.append(sum(rect.area_m2 for rect in rects))
+        return rooms_found
 
     def add_objects(self, objects: Sequence[MeshObject]) -> None:
         """Adds all objects."""
-        objects = [self._flattened(each) if each.category == "floor" else each for each in objects]
+        objects = [self._flattened(item) if item.category == "floor" else item for item in objects]
         self._texture_px = _texture_px(objects, self._config.texture_px)
         budgets = self._budgets(objects)
-        for each in objects:
-            self._add_object(each, budgets[id(each.shape)])
+        for item in objects:
+            self._add_object(item, budgets[id(item.shape)])
 
-    def _flattened(self, each: MeshObject) -> MeshObject:
+    def _flattened(self, item: MeshObject) -> MeshObject:
         """Returns a floor in the world whose vertices near the level of a storey are at that level."""
         turn = np.empty(9)
-        mujoco.mju_quat2Mat(turn, np.asarray(each.quaternion, dtype=np.float64))
+        mujoco.mju_quat2Mat(turn, np.asarray(item.quaternion, dtype=np.float64))
         pose = np.eye(4)
-        pose[:3, :3], pose[:3, 3] = turn.reshape(3, 3), each.position_m
+        pose[:3, :3], pose[:3, 3] = turn.reshape(3, 3), item.position_m
         made, most_m = [], 0.0
-        for surface in (part.moved(pose) for part in each.shape.surfaces):
+        for surface in (part.moved(pose) for part in item.shape.surfaces):
             vertices = surface.vertices_m.copy()
             used = np.zeros(len(vertices), dtype=np.bool_)
             used[surface.faces[level_triangles(surface.corners_m)]] = True
@@ -281,13 +281,13 @@ class _Builder:
             made.append(replace(surface, vertices_m=vertices))
         if most_m > 0.01:
             self._losses.changes["A floor was uneven and was made flat."] += 1
-        return replace(each, shape=Shape(tuple(made)), position_m=(0.0, 0.0, 0.0), quaternion=(1.0, 0.0, 0.0, 0.0))
+        return replace(item, shape=Shape(tuple(made)), position_m=(0.0, 0.0, 0.0), quaternion=(1.0, 0.0, 0.0, 0.0))
 
     def _budgets(self, objects: Sequence[MeshObject]) -> dict[int, int]:
         """Returns the number of triangles of each shape: all of them, or shares by number and area."""
-        copies = Counter(id(each.shape) for each in objects)
-        shapes = {id(each.shape): each.shape for each in objects}
-        counts = {key: sum(len(each.faces) for each in shape.surfaces) for key, shape in shapes.items()}
+        copies = Counter(id(item.shape) for item in objects)
+        shapes = {id(item.shape): item.shape for item in objects}
+        counts = {key: sum(len(surface.faces) for surface in shape.surfaces) for key, shape in shapes.items()}
         total, most = sum(counts[key] * copies[key] for key in shapes), self._config.triangles
         if total <= most:
             return counts
@@ -296,52 +296,52 @@ class _Builder:
         self._losses.changes[f"Triangles were reduced to about {most}."] += 1
         return {key: max(LEAST_TRIANGLES, int(weights[key] * share)) for key in shapes}
 
-    def _add_object(self, each: MeshObject, budget: int) -> None:
-        parts = self._parts_of(each, budget)
+    def _add_object(self, item: MeshObject, budget: int) -> None:
+        parts = self._parts_of(item, budget)
         if not parts.skins:
-            self._losses.left_out[f"{each.source}: it has no area"] += 1
+            self._losses.left_out[f"{item.source}: it has no area"] += 1
             return
-        x, y, z = each.position_m
+        x, y, z = item.position_m
         body = self.spec.worldbody.add_body(
-            name=self._label(each.category), pos=_rounded(x, y, z - self._down_m), quat=list(each.quaternion)
+            name=self._label(item.category), pos=_rounded(x, y, z - self._down_m), quat=list(item.quaternion)
         )
         for mesh, material in parts.skins:
             body.add_geom(self._visual, meshname=mesh, material=material)
         self.triangles += parts.triangles
-        if each.mass_kg is not None and parts.solids:
+        if item.mass_kg is not None and parts.solids:
             body.add_freejoint()
             self._losses.changes["An object can be pushed."] += 1
         made = [body.add_geom(self._hit, pos=_rounded(*(0.5 * (box[:3] + box[3:]))),
                               size=_rounded(*(0.5 * (box[3:] - box[:3])))) for box in parts.boxes_m]  # fmt: skip
         made += [body.add_geom(self._hit, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name) for name in parts.hulls]
         self.collision_geoms += len(made)
-        mass = each.mass_kg
+        mass = item.mass_kg
         for geom in made if mass is not None else ():
             geom.mass = (mass or 0.0) / len(made)
 
-    def _parts_of(self, each: MeshObject, budget: int) -> _Parts:
+    def _parts_of(self, item: MeshObject, budget: int) -> _Parts:
         """Returns what the shape of an object became; computed once for objects of one shape that collide alike."""
-        collides = each.is_solid and each.category not in ("floor", "ceiling") and not self._is_flat(each)
-        key = (id(each.shape), each.category, collides)
+        collides = item.is_solid and item.category not in ("floor", "ceiling") and not self._is_flat(item)
+        key = (id(item.shape), item.category, collides)
         if key not in self._parts:
-            self._parts[key] = (each.shape, self._made_parts(each, budget, collides=collides))
+            self._parts[key] = (item.shape, self._made_parts(item, budget, collides=collides))
         return self._parts[key][1]
 
-    def _made_parts(self, each: MeshObject, budget: int, *, collides: bool) -> _Parts:
-        skins = [skin for skin in make_skins(each.shape.surfaces, budget, self._texture_px) if len(skin.faces)]
+    def _made_parts(self, item: MeshObject, budget: int, *, collides: bool) -> _Parts:
+        skins = [skin for skin in make_skins(item.shape.surfaces, budget, self._texture_px) if len(skin.faces)]
         names = tuple((self._add_mesh(skin), self._material(skin)) for skin in skins)
         triangles = sum(len(skin.faces) for skin in skins)
         boxes, hulls = np.zeros((0, 6)), ()
         if skins and collides:
             if self._config.collision == "convex":
-                hulls = tuple(self._add_hull(points) for points in convex_parts(each.shape.surfaces))
+                hulls = tuple(self._add_hull(points) for points in convex_parts(item.shape.surfaces))
             else:
-                boxes = collision_boxes(each.shape.corners_m, is_filled=each.category not in STRUCTURE)
+                boxes = collision_boxes(item.shape.corners_m, is_filled=item.category not in STRUCTURE)
         return _Parts(names, triangles, boxes, hulls)
 
-    def _is_flat(self, each: MeshObject) -> bool:
+    def _is_flat(self, item: MeshObject) -> bool:
         """Returns whether an object lies flat on a floor, as a rug does."""
-        z = each.corners_m[..., 2]
+        z = item.corners_m[..., 2]
         return any(level - LEVEL_M <= z.min() and z.max() <= level + FLAT_M for level in self._levels_m)
 
     def _add_mesh(self, skin: Skin) -> str:
@@ -350,9 +350,9 @@ class _Builder:
         # MuJoCo's texture coordinates point down; its own reader of OBJ files turns them too.
         uv = np.zeros((0, 2)) if skin.uv is None else np.stack([skin.uv[:, 0], 1.0 - skin.uv[:, 1]], axis=1)
         more = max(0, LEAST_VERTICES - count)
-        rows = [np.concatenate([each, each[-1:].repeat(more, axis=0)]) for each in (skin.vertices_m, normals, uv)]
+        rows = [np.concatenate([array, array[-1:].repeat(more, axis=0)]) for array in (skin.vertices_m, normals, uv)]
         content = struct.pack("<4i", *map(len, rows), len(skin.faces))
-        content += b"".join(each.astype("<f4").tobytes() for each in rows)
+        content += b"".join(array.astype("<f4").tobytes() for array in rows)
         return self._put_mesh(content + skin.faces.astype("<i4").tobytes())
 
     def _add_hull(self, points: NDArray[np.float64]) -> str:
@@ -400,7 +400,7 @@ class _Builder:
 def _texture_px(objects: Sequence[MeshObject], most_px: int) -> int:
     """Returns the largest side of pictures with which all of them fit into `TEXTURE_BYTES`."""
     pictures = {
-        id(surface.paint.picture): surface.paint.picture for each in objects for surface in each.shape.surfaces
+        id(surface.paint.picture): surface.paint.picture for item in objects for surface in item.shape.surfaces
         if surface.paint.picture is not None
     }  # fmt: skip
     while most_px > 64 and sum(_bytes(picture, most_px) for picture in pictures.values()) > TEXTURE_BYTES:
@@ -423,7 +423,7 @@ def _resized(picture: NDArray[np.uint8], most_px: int) -> NDArray[np.uint8]:
 
 
 def _area_m2(shape: Shape) -> float:
-    return sum(float(areas(each.vertices_m, each.faces).sum()) for each in shape.surfaces)
+    return sum(float(areas(surface.vertices_m, surface.faces).sum()) for surface in shape.surfaces)
 
 
 def _rounded(*values: float) -> list[float]:

@@ -60,14 +60,14 @@ def find_houses(path: Path) -> list[Path]:
         ConfigError: there are none.
     """
     if path.suffix == ".xml":
-        found = [path]
+        files = [path]
     else:
         names = sorted(path.glob(f"*{METADATA}"))[:MAX_HOUSES]
         stems = [file.name.removesuffix(METADATA) for file in names]
-        found = [path / f"{stem}.xml" for stem in stems if (path / f"{stem}.xml").is_file()]
-    if not found:
+        files = [path / f"{stem}.xml" for stem in stems if (path / f"{stem}.xml").is_file()]
+    if not files:
         raise ConfigError(f"'{path}' has no house of MolmoSpaces: <name>.xml with <name>{METADATA}.")
-    return [_with_ceiling(file) for file in found]
+    return [_with_ceiling(file) for file in files]
 
 
 def name_of(file: Path) -> str:
@@ -113,10 +113,10 @@ def import_scene(file: Path, *, doors: str, root: Path | None = None, texture_px
         text = text_of(spec)
     except HouseError as error:
         raise HouseError(f"House '{file}': {error}") from None
-    found = Counter(each.category for each in objects.values())
+    counts = Counter(item.category for item in objects.values())
     report = {
         "house": name, "source": str(file), "rooms": len(rooms), "area_m2": round(sum(rooms), 2),
-        "furniture": dict(found.most_common()), "boxes": {}, "left_out": {}, "changes": dict(changes), "moved_m": 0.0,
+        "furniture": dict(counts.most_common()), "boxes": {}, "left_out": {}, "changes": dict(changes), "moved_m": 0.0,
     }  # fmt: skip
     return Scene(name, text, files, rules, report)
 
@@ -141,12 +141,12 @@ def rules_of(categories: Mapping[str, str]) -> dict[str, str]:
 def _categories(objects: Mapping[str, _Object], changes: Counter[str]) -> dict[str, str]:
     """Returns the mpcat40 category of each object."""
     categories = {}
-    for name, each in objects.items():
-        entry = entries("ai2thor").get(each.category)
-        category = entry.category if entry is not None else category_of_name(each.category)
+    for name, item in objects.items():
+        entry = entries("ai2thor").get(item.category)
+        category = entry.category if entry is not None else category_of_name(item.category)
         if category is None:
             category = "objects"
-            changes[f"The type {each.category} is not in the table; it became objects."] += 1
+            changes[f"The type {item.category} is not in the table; it became objects."] += 1
         categories[name] = category
     return categories
 
@@ -220,13 +220,13 @@ def _triangles(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> NDArray
 
 def _rules_of_others(model: mujoco.MjModel, rules: Mapping[str, str], changes: Counter[str]) -> dict[str, str]:
     """Returns rules for visible objects that the metadata does not name, from the words in their names."""
-    labels, found = read_labels(model, rules=rules, ignore_prefix=""), {}
+    labels, assigned = read_labels(model, rules=rules, ignore_prefix=""), {}
     for name in void_objects(model, labels):
         category = category_of_name(name)
         if category is not None:
-            found[f"^{re.escape(name)}$"] = category
+            assigned[f"^{re.escape(name)}$"] = category
         changes[f"An object is not in the metadata; its name says {category or 'nothing'}."] += 1
-    return found
+    return assigned
 
 
 def _with_ceiling(file: Path) -> Path:

@@ -58,7 +58,7 @@ def read_obj(file: Path, *, texture_px: int, losses: Counter[str]) -> list[Surfa
     """
     where = f"Mesh '{printable(str(file))}'"
     text = read_bytes(file, what="Mesh", error=HouseError, most=MAX_FILE_BYTES).decode("utf-8", errors="replace")
-    found = _Content()
+    content = _Content()
     node, material = file.stem, ""
     for number, line in enumerate(text.splitlines(), start=1):
         words = line.split()
@@ -66,25 +66,25 @@ def read_obj(file: Path, *, texture_px: int, losses: Counter[str]) -> list[Surfa
             continue
         try:
             if words[0] == "v":
-                found.vertices.append(_vertex(words[1:4]))
+                content.vertices.append(_vertex(words[1:4]))
             elif words[0] == "vt":
-                found.uv.append([float(word) for word in [*words[1:3], "0", "0"][:2]])
+                content.uv.append([float(word) for word in [*words[1:3], "0", "0"][:2]])
             elif words[0] == "f":
-                _add_face(found, node, material, words[1:])
+                _add_face(content, node, material, words[1:])
             elif words[0] in ("o", "g") and len(words) > 1:
                 node = " ".join(words[1:])
             elif words[0] == "usemtl":
                 material = " ".join(words[1:])
             elif words[0] == "mtllib":
-                _read_materials(file.parent, " ".join(words[1:]), texture_px, found.paints, losses)
+                _read_materials(file.parent, " ".join(words[1:]), texture_px, content.paints, losses)
         except (ValueError, IndexError) as fault:
             raise HouseError(f"{where}, line {number}: '{printable(line)[:60]}' cannot be read: {fault}.") from None
-    if not found.faces:
+    if not content.faces:
         raise HouseError(f"{where} has no triangles.")
-    vertices = np.array(found.vertices, dtype=np.float64)
+    vertices = np.array(content.vertices, dtype=np.float64)
     if not bool((np.abs(vertices) <= FARTHEST_M).all()):
         raise HouseError(f"{where}: a vertex is not finite or beyond {FARTHEST_M:g} m.")
-    return [_surface(found, vertices, *key) for key in found.faces]
+    return [_surface(content, vertices, *key) for key in content.faces]
 
 
 def _vertex(words: list[str]) -> list[float]:
@@ -94,36 +94,36 @@ def _vertex(words: list[str]) -> list[float]:
     return [float(word) for word in words]
 
 
-def _add_face(found: _Content, node: str, material: str, words: list[str]) -> None:
+def _add_face(content: _Content, node: str, material: str, words: list[str]) -> None:
     """Adds a polygon as triangles; raises ValueError if it is broken."""
-    corners = [_corner(found, word) for word in words]
+    corners = [_corner(content, word) for word in words]
     if len(corners) < 3:
         raise ValueError("a face needs three vertices")
-    found.triangles += len(corners) - 2
-    if found.triangles > MAX_TRIANGLES:
+    content.triangles += len(corners) - 2
+    if content.triangles > MAX_TRIANGLES:
         raise ValueError(f"the file has more than {MAX_TRIANGLES:,} triangles")
-    triangles = found.faces.setdefault((node, material), [])
+    triangles = content.faces.setdefault((node, material), [])
     triangles += [(corners[0], corners[n], corners[n + 1]) for n in range(1, len(corners) - 1)]
 
 
-def _corner(found: _Content, word: str) -> Corner:
+def _corner(content: _Content, word: str) -> Corner:
     """Returns a corner of a face, `vertex/texture/normal`, whose negative numbers count from the end."""
     numbers = [int(part) if part else 0 for part in word.split("/")]
-    vertex = numbers[0] - 1 if numbers[0] > 0 else len(found.vertices) + numbers[0]
-    if not 0 <= vertex < len(found.vertices) or numbers[0] == 0:
+    vertex = numbers[0] - 1 if numbers[0] > 0 else len(content.vertices) + numbers[0]
+    if not 0 <= vertex < len(content.vertices) or numbers[0] == 0:
         raise ValueError(f"vertex {numbers[0]} does not exist")
     uv = numbers[1] if len(numbers) > 1 else 0
-    at = uv - 1 if uv > 0 else len(found.uv) + uv
-    return vertex, at if uv and 0 <= at < len(found.uv) else -1
+    at = uv - 1 if uv > 0 else len(content.uv) + uv
+    return vertex, at if uv and 0 <= at < len(content.uv) else -1
 
 
-def _surface(found: _Content, vertices_m: NDArray[np.float64], node: str, material: str) -> Surface:
-    corners = np.array(found.faces[node, material], dtype=np.int64).reshape(-1, 2)
+def _surface(content: _Content, vertices_m: NDArray[np.float64], node: str, material: str) -> Surface:
+    corners = np.array(content.faces[node, material], dtype=np.int64).reshape(-1, 2)
     used, faces = np.unique(corners, axis=0, return_inverse=True)
-    paint = found.paints.get(material, Paint(GREY))
+    paint = content.paints.get(material, Paint(GREY))
     if paint.picture is not None:
-        if found.uv and bool((used[:, 1] >= 0).all()):
-            paint = replace(paint, uv=np.nan_to_num(np.array(found.uv, dtype=np.float64)[used[:, 1]]))
+        if content.uv and bool((used[:, 1] >= 0).all()):
+            paint = replace(paint, uv=np.nan_to_num(np.array(content.uv, dtype=np.float64)[used[:, 1]]))
         else:
             paint = Paint(GREY)  # no part of the picture belongs to a triangle
     return Surface(node, material, vertices_m[used[:, 0]], faces.reshape(-1, 3).astype(np.int32), paint)

@@ -90,12 +90,12 @@ def import_house(source: Source, assets: Mapping[str, Asset], config: ProcthorCo
     builder.add_ground(layout.plan.bounds.grown(OUTER_WALL_M))
     for room in layout.plan.rooms:
         builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), layout.ceiling_m)
-    builder.expect([*structure, *(each.placed for each in placer.standing)])
+    builder.expect([*structure, *(item.placed for item in placer.standing)])
     for part in structure:
         builder.add(part)
-    for number, each in enumerate(placer.standing):
-        free = each.is_loose and not _touches(number, placer.standing)
-        (builder.add_movable if free else builder.add)(each.placed)
+    for number, item in enumerate(placer.standing):
+        free = item.is_loose and not _touches(number, placer.standing)
+        (builder.add_movable if free else builder.add)(item.placed)
     builder.set_ambient(DAYLIGHT[looks.time].ambient)
     for lamp in draw_lamps(rng, _lit(layout), min(layout.ceiling_m, LAMP_CEILING_M), looks.time):
         builder.add_lamp(lamp)
@@ -207,12 +207,12 @@ def _leaf_openings(
                 )
                 for n, (a, b) in enumerate(spans)
             ]
-            zones = [leaf_keep_out(each, layout.plan.rooms[room].rect) for each in made]
-            met = sum(zone.overlaps(each.footprint) for zone in zones for each in standing)
+            zones = [leaf_keep_out(leaf, layout.plan.rooms[room].rect) for leaf in made]
+            met = sum(zone.overlaps(item.footprint) for zone in zones for item in standing)
             side = hole.side_of(room)
             short = layout.plan.rooms[room].rect
             depth = short.depth_m if side in ("north", "south") else short.width_m
-            met += 3 * sum(zone.overlaps(each) for zone in zones for each in keep_free)
+            met += 3 * sum(zone.overlaps(area) for zone in zones for area in keep_free)
             choices.append((met + 10 * (depth < (hi - lo) / door.leaves + HALF_WALL_M), len(choices), made))
     return min(choices, key=lambda choice: choice[:2])[2]
 
@@ -220,4 +220,4 @@ def _leaf_openings(
 def _touches(number: int, standing: Sequence[Standing]) -> bool:
     """Returns whether the footprint of an object overlaps another one's, so that it cannot be pushed freely."""
     own = standing[number]
-    return any(own.footprint.overlaps(each.footprint) for n, each in enumerate(standing) if n != number)
+    return any(own.footprint.overlaps(item.footprint) for n, item in enumerate(standing) if n != number)

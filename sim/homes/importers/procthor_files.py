@@ -176,25 +176,25 @@ def read_assets(file: Path) -> Mapping[str, Asset]:
     read = read_gzip_json if file.name.endswith(".gz") else read_json
     assets = {}
     for kind, listed in read(file, dict[str, list[_Asset]], what=what).items():
-        for each in listed:
+        for entry in listed:
             try:
-                box = msgspec.convert(each.boundingBox, Box)
+                box = msgspec.convert(entry.boundingBox, Box)
             except msgspec.ValidationError:
                 continue  # without a size; its objects are reported as left out
-            assets[each.assetId] = Asset(kind, (box.x, box.y, box.z))
+            assets[entry.assetId] = Asset(kind, (box.x, box.y, box.z))
     if not assets:
         raise ConfigError(f"{what} '{file}' has no asset with a size.")
     return assets
 
 
-def find_assets(path: Path, given: Path | None) -> Path:
+def find_assets(path: Path, chosen: Path | None) -> Path:
     """Returns the asset database: the one that was given, or the one next to the houses.
 
     Raises:
         ConfigError: there is none.
     """
-    if given is not None:
-        return given
+    if chosen is not None:
+        return chosen
     for name in ("asset-database.json", "asset-database.json.gz"):
         if (path.parent / name).is_file():
             return path.parent / name
@@ -209,8 +209,8 @@ def _content(path: Path, what: str) -> bytes:
     if not path.name.endswith(".gz"):
         return read_bytes(path, what=what)
     content = bytearray()
-    for each in json_lines(path, what=what):
-        content += each.text
+    for entry in json_lines(path, what=what):
+        content += entry.text
         if len(content) > MAX_BYTES:
             raise ConfigError(f"{what} '{path}' expands to more than {MAX_BYTES >> 20} MB.")
     return bytes(content)

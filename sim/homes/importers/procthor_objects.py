@@ -85,11 +85,11 @@ class ObjectPlacer:
             HouseError: objects are nested too deeply.
         """
         for entity in objects:
-            found = self._size(entity)
-            if found is None:
+            measured_m = self._size(entity)
+            if measured_m is None:
                 self._leave_out(entity.children, "what it is on was left out")
                 continue
-            kind, entry, size_m, yaw = found
+            kind, entry, size_m, yaw = measured_m
             if entry.category in ("door", "window"):
                 self._count_left_out(kind, "part of a wall")
                 continue
@@ -134,11 +134,11 @@ class ObjectPlacer:
             return
         taken: list[tuple[float, Rect]] = []
         for entity in objects or ():
-            found = self._size(entity)
-            if found is None:
+            measured_m = self._size(entity)
+            if measured_m is None:
                 self._leave_out(entity.children, "what it is on was left out")
                 continue
-            kind, entry, size_m, yaw = found
+            kind, entry, size_m, yaw = measured_m
             fit = self.fitter.fit(entity.assetId, entry, size_m, "top")
             at = PlacedItem(fit.item, entity.position.x, entity.position.z, entity.position.y - size_m[2] / 2, yaw)
             placed = _on_top(at, parents, taken)
@@ -254,7 +254,7 @@ def _arms(
 
 def _on_top(at: PlacedItem, parents: Sequence[PlacedItem], taken: Sequence[tuple[float, Rect]]) -> PlacedItem | None:
     """Returns an item on the top of one of the parents that is nearest to its place and has room; None without one."""
-    found: list[tuple[float, PlacedItem]] = []
+    options: list[tuple[float, PlacedItem]] = []
     for parent in parents:
         for surface, (ox, oy, oz), turn in _surfaces(parent.item):
             height = parent.z_m + oz + surface.centre_m[2]
@@ -262,11 +262,11 @@ def _on_top(at: PlacedItem, parents: Sequence[PlacedItem], taken: Sequence[tuple
                 continue
             moved = _clamped(at, parent, surface, (ox, oy), turn)
             cost = abs(height - at.z_m) + 2.0 * math.hypot(moved.x_m - at.x_m, moved.y_m - at.y_m)
-            found.append((cost, replace(moved, z_m=height + 0.001)))
+            options.append((cost, replace(moved, z_m=height + 0.001)))
         for height in _heights_below(parent, at):
             if abs(height - at.z_m) <= SURFACE_REACH_M:
-                found.append((abs(height - at.z_m) + GEOM_COST_M, replace(at, z_m=height + 0.001)))
-    for cost, placed in sorted(found, key=lambda each: each[0]):
+                options.append((abs(height - at.z_m) + GEOM_COST_M, replace(at, z_m=height + 0.001)))
+    for cost, placed in sorted(options, key=lambda option: option[0]):
         box = _footprint(placed)
         free = not any(abs(z - placed.z_m) < 0.05 and other.overlaps(box, 0.01) for z, other in taken)
         if free and cost < 2.0 * SURFACE_REACH_M:

@@ -127,7 +127,7 @@ def _rooms(house: SourceHouse, grid: _Grid, holes: Sequence[Stretch], where: str
         name = f"room_{kind}_{counts.get(kind, 0):02d}"
         counts[kind] = counts.get(kind, 0) + 1
         for part, rect in enumerate(rects):
-            other = next((n for n, each in enumerate(rooms) if each.rect.overlaps(rect, LEAST_OVERLAP_M)), None)
+            other = next((n for n, room in enumerate(rooms) if room.rect.overlaps(rect, LEAST_OVERLAP_M)), None)
             if other is not None:
                 raise HouseError(f"{where}: rooms '{house.rooms[room_of[other]].id}' and '{source.id}' overlap.")
             rooms.append(Room(f"{name}_{part}" if part else name, kind, rect))
@@ -193,14 +193,14 @@ def _stretch(hole: Hole, walls: Mapping[str, Wall], grid: _Grid, where: str) -> 
 
 def _parts_at(stretch: Stretch, plan: FloorPlan) -> list[tuple[int, Side, Interval]]:
     """Returns the rectangles with a side along a part of a stretch: index, side, and that part; the longest first."""
-    found: list[tuple[int, Side, Interval]] = []
+    shared_walls: list[tuple[int, Side, Interval]] = []
     for index, room in enumerate(plan.rooms):
         side = on_side(room.rect, stretch)
         if side is not None:
             lo, hi = max(room.rect.span(side)[0], stretch.span[0]), min(room.rect.span(side)[1], stretch.span[1])
             if hi > lo:
-                found.append((index, side, (lo, hi)))
-    return sorted(found, key=lambda part: part[2][0] - part[2][1])
+                shared_walls.append((index, side, (lo, hi)))
+    return sorted(shared_walls, key=lambda part: part[2][0] - part[2][1])
 
 
 def _opening(

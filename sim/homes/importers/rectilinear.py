@@ -61,7 +61,7 @@ def rectangles(polygon: Sequence[Point], keep: Sequence[Stretch] = ()) -> list[R
     inside = _cells_inside(polygon, xs, ys)
     upright = [Rect(x0, y0, x1, y1) for x0, x1, y0, y1 in _slabs(inside, xs, ys)]
     level = [Rect(x0, y0, x1, y1) for y0, y1, x0, x1 in _slabs(inside.T, ys, xs)]
-    best = min((upright, level), key=lambda rects: (sum(not _is_kept(rects, each) for each in keep), len(rects)))
+    best = min((upright, level), key=lambda rects: (sum(not _is_kept(rects, place) for place in keep), len(rects)))
     return sorted(best, key=lambda rect: -rect.area_m2)
 
 
@@ -134,5 +134,5 @@ def rectangles_of_triangles(triangles_m: NDArray[np.float64]) -> list[Rect]:
         ]
         least, most = np.minimum.reduce(signs), np.maximum.reduce(signs)
         inside |= (least >= -1e-9) | (most <= 1e-9)
-    found = [Rect(x0, y0, x1, y1) for x0, x1, y0, y1 in _slabs(inside, xs, ys)]
-    return sorted(found, key=lambda rect: -rect.area_m2)
+    cells = [Rect(x0, y0, x1, y1) for x0, x1, y0, y1 in _slabs(inside, xs, ys)]
+    return sorted(cells, key=lambda rect: -rect.area_m2)

@@ -81,10 +81,10 @@ def find_scenes(path: Path) -> list[Path]:
     Raises:
         ConfigError: there are none.
     """
-    found = [path] if path.suffix == ".xml" else sorted(path.glob("*.xml"))[:MAX_HOUSES]
-    if not found:
+    files = [path] if path.suffix == ".xml" else sorted(path.glob("*.xml"))[:MAX_HOUSES]
+    if not files:
         raise ConfigError(f"'{path}' has no MJCF file (.xml).")
-    return found
+    return files
 
 
 def import_kitchen(file: Path, *, root: Path | None = None, texture_px: int | None = None) -> Scene:
@@ -107,7 +107,7 @@ def import_kitchen(file: Path, *, root: Path | None = None, texture_px: int | No
         changes.update(remove_unsupported(spec))
         _remove_unused_textures(spec, changes)
         files = gather_files(spec, file.resolve().parent, texture_px=texture_px)
-        reduced = sum(each.source is None for each in files.values())
+        reduced = sum(entry.source is None for entry in files.values())
         if reduced:
             changes[f"A texture was reduced to {texture_px} pixels."] += reduced
         _hide_collision_geoms(spec, compiled(spec), changes)
@@ -124,11 +124,11 @@ def import_kitchen(file: Path, *, root: Path | None = None, texture_px: int | No
         text = text_of(spec)
     except HouseError as error:
         raise HouseError(f"Kitchen '{file}': {error}") from None
-    found = Counter(each.category for each in labels.instances)
+    counts = Counter(instance.category for instance in labels.instances)
     report = {
         "house": file.stem, "source": str(file), "rooms": len(rooms),
         "area_m2": round(sum(room.rect.area_m2 for room in rooms), 2), "geoms": model.ngeom,
-        "texture_mb": round(model.ntexdata / 1e6, 1), "furniture": dict(found.most_common()), "boxes": {},
+        "texture_mb": round(model.ntexdata / 1e6, 1), "furniture": dict(counts.most_common()), "boxes": {},
         "left_out": {}, "changes": dict(changes), "moved_m": 0.0,
     }  # fmt: skip
     return Scene(file.stem, text, files, rules, report)
@@ -166,9 +166,9 @@ def _remove_robots(spec: mujoco.MjSpec, changes: Counter[str]) -> None:
         parts = 1 + len(body.find_all("body"))
         spec.delete(body)
         changes[f"The robot '{name}' was removed ({parts} bodies)."] += 1
-    there = {body.name for body in spec.bodies}
+    existing = {body.name for body in spec.bodies}
     for light in spec.lights:
-        if light.targetbody and light.targetbody not in there:
+        if light.targetbody and light.targetbody not in existing:
             light.targetbody, light.mode = "", mujoco.mjtCamLight.mjCAMLIGHT_FIXED
 
 
@@ -177,8 +177,8 @@ def _outermost(body: mujoco.MjsBody) -> mujoco.MjsBody | None:
     if not ROBOT.fullmatch(body.name) and category_of_fixture(body.name) is not None:
         return None
     while body.parent is not None and body.parent.name != "world":
-        others = [each for each in body.parent.find_all("body") if not ROBOT.fullmatch(each.name)]
-        if any(category_of_fixture(each.name) is not None for each in (body.parent, *others)):
+        others = [body_inside for body_inside in body.parent.find_all("body") if not ROBOT.fullmatch(body_inside.name)]
+        if any(category_of_fixture(fixture.name) is not None for fixture in (body.parent, *others)):
             break
         body = body.parent
     return body
@@ -186,16 +186,16 @@ def _outermost(body: mujoco.MjsBody) -> mujoco.MjsBody | None:
 
 def _remove_unused_textures(spec: mujoco.MjSpec, changes: Counter[str]) -> None:
     """Removes textures and meshes that no geom shows."""
-    shown = {each.material for each in (*spec.geoms, *spec.sites)}
+    shown = {element.material for element in (*spec.geoms, *spec.sites)}
     for material in list(spec.materials):
         if material.name not in shown:
             spec.delete(material)
     used = {name for material in spec.materials for name in material.textures}
     meshes = {geom.meshname for geom in spec.geoms}
-    unused = [each for each in spec.textures if each.name not in used]
-    unused += [each for each in spec.meshes if each.name not in meshes]
-    for each in unused:
-        spec.delete(each)
+    unused = [asset for asset in spec.textures if asset.name not in used]
+    unused += [asset for asset in spec.meshes if asset.name not in meshes]
+    for asset in unused:
+        spec.delete(asset)
     if unused:
         changes["A texture or mesh that nothing uses was removed."] += len(unused)
 
@@ -225,7 +225,7 @@ def _rules(model: mujoco.MjModel) -> dict[str, str]:
     for body in range(1, model.nbody):
         name = model.body(body).name
         around = _names_around(model, body)
-        if not name or any(each in fixtures for each in around):
+        if not name or any(name_around in fixtures for name_around in around):
             continue
         movable = model.body_dofnum[body] == 6 and int(model.body_parentid[body]) == 0
         category = category_of_fixture(name) if body in filled else None
@@ -237,7 +237,7 @@ def _rules(model: mujoco.MjModel) -> dict[str, str]:
     labels = read_labels(model, rules=rules, ignore_prefix="")
     free = np.flatnonzero(rendered_geoms(model) & (labels.geom_category == 0)).tolist()
     names = {name for geom in free for name in names_of_geom(model, geom)}
-    others = tuple(each for each in propose(model) if each.name in names and each.category != VOID)
+    others = tuple(proposal for proposal in propose(model) if proposal.name in names and proposal.category != VOID)
     return {**rules, **{rule: category for rule, category in rules_of(others).items() if rule not in rules}}
 
 

@@ -131,20 +131,20 @@ def read_surfaces(
         scene = trimesh.load_scene(
             io.BytesIO(content), file_type=kind, resolver=_resolver(trimesh, file.parent), process=False
         )
-        found = list(_surfaces(trimesh, scene, texture_px, where))
+        surfaces = list(_surfaces(trimesh, scene, texture_px, where))
     except ObjectNavError:
         raise
     except Exception as error:  # a reader meets any error in a broken file
         raise HouseError(
             f"{where} cannot be read ({type(error).__name__}: {printable(reason_of(error))[:100]})."
         ) from None
-    if not found:
+    if not surfaces:
         raise HouseError(f"{where} has no triangles.")
     if up == "y":
         turn = np.eye(4)
         turn[:3, :3] = Y_UP
-        found = [surface.moved(turn) for surface in found]
-    return found
+        surfaces = [surface.moved(turn) for surface in surfaces]
+    return surfaces
 
 
 def _surfaces(trimesh: Any, scene: Any, texture_px: int | None, where: str) -> Iterator[Surface]:
@@ -189,9 +189,9 @@ def _paint(
     factor = getattr(material, "diffuse", None) if factor is None else factor
     image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
     if factor is not None:
-        found = np.asarray(factor, dtype=np.float64).ravel() / 255.0
-        if len(found) in (3, 4) and np.isfinite(found).all():
-            r, g, b, a = (float(v) for v in np.clip([*found, 1.0][:4], 0.0, 1.0))
+        factors = np.asarray(factor, dtype=np.float64).ravel() / 255.0
+        if len(factors) in (3, 4) and np.isfinite(factors).all():
+            r, g, b, a = (float(v) for v in np.clip([*factors, 1.0][:4], 0.0, 1.0))
             rgba = (r, g, b, a)
     elif image is not None:
         rgba = WHITE
@@ -266,10 +266,10 @@ def parts_of(file: Path) -> Iterator[Path]:
     """Yields the files of buffers and pictures that a .gltf file names; nothing if it cannot be read."""
     try:
         content = read_bytes(file, what="Mesh", most=MAX_FILE_BYTES)
-        found = parse_json(content, _Parts, where=f"Mesh '{file}'")
+        parts = parse_json(content, _Parts, where=f"Mesh '{file}'")
     except ConfigError:
         return
-    for part in (*found.buffers, *found.images):
+    for part in (*parts.buffers, *parts.images):
         if part.uri and not part.uri.startswith("data:"):
             yield file.parent / unquote(part.uri)
 
@@ -284,20 +284,20 @@ def _require_sane_gltf(content: bytes, kind: str, where: str, losses: Counter[st
         if chunk != b"JSON" or length > len(content) - 20:
             raise HouseError(f"{where} is a damaged GLB file: its first part is incomplete.")
         text = content[20 : 20 + length].rstrip(b"\0 ")
-    found = parse_json(text, _Gltf, where=where, error=HouseError)
-    if sum(each.count for each in found.accessors) > MAX_NUMBERS:
+    document = parse_json(text, _Gltf, where=where, error=HouseError)
+    if sum(accessor.count for accessor in document.accessors) > MAX_NUMBERS:
         raise HouseError(f"{where} announces more than {MAX_NUMBERS:,} numbers.")
-    for name in found.extensionsRequired:
+    for name in document.extensionsRequired:
         if name in _REFUSED:
             raise HouseError(f"{where} is compressed by {_REFUSED[name]}, which cannot be read; decompress it first.")
-    for name in {*found.extensionsRequired, *found.extensionsUsed} & set(_LOST):
+    for name in {*document.extensionsRequired, *document.extensionsUsed} & set(_LOST):
         losses[_LOST[name]] += 1
-    _require_tree([node.children for node in found.nodes], where)
+    _require_tree([node.children for node in document.nodes], where)
 
 
 def _require_tree(children: list[list[int]], where: str) -> None:
     """Raises HouseError if a node has two parents or is below itself, or names a node that does not exist."""
-    named = Counter(child for each in children for child in each)
+    named = Counter(child for nodes in children for child in nodes)
     if any(not 0 <= child < len(children) for child in named):
         raise HouseError(f"{where}: a node has a child that does not exist.")
     if any(count > 1 for count in named.values()):

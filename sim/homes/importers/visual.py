@@ -52,30 +52,39 @@ def make_skins(surfaces: Sequence[Surface], triangles: int, texture_px: int) -> 
         triangles: about the largest number of triangles.
         texture_px: side of a baked picture at most, rounded up to a power of two.
     """
-    total = sum(len(each.faces) for each in surfaces)
-    painted = [each for each in surfaces if each.paint.picture is not None or each.paint.vertex_rgb is not None]
-    plain = [each for each in surfaces if each not in painted]
+    total = sum(len(surface.faces) for surface in surfaces)
+    painted = [
+        surface for surface in surfaces if surface.paint.picture is not None or surface.paint.vertex_rgb is not None
+    ]
+    plain = [surface for surface in surfaces if surface not in painted]
     if total <= triangles:
-        return [*_kept([*plain, *(each for each in painted if each.paint.picture is not None)]),
-                *_baked_all([each for each in painted if each.paint.picture is None], total, texture_px)]  # fmt: skip
-    shares = [triangles * sum(len(each.faces) for each in group) // total for group in (plain, painted)]
+        pictured = [surface for surface in painted if surface.paint.picture is not None]
+        coloured = [surface for surface in painted if surface.paint.picture is None]
+        return [*_kept([*plain, *pictured]), *_baked_all(coloured, total, texture_px)]
+    shares = [triangles * sum(len(surface.faces) for surface in group) // total for group in (plain, painted)]
     return [*_plain(plain, max(shares[0], 12)), *_baked_all(painted, max(shares[1], 12), texture_px)]
 
 
 def _kept(surfaces: Sequence[Surface]) -> list[Skin]:
     """Returns a mesh for each picture and colour, with all triangles."""
     groups: dict[tuple[object, ...], list[Surface]] = {}
-    for each in surfaces:
-        groups.setdefault((id(each.paint.picture), each.paint.rgba), []).append(each)
+    for surface in surfaces:
+        groups.setdefault((id(surface.paint.picture), surface.paint.rgba), []).append(surface)
     return [_skin_of(group) for group in groups.values()]
 
 
 def _skin_of(group: Sequence[Surface]) -> Skin:
-    starts = np.cumsum([0, *(len(each.vertices_m) for each in group)])
-    faces = np.vstack([each.faces + start for each, start in zip(group, starts[:-1], strict=True)])
+    starts = np.cumsum([0, *(len(surface.vertices_m) for surface in group)])
+    faces = np.vstack([surface.faces + start for surface, start in zip(group, starts[:-1], strict=True)])
     paint = group[0].paint
-    uv = None if paint.picture is None else np.vstack([each.paint.uv for each in group if each.paint.uv is not None])
-    return Skin(np.vstack([each.vertices_m for each in group]), faces.astype(np.int32), paint.rgba, uv, paint.picture)
+    uv = (
+        None
+        if paint.picture is None
+        else np.vstack([surface.paint.uv for surface in group if surface.paint.uv is not None])
+    )
+    return Skin(
+        np.vstack([surface.vertices_m for surface in group]), faces.astype(np.int32), paint.rgba, uv, paint.picture
+    )
 
 
 def _plain(surfaces: Sequence[Surface], triangles: int) -> list[Skin]:
@@ -83,7 +92,7 @@ def _plain(surfaces: Sequence[Surface], triangles: int) -> list[Skin]:
     if not surfaces:
         return []
     joined = [_skin_of(group) for group in _by_colour(surfaces)]
-    parts = [Part(each.vertices_m, each.faces, each.rgba) for each in joined]
+    parts = [Part(patch.vertices_m, patch.faces, patch.rgba) for patch in joined]
     try:
         return [Skin(part.vertices_m, part.faces, part.rgba) for part in reduced(parts, triangles)]
     except Skipped:  # smaller than the resolution of the reduction
@@ -92,8 +101,8 @@ def _plain(surfaces: Sequence[Surface], triangles: int) -> list[Skin]:
 
 def _by_colour(surfaces: Sequence[Surface]) -> list[list[Surface]]:
     groups: dict[tuple[float, ...], list[Surface]] = {}
-    for each in surfaces:
-        groups.setdefault(each.paint.rgba, []).append(replace(each, paint=Paint(each.paint.rgba)))
+    for surface in surfaces:
+        groups.setdefault(surface.paint.rgba, []).append(replace(surface, paint=Paint(surface.paint.rgba)))
     return list(groups.values())
 
 
@@ -116,9 +125,9 @@ def _baked_all(surfaces: Sequence[Surface], triangles: int, texture_px: int) -> 
 
 def welded(surfaces: Sequence[Surface]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Returns vertices (n, 3) and faces (m, 3) of all surfaces as one mesh, with equal vertices joined."""
-    points = np.vstack([each.vertices_m for each in surfaces])
-    starts = np.cumsum([0, *(len(each.vertices_m) for each in surfaces)])
-    faces = np.vstack([each.faces + start for each, start in zip(surfaces, starts[:-1], strict=True)])
+    points = np.vstack([surface.vertices_m for surface in surfaces])
+    starts = np.cumsum([0, *(len(surface.vertices_m) for surface in surfaces)])
+    faces = np.vstack([surface.faces + start for surface, start in zip(surfaces, starts[:-1], strict=True)])
     _, first, index = np.unique(
         np.rint(points / WELD_M).astype(np.int64), axis=0, return_index=True, return_inverse=True
     )
@@ -177,8 +186,8 @@ def _layout(
     )
     texel_m = TEXEL_M
     while True:
-        wanted = np.clip(legs_m / texel_m + 3.0, LEAST_SQUARE, min(MOST_SQUARE, texture_px))
-        side = (2 ** np.ceil(np.log2(wanted))).astype(np.int64)
+        wanted_px = np.clip(legs_m / texel_m + 3.0, LEAST_SQUARE, min(MOST_SQUARE, texture_px))
+        side = (2 ** np.ceil(np.log2(wanted_px))).astype(np.int64)
         units = int(((side // LEAST_SQUARE) ** 2).sum()) // 2 + int(side.max() // LEAST_SQUARE) ** 2
         if units * LEAST_SQUARE**2 <= texture_px**2 or side.max() == LEAST_SQUARE:
             break
@@ -211,10 +220,10 @@ def _packed(side: NDArray[np.int64]) -> _Squares:
 
 def _every_second_bit(code: NDArray[np.int64]) -> NDArray[np.int64]:
     """Returns the numbers that the even bits of codes form: one coordinate along a Z-order curve."""
-    found = np.zeros_like(code)
+    codes = np.zeros_like(code)
     for bit in range(24):
-        found |= ((code >> (2 * bit)) & 1) << bit
-    return found
+        codes |= ((code >> (2 * bit)) & 1) << bit
+    return codes
 
 
 def _picture(
@@ -222,11 +231,11 @@ def _picture(
 ) -> NDArray[np.uint8]:
     """Returns the picture (h, w, 3) in which each triangle shows the colours of the nearest points of the source."""
     width, height = squares.size_px
-    area_m2 = sum(float(areas(each.vertices_m, each.faces).sum()) for each in surfaces)
+    area_m2 = sum(float(areas(surface.vertices_m, surface.faces).sum()) for surface in surfaces)
     spacing_m = max(texel_m, math.sqrt(area_m2 / MOST_SAMPLES))
-    sampled = [samples(each.corners_m, spacing_m) for each in surfaces]
+    sampled = [samples(surface.corners_m, spacing_m) for surface in surfaces]
     colours = np.vstack([
-        _colours(each, face, weights) for each, (_, face, weights) in zip(surfaces, sampled, strict=True)
+        _colours(surface, face, weights) for surface, (_, face, weights) in zip(surfaces, sampled, strict=True)
     ])  # fmt: skip
     tree = KDTree(np.vstack([points for points, _, _ in sampled]), balanced_tree=False, compact_nodes=False)
     picture = np.zeros((height, width, 3), dtype=np.uint8)
@@ -278,22 +287,22 @@ def samples(
     a, b, c = np.take_along_axis(corners_m, turn[:, :, None], axis=1).transpose(1, 0, 2)
     height = np.linalg.norm(np.cross(b - a, c - a), axis=1) / np.maximum(sides.max(axis=1), 1e-12)
     along, across = (_steps(length / spacing_m) for length in (sides.max(axis=1), height))
-    found, faces, shares = [], [], []
+    corners, faces, shares = [], [], []
     for n, rows in np.unique(np.stack([along, across], axis=1), axis=0).tolist():
         mine = np.flatnonzero((along == n) & (across == rows))
-        u, t = (each.ravel() for each in np.meshgrid(np.linspace(0.0, 1.0, n + 1), np.linspace(0.0, 1.0, rows + 1)))
+        u, t = (axis.ravel() for axis in np.meshgrid(np.linspace(0.0, 1.0, n + 1), np.linspace(0.0, 1.0, rows + 1)))
         weights = np.stack([(1.0 - t) * (1.0 - u), (1.0 - t) * u, t], axis=1)  # (k, 3)
         of_corner = np.zeros((len(mine), *weights.shape))
         np.put_along_axis(of_corner, np.broadcast_to(turn[mine][:, None, :], of_corner.shape), weights[None], axis=2)
-        found.append(np.einsum("mkc,mcd->mkd", of_corner, corners_m[mine]).reshape(-1, 3))
+        corners.append(np.einsum("mkc,mcd->mkd", of_corner, corners_m[mine]).reshape(-1, 3))
         faces.append(np.repeat(mine, len(weights)))
         shares.append(of_corner.reshape(-1, 3))
-    return np.vstack(found), np.concatenate(faces), np.vstack(shares)
+    return np.vstack(corners), np.concatenate(faces), np.vstack(shares)
 
 
-def _steps(wanted: NDArray[np.float64]) -> NDArray[np.int64]:
+def _steps(wanted_px: NDArray[np.float64]) -> NDArray[np.int64]:
     """Returns whole numbers that are at least those wanted, few different ones."""
-    whole = np.maximum(1, np.ceil(wanted)).astype(np.int64)
+    whole = np.maximum(1, np.ceil(wanted_px)).astype(np.int64)
     unit = 2 ** np.maximum(0, np.floor(np.log2(whole)).astype(np.int64) - 2)
     return -(-whole // unit) * unit
 
@@ -302,12 +311,12 @@ def _colours(surface: Surface, face: NDArray[np.int64], weights: NDArray[np.floa
     """Returns the colours (k, 3), 0 to 255, of points of a surface."""
     paint, corners = surface.paint, surface.faces[face]
     if paint.vertex_rgb is not None:
-        found = np.einsum("kc,kcd->kd", weights, paint.vertex_rgb[corners].astype(np.float64))
+        rgb = np.einsum("kc,kcd->kd", weights, paint.vertex_rgb[corners].astype(np.float64))
     elif paint.picture is not None and paint.uv is not None:
-        found = pixels_at(paint.picture, np.einsum("kc,kcd->kd", weights, paint.uv[corners])).astype(np.float64)
+        rgb = pixels_at(paint.picture, np.einsum("kc,kcd->kd", weights, paint.uv[corners])).astype(np.float64)
     else:
-        found = np.full((len(face), 3), 255.0)
-    return found * np.asarray(paint.rgba[:3])
+        rgb = np.full((len(face), 3), 255.0)
+    return rgb * np.asarray(paint.rgba[:3])
 
 
 def pixels_at(picture: NDArray[np.uint8], uv: NDArray[np.float64]) -> NDArray[np.uint8]:
