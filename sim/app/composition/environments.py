@@ -6,8 +6,6 @@ import difflib
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from sim.app.composition.options import RunOptions
 from sim.app.composition.setup import Setup
 from sim.core.errors import ConfigError
@@ -16,6 +14,7 @@ from sim.core.interface import GOAL_CATEGORIES
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates
+from sim.episodes.seeds import drawing_generator
 from sim.episodes.splits import Split
 from sim.sensors.noise import get_noise
 from sim.sensors.sensor import Sensor
@@ -96,7 +95,7 @@ def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
     found: dict[tuple[str, Pose] | int, Episode] = {}
     i = last = 0
     while len(found) < options.episodes and i - last <= MAX_REPEATS:
-        episode = env.draw_episode(np.random.default_rng([options.seed, i]), episode_id=f"{house}_{len(found):04d}")
+        episode = env.draw_episode(drawing_generator(options.seed, i), episode_id=f"{house}_{len(found):04d}")
         key = i if repeats else (episode.goal, episode.start)
         i += 1
         if episode.goal in known and key not in found:

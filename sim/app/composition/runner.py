@@ -16,7 +16,7 @@ from sim.app.composition.segmenters import NoSegmentation
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.last_view import write_last_view
 from sim.app.evaluation.own_code import text_of
-from sim.app.evaluation.rollout import agent_seed, episode_seed, play_episode, record_episode
+from sim.app.evaluation.rollout import play_episode, record_episode
 from sim.app.evaluation.watch import is_stop
 from sim.app.viewers import selection
 from sim.app.viewers.viewer import VIEWER_IMAGES, MapPainter, SeesFrames
@@ -25,6 +25,7 @@ from sim.core.interface import Agent, Closable
 from sim.env.memory import give_large_blocks_pages_of_their_own, return_freed_memory
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
+from sim.episodes.seeds import episode_seeds
 
 
 @dataclass(frozen=True)
@@ -86,14 +87,15 @@ class EpisodeRunner:
         """Runs one episode and returns its result line."""
         return_freed_memory()
         options = self._options
+        seeds = episode_seeds(options.seed, episode.episode_id, options.seed_key)
         try:
             self._require_same_house(episode.house)
             metrics = play_episode(
                 self._env,
                 self._agent,
                 episode,
-                seed=episode_seed(options.seed, episode.episode_id),
-                seed_of_agent=agent_seed(options.seed, episode.episode_id, options.seed_key or ""),
+                seed=seeds.environment,
+                seed_of_agent=seeds.agent,
                 viewers=self._viewers,
                 name=options.agent,
             )

@@ -1,4 +1,4 @@
-"""Finds the key of a run, from which the seeds of its agents are computed (`sim.app.evaluation.rollout.agent_seed`)."""
+"""Finds the key of a run, from which the seeds of its agents are computed (`sim.episodes.seeds`)."""
 
 from __future__ import annotations
 
