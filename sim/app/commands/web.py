@@ -123,8 +123,8 @@ def offer(args: Args) -> Offer:
     Raises:
         ConfigError: an option contradicts another, or its file or name does not exist.
     """
-    from sim.app.composition.options import RunOptions
     from sim.app.composition.setup import resolve
+    from sim.app.options import RunOptions
     from sim.app.web.choices import Offer
     from sim.robot.foreign import absolute_robot
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from sim.app.composition.options import RunOptions
 from sim.app.evaluation.parallel import Shard
+from sim.app.options import RunOptions
 from sim.app.viewers import selection
 from sim.core.errors import ConfigError
 

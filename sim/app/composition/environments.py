@@ -6,8 +6,8 @@ import difflib
 from dataclasses import replace
 from typing import Any
 
-from sim.app.composition.options import RunOptions
 from sim.app.composition.setup import Setup
+from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from sim.app.bridges.process_command import is_process
-from sim.app.composition.options import RunOptions
 from sim.app.evaluation.processes import Isolation
+from sim.app.options import RunOptions
 
 HABITAT = "habitat:"
 """Prefix of the name of an agent with Habitat's interface."""

@@ -10,26 +10,24 @@ from typing import Any
 
 from sim.app.bridges.process_command import files_of, is_file, is_process
 from sim.app.composition.isolation import own_modules
-from sim.app.composition.options import RunOptions
 from sim.app.composition.segmenters import NetworkConfig, file_sha256, precision_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.own_code import hash_of_own
 from sim.app.evaluation.rollout import broken_metrics
+from sim.app.options import RunOptions
 from sim.core.configuration import as_json
+from sim.core.option_types import meanings
 from sim.core.paths import code_hash, processor
 from sim.episodes.episode import Episode
 from sim.renderer.opengl import describe_gl
 from sim.robot.config import PHYSICS_VERSION
 from sim.robot.foreign import robot_sha256
 
-NOT_RECORDED = ("list_agents", "retry_errors", "keep_results", "step_timeout", "config", "config_file")
-"""Options that the tree itself records, or that start no run."""
-
 
 def record_of(setup: Setup, split: dict[str, Any]) -> dict[str, Any]:
     """Returns the content of `config.json`: options, configuration tree, checksums of files, split and versions."""
-    flat = {name: value for name, value in as_json(setup.options).items() if name not in NOT_RECORDED}
-    return flat | {
+    recorded = [name for name, option in meanings(RunOptions).items() if option.recorded]
+    return {name: as_json(getattr(setup.options, name)) for name in recorded} | {
         "settings": as_json(setup.settings),
         "config": as_json(setup.config),
         "physics": PHYSICS_VERSION,

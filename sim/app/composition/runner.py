@@ -71,7 +71,7 @@ class EpisodeRunner:
         give_large_blocks_pages_of_their_own()
         setup = self._setup = setup.with_absolute_paths()  # the agent may change the folder of the process
         options = self._options = setup.options
-        parts = build_parts(setup, watched=selection.any_selected(options))
+        parts = build_parts(setup, watched=options.watched)
         self._env, self._agent = parts.env, parts.agent
         setup.require_planned(self._env.split)
         self._house = ""

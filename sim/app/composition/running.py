@@ -13,13 +13,13 @@ from sim.app.analysis import display
 from sim.app.analysis.progress import ProgressReport
 from sim.app.composition.agents import notes_on
 from sim.app.composition.isolation import RUNNER, isolation_of
-from sim.app.composition.options import RunOptions
 from sim.app.composition.record import error_line, record_of
 from sim.app.composition.seed_key import seed_key_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.executors import make_executor
 from sim.app.evaluation.results import RunDirectory
 from sim.app.evaluation.workers import RunnerSpec
+from sim.app.options import RunOptions
 from sim.core.geometry.compiling import choose_cache, must_compile
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates

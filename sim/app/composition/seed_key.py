@@ -7,8 +7,8 @@ import os
 import secrets
 from pathlib import Path
 
-from sim.app.composition.options import RunOptions
 from sim.app.evaluation.results import read_record
+from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.files import open_to_grow
 from sim.core.reading import read_bytes

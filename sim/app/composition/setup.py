@@ -8,12 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from sim.app.bridges.process_command import BridgeConfig
 from sim.app.composition.agents import find_agent, find_explorer, takes_explorer
 from sim.app.composition.checks import check_options
-from sim.app.composition.options import RunOptions, start_pose
 from sim.app.composition.segmenters import (
     NetworkConfig,
     SegmentationKind,
@@ -21,6 +20,7 @@ from sim.app.composition.segmenters import (
     find_segmentation,
     is_calibrated,
 )
+from sim.app.options import WORLD, RunOptions, start_pose
 from sim.core.configuration import parse_assignments, read_settings, with_fields
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
@@ -70,15 +70,15 @@ class RunConfig:
     detector: Any
     """Configuration of the segmentation (`SegmentationKind.config`); None: it has none."""
     verification: VerificationConfig
-    robot: RobotConfig
-    camera: CameraModel
+    robot: Annotated[RobotConfig, WORLD]
+    camera: Annotated[CameraModel, WORLD]
     sensors: tuple[str, ...]
     """Sensors in the agent's observation, by name: those that agent and segmentation declare."""
-    scan: ScanConfig
+    scan: Annotated[ScanConfig, WORLD]
     """The lidar of the sensor `scan`."""
-    profile: RenderProfile
-    noise: NoiseConfig
-    task: TaskConfig
+    profile: Annotated[RenderProfile, WORLD]
+    noise: Annotated[NoiseConfig, WORLD]
+    task: Annotated[TaskConfig, WORLD]
 
 
 @dataclass(frozen=True, kw_only=True)

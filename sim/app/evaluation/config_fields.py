@@ -7,6 +7,9 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from sim.app.options import RunOptions
+from sim.core.option_types import meanings
+
 
 class Absent(enum.Enum):
     """The value of a field that one of the two objects does not have."""
@@ -17,6 +20,12 @@ class Absent(enum.Enum):
 ABSENT = Absent.ABSENT
 Difference = tuple[str, Any, Any]
 """Dotted path of a field, its value in the first object and in the second; `ABSENT` in an object without it."""
+Record = Mapping[str, Any]
+"""The content of a `config.json`."""
+OPTIONS = meanings(RunOptions)
+"""The meaning of each option that a `config.json` holds."""
+DERIVED = frozenset({"versions", "codes", "settings", "segmentation"})
+"""Entries of a `config.json` that follow from the code, or from other entries: `config` is the tree with `settings`."""
 
 
 def differing_fields(a: Mapping[str, Any], b: Mapping[str, Any]) -> list[Difference]:
@@ -27,23 +36,37 @@ def differing_fields(a: Mapping[str, Any], b: Mapping[str, Any]) -> list[Differe
     return sorted(_differences("", a, b), key=lambda difference: difference[0])
 
 
-def is_same_file(path: str, first: Mapping[str, Any], second: Mapping[str, Any]) -> bool:
-    """Returns whether a field of two `config.json` names a file that has the same checksum in both.
+def run_differences(first: Record, second: Record, *, resumed: bool = False) -> list[Difference]:
+    """Returns the fields of two `config.json` in which the runs differ, without options that change no result.
 
-    The folder of a file is another one after a checkout has moved, and on other machines.
+    Files with equal checksums are equal: the folder of a file is another one after a checkout has moved, and on other
+    machines.
+
+    Args:
+        first: content of the first file.
+        second: content of the second file.
+        resumed: without the fields in which a run may differ from the one that it resumes or is merged with.
     """
-    name = {
-        "weights": "weights",
-        "config.detector.weights": "weights",
-        "verifier": "verifier",
-        "config.verification.parameters": "verifier",
-        "config.robot.file.path": "robot",
-    }.get(path, path.removeprefix("config."))
-    for each in (name, path.removeprefix("config.")):
-        sums = [record.get("files_sha256", {}).get(each) for record in (first, second)]
-        if sums[0] is not None and sums[0] == sums[1]:
-            return True
-    return False
+    ignored = {name for name, option in OPTIONS.items() if option.compared == "never"}
+    if resumed:
+        ignored |= {name for name, option in OPTIONS.items() if option.compared == "between runs"} | DERIVED
+    return [
+        (path, a, b)
+        for path, a, b in differing_fields(first, second)
+        if path.partition(".")[0] not in ignored and not _is_same_file(path, first, second)
+    ]
+
+
+def _is_same_file(path: str, first: Record, second: Record) -> bool:
+    """Returns whether a field of two `config.json` names a file that has the same checksum in both."""
+    field = path.removeprefix("config.")
+    options = {name for name, option in OPTIONS.items() if option.file_field and field in (name, option.file_field)}
+    sums = [(_sums(first).get(name), _sums(second).get(name)) for name in (field, *options)]
+    return any(a is not None and a == b for a, b in sums)
+
+
+def _sums(record: Record) -> Mapping[str, str]:
+    return record.get("files_sha256", {})
 
 
 def field_text(value: Any) -> str:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
-from sim.app.composition.options import RunOptions
+from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.interface import Action
 

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from sim.app.composition.driven import record_driven, setup_of_person
-from sim.app.composition.options import RunOptions
 from sim.app.composition.record import record_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.results import RunDirectory
+from sim.app.options import RunOptions
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 

@@ -14,7 +14,7 @@ from sim.app.composition.environments import drawn_episodes
 from sim.app.composition.record import record_of
 from sim.app.composition.runner import Parts, build_parts
 from sim.app.composition.setup import Setup, resolve
-from sim.app.evaluation.config_fields import differing_fields, is_same_file
+from sim.app.evaluation.config_fields import run_differences
 from sim.app.evaluation.rollout import play_episode
 from sim.app.viewers.viewer import Moment
 from sim.app.web.controls import Controls, EpisodeRequest, Interrupted
@@ -324,11 +324,7 @@ def unlike_the_run(setup: Setup, env: ObjectNavEnv, record: Mapping[str, Any] | 
     if record is None:
         return ""
     now = record_of(setup, {"name": env.split.name, "version": env.split.version, "sha256": env.split.sha256})
-    fields = [
-        path
-        for path, _, _ in differing_fields(record.get("config") or {}, now["config"])
-        if not is_same_file(f"config.{path}", record, now)
-    ]
+    fields = [path.removeprefix("config.") for path, _, _ in run_differences(record, now) if path.startswith("config.")]
     if (record.get("split_identity") or {}).get("sha256") != env.split.sha256:
         fields.append("the houses")
     if (record.get("versions") or {}).get("code") != now["versions"]["code"]:

@@ -39,10 +39,10 @@ from sim.app.analysis.tables import ResultTable, to_csv, to_markdown, to_rich
 from sim.app.commands.reproduce.paper_figures import beside_paper
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, PaperTable, table_named
 from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, file_name, key_of, run_in_turns
-from sim.app.composition.options import RunOptions
 from sim.app.composition.setup import resolve
 from sim.app.evaluation.config_fields import differing_fields, field_text
 from sim.app.evaluation.intervals import MIN_PAIRS
+from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically, write_together
 from sim.episodes.episode import Episode

@@ -17,9 +17,9 @@ from rich.console import Console
 from sim.app import cli
 from sim.app.analysis.comparison import Run, read_run
 from sim.app.composition.agents import find_agent
-from sim.app.composition.options import RunOptions
 from sim.app.composition.running import run_missing
 from sim.app.composition.setup import resolve
+from sim.app.options import RunOptions
 from sim.core.configuration import parse_assignments
 from sim.core.errors import ConfigError
 from sim.core.reading import convert

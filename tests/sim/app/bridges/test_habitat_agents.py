@@ -19,8 +19,8 @@ from sim.app.bridges.habitat.conversions import Conversion, to_action
 from sim.app.commands.run import entry
 from sim.app.composition.agents import find_agent
 from sim.app.composition.isolation import own_modules
-from sim.app.composition.options import RunOptions
 from sim.app.composition.record import code_of
+from sim.app.options import RunOptions
 from sim.core.configuration import with_fields
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import GOAL_CATEGORIES, Action, AgentSpec, CameraModel, RobotModel, SuccessRule

@@ -16,9 +16,9 @@ from sim.app.bridges.habitat.config import settings_of
 from sim.app.bridges.habitat.env import default_options
 from sim.app.commands.main import entry as stubborn
 from sim.app.composition.environments import episodes_of
-from sim.app.composition.options import RunOptions
 from sim.app.composition.setup import resolve
 from sim.app.evaluation.rollout import play_episode
+from sim.app.options import RunOptions
 from sim.core.errors import AgentError, ConfigError, EpisodeError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action

@@ -10,9 +10,9 @@ import pytest
 
 from sim.app.commands.run import entry
 from sim.app.composition import setup as composition
-from sim.app.composition.options import RunOptions
 from sim.app.composition.seed_key import KEY_FILE, seed_key_of
 from sim.app.composition.setup import resolve
+from sim.app.options import RunOptions
 from sim.core.interface import CameraModel, RobotModel
 from stubborn import agents
 from stubborn.agent import AgentConfig, StubbornAgent

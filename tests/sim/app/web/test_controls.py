@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from sim.app.composition.options import RunOptions
+from sim.app.options import RunOptions
 from sim.app.web.controls import Choice, Controls, EpisodeRequest, Interrupted
 from sim.core.errors import ConfigError
 from sim.core.interface import Action
