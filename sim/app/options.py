@@ -12,6 +12,12 @@ from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
 from sim.core.option_types import Option, meanings
 
+HABITAT = "habitat:"
+"""Beginning of the names of agents with Habitat's interface."""
+PROCESS = "process:"
+"""Beginning of the names of agents in a process of their own."""
+STEP_TIMEOUT_S = 600.0
+"""Longest time of a call of the agent if `--step-timeout` is not given."""
 WORLD = Option(of_world=True)
 """Belongs to the world, in which a person may drive as well."""
 _FOLDER = Option(of_world=True, published=False)
@@ -110,6 +116,27 @@ class RunOptions:
     def watched(self) -> bool:
         """Whether there is a viewer, so that all images must be rendered."""
         return any(getattr(self, name) for name, option in meanings(RunOptions).items() if option.viewer)
+
+    @property
+    def own_code(self) -> dict[str, str]:
+        """The names of the user's code that this process imports, such as `package.module:NAME`, by option."""
+        names = {"agent": self.agent, "explorer": self.explorer, "semantics": self.semantics}
+        return {option: name for option, name in names.items() if name and ":" in name and not is_process(name)}
+
+    @property
+    def own_modules(self) -> list[str]:
+        """The modules of the user's code."""
+        return [name.removeprefix(HABITAT).partition(":")[0] for name in self.own_code.values()]
+
+    @property
+    def step_limit_s(self) -> float:
+        """Longest time of a call of the agent; 0: no limit."""
+        return STEP_TIMEOUT_S if self.step_timeout is None else self.step_timeout
+
+
+def is_process(agent: str) -> bool:
+    """Returns whether an agent with this name runs in a process of its own."""
+    return agent.startswith(PROCESS)
 
 
 def start_pose(start_deg: str | None) -> Pose | None:

@@ -70,6 +70,13 @@ def with_fields(tree: TreeT, values: Mapping[str, Any]) -> TreeT:
     return _replaced(tree, nested, "")
 
 
+def with_absolute_paths(tree: TreeT) -> TreeT:
+    """Returns a copy of a frozen dataclass in which every field that is a path is absolute."""
+    values = {field.name: getattr(tree, field.name) for field in dataclasses.fields(tree)}  # type: ignore[arg-type]
+    paths = {name: value.absolute() for name, value in values.items() if isinstance(value, Path)}
+    return dataclasses.replace(tree, **paths)  # type: ignore[type-var]
+
+
 def as_settings(given: TreeT | Mapping[str, Any] | None, default: TreeT, *, name: str) -> TreeT:
     """Returns a configuration that a caller gave as an object, as a dict of some of its fields, or not at all.
 

@@ -13,9 +13,9 @@ from rich.table import Table
 
 from sim.app import cli
 from sim.app.analysis import display
+from sim.app.composition import RUNNER
 from sim.app.composition.agents import SPECS
-from sim.app.composition.isolation import RUNNER, isolation_of
-from sim.app.evaluation.processes import started_early
+from sim.app.evaluation.processes import isolation_of, started_early
 from sim.app.options import RunOptions
 from sim.core.invocation import RUN_STOPPED
 from stubborn.agents import EXPLORERS

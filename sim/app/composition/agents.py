@@ -13,11 +13,10 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
-from sim.app.bridges.process_command import is_process
 from sim.app.composition.imports import import_attribute
-from sim.app.composition.isolation import HABITAT
 from sim.app.evaluation.own_code import place_of, text_of
 from sim.app.evaluation.watch import FACTORY_S, is_stop, marked
+from sim.app.options import HABITAT, is_process
 from sim.core.errors import AgentError, ConfigError, ObjectNavError
 from sim.core.interface import Agent, AgentFactory, AgentSpec, Segmenter
 from stubborn import agents

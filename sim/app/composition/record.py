@@ -8,13 +8,12 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from sim.app.bridges.process_command import files_of, is_file, is_process
-from sim.app.composition.isolation import own_modules
+from sim.app.bridges.process_command import files_of, is_file
 from sim.app.composition.segmenters import NetworkConfig, file_sha256, precision_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.own_code import hash_of_own
 from sim.app.evaluation.rollout import broken_metrics
-from sim.app.options import RunOptions
+from sim.app.options import RunOptions, is_process
 from sim.core.configuration import as_json
 from sim.core.option_types import meanings
 from sim.core.paths import code_hash, processor
@@ -52,7 +51,7 @@ def code_of(options: RunOptions) -> str:
     already. For an agent in a process of its own, it is a hash of the files that its command names and of the modules
     that they import from their folder.
     """
-    own = hash_of_own(own_modules(options), files_of(options.agent) if is_process(options.agent) else ())
+    own = hash_of_own(options.own_modules, files_of(options.agent) if is_process(options.agent) else ())
     return f"{code_hash()}+{own}" if own else code_hash()
 
 

@@ -9,7 +9,6 @@ from typing import Any
 
 from sim.app.composition.agents import build_agent
 from sim.app.composition.environments import make_env
-from sim.app.composition.isolation import step_limit_s
 from sim.app.composition.perception import AskedSegmenter, seen_by
 from sim.app.composition.record import error_line, identity_of, versions
 from sim.app.composition.segmenters import NoSegmentation
@@ -59,7 +58,7 @@ def build_parts(setup: Setup, *, watched: bool) -> Parts:
         segmenter=segmenter or NoSegmentation(),
         verifier=setup.verifier,
         config=config.agent,
-        step_timeout_s=step_limit_s(setup.options),
+        step_timeout_s=setup.options.step_limit_s,
     )
     return Parts(env, agent, seen_by(setup, agent, segmenter), spec.painter(agent) if spec.painter else None)
 

@@ -11,12 +11,13 @@ from rich.console import Console
 
 from sim.app.analysis import display
 from sim.app.analysis.progress import ProgressReport
+from sim.app.composition import RUNNER
 from sim.app.composition.agents import notes_on
-from sim.app.composition.isolation import RUNNER, isolation_of
 from sim.app.composition.record import error_line, record_of
 from sim.app.composition.seed_key import seed_key_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.executors import make_executor
+from sim.app.evaluation.processes import isolation_of
 from sim.app.evaluation.results import RunDirectory
 from sim.app.evaluation.workers import RunnerSpec
 from sim.app.options import RunOptions

@@ -98,6 +98,11 @@ class NoSegmentation:
         raise ConfigError("This agent reads posteriors but declares uses_segmentation=False in its AgentSpec.")
 
 
+def _make_true(env: ObjectNavEnv, config: None) -> Segmenter:
+    del config
+    return TrueSegmentation(env)
+
+
 def _make_network(env: ObjectNavEnv, config: NetworkConfig) -> Segmenter:
     from stubborn.segmentation.network import NetworkSegmenter
 
@@ -132,7 +137,7 @@ KINDS: Mapping[str, SegmentationKind] = MappingProxyType(
             description="ground truth",
             spec=TrueSegmentation.spec,
             config=None,
-            make=lambda env, config: TrueSegmentation(env),
+            make=_make_true,
         ),
         "noisy": SegmentationKind(
             description="ground truth with the errors of a segmentation network",

@@ -5,14 +5,13 @@ Environment, agent, viewers, results and workers are made from the setup (`sim.a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated, Any
 
 from sim.app.bridges.process_command import BridgeConfig
 from sim.app.composition.agents import find_agent, find_explorer, takes_explorer
-from sim.app.composition.checks import check_options
 from sim.app.composition.segmenters import (
     NetworkConfig,
     SegmentationKind,
@@ -20,8 +19,11 @@ from sim.app.composition.segmenters import (
     find_segmentation,
     is_calibrated,
 )
+from sim.app.composition.transfer import Reference, Unpacker, packed
+from sim.app.evaluation.parallel import Shard
 from sim.app.options import WORLD, RunOptions, start_pose
-from sim.core.configuration import parse_assignments, read_settings, with_fields
+from sim.app.viewers import selection
+from sim.core.configuration import parse_assignments, read_settings, with_absolute_paths, with_fields
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import TRUE_IMAGES, AgentSpec, CameraModel
@@ -42,6 +44,9 @@ from stubborn.detection.verification import (
     has_parameters,
     verifier_for,
 )
+
+MAX_KEY_LENGTH = 200
+"""Largest length of `--seed-key`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,12 +90,12 @@ class RunConfig:
 class Setup:
     """Everything that determines the results of a run except episode and seed, looked up once from its options.
 
-    A worker gets it as its options and resolves them again in its own process: agents of users cannot be copied.
+    A worker gets it by value; a user's code travels as its name (`sim.app.composition.transfer`).
     """
 
     options: RunOptions
-    spec: AgentSpec
-    """The agent that `options.agent` names."""
+    agent: AgentSpec
+    """The agent that `options.agent` names, as its code declares it."""
     segmentation: SegmentationKind
     """The segmentation that `options.semantics` names."""
     config: RunConfig
@@ -102,19 +107,31 @@ class Setup:
     planned: str | None = None
     """Checksum of the split or house from which the episodes were planned; None: it is not checked."""
 
-    def __reduce__(self) -> tuple[Callable[..., Setup], tuple[Any, ...]]:
-        """Pickles the setup as its options."""
-        return _resolve_planned, (self.options, self.planned)
+    def __reduce__(self) -> tuple[Callable[[bytes], Setup], tuple[bytes]]:
+        """Returns the form for pickling."""
+        return _received, (packed(vars(self), dict(self._own_code())),)
+
+    def _own_code(self) -> Iterator[tuple[int, Reference]]:
+        """Yields the `id` of each object of the user's code, and its name."""
+        explorer = getattr(self.config.agent, "explorer", None)
+        parts = {
+            "agent": (self.agent, self.config.agent),
+            "explorer": (None, explorer),
+            "semantics": (self.segmentation, self.config.detector),
+        }
+        for option, name in self.options.own_code.items():
+            own, config = parts[option]
+            if own is not None:
+                yield id(own), Reference(option, name, "object")
+            if config is not None:
+                yield id(type(config)), Reference(option, name, "class")
 
     def with_absolute_paths(self) -> Setup:
         """Returns this setup with absolute paths, which stay valid if the current folder changes."""
-        options = self.options
-        named = {name: getattr(options, name) for name in ("out", "house", "labels", "root")}
-        paths = {name: path.absolute() for name, path in named.items() if path is not None}
         robot = self.config.robot
         if robot.file is not None:
-            robot = replace(robot, file=replace(robot.file, path=robot.file.path.absolute()))
-        return replace(self, options=replace(options, **paths), config=replace(self.config, robot=robot))
+            robot = replace(robot, file=with_absolute_paths(robot.file))
+        return replace(self, options=with_absolute_paths(self.options), config=replace(self.config, robot=robot))
 
     def require_planned(self, split: Split) -> None:
         """Raises ConfigError if a split is not the one from which the episodes were planned."""
@@ -122,6 +139,14 @@ class Setup:
             raise ConfigError(
                 f"The houses or episodes of '{split.name}' have changed since this run was planned; start it again."
             )
+
+    @property
+    def spec(self) -> AgentSpec:
+        """The declaration of the agent; `--config sensors=[...]` declares the sensors of code that cannot."""
+        if not isinstance(self.agent.config, BridgeConfig):
+            return self.agent
+        sensors = self.config.sensors
+        return replace(self.agent, sensors=sensors, uses_ground_truth="semantic" in sensors)
 
     @property
     def sensors(self) -> tuple[str | Sensor, ...]:
@@ -187,30 +212,50 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
     Raises:
         ConfigError: options contradict each other, a name does not exist, or a value is not allowed.
     """
-    check_options(options)
+    _check(options)
     segmentation = find_segmentation(options.semantics, options.weights)
     spec = spec or find_agent(options.agent)
     settings = {} if options.config_file is None else read_settings(options.config_file)
     settings |= parse_assignments(options.config)
     config = with_fields(_presets(options, spec, segmentation), settings)
-    if isinstance(spec.config, BridgeConfig):  # its code cannot declare sensors: --config sensors=... does
-        spec = replace(spec, sensors=config.sensors, uses_ground_truth="semantic" in config.sensors)
     verifier = _verifier(options, segmentation, config.verification)
     config = replace(config, verification=_with_least_probability(config.verification, verifier))
-    _check_sensors(options, spec, segmentation, config.sensors)
-    return Setup(
+    setup = Setup(
         options=options,
-        spec=spec,
+        agent=spec,
         segmentation=segmentation,
         config=config,
         settings=settings,
         verifier=verifier,
         start=start_pose(options.start_deg),
     )
+    _check_sensors(setup)
+    return setup
 
 
-def _resolve_planned(options: RunOptions, planned: str | None) -> Setup:
-    return replace(resolve(options), planned=planned)
+def _received(content: bytes) -> Setup:
+    return Setup(**Unpacker(content).load())
+
+
+def _check(options: RunOptions) -> None:
+    """Raises ConfigError if options contradict each other or are out of range."""
+    for name, smallest in (("episodes", 1), ("workers", 1), ("seed", 0)):
+        value = getattr(options, name)
+        if value < smallest:
+            raise ConfigError(f"--{name} must be at least {smallest}, got {value}.")
+    if options.house is None and any(each is not None for each in (options.labels, options.root, options.start_deg)):
+        raise ConfigError("--labels, --root and --start-deg need --house.")
+    if options.only and options.house is not None:
+        raise ConfigError("--only names episodes of a split; with --house, episodes are sampled.")
+    if options.retry_errors and options.out is None:
+        raise ConfigError("--retry-errors needs --out: the folder of the run.")
+    if options.seed_key is not None and not 1 <= len(options.seed_key) <= MAX_KEY_LENGTH:
+        raise ConfigError(f"--seed-key must have 1 to {MAX_KEY_LENGTH} characters, got {len(options.seed_key)}.")
+    selection.check(options)
+    if options.shard is not None:
+        Shard.parse(options.shard)
+        if options.out is None:
+            raise ConfigError(f"--shard {options.shard} needs --out: one folder for all shards.")
 
 
 def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind) -> RunConfig:
@@ -252,10 +297,9 @@ def _own_sensors(spec: AgentSpec, segmentation: SegmentationKind) -> list[Sensor
     return [each for each in read if not isinstance(each, str)]
 
 
-def _check_sensors(
-    options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind, sensors: tuple[str, ...]
-) -> None:
+def _check_sensors(setup: Setup) -> None:
     """Raises ConfigError if a sensor is missing, or shows the truth to an agent that does not declare it."""
+    options, spec, segmentation, sensors = setup.options, setup.spec, setup.segmentation, setup.config.sensors
     missing = [name for name in _sensor_names(spec, segmentation) if name not in sensors]
     if missing:
         raise ConfigError(f"sensors: agent '{options.agent}' with {options.semantics} needs {', '.join(missing)}.")

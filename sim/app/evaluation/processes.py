@@ -19,6 +19,7 @@ from typing import Any
 
 from sim.app.evaluation.watch import TICK_S, Calls, watched_as
 from sim.app.evaluation.workers import ItemRunner, ItemT, OnStart, RunnerSpec, WorkerLost, run_here, run_in_pool
+from sim.app.options import RunOptions, is_process
 
 LAST_WORDS_S = 5.0
 """Longest time in which a process may end with its threads and exit handlers; then it is killed."""
@@ -33,6 +34,19 @@ class Isolation:
     """True: a single worker is a process of its own, too, which can crash or hang without harm to this process."""
     limit_s: float = 0.0
     """Longest time of a call of the agent (`sim.app.evaluation.watch`); 0: no limit."""
+
+
+def isolation_of(options: RunOptions) -> Isolation:
+    """Returns whether the episodes of a run need a process of their own, and how long a call of the agent may take.
+
+    A user's code needs one: it may hang, crash, or change the state of its process. An agent `process:COMMAND` has a
+    process already, and `ProcessAgent` ends a call that takes too long, so that the loaded house is not lost.
+    """
+    if is_process(options.agent):
+        return Isolation()
+    limit_s = options.step_limit_s
+    own_process = bool(options.own_code) or options.step_timeout is not None
+    return Isolation(needed=own_process and limit_s > 0.0, limit_s=limit_s)
 
 
 @dataclass(frozen=True)
