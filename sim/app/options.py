@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 from sim.app import cli
-from sim.core.errors import ConfigError
-from sim.core.geometry.pose import Pose
 from sim.core.option_types import Option, meanings
 
 HABITAT = "habitat:"
@@ -137,22 +134,3 @@ class RunOptions:
 def is_process(agent: str) -> bool:
     """Returns whether an agent with this name runs in a process of its own."""
     return agent.startswith(PROCESS)
-
-
-def start_pose(start_deg: str | None) -> Pose | None:
-    """Returns the pose in the text "X Y YAW" (metres and degrees); None for None.
-
-    Raises:
-        ConfigError: the text does not hold three finite numbers.
-    """
-    if start_deg is None:
-        return None
-    try:
-        x_m, y_m, yaw_deg = (float(word) for word in start_deg.split())
-    except ValueError:
-        raise ConfigError(
-            f'--start-deg must be three numbers "X Y YAW" in metres and degrees, got "{start_deg}".'
-        ) from None
-    if not all(math.isfinite(value) for value in (x_m, y_m, yaw_deg)):
-        raise ConfigError(f'--start-deg must be finite, got "{start_deg}".')
-    return Pose(x_m, y_m, math.radians(yaw_deg))

@@ -69,6 +69,11 @@ class Split:
         """Names of the houses."""
         return tuple(self.house_paths)
 
+    @property
+    def identity(self) -> dict[str, str]:
+        """Name, version and checksum, as results record them."""
+        return {"name": self.name, "version": self.version, "sha256": self.sha256}
+
     def house_file(self, name: str) -> Path:
         """Returns the file of a house; a listed house is generated if necessary.
 

@@ -11,7 +11,7 @@ import difflib
 import inspect
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 from sim.app.composition.imports import import_attribute
 from sim.app.evaluation.own_code import place_of, text_of
@@ -28,7 +28,7 @@ if TYPE_CHECKING:  # a list of the agents needs neither MuJoCo nor OpenGL
     from sim.env.objectnav import ObjectNavEnv
 
 
-def _make_oracle(*, truth: ObjectNavEnv, **_: Any) -> Agent:
+def _make_oracle(*, truth: ObjectNavEnv, **_: object) -> Agent:
     from sim.env.oracle import Oracle
 
     return Oracle(truth)
@@ -145,7 +145,7 @@ def build_agent(
     *,
     segmenter: Segmenter,
     verifier: Verifier,
-    config: Any,
+    config: object,
     step_timeout_s: float = 0.0,
 ) -> Agent:
     """Returns a new agent for an environment; `step_timeout_s` limits the time of its calls (0: no limit).
@@ -153,7 +153,7 @@ def build_agent(
     Raises:
         ConfigError: the factory does not take the arguments of `sim.core.interface.AgentFactory`.
     """
-    parts: dict[str, Any] = {
+    parts: dict[str, object] = {
         "camera": env.camera_model,
         "robot": env.robot_model,
         "success": env.success_rule,
@@ -177,7 +177,7 @@ def build_agent(
         raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error
 
 
-def _resets_without_arguments(factory: Any) -> bool:
+def _resets_without_arguments(factory: object) -> bool:
     """Returns whether a class has the methods of a Habitat agent, `reset()` and `act(observations)`."""
     if not inspect.isclass(factory) or not callable(getattr(factory, "act", None)):
         return False

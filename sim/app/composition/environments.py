@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import replace
-from typing import Any
+from typing import NamedTuple
 
 from sim.app.composition.setup import Setup
 from sim.app.options import RunOptions
@@ -47,13 +47,23 @@ def make_env(setup: Setup, *, sensors: tuple[str | Sensor, ...], truth: tuple[st
     )
 
 
-def episodes_of(setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
-    """Returns the episodes of a run, and what identifies the split or house they come from.
+class RunEpisodes(NamedTuple):
+    """The episodes of a run."""
+
+    episodes: list[Episode]
+    split: dict[str, str]
+    """Identity of the split or house that they come from."""
+    notes: tuple[str, ...] = ()
+    """Sentences about what was changed in a house with `--labels`."""
+
+
+def episodes_of(setup: Setup) -> RunEpisodes:
+    """Returns the episodes of a run.
 
     Raises:
         ConfigError, EpisodeError, HouseError: the split, house, goal or start does not exist.
     """
-    options = setup.options
+    options, notes = setup.options, ()
     env = make_env(setup, sensors=())
     try:
         split = env.split
@@ -68,10 +78,10 @@ def episodes_of(setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
             episodes = choose(split_of_agent, options)
         else:
             episodes = drawn_episodes(env, setup)
+            notes = env.notes_on(split.houses[0]) if options.labels is not None else ()
     finally:
         env.close()
-    episodes = with_replicates(episodes, options.replicates)
-    return episodes, {"name": split.name, "version": split.version, "sha256": split.sha256}
+    return RunEpisodes(with_replicates(episodes, options.replicates), split.identity, notes)
 
 
 def known_goals(setup: Setup) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -23,7 +23,7 @@ from sim.robot.config import PHYSICS_VERSION
 from sim.robot.foreign import robot_sha256
 
 
-def record_of(setup: Setup, split: dict[str, Any]) -> dict[str, Any]:
+def record_of(setup: Setup, split: Mapping[str, str]) -> dict[str, Any]:
     """Returns the content of `config.json`: options, configuration tree, checksums of files, split and versions."""
     recorded = [name for name, option in meanings(RunOptions).items() if option.recorded]
     return {name: as_json(getattr(setup.options, name)) for name in recorded} | {
@@ -32,7 +32,7 @@ def record_of(setup: Setup, split: dict[str, Any]) -> dict[str, Any]:
         "physics": PHYSICS_VERSION,
         "segmentation": _segmentation_of(setup),
         "files_sha256": _checksums(setup),
-        "split_identity": split,
+        "split_identity": dict(split),
         "versions": versions(setup.options),
     }
 
@@ -80,7 +80,7 @@ def _segmentation_of(setup: Setup) -> dict[str, Any]:
     return found if precision is None else found | {"precision": precision}
 
 
-def _files_in(tree: Any, name: str) -> Iterator[tuple[str, Path]]:
+def _files_in(tree: object, name: str) -> Iterator[tuple[str, Path]]:
     """Yields path and file of each field of a configuration that names a file, such as weights of an explorer."""
     if is_dataclass(tree) and not isinstance(tree, type):
         for field in fields(tree):

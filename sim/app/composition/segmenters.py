@@ -53,7 +53,7 @@ class SegmentationKind:
 
     description: str
     spec: SegmenterSpec
-    config: Any
+    config: object
     """Default configuration; None: there is nothing to configure."""
     make: Callable[[ObjectNavEnv, Any], Segmenter]
     """Builds the segmenter for an environment that provides the images which `spec` names."""
@@ -199,14 +199,14 @@ def is_calibrated(weights: Path) -> bool:
         return False
 
 
-def detector_config(kind: SegmentationKind, weights: Path | None) -> Any:
+def detector_config(kind: SegmentationKind, weights: Path | None) -> object:
     """Returns the default configuration of a kind of segmentation on this machine, with the user's weights if any."""
     if isinstance(kind.config, NetworkConfig):
         return replace(kind.config, weights=weights or kind.config.weights, mirrored=computes_bf16())
     return kind.config
 
 
-def precision_of(config: Any) -> str | None:
+def precision_of(config: object) -> str | None:
     """Returns the precision in which a network computes on this machine, bf16 or fp32; None: it is no network."""
     if not isinstance(config, NetworkConfig):
         return None
@@ -245,7 +245,7 @@ def weights_file(weights: Path | None) -> Path:
     return file
 
 
-def detector_record(config: Any) -> Any:
+def detector_record(config: object) -> Any:
     """Returns a detector's configuration as JSON types, with the checksum of its weights if it has any."""
     content = as_json(config)
     if isinstance(config, NetworkConfig):

@@ -5,6 +5,7 @@ Environment, agent, viewers, results and workers are made from the setup (`sim.a
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -21,7 +22,7 @@ from sim.app.composition.segmenters import (
 )
 from sim.app.composition.transfer import Reference, Unpacker, packed
 from sim.app.evaluation.parallel import Shard
-from sim.app.options import WORLD, RunOptions, start_pose
+from sim.app.options import WORLD, RunOptions
 from sim.app.viewers import selection
 from sim.core.configuration import parse_assignments, read_settings, with_absolute_paths, with_fields
 from sim.core.errors import ConfigError
@@ -99,9 +100,11 @@ class Setup:
     segmentation: SegmentationKind
     """The segmentation that `options.semantics` names."""
     config: RunConfig
-    settings: Mapping[str, Any]
+    settings: Mapping[str, object]
     """Path and value of each field that the settings file or `--config` sets."""
     verifier: Verifier
+    shard: Shard | None
+    """The part of the episodes that `--shard` chooses; None: all."""
     start: Pose | None
     """With `--house`, the start of every episode; None: starts are sampled."""
     planned: str | None = None
@@ -213,6 +216,7 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
         ConfigError: options contradict each other, a name does not exist, or a value is not allowed.
     """
     _check(options)
+    shard = _shard(options)
     segmentation = find_segmentation(options.semantics, options.weights)
     spec = spec or find_agent(options.agent)
     settings = {} if options.config_file is None else read_settings(options.config_file)
@@ -227,7 +231,8 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
         config=config,
         settings=settings,
         verifier=verifier,
-        start=start_pose(options.start_deg),
+        shard=shard,
+        start=_start_pose(options.start_deg),
     )
     _check_sensors(setup)
     return setup
@@ -252,10 +257,35 @@ def _check(options: RunOptions) -> None:
     if options.seed_key is not None and not 1 <= len(options.seed_key) <= MAX_KEY_LENGTH:
         raise ConfigError(f"--seed-key must have 1 to {MAX_KEY_LENGTH} characters, got {len(options.seed_key)}.")
     selection.check(options)
-    if options.shard is not None:
-        Shard.parse(options.shard)
-        if options.out is None:
-            raise ConfigError(f"--shard {options.shard} needs --out: one folder for all shards.")
+
+
+def _shard(options: RunOptions) -> Shard | None:
+    """Returns the part of the episodes that `--shard` chooses; raises ConfigError if there is no such part."""
+    if options.shard is None:
+        return None
+    shard = Shard.parse(options.shard)
+    if options.out is None:
+        raise ConfigError(f"--shard {options.shard} needs --out: one folder for all shards.")
+    return shard
+
+
+def _start_pose(start_deg: str | None) -> Pose | None:
+    """Returns the pose in the text "X Y YAW" (metres and degrees); None for None.
+
+    Raises:
+        ConfigError: the text does not hold three finite numbers.
+    """
+    if start_deg is None:
+        return None
+    try:
+        x_m, y_m, yaw_deg = (float(word) for word in start_deg.split())
+    except ValueError:
+        raise ConfigError(
+            f'--start-deg must be three numbers "X Y YAW" in metres and degrees, got "{start_deg}".'
+        ) from None
+    if not all(math.isfinite(value) for value in (x_m, y_m, yaw_deg)):
+        raise ConfigError(f'--start-deg must be finite, got "{start_deg}".')
+    return Pose(x_m, y_m, math.radians(yaw_deg))
 
 
 def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind) -> RunConfig:
@@ -275,7 +305,7 @@ def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKin
     )
 
 
-def _agent_config(options: RunOptions, spec: AgentSpec) -> Any:
+def _agent_config(options: RunOptions, spec: AgentSpec) -> object:
     """Returns the default configuration of the agent, with the explorer of `--explorer`."""
     if options.explorer is None:
         return spec.config

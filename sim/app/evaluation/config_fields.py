@@ -5,7 +5,6 @@ from __future__ import annotations
 import enum
 import json
 from collections.abc import Mapping
-from typing import Any
 
 from sim.app.options import RunOptions
 from sim.core.option_types import meanings
@@ -18,9 +17,9 @@ class Absent(enum.Enum):
 
 
 ABSENT = Absent.ABSENT
-Difference = tuple[str, Any, Any]
+Difference = tuple[str, object, object]
 """Dotted path of a field, its value in the first object and in the second; `ABSENT` in an object without it."""
-Record = Mapping[str, Any]
+Record = Mapping[str, object]
 """The content of a `config.json`."""
 OPTIONS = meanings(RunOptions)
 """The meaning of each option that a `config.json` holds."""
@@ -28,7 +27,7 @@ DERIVED = frozenset({"versions", "codes", "settings", "segmentation"})
 """Entries of a `config.json` that follow from the code, or from other entries: `config` is the tree with `settings`."""
 
 
-def differing_fields(a: Mapping[str, Any], b: Mapping[str, Any]) -> list[Difference]:
+def differing_fields(a: Mapping[str, object], b: Mapping[str, object]) -> list[Difference]:
     """Returns the fields in which two nested JSON objects differ, sorted by path; a list is one value.
 
     An object that only one side has is reported field by field.
@@ -66,15 +65,16 @@ def _is_same_file(path: str, first: Record, second: Record) -> bool:
 
 
 def _sums(record: Record) -> Mapping[str, str]:
-    return record.get("files_sha256", {})
+    sums = record.get("files_sha256")
+    return sums if isinstance(sums, Mapping) else {}
 
 
-def field_text(value: Any) -> str:
+def field_text(value: object) -> str:
     """Returns a value as JSON, or "(absent)"."""
     return ABSENT.value if value is ABSENT else json.dumps(value, ensure_ascii=False)
 
 
-def _differences(path: str, a: Any, b: Any) -> list[Difference]:
+def _differences(path: str, a: object, b: object) -> list[Difference]:
     first, second = _fields(a, b), _fields(b, a)
     if first is None or second is None:
         return [] if a == b and isinstance(a, bool) == isinstance(b, bool) else [(path, a, b)]
@@ -85,7 +85,7 @@ def _differences(path: str, a: Any, b: Any) -> list[Difference]:
     return found
 
 
-def _fields(value: Any, other: Any) -> Mapping[str, Any] | None:
+def _fields(value: object, other: object) -> Mapping[str, object] | None:
     """Returns the fields of an object; {} for an absent one paired with such an object; None for any other value."""
     if isinstance(value, Mapping):
         return value if value or other is not ABSENT else None

@@ -91,7 +91,7 @@ class Choices:
             "run_command": invocation.command("run", "--video"),
         }
 
-    def request(self, message: Mapping[str, Any]) -> EpisodeRequest:
+    def request(self, message: Mapping[str, object]) -> EpisodeRequest:
         """Returns the request that a message of the page describes.
 
         Raises:
@@ -99,7 +99,7 @@ class Choices:
         """
         return self._request(convert(message, _Start, where="The message"))
 
-    def again(self, record: Mapping[str, Any], line: Mapping[str, Any], driver: Driver) -> EpisodeRequest:
+    def again(self, record: Mapping[str, object], line: Mapping[str, object], driver: Driver) -> EpisodeRequest:
         """Returns a request for an episode of a finished run, with the agent, seed and settings of that run.
 
         Args:
@@ -113,7 +113,7 @@ class Choices:
         by_person = str(record.get("agent")).partition("+")[0] == HUMAN_NAME
         file = record.get("house")
         asked = {
-            "split": str(Path(file).absolute()) if file else _split_name(str(record.get("split"))),
+            "split": str(Path(str(file)).absolute()) if file else _split_name(str(record.get("split"))),
             "house": line["house"],
             "goal": line["goal"],
             "agent": "stubborn" if by_person else record.get("agent"),
@@ -165,7 +165,7 @@ class Choices:
         )
 
     @staticmethod
-    def _require(option: str, name: str, offered: Mapping[str, Any]) -> None:
+    def _require(option: str, name: str, offered: Mapping[str, object]) -> None:
         if name not in offered:
             command = invocation.command("web", f"--{option}", name)
             raise ConfigError(f"This page does not offer --{option} '{name}'. Start the server with it: {command}")
@@ -217,7 +217,7 @@ def _place_of(episode_id: str, houses: Goals, split: str) -> tuple[str, str]:
     raise ConfigError(f"Split '{split}' has no episode '{episode_id}'.")
 
 
-def _settings(record: Mapping[str, Any], own: Iterable[str]) -> tuple[str, ...]:
+def _settings(record: Mapping[str, object], own: Iterable[str]) -> tuple[str, ...]:
     """Returns the settings of a run in the form of `--config`.
 
     Args:
@@ -232,7 +232,7 @@ def _settings(record: Mapping[str, Any], own: Iterable[str]) -> tuple[str, ...]:
     return (*plain, *(assignment for assignment in own if assignment.partition("=")[0] in files))
 
 
-def _is_plain(value: Any) -> bool:
+def _is_plain(value: object) -> bool:
     if isinstance(value, list):
         return all(map(_is_plain, value))
     return not isinstance(value, dict) and (not isinstance(value, str) or _PLAIN_TEXT.fullmatch(value) is not None)

@@ -58,7 +58,7 @@ class DrivenRuns:
             done = self._done
         options = person.options
         person = replace(person, options=replace(person.options, out=run))
-        split = {"name": env.split.name, "version": env.split.version, "sha256": env.split.sha256}
+        split = env.split.identity
         content = record_of(person, split)
         directory = RunDirectory(run, content)
         try:

@@ -323,7 +323,7 @@ def unlike_the_run(setup: Setup, env: ObjectNavEnv, record: Mapping[str, Any] | 
     """
     if record is None:
         return ""
-    now = record_of(setup, {"name": env.split.name, "version": env.split.version, "sha256": env.split.sha256})
+    now = record_of(setup, env.split.identity)
     fields = [path.removeprefix("config.") for path, _, _ in run_differences(record, now) if path.startswith("config.")]
     if (record.get("split_identity") or {}).get("sha256") != env.split.sha256:
         fields.append("the houses")

@@ -139,13 +139,8 @@ def run_in_turns(runs: Sequence[TableRun], chunk: int, minutes: float | None, co
                 is_complete = all(episode.episode_id in run.lines for episode in episodes)
                 checks_options = not first and not run.options.keep_results  # also those of a complete run
                 if checks_options or not is_complete:
-                    run_missing(resolve(run.options), episodes, identity(run.split), console)
+                    run_missing(resolve(run.options), episodes, run.split.identity, console)
             longest_s = max(longest_s, time.monotonic() - chunk_began_s)
-
-
-def identity(split: Split) -> dict[str, str]:
-    """Returns what config.json records of a split."""
-    return {"name": split.name, "version": split.version, "sha256": split.sha256}
 
 
 class _Recorded(msgspec.Struct):

@@ -120,7 +120,7 @@ def write_or_compare_config(args: Args, split: Split) -> None:
     file = args.out / "config.json"
     own = {name: code_of(RunOptions(agent=name)).partition("+")[2] for name in args.agents}
     config: dict[str, Any] = {
-        "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
+        "split_identity": split.identity,
         "physics": PHYSICS_VERSION,
         "max_steps": args.max_steps,
         "own_code": {name: code for name, code in own.items() if code},

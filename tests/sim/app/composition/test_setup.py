@@ -87,7 +87,7 @@ def test_a_configuration_that_cannot_travel_is_refused_in_one_line() -> None:
     class Local:
         size: int = 1
 
-    spec = AgentSpec(make=len, config=Local())
+    spec = AgentSpec(make=StubbornAgent, config=Local())
     with pytest.raises(ConfigError, match="top level"):
         pickle.dumps(resolve(RunOptions(agent="stubborn", semantics="gt"), spec))
 
