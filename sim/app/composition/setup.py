@@ -27,7 +27,7 @@ from sim.app.viewers import selection
 from sim.core.configuration import parse_assignments, read_settings, with_absolute_paths, with_fields
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
-from sim.core.interface import TRUE_IMAGES, AgentSpec, CameraModel
+from sim.core.interface import TRUE_IMAGES, AgentSpec, CameraModel, SegmenterSpec
 from sim.core.invocation import command
 from sim.episodes.splits import Split
 from sim.renderer.profiles import RenderProfile, get_profile
@@ -222,8 +222,8 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
     settings = {} if options.config_file is None else read_settings(options.config_file)
     settings |= parse_assignments(options.config)
     config = with_fields(_presets(options, spec, segmentation), settings)
-    verifier = _verifier(options, segmentation, config.verification)
-    config = replace(config, verification=_with_least_probability(config.verification, verifier))
+    verification, verifier = _verified(segmentation.spec, config.verification)
+    config = replace(config, verification=verification)
     setup = Setup(
         options=options,
         agent=spec,
@@ -244,10 +244,6 @@ def _received(content: bytes) -> Setup:
 
 def _check(options: RunOptions) -> None:
     """Raises ConfigError if options contradict each other or are out of range."""
-    for name, smallest in (("episodes", 1), ("workers", 1), ("seed", 0)):
-        value = getattr(options, name)
-        if value < smallest:
-            raise ConfigError(f"--{name} must be at least {smallest}, got {value}.")
     if options.house is None and any(each is not None for each in (options.labels, options.root, options.start_deg)):
         raise ConfigError("--labels, --root and --start-deg need --house.")
     if options.only and options.house is not None:
@@ -363,17 +359,16 @@ def _noise_reads_truth(sensor: Sensor) -> bool:
     return model is not None and not TRUE_IMAGES.isdisjoint(model.images)
 
 
-def _verifier(options: RunOptions, segmentation: SegmentationKind, config: VerificationConfig) -> Verifier:
-    """Returns the verifier of a run; raises ConfigError if there are no such parameters, or no such method."""
-    verifier = verifier_for(segmentation.spec, config.parameters, config.method)
-    if isinstance(verifier, FittedVerifier) and config.least_probability is not None:
-        return replace(verifier, least_probability=config.least_probability)
-    return verifier
+def _verified(spec: SegmenterSpec, config: VerificationConfig) -> tuple[VerificationConfig, Verifier]:
+    """Returns a configuration with the probability that a candidate needs, and its verifier.
 
-
-def _with_least_probability(config: VerificationConfig, verifier: Verifier) -> VerificationConfig:
-    """Returns the configuration with the probability that a candidate needs; that of the fit where none is set."""
-    if config.least_probability is not None:
-        return config
-    fitted = verifier if isinstance(verifier, FittedVerifier) else FittedVerifier
-    return replace(config, least_probability=fitted.least_probability)
+    Raises:
+        ConfigError: there are no such parameters, or no such method.
+    """
+    verifier = verifier_for(spec, config.parameters, config.method)
+    fitted = verifier if isinstance(verifier, FittedVerifier) else None
+    if config.least_probability is None:
+        return replace(config, least_probability=(fitted or FittedVerifier).least_probability), verifier
+    if fitted is None:
+        return config, verifier
+    return config, replace(fitted, least_probability=config.least_probability)

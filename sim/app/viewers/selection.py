@@ -35,11 +35,7 @@ def make(options: RunOptions, painter: MapPainter | None, seen: SeesFrames | Non
         options: of the run.
         painter: draws the agent's map; None if it has none.
         seen: provides the segmentation that the agent acts on; None if it has none.
-
-    Raises:
-        ConfigError: see `check`.
     """
-    check(options)
     viewers: list[Viewer] = []
     if options.video and options.out is not None:
         from sim.app.viewers.video import VideoRecorder
