@@ -7,7 +7,6 @@ a file are JSON or TOML. msgspec converts them to the declared type of the field
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import json
 import math
 import reprlib
@@ -19,7 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar, cast
 
 import msgspec
 
-from sim.core.errors import ConfigError
+from sim.core.errors import ConfigError, did_you_mean
 from sim.core.geometry.numbers import LARGEST, is_number
 from sim.core.reading import parse_json, read_bytes
 
@@ -170,10 +169,10 @@ def _replaced(node: DataclassInstance, values: Mapping[str, object], path: str) 
     for name, value in values.items():
         here = f"{path}.{name}" if path else name
         if name not in names:
-            near = difflib.get_close_matches(name, names, n=1)
-            hint = f" Did you mean '{near[0]}'?" if near else ""
             owner = f"'{path}'" if path else "The configuration"
-            raise ConfigError(f"There is no field '{here}'.{hint} {owner} has: {', '.join(names)}.")
+            raise ConfigError(
+                f"There is no field '{here}'.{did_you_mean(name, names)} {owner} has: {', '.join(names)}."
+            )
         current = getattr(node, name)
         if isinstance(value, Mapping) and _is_node(current):
             changed[name] = _replaced(current, value, here)

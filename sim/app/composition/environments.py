@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import replace
 from typing import NamedTuple
 
 from sim.app.composition.setup import Setup
 from sim.app.options import RunOptions
-from sim.core.errors import ConfigError
+from sim.core.errors import ConfigError, did_you_mean
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES
 from sim.env.objectnav import ObjectNavEnv
@@ -131,10 +130,10 @@ def _named_episodes(split: Split, options: RunOptions) -> list[Episode]:
     ids = [episode.episode_id for episode in of_goal]
     for name in options.only:
         if name not in ids:
-            near = difflib.get_close_matches(name, ids, n=1)
-            hint = f" Did you mean '{near[0]}'?" if near else ""
             with_goal = f" with goal '{options.goal}'" if options.goal else ""
-            raise ConfigError(f"--only '{name}': split '{split.name}' has no such episode{with_goal}.{hint}")
+            raise ConfigError(
+                f"--only '{name}': split '{split.name}' has no such episode{with_goal}.{did_you_mean(name, ids)}"
+            )
     return [episode for episode in of_goal if episode.episode_id in options.only]
 
 
@@ -146,10 +145,9 @@ def _first_episodes(split: Split, options: RunOptions) -> list[Episode]:
     """
     goals = [goal for goal in GOAL_CATEGORIES if any(episode.goal == goal for episode in split.episodes)]
     if options.goal is not None and options.goal not in goals:
-        near = difflib.get_close_matches(options.goal, goals, n=1)
-        hint = f" Did you mean '{near[0]}'?" if near else ""
         raise ConfigError(
-            f"--goal '{options.goal}': split '{split.name}' has no such episode.{hint} It has: {', '.join(goals)}."
+            f"--goal '{options.goal}': split '{split.name}' has no such episode.{did_you_mean(options.goal, goals)}"
+            f" It has: {', '.join(goals)}."
         )
     episodes = [episode for episode in split.episodes if options.goal in (None, episode.goal)]
     if options.episodes > len(episodes):

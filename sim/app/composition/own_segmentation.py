@@ -43,8 +43,7 @@ def load_specification(name: str) -> SegmentationSpec:
     Raises:
         ConfigError: there is no such module or name, or its object has another type.
     """
-    module_name, _, attribute = name.partition(":")
-    found = import_attribute(name, module_name, attribute)
+    found = import_attribute(name)
     if isinstance(found, SegmentationSpec):
         return found
     if not callable(found):

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -19,7 +18,7 @@ from safetensors import SafetensorError, safe_open
 
 from sim.app.composition.own_segmentation import load_specification, make_own
 from sim.core.configuration import as_json
-from sim.core.errors import ConfigError
+from sim.core.errors import ConfigError, did_you_mean
 from sim.core.interface import CameraModel, Observation, Scores, SegmentationSpec, Segmenter, SegmenterSpec
 from sim.core.invocation import command
 from sim.core.reading import open_plain, reason_of, sha256_of
@@ -175,10 +174,9 @@ def find_segmentation(semantics: str, weights: Path | None) -> SegmentationKind:
             description=own.description or semantics, spec=own.spec, config=own.config, make=make, own=own
         )
     else:
-        near = difflib.get_close_matches(semantics, KINDS, n=1)
-        hint = f" Did you mean '{near[0]}'?" if near else ""
         raise ConfigError(
-            f"Unknown --semantics '{semantics}'.{hint} Available: {', '.join(KINDS)}, or your own as "
+            f"Unknown --semantics '{semantics}'.{did_you_mean(semantics, KINDS)}"
+            f" Available: {', '.join(KINDS)}, or your own as "
             "package.module:NAME."
         )
     if weights is not None and not isinstance(kind.config, NetworkConfig):
