@@ -116,18 +116,14 @@ class Setup:
 
     def _own_code(self) -> Iterator[tuple[int, Reference]]:
         """Yields the `id` of each object of the user's code, and its name."""
+        objects = {"agent": self.agent, "semantics": self.segmentation}
         explorer = getattr(self.config.agent, "explorer", None)
-        parts = {
-            "agent": (self.agent, self.config.agent),
-            "explorer": (None, explorer),
-            "semantics": (self.segmentation, self.config.detector),
-        }
+        configs = {"agent": self.config.agent, "explorer": explorer, "semantics": self.config.detector}
         for option, name in self.options.own_code.items():
-            own, config = parts[option]
-            if own is not None:
-                yield id(own), Reference(option, name, "object")
-            if config is not None:
-                yield id(type(config)), Reference(option, name, "class")
+            if option in objects:
+                yield id(objects[option]), Reference(option, name)
+            if configs[option] is not None:
+                yield id(type(configs[option])), Reference(option, name, "class")
 
     def with_absolute_paths(self) -> Setup:
         """Returns this setup with absolute paths, which stay valid if the current folder changes."""

@@ -1,7 +1,8 @@
 """Writes a setup for another process: its values are pickled, and a user's code becomes the name that imports it.
 
 An object of a user's code cannot always be pickled: it may hold a function or be of a class that no module has, such as
-the configuration of an agent with Habitat's interface.
+the configuration of an agent with Habitat's interface. The path of a shipped file becomes a path in the package, which
+may lie in another folder on another machine.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import io
 import pickle
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Literal, NamedTuple
 
 from sim.app.composition.agents import find_agent, find_explorer
@@ -17,14 +19,18 @@ from sim.core.errors import ConfigError
 from sim.core.interface import AgentSpec
 from stubborn.exploration.explorer import ExplorerConfig
 
+ROOT = Path(__file__).resolve().parents[3]
+"""The folder of the packages `sim` and `stubborn`."""
+
 
 class Reference(NamedTuple):
-    """A user's object, as the option that names it."""
+    """A user's object, as the option that names it, or a shipped file."""
 
     option: str
-    """`agent`, `explorer` or `semantics`."""
+    """`agent`, `explorer` or `semantics`; `file` for a shipped file."""
     name: str
-    part: Literal["object", "class"]
+    """The value of the option, or the path of the file below `ROOT`."""
+    part: Literal["object", "class"] = "object"
     """The object itself, or the class of its configuration."""
 
 
@@ -52,6 +58,8 @@ class _Writer(pickle.Pickler):
 
     def persistent_id(self, obj: object) -> Reference | None:
         """Returns the reference of an object; None: it is written by value."""
+        if isinstance(obj, Path) and any(obj.is_relative_to(ROOT / package) for package in ("sim", "stubborn")):
+            return Reference("file", str(obj.relative_to(ROOT)))
         return self._references.get(id(obj))
 
 
@@ -68,6 +76,8 @@ class Unpacker(pickle.Unpickler):
 
     def persistent_load(self, pid: Reference) -> object:
         """Returns the object of a reference."""
+        if pid.option == "file":
+            return ROOT / pid.name
         key = pid.option, pid.name
         if key not in self._imported:
             self._imported[key] = _imported(*key)
