@@ -35,22 +35,21 @@ class EpisodeRequest:
     split: str
     house: str
     goal: str
-    agent: str
-    semantics: str
-    explorer: str = ""
-    """Name of the explorer; "" is the agent's own."""
     episode_id: str | None = None
     """Id of the episode; None: another one of this house and goal each time."""
     driver: Driver = "agent"
     options: RunOptions
-    """Options of the run that the episode belongs to."""
+    """Options of the run that the episode belongs to; they name agent, segmentation and explorer."""
     record: Mapping[str, object] | None = None
     """The `config.json` of the finished run to which the episode belongs; None: it belongs to none."""
 
     def as_json(self) -> dict[str, object]:
         """Returns the part that the page shows, as JSON types."""
-        names = ("split", "house", "goal", "agent", "semantics", "explorer", "episode_id", "driver")
-        return {name: getattr(self, name) for name in names}
+        chosen: dict[str, object] = {
+            name: getattr(self, name) for name in ("split", "house", "goal", "episode_id", "driver")
+        }
+        options = self.options
+        return chosen | {"agent": options.agent, "semantics": options.semantics, "explorer": options.explorer or ""}
 
 
 class Choice(NamedTuple):

@@ -112,7 +112,7 @@ class Session:
         self._free()
 
     def _run_episode(self, request: EpisodeRequest) -> None:
-        self._show_state(request, "loading", f"Loading house {request.house} and the agent {request.agent} ...")
+        self._show_state(request, "loading", f"Loading house {request.house} and the agent {request.options.agent} ...")
         made = self._made_for(request)
         parts, pictures = made.parts, made.pictures
         episode = choose_episode(parts.env, request, self._turn, made.setup)
@@ -135,7 +135,7 @@ class Session:
             seed=seeds.environment,
             seed_of_agent=seeds.agent,
             viewers=[watcher],
-            name=request.agent,
+            name=options.agent,
         )
         shared.show_end()
         nearest_m = parts.env.scene.task.trajectory().nearest_instance_m

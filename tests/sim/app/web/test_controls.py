@@ -13,9 +13,7 @@ from sim.core.errors import ConfigError
 from sim.core.interface import Action
 
 LEFT, AHEAD = Action.TURN_LEFT, Action.MOVE_FORWARD
-REQUEST = EpisodeRequest(
-    split="val", house="val_00", goal="bed", agent="stubborn", semantics="gt", options=RunOptions()
-)
+REQUEST = EpisodeRequest(split="val", house="val_00", goal="bed", options=RunOptions(semantics="gt"))
 
 
 def later(action, delay_s: float = 0.1) -> None:
