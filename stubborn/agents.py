@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from types import MappingProxyType
 from typing import Any
 
+from sim.core.errors import did_you_mean
 from sim.core.interface import MAX_STEPS, Agent, AgentSpec, CameraModel, ConfigError, RobotModel, Segmenter, SuccessRule
 from stubborn.agent import AgentConfig, CollisionAvoidance, StubbornAgent
 from stubborn.baselines.cloned import ClonedConfig, cloned_agent
@@ -185,7 +185,5 @@ def make(
 def _known(name: str, table: Mapping[str, Any], kind: str) -> str:
     """Returns the name when it is in the table."""
     if name not in table:
-        near = difflib.get_close_matches(name, table, n=1)
-        hint = f" Did you mean {near[0]!r}?" if near else ""
-        raise ConfigError(f"No {kind} {name!r}.{hint} Available: {', '.join(table)}.")
+        raise ConfigError(f"No {kind} {name!r}.{did_you_mean(name, table)} Available: {', '.join(table)}.")
     return name

@@ -189,7 +189,7 @@ def test_a_module_of_the_user_that_hides_the_package_is_named(tmp_path: Path, mo
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("sys.path", [path for path in sys.path if path])
     with pytest.raises(ConfigError, match=r"Your 'sim.py' in the current folder would hide the package 'sim'"):
-        import_attribute("mine:A", "mine", "A")
+        import_attribute("mine:A")
 
 
 def test_numba_has_a_folder_of_its_user_where_nothing_else_can_be_written(

@@ -53,6 +53,7 @@ ROOMS = (
     ("sim.homes.plans",),
     ("sim.training",),
     ("sim.app.cli",),
+    ("sim.app.options",),
     ("sim.app.viewers",),
     ("sim.app.evaluation",),
     ("sim.app.analysis",),

@@ -33,33 +33,17 @@ from msgspec import Meta
 from sim.core import invocation
 from sim.core.errors import ConfigError, ObjectNavError, debug, debugging
 from sim.core.files import require_writable
-from sim.core.option_types import (
-    Amount as Amount,
-)
-from sim.core.option_types import (
-    Count as Count,
-)
-from sim.core.option_types import (
-    NotNegative as NotNegative,
-)
-from sim.core.option_types import (
-    OutFile as OutFile,
-)
-from sim.core.option_types import (
-    OutFolder as OutFolder,
-)
-from sim.core.option_types import (
-    Positive as Positive,
-)
-from sim.core.option_types import (
-    Seed as Seed,
-)
-from sim.core.option_types import (
-    Share as Share,
-)
-from sim.core.option_types import (
+from sim.core.option_types import (  # noqa: F401 - commands take the types of their options from here
+    Amount,
+    Count,
+    NotNegative,
+    OutFile,
+    OutFolder,
+    Positive,
+    Seed,
+    Share,
     Written,
-)
+)  # fmt: skip
 from sim.core.reading import first_unprintable, printable, reason_of
 
 ArgsT = TypeVar("ArgsT")

@@ -7,7 +7,6 @@ a file are JSON or TOML. msgspec converts them to the declared type of the field
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import json
 import math
 import reprlib
@@ -15,19 +14,22 @@ import tomllib
 import typing
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar, cast
 
 import msgspec
 
-from sim.core.errors import ConfigError
+from sim.core.errors import ConfigError, did_you_mean
 from sim.core.geometry.numbers import LARGEST, is_number
 from sim.core.reading import parse_json, read_bytes
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 TreeT = TypeVar("TreeT")
 MAX_SETTINGS_BYTES = 1 << 20
 
 
-def as_json(value: Any) -> Any:
+def as_json(value: object) -> Any:
     """Returns a configuration as JSON types: dataclasses as objects, tuples as lists, infinity as the text "inf"."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         return {field.name: as_json(getattr(value, field.name)) for field in dataclasses.fields(value)}
@@ -42,7 +44,7 @@ def as_json(value: Any) -> Any:
     return value
 
 
-def field_paths(tree: Any, prefix: str = "") -> list[str]:
+def field_paths(tree: object, prefix: str = "") -> list[str]:
     """Returns the paths of all fields of a tree that hold no further dataclass, in order."""
     if not _is_node(tree):
         return [prefix]
@@ -53,7 +55,7 @@ def field_paths(tree: Any, prefix: str = "") -> list[str]:
     return paths
 
 
-def with_fields(tree: TreeT, values: Mapping[str, Any]) -> TreeT:
+def with_fields(tree: TreeT, values: Mapping[str, object]) -> TreeT:
     """Returns a copy of the tree with some fields set.
 
     Args:
@@ -64,13 +66,20 @@ def with_fields(tree: TreeT, values: Mapping[str, Any]) -> TreeT:
         ConfigError: an unknown path, or a value that is not allowed; fields are set together, so that values which
             are allowed only in combination can be given in one call.
     """
-    nested: dict[str, Any] = {}
+    nested: dict[str, object] = {}
     for path, value in values.items():
         _put(nested, path.split("."), value, path)
-    return _replaced(tree, nested, "")
+    return cast(TreeT, _replaced(cast("DataclassInstance", tree), nested, ""))
 
 
-def as_settings(given: TreeT | Mapping[str, Any] | None, default: TreeT, *, name: str) -> TreeT:
+def with_absolute_paths(tree: TreeT) -> TreeT:
+    """Returns a copy of a frozen dataclass in which every field that is a path is absolute."""
+    values = {field.name: getattr(tree, field.name) for field in dataclasses.fields(tree)}  # type: ignore[arg-type]
+    paths = {name: value.absolute() for name, value in values.items() if isinstance(value, Path)}
+    return dataclasses.replace(tree, **paths)  # type: ignore[type-var]
+
+
+def as_settings(given: TreeT | Mapping[str, object] | None, default: TreeT, *, name: str) -> TreeT:
     """Returns a configuration that a caller gave as an object, as a dict of some of its fields, or not at all.
 
     Args:
@@ -92,13 +101,13 @@ def as_settings(given: TreeT | Mapping[str, Any] | None, default: TreeT, *, name
         raise ConfigError(f"{name}: {error}") from None
 
 
-def parse_assignments(assignments: Iterable[str]) -> dict[str, Any]:
+def parse_assignments(assignments: Iterable[str]) -> dict[str, object]:
     """Returns path and value of each `PATH=VALUE` of a command line; a value is JSON where it can be read as JSON.
 
     Raises:
         ConfigError: an assignment without `=`, or a path that is given twice.
     """
-    values: dict[str, Any] = {}
+    values: dict[str, object] = {}
     for assignment in assignments:
         path, separator, text = assignment.partition("=")
         if not separator or not path:
@@ -112,7 +121,7 @@ def parse_assignments(assignments: Iterable[str]) -> dict[str, Any]:
     return values
 
 
-def read_settings(file: Path) -> dict[str, Any]:
+def read_settings(file: Path) -> dict[str, object]:
     """Returns path and value of each field in a file of settings, `.toml` or `.json`, nested or with dotted paths.
 
     Raises:
@@ -120,7 +129,7 @@ def read_settings(file: Path) -> dict[str, Any]:
     """
     content = read_bytes(file, what="--config-file", most=MAX_SETTINGS_BYTES)
     if file.suffix != ".toml":
-        return dict(leaves_of(parse_json(content, dict[str, Any], where=f"--config-file '{file}'")))
+        return dict(leaves_of(parse_json(content, dict[str, object], where=f"--config-file '{file}'")))
     try:
         return dict(leaves_of(tomllib.loads(content.decode("utf-8"))))
     except RecursionError:
@@ -129,7 +138,7 @@ def read_settings(file: Path) -> dict[str, Any]:
         raise ConfigError(f"--config-file '{file}' is not valid: {error}") from None
 
 
-def leaves_of(tree: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+def leaves_of(tree: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str, object]]:
     """Yields the dotted path of each value of nested mappings that is not a mapping, after `prefix`, and the value."""
     for key, value in tree.items():
         if isinstance(value, Mapping):
@@ -138,20 +147,21 @@ def leaves_of(tree: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
             yield f"{prefix}{key}", value
 
 
-def _is_node(value: Any) -> bool:
+def _is_node(value: object) -> TypeGuard[DataclassInstance]:
     return dataclasses.is_dataclass(value) and not isinstance(value, type)
 
 
-def _put(nested: dict[str, Any], names: list[str], value: Any, path: str) -> None:
+def _put(nested: dict[str, object], names: list[str], value: object, path: str) -> None:
     """Enter a value into nested dicts, one level for each name of its path."""
     for name in names[:-1]:
-        nested = nested.setdefault(name, {})
-        if not isinstance(nested, dict):
+        inner = nested.setdefault(name, {})
+        if not isinstance(inner, dict):
             raise ConfigError(f"'{path}' is set, and so is a field that contains it.")
+        nested = inner
     nested[names[-1]] = value
 
 
-def _replaced(node: Any, values: Mapping[str, Any], path: str) -> Any:
+def _replaced(node: DataclassInstance, values: Mapping[str, object], path: str) -> DataclassInstance:
     """Returns a node with the values of nested dicts put into its fields."""
     names = [field.name for field in dataclasses.fields(node)]
     hints = typing.get_type_hints(type(node))
@@ -159,10 +169,10 @@ def _replaced(node: Any, values: Mapping[str, Any], path: str) -> Any:
     for name, value in values.items():
         here = f"{path}.{name}" if path else name
         if name not in names:
-            near = difflib.get_close_matches(name, names, n=1)
-            hint = f" Did you mean '{near[0]}'?" if near else ""
             owner = f"'{path}'" if path else "The configuration"
-            raise ConfigError(f"There is no field '{here}'.{hint} {owner} has: {', '.join(names)}.")
+            raise ConfigError(
+                f"There is no field '{here}'.{did_you_mean(name, names)} {owner} has: {', '.join(names)}."
+            )
         current = getattr(node, name)
         if isinstance(value, Mapping) and _is_node(current):
             changed[name] = _replaced(current, value, here)
@@ -175,7 +185,7 @@ def _replaced(node: Any, values: Mapping[str, Any], path: str) -> Any:
         raise ConfigError(f"{', '.join(prefix + name for name in changed)}: {error}") from None
 
 
-def _converted(value: Any, hint: Any, current: Any, path: str) -> Any:
+def _converted(value: object, hint: object, current: object, path: str) -> object:
     """Returns a value as the declared type of its field."""
     if _is_node(current) and value is not None:
         raise ConfigError(
@@ -195,7 +205,7 @@ def _converted(value: Any, hint: Any, current: Any, path: str) -> Any:
         raise ConfigError(f"'{path}' cannot be {value!r}: {error}. Its value now is {current!r}.") from None
 
 
-def _decoded(hint: type, value: Any) -> Any:
+def _decoded(hint: type, value: object) -> object:
     """Returns a value of a type that msgspec does not know."""
     if hint is Path and isinstance(value, str):
         return Path(value)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import difflib
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 DEBUG_VARIABLE = "STUBBORN_DEBUG"
 """Environment variable that shows tracebacks; `--debug` sets it, and worker processes inherit it."""
@@ -40,6 +41,12 @@ class WorkersError(ObjectNavError, RuntimeError):
 
 class AgentError(ObjectNavError, RuntimeError):
     """An agent raised an error, or returned a value that is not an action; the message names agent and step."""
+
+
+def did_you_mean(name: str, names: Iterable[str]) -> str:
+    """Returns " Did you mean 'x'?" if one of the names is similar, else ""."""
+    similar = difflib.get_close_matches(name, names, n=1)
+    return f" Did you mean '{similar[0]}'?" if similar else ""
 
 
 def debug() -> bool:

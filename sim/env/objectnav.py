@@ -231,6 +231,10 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         goal, start = self.goal or fixed.goal, self.start or fixed.start
         return sample_episode(self._scenes.get(house).task, house, rng, goal=goal, start=start, episode_id=episode_id)
 
+    def notes_on(self, house: str) -> tuple[str, ...]:
+        """Returns sentences about what was changed in a house when it was loaded, see `House.notes`."""
+        return self._scenes.get(house).notes
+
     def render(self) -> NDArray[np.uint8] | None:
         """Returns the colour image of the robot's camera, uint8 (h, w, 3), in render mode `rgb_array`."""
         if self.render_mode is None:

@@ -31,6 +31,8 @@ class Scene:
         steps_per_action: int = 1,
     ) -> None:
         config = task or TaskConfig()
+        self.notes = house.notes
+        """See `House.notes`."""
         self.world = World(house, robot=robot, rule=config.success)
         self.camera = Camera(self.world.model, self.world.labels, camera=camera, profile=profile)
         self.gloss = geom_gloss(self.world.model, self.world.labels)  # (ngeom,)

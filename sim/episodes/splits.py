@@ -11,7 +11,6 @@ first use.
 
 from __future__ import annotations
 
-import difflib
 import hashlib
 import json
 import os
@@ -21,7 +20,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from sim.core.errors import EpisodeError, HouseError
+from sim.core.errors import EpisodeError, HouseError, did_you_mean
 from sim.core.files import inside, write_together
 from sim.core.interface import ConfigError
 from sim.core.invocation import command
@@ -69,6 +68,11 @@ class Split:
         """Names of the houses."""
         return tuple(self.house_paths)
 
+    @property
+    def identity(self) -> dict[str, str]:
+        """Name, version and checksum, as results record them."""
+        return {"name": self.name, "version": self.version, "sha256": self.sha256}
+
     def house_file(self, name: str) -> Path:
         """Returns the file of a house; a listed house is generated if necessary.
 
@@ -110,8 +114,7 @@ class Split:
         match = find_episode({episode.episode_id: episode for episode in self.episodes}, str(episode_id))
         if match is not None:
             return match
-        near = difflib.get_close_matches(str(episode_id), [episode.episode_id for episode in self.episodes], n=1)
-        hint = f" Did you mean '{near[0]}'?" if near else ""
+        hint = did_you_mean(str(episode_id), [episode.episode_id for episode in self.episodes])
         raise EpisodeError(f"Split '{self.name}' has no episode '{episode_id}'.{hint}")
 
 

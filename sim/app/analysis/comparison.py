@@ -13,13 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from sim.app.analysis.tables import ResultTable
-from sim.app.evaluation.config_fields import ABSENT, Difference, differing_fields, field_text, is_same_file
-from sim.app.evaluation.results import WITHOUT_EFFECT, read_record, read_result_lines
+from sim.app.evaluation.config_fields import ABSENT, differing_fields, field_text, run_differences
+from sim.app.evaluation.results import read_record, read_result_lines
 from sim.core.errors import ConfigError
 from sim.task.trajectory import read_trajectory, trajectory_file
 
 __all__ = [
-    "Line", "Run", "code_of", "config_differences", "differences_table", "differing_fields", "read_run",
+    "Line", "Run", "code_of", "differences_table", "differing_fields", "read_run",
     "require_same_episodes",
 ]  # fmt: skip
 
@@ -74,17 +74,6 @@ def code_of(run: Run, episode_id: str) -> str:
     return " or ".join(run.config.get("codes") or [str(run.config.get("versions", {}).get("code", "unknown"))])
 
 
-def config_differences(first: Run, second: Run) -> list[Difference]:
-    """Returns the fields of config.json in which two runs differ, without options that change no result."""
-    found = differing_fields(first.config, second.config)
-    return [
-        difference
-        for difference in found
-        if difference[0].partition(".")[0] not in WITHOUT_EFFECT
-        and not is_same_file(difference[0], first.config, second.config)
-    ]
-
-
 def differences_table(first: Run, *others: Run) -> ResultTable:
     """Returns a table of the fields of config.json in which runs, A, B and so on, differ from the first one.
 
@@ -92,7 +81,7 @@ def differences_table(first: Run, *others: Run) -> ResultTable:
     """
     values: dict[str, list[str]] = {}
     for number, other in enumerate(others, start=1):
-        for path, a, b in config_differences(first, other):
+        for path, a, b in run_differences(first.config, other.config):
             values.setdefault(path, [_short_text(a)] * (1 + len(others)))[number] = _short_text(b)
     notes = () if values else ("The configurations are equal.",)
     header = ("field", *LETTERS[: 1 + len(others)])

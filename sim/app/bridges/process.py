@@ -21,11 +21,12 @@ from numpy.typing import NDArray
 
 from sim.app.bridges.habitat.config import make_config
 from sim.app.bridges.habitat.conversions import Conversion
-from sim.app.bridges.process_command import PREFIX, ProcessConfig, command_of
+from sim.app.bridges.process_command import ProcessConfig, command_of
 from sim.app.bridges.process_pipe import AgentProcess, Answer
 from sim.app.bridges.stubborn_client import MOST_HEADER_BYTES, ProtocolError, unpack_arrays
 from sim.app.evaluation.own_code import one_line
 from sim.app.evaluation.rollout import ask
+from sim.app.options import PROCESS
 from sim.app.viewers.viewer import Colour
 from sim.core.configuration import as_json
 from sim.core.errors import AgentError, ConfigError
@@ -120,7 +121,7 @@ class ProcessAgent:
         step_timeout_s: float = 0.0,
         **others: object,
     ) -> None:
-        self.name = f"{PREFIX}{shlex.join(command)}"
+        self.name = f"{PROCESS}{shlex.join(command)}"
         """The name as it is given to `--agent`."""
         self._command, self._config, self._limit_s = list(command), config, step_timeout_s or float("inf")
         self._setup = {

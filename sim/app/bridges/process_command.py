@@ -10,11 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
+from sim.app.options import PROCESS
 from sim.core.errors import ConfigError
 from sim.core.geometry.numbers import require_numbers
 
-PREFIX = "process:"
-"""Beginning of the names of these agents."""
 Interface = Literal["stubborn", "habitat"]
 
 
@@ -56,19 +55,14 @@ def command_of(name: str) -> list[str]:
     Raises:
         ConfigError: the command is empty or cannot be split.
     """
-    text = name.removeprefix(PREFIX)
+    text = name.removeprefix(PROCESS)
     try:
         words = shlex.split(text)
     except ValueError as fault:
         raise ConfigError(f"--agent '{name}': the command cannot be split into words: {fault}.") from None
     if not words or not words[0]:
-        raise ConfigError(f"--agent '{name}': a command must follow, for example {PREFIX}'python my_agent.py'.")
+        raise ConfigError(f"--agent '{name}': a command must follow, for example {PROCESS}'python my_agent.py'.")
     return words
-
-
-def is_process(name: str) -> bool:
-    """Returns whether a name given to `--agent` names an agent in a process of its own."""
-    return name.startswith(PREFIX)
 
 
 def files_of(name: str) -> list[Path]:

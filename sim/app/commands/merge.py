@@ -22,8 +22,8 @@ import tyro
 from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.comparison import Line, Run, read_run
-from sim.app.evaluation.config_fields import differing_fields, field_text, is_same_file
-from sim.app.evaluation.results import NOT_COMPARED, RunDirectory, read_record
+from sim.app.evaluation.config_fields import field_text, run_differences
+from sim.app.evaluation.results import RunDirectory, read_record
 from sim.app.evaluation.rollout import TIMES
 from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
@@ -100,12 +100,11 @@ def sources(args: Args) -> tuple[list[Path], Path]:
 
 def require_same_options(first: Run, other: Run) -> None:
     """Raises ConfigError if two runs differ in an option that changes results."""
-    for path, a, b in differing_fields(first.config, other.config):
-        if path.partition(".")[0] not in NOT_COMPARED and not is_same_file(path, first.config, other.config):
-            raise ConfigError(
-                f"'{first.path}' has {path} = {field_text(a)}, '{other.path}' has {field_text(b)}: "
-                "runs with different options cannot be merged."
-            )
+    for path, a, b in run_differences(first.config, other.config, resumed=True):
+        raise ConfigError(
+            f"'{first.path}' has {path} = {field_text(a)}, '{other.path}' has {field_text(b)}: "
+            "runs with different options cannot be merged."
+        )
 
 
 def merged_lines(runs: Sequence[Run]) -> dict[str, Line]:

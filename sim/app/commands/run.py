@@ -13,10 +13,10 @@ from rich.table import Table
 
 from sim.app import cli
 from sim.app.analysis import display
+from sim.app.composition import RUNNER
 from sim.app.composition.agents import SPECS
-from sim.app.composition.isolation import RUNNER, isolation_of
-from sim.app.composition.options import RunOptions
-from sim.app.evaluation.processes import started_early
+from sim.app.evaluation.processes import isolation_of, started_early
+from sim.app.options import RunOptions
 from sim.core.invocation import RUN_STOPPED
 from stubborn.agents import EXPLORERS
 
@@ -38,19 +38,18 @@ def main(options: RunOptions) -> int:
 def _run(options: RunOptions, console: Console) -> int:
     """Runs the episodes; returns the exit status."""
     from sim.app.composition.environments import episodes_of  # these import MuJoCo, which a list does not need
-    from sim.app.composition.running import report_house, run_missing
+    from sim.app.composition.running import run_missing
     from sim.app.composition.setup import resolve
-    from sim.app.evaluation.parallel import Shard
 
     setup = resolve(options)
     if options.house is None and options.split == "test":
         print("The split test is for a last measurement: do not base choices on its results.", file=sys.stderr)
-    episodes, split = episodes_of(setup)
-    report_house(options, console)
+    episodes, split, notes = episodes_of(setup)
+    for note in notes:
+        console.print(f"House '{split['name']}': {note}", highlight=False, markup=False, soft_wrap=True)
     out = options.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S")
     count = len(episodes)
-    if options.shard is not None:
-        shard = Shard.parse(options.shard)
+    if (shard := setup.shard) is not None:
         shard.require_own_numbers(out)
         episodes, out = shard.select(episodes), out / shard.folder
         if not episodes:

@@ -14,13 +14,14 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from msgspec import Meta
 
 from sim.app import cli
 from sim.app.analysis import display
 from sim.core import invocation
+from sim.core.configuration import with_absolute_paths
 from sim.core.errors import ConfigError, debug
 from sim.core.reading import printable
 
@@ -123,8 +124,8 @@ def offer(args: Args) -> Offer:
     Raises:
         ConfigError: an option contradicts another, or its file or name does not exist.
     """
-    from sim.app.composition.options import RunOptions
     from sim.app.composition.setup import resolve
+    from sim.app.options import RunOptions
     from sim.app.web.choices import Offer
     from sim.robot.foreign import absolute_robot
 
@@ -133,23 +134,19 @@ def offer(args: Args) -> Offer:
     for_houses = args.labels, args.root
     if not args.house and for_houses != (None, None):
         raise ConfigError("--labels and --root need --house.")
-    same = ("weights", "seed", "profile", "noise", "config", "config_file")
-    values = {name: _absolute(getattr(args, name)) for name in same}
-    options = RunOptions(robot=None if args.robot is None else absolute_robot(args.robot), **values)
-    resolve(replace(options, config=(), config_file=None))  # fields of agents depend on the agent
+    same = ("weights", "labels", "root", "seed", "profile", "noise", "config", "config_file")
+    values = {name: getattr(args, name) for name in same}
+    robot = None if args.robot is None else absolute_robot(args.robot)
+    options = with_absolute_paths(RunOptions(robot=robot, **values))  # agents may change the current folder
+    resolve(replace(options, config=(), config_file=None, labels=None, root=None))  # these depend on agent and house
     return Offer(
         agents=args.agent,
         explorers=args.explorer,
         semantics=args.semantics,
         splits=args.split,
-        houses=tuple(map(_absolute, args.house)),
-        options=replace(options, labels=_absolute(args.labels), root=_absolute(args.root)),
+        houses=tuple(file.absolute() for file in args.house),
+        options=options,
     )
-
-
-def _absolute(value: Any) -> Any:
-    """Returns a path as an absolute path, because agents may change the current folder; other values are unchanged."""
-    return value.absolute() if isinstance(value, Path) else value
 
 
 def _listen(host: str, port: int) -> socket.socket:

@@ -7,18 +7,16 @@ Your own are named `package.module:NAME`, `habitat:package.module:CLASS` if they
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import inspect
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
-from sim.app.bridges.process_command import is_process
 from sim.app.composition.imports import import_attribute
-from sim.app.composition.isolation import HABITAT
 from sim.app.evaluation.own_code import place_of, text_of
 from sim.app.evaluation.watch import FACTORY_S, is_stop, marked
-from sim.core.errors import AgentError, ConfigError, ObjectNavError
+from sim.app.options import HABITAT, is_process
+from sim.core.errors import AgentError, ConfigError, ObjectNavError, did_you_mean
 from sim.core.interface import Agent, AgentFactory, AgentSpec, Segmenter
 from stubborn import agents
 from stubborn.agent import AgentConfig
@@ -29,7 +27,7 @@ if TYPE_CHECKING:  # a list of the agents needs neither MuJoCo nor OpenGL
     from sim.env.objectnav import ObjectNavEnv
 
 
-def _make_oracle(*, truth: ObjectNavEnv, **_: Any) -> Agent:
+def _make_oracle(*, truth: ObjectNavEnv, **_: object) -> Agent:
     from sim.env.oracle import Oracle
 
     return Oracle(truth)
@@ -72,15 +70,13 @@ def find_agent(name: str) -> AgentSpec:
         from sim.app.bridges.process import process_spec
 
         return process_spec(name)
-    module_name, separator, attribute = name.partition(":")
-    if not separator or not attribute:
-        near = difflib.get_close_matches(name, SPECS, n=1)
-        hint = f" Did you mean '{near[0]}'?" if near else ""
+    if not all(name.partition(":")[1:]):
         raise ConfigError(
-            f"Unknown agent '{name}'.{hint} Available: {', '.join(SPECS)}, or your own as package.module:NAME, "
+            f"Unknown agent '{name}'.{did_you_mean(name, SPECS)}"
+            f" Available: {', '.join(SPECS)}, or your own as package.module:NAME, "
             "habitat:package.module:CLASS, or in a process of its own as process:COMMAND."
         )
-    found = import_attribute(name, module_name, attribute)
+    found = import_attribute(name)
     if isinstance(found, AgentSpec):
         return found
     if not callable(found):
@@ -93,12 +89,11 @@ def _find_habitat_agent(name: str) -> AgentSpec:
     from sim.app.bridges.habitat import agents as bridge
     from sim.app.bridges.habitat import stand_in
 
-    module_name, _, attribute = name.removeprefix(HABITAT).partition(":")
-    if not module_name or not attribute:
+    if not all(name.removeprefix(HABITAT).partition(":")):
         raise ConfigError(f"--agent '{name}' must have the form habitat:package.module:CLASS.")
     stand_in.install()
     with bridge.own_command_line():
-        found = import_attribute(name, module_name, attribute, explain=stand_in.lacking)
+        found = import_attribute(name, stand_in.lacking, prefix=HABITAT)
     return bridge.spec_of(name, found)
 
 
@@ -122,13 +117,12 @@ def find_explorer(name: str) -> ExplorerConfig:
     """
     if name in agents.EXPLORERS:
         return agents.EXPLORERS[name]
-    module_name, separator, attribute = name.partition(":")
-    if not separator or not attribute:
+    if not all(name.partition(":")[1:]):
         raise ConfigError(
             f"Unknown --explorer '{name}'. Available: {', '.join(agents.EXPLORERS)}, or your own as "
             "package.module:NAME."
         )
-    found = import_attribute(name, module_name, attribute)
+    found = import_attribute(name)
     if not dataclasses.is_dataclass(found) or isinstance(found, type) or not isinstance(found, ExplorerConfig):
         raise ConfigError(f"--explorer '{name}' must be a dataclass object with a method make(camera).")
     return found
@@ -146,7 +140,7 @@ def build_agent(
     *,
     segmenter: Segmenter,
     verifier: Verifier,
-    config: Any,
+    config: object,
     step_timeout_s: float = 0.0,
 ) -> Agent:
     """Returns a new agent for an environment; `step_timeout_s` limits the time of its calls (0: no limit).
@@ -154,7 +148,7 @@ def build_agent(
     Raises:
         ConfigError: the factory does not take the arguments of `sim.core.interface.AgentFactory`.
     """
-    parts: dict[str, Any] = {
+    parts: dict[str, object] = {
         "camera": env.camera_model,
         "robot": env.robot_model,
         "success": env.success_rule,
@@ -178,7 +172,7 @@ def build_agent(
         raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error
 
 
-def _resets_without_arguments(factory: Any) -> bool:
+def _resets_without_arguments(factory: object) -> bool:
     """Returns whether a class has the methods of a Habitat agent, `reset()` and `act(observations)`."""
     if not inspect.isclass(factory) or not callable(getattr(factory, "act", None)):
         return False

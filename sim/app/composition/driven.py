@@ -7,21 +7,20 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn
 
-from sim.app.composition.options import RunOptions
 from sim.app.composition.record import identity_of
-from sim.app.composition.setup import Setup, resolve
+from sim.app.composition.setup import RunConfig, Setup, resolve
 from sim.app.evaluation.last_view import write_last_view
 from sim.app.evaluation.rollout import record_episode
+from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.interface import AgentSpec
 from sim.core.invocation import command
+from sim.core.option_types import meanings
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 
 HUMAN_NAME = "human"
 """The agent's name in the results of a person."""
-_OF_THE_WORLD = ("robot", "camera", "scan", "profile", "noise", "task")
-"""Fields of the configuration that apply to a person as well as to an agent."""
 
 
 def _make_human(**_: object) -> NoReturn:
@@ -46,23 +45,25 @@ def setup_of_person(setup: Setup, out: Path | None, *, with_agent: bool = False)
         out: folder of the record.
         with_agent: whether the agent drove a part of the episode, so that the results are not those of a person alone.
     """
-    options = setup.options
-    name = f"{HUMAN_NAME}+agent" if with_agent else HUMAN_NAME
-    kept = ("split", "house", "labels", "root", "goal", "start_deg", "robot", "seed", "seed_key", "profile", "noise")
     of_person = RunOptions(
-        agent=name,
+        agent=f"{HUMAN_NAME}+agent" if with_agent else HUMAN_NAME,
         semantics="gt",
         episodes=1,
         out=out,
         record=True,
-        **{field: getattr(options, field) for field in kept},
+        **_of_world(setup.options),
     )
-    person = resolve(of_person, HUMAN)
+    person, of_world = resolve(of_person, HUMAN), _of_world(setup.config)
     return replace(
         person,
-        config=replace(person.config, **{field: getattr(setup.config, field) for field in _OF_THE_WORLD}),
-        settings={path: value for path, value in setup.settings.items() if path.partition(".")[0] in _OF_THE_WORLD},
+        config=replace(person.config, **of_world),
+        settings={path: value for path, value in setup.settings.items() if path.partition(".")[0] in of_world},
     )
+
+
+def _of_world(options: RunOptions | RunConfig) -> dict[str, Any]:
+    """Returns the fields that apply to a person as well as to an agent."""
+    return {name: getattr(options, name) for name, option in meanings(type(options)).items() if option.of_world}
 
 
 def record_driven(

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import replace
-from typing import Any
+from typing import NamedTuple
 
-import numpy as np
-
-from sim.app.composition.options import RunOptions
 from sim.app.composition.setup import Setup
-from sim.core.errors import ConfigError
+from sim.app.options import RunOptions
+from sim.core.errors import ConfigError, did_you_mean
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates
+from sim.episodes.seeds import drawing_generator
 from sim.episodes.splits import Split
 from sim.sensors.noise import get_noise
 from sim.sensors.sensor import Sensor
@@ -48,13 +46,23 @@ def make_env(setup: Setup, *, sensors: tuple[str | Sensor, ...], truth: tuple[st
     )
 
 
-def episodes_of(setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
-    """Returns the episodes of a run, and what identifies the split or house they come from.
+class RunEpisodes(NamedTuple):
+    """The episodes of a run."""
+
+    episodes: list[Episode]
+    split: dict[str, str]
+    """Identity of the split or house that they come from."""
+    notes: tuple[str, ...] = ()
+    """Sentences about what was changed in a house with `--labels`."""
+
+
+def episodes_of(setup: Setup) -> RunEpisodes:
+    """Returns the episodes of a run.
 
     Raises:
         ConfigError, EpisodeError, HouseError: the split, house, goal or start does not exist.
     """
-    options = setup.options
+    options, notes = setup.options, ()
     env = make_env(setup, sensors=())
     try:
         split = env.split
@@ -69,10 +77,10 @@ def episodes_of(setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
             episodes = choose(split_of_agent, options)
         else:
             episodes = drawn_episodes(env, setup)
+            notes = env.notes_on(split.houses[0]) if options.labels is not None else ()
     finally:
         env.close()
-    episodes = with_replicates(episodes, options.replicates)
-    return episodes, {"name": split.name, "version": split.version, "sha256": split.sha256}
+    return RunEpisodes(with_replicates(episodes, options.replicates), split.identity, notes)
 
 
 def known_goals(setup: Setup) -> tuple[str, ...]:
@@ -96,7 +104,7 @@ def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
     found: dict[tuple[str, Pose] | int, Episode] = {}
     i = last = 0
     while len(found) < options.episodes and i - last <= MAX_REPEATS:
-        episode = env.draw_episode(np.random.default_rng([options.seed, i]), episode_id=f"{house}_{len(found):04d}")
+        episode = env.draw_episode(drawing_generator(options.seed, i), episode_id=f"{house}_{len(found):04d}")
         key = i if repeats else (episode.goal, episode.start)
         i += 1
         if episode.goal in known and key not in found:
@@ -122,10 +130,10 @@ def _named_episodes(split: Split, options: RunOptions) -> list[Episode]:
     ids = [episode.episode_id for episode in of_goal]
     for name in options.only:
         if name not in ids:
-            near = difflib.get_close_matches(name, ids, n=1)
-            hint = f" Did you mean '{near[0]}'?" if near else ""
             with_goal = f" with goal '{options.goal}'" if options.goal else ""
-            raise ConfigError(f"--only '{name}': split '{split.name}' has no such episode{with_goal}.{hint}")
+            raise ConfigError(
+                f"--only '{name}': split '{split.name}' has no such episode{with_goal}.{did_you_mean(name, ids)}"
+            )
     return [episode for episode in of_goal if episode.episode_id in options.only]
 
 
@@ -137,10 +145,9 @@ def _first_episodes(split: Split, options: RunOptions) -> list[Episode]:
     """
     goals = [goal for goal in GOAL_CATEGORIES if any(episode.goal == goal for episode in split.episodes)]
     if options.goal is not None and options.goal not in goals:
-        near = difflib.get_close_matches(options.goal, goals, n=1)
-        hint = f" Did you mean '{near[0]}'?" if near else ""
         raise ConfigError(
-            f"--goal '{options.goal}': split '{split.name}' has no such episode.{hint} It has: {', '.join(goals)}."
+            f"--goal '{options.goal}': split '{split.name}' has no such episode.{did_you_mean(options.goal, goals)}"
+            f" It has: {', '.join(goals)}."
         )
     episodes = [episode for episode in split.episodes if options.goal in (None, episode.goal)]
     if options.episodes > len(episodes):

@@ -57,19 +57,19 @@ def _require_unhidden() -> None:
 
 
 def import_attribute(
-    name: str, module_name: str, attribute: str, explain: Callable[[BaseException], str | None] = lambda error: None
+    name: str, explain: Callable[[BaseException], str | None] = lambda error: None, *, prefix: str = ""
 ) -> Any:
     """Returns an object of a module that is in the current folder or on the path.
 
     Args:
-        name: as the user gave it, for messages.
-        module_name: dotted name of the module.
-        attribute: name of the object.
+        name: of the object, `package.module:NAME`, as the user gave it.
         explain: returns a sentence about an error of the import if it knows the cause, else None.
+        prefix: beginning of the name, before that of the module.
 
     Raises:
         ConfigError: the module cannot be imported, its import does not end within two minutes, or it has no such name.
     """
+    module_name, _, attribute = name.removeprefix(prefix).partition(":")
     if "" not in sys.path:
         _require_unhidden()
         sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import inspect
 import operator
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, NoReturn
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ from sim.core.interface import (
 if TYPE_CHECKING:
     from sim.env.objectnav import ObjectNavEnv
 
+T = TypeVar("T")
 _METHODS = ("scores", "posteriors", "categories")
 
 
@@ -42,8 +43,7 @@ def load_specification(name: str) -> SegmentationSpec:
     Raises:
         ConfigError: there is no such module or name, or its object has another type.
     """
-    module_name, _, attribute = name.partition(":")
-    found = import_attribute(name, module_name, attribute)
+    found = import_attribute(name)
     if isinstance(found, SegmentationSpec):
         return found
     if not callable(found):
@@ -55,26 +55,24 @@ def load_specification(name: str) -> SegmentationSpec:
     return SegmentationSpec(make=found, description=description)
 
 
-def make_own(name: str, own: SegmentationSpec, env: ObjectNavEnv, config: Any) -> OwnSegmenter:
+def make_own(name: str, own: SegmentationSpec, env: ObjectNavEnv, config: object) -> OwnSegmenter:
     """Returns the segmenter of a specification for an environment.
 
     Raises:
         ConfigError: the factory failed, or its object has neither `scores` nor `posteriors`.
     """
-    given: dict[str, Any] = {"camera": env.camera_model, "config": config}
-    if own.spec.truth:
-        given["truth"] = env
-    return built(name, own, given)
+    truth = {"truth": env} if own.spec.truth else {}
+    return built(name, own, camera=env.camera_model, config=config, **truth)
 
 
-def built(name: str, own: SegmentationSpec, given: Mapping[str, Any]) -> OwnSegmenter:
+def built(name: str, own: SegmentationSpec, *, camera: CameraModel, **others: object) -> OwnSegmenter:
     """Returns the segmenter that a factory builds; it gets those of the given arguments that it takes.
 
     Raises:
         ConfigError: as `make_own`.
     """
     try:
-        parameters = inspect.signature(own.make).parameters
+        given, parameters = {"camera": camera, **others}, inspect.signature(own.make).parameters
         takes_all = any(each.kind is inspect.Parameter.VAR_KEYWORD for each in parameters.values())
         segmenter = own.make(**{key: value for key, value in given.items() if takes_all or key in parameters})
     except BaseException as error:
@@ -84,7 +82,7 @@ def built(name: str, own: SegmentationSpec, given: Mapping[str, Any]) -> OwnSegm
         raise ConfigError(f"Segmentation '{name}' cannot be built: {reason}") from error
     if not any(callable(getattr(segmenter, method, None)) for method in _METHODS[:2]):
         raise ConfigError(f"Segmentation '{name}': {type(segmenter).__name__} has no method scores or posteriors.")
-    return OwnSegmenter(name, segmenter, own.spec, given["camera"])
+    return OwnSegmenter(name, segmenter, own.spec, camera)
 
 
 class OwnSegmenter:
@@ -103,7 +101,7 @@ class OwnSegmenter:
         self._reads = frozenset(("depth", *names, *POSE_SENSORS))
         self._arrays: tuple[NDArray, ...] = ()
         """Arrays of the present frame: they identify it, because an agent may put them into another dictionary."""
-        self._done: dict[str, Any] = {}
+        self._done: dict[str, object] = {}
         """Results of the present frame by method and goal."""
 
     @property
@@ -198,7 +196,7 @@ class OwnSegmenter:
                 "whole fraction of it",
             )
 
-    def _ask(self, method: str, call: Callable[[], Any]) -> Any:
+    def _ask(self, method: str, call: Callable[[], T]) -> T:
         try:
             return call()
         except BaseException as error:

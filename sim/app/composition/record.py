@@ -2,40 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from sim.app.bridges.process_command import files_of, is_file, is_process
-from sim.app.composition.isolation import own_modules
-from sim.app.composition.options import RunOptions
+from sim.app.bridges.process_command import files_of, is_file
 from sim.app.composition.segmenters import NetworkConfig, file_sha256, precision_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.own_code import hash_of_own
 from sim.app.evaluation.rollout import broken_metrics
+from sim.app.options import RunOptions, is_process
 from sim.core.configuration import as_json
+from sim.core.option_types import meanings
 from sim.core.paths import code_hash, processor
 from sim.episodes.episode import Episode
 from sim.renderer.opengl import describe_gl
 from sim.robot.config import PHYSICS_VERSION
 from sim.robot.foreign import robot_sha256
 
-NOT_RECORDED = ("list_agents", "retry_errors", "keep_results", "step_timeout", "config", "config_file")
-"""Options that the tree itself records, or that start no run."""
 
-
-def record_of(setup: Setup, split: dict[str, Any]) -> dict[str, Any]:
+def record_of(setup: Setup, split: Mapping[str, str]) -> dict[str, Any]:
     """Returns the content of `config.json`: options, configuration tree, checksums of files, split and versions."""
-    flat = {name: value for name, value in as_json(setup.options).items() if name not in NOT_RECORDED}
-    return flat | {
+    recorded = [name for name, option in meanings(RunOptions).items() if option.recorded]
+    return {name: as_json(getattr(setup.options, name)) for name in recorded} | {
         "settings": as_json(setup.settings),
         "config": as_json(setup.config),
         "physics": PHYSICS_VERSION,
         "segmentation": _segmentation_of(setup),
         "files_sha256": _checksums(setup),
-        "split_identity": split,
+        "split_identity": dict(split),
         "versions": versions(setup.options),
     }
 
@@ -54,7 +51,7 @@ def code_of(options: RunOptions) -> str:
     already. For an agent in a process of its own, it is a hash of the files that its command names and of the modules
     that they import from their folder.
     """
-    own = hash_of_own(own_modules(options), files_of(options.agent) if is_process(options.agent) else ())
+    own = hash_of_own(options.own_modules, files_of(options.agent) if is_process(options.agent) else ())
     return f"{code_hash()}+{own}" if own else code_hash()
 
 
@@ -83,7 +80,7 @@ def _segmentation_of(setup: Setup) -> dict[str, Any]:
     return found if precision is None else found | {"precision": precision}
 
 
-def _files_in(tree: Any, name: str) -> Iterator[tuple[str, Path]]:
+def _files_in(tree: object, name: str) -> Iterator[tuple[str, Path]]:
     """Yields path and file of each field of a configuration that names a file, such as weights of an explorer."""
     if is_dataclass(tree) and not isinstance(tree, type):
         for field in fields(tree):

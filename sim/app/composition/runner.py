@@ -9,14 +9,13 @@ from typing import Any
 
 from sim.app.composition.agents import build_agent
 from sim.app.composition.environments import make_env
-from sim.app.composition.isolation import step_limit_s
 from sim.app.composition.perception import AskedSegmenter, seen_by
 from sim.app.composition.record import error_line, identity_of, versions
 from sim.app.composition.segmenters import NoSegmentation
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.last_view import write_last_view
 from sim.app.evaluation.own_code import text_of
-from sim.app.evaluation.rollout import agent_seed, episode_seed, play_episode, record_episode
+from sim.app.evaluation.rollout import play_episode, record_episode
 from sim.app.evaluation.watch import is_stop
 from sim.app.viewers import selection
 from sim.app.viewers.viewer import VIEWER_IMAGES, MapPainter, SeesFrames
@@ -25,6 +24,7 @@ from sim.core.interface import Agent, Closable
 from sim.env.memory import give_large_blocks_pages_of_their_own, return_freed_memory
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
+from sim.episodes.seeds import episode_seeds
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def build_parts(setup: Setup, *, watched: bool) -> Parts:
         segmenter=segmenter or NoSegmentation(),
         verifier=setup.verifier,
         config=config.agent,
-        step_timeout_s=step_limit_s(setup.options),
+        step_timeout_s=setup.options.step_limit_s,
     )
     return Parts(env, agent, seen_by(setup, agent, segmenter), spec.painter(agent) if spec.painter else None)
 
@@ -70,7 +70,7 @@ class EpisodeRunner:
         give_large_blocks_pages_of_their_own()
         setup = self._setup = setup.with_absolute_paths()  # the agent may change the folder of the process
         options = self._options = setup.options
-        parts = build_parts(setup, watched=selection.any_selected(options))
+        parts = build_parts(setup, watched=options.watched)
         self._env, self._agent = parts.env, parts.agent
         setup.require_planned(self._env.split)
         self._house = ""
@@ -86,14 +86,15 @@ class EpisodeRunner:
         """Runs one episode and returns its result line."""
         return_freed_memory()
         options = self._options
+        seeds = episode_seeds(options.seed, episode.episode_id, options.seed_key)
         try:
             self._require_same_house(episode.house)
             metrics = play_episode(
                 self._env,
                 self._agent,
                 episode,
-                seed=episode_seed(options.seed, episode.episode_id),
-                seed_of_agent=agent_seed(options.seed, episode.episode_id, options.seed_key or ""),
+                seed=seeds.environment,
+                seed_of_agent=seeds.agent,
                 viewers=self._viewers,
                 name=options.agent,
             )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,24 +11,24 @@ from rich.console import Console
 
 from sim.app.analysis import display
 from sim.app.analysis.progress import ProgressReport
+from sim.app.composition import RUNNER
 from sim.app.composition.agents import notes_on
-from sim.app.composition.isolation import RUNNER, isolation_of
-from sim.app.composition.options import RunOptions
 from sim.app.composition.record import error_line, record_of
 from sim.app.composition.seed_key import seed_key_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.executors import make_executor
+from sim.app.evaluation.processes import isolation_of
 from sim.app.evaluation.results import RunDirectory
 from sim.app.evaluation.workers import RunnerSpec
+from sim.app.options import RunOptions
 from sim.core.geometry.compiling import choose_cache, must_compile
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates
 from sim.episodes.splits import load_split
-from sim.houses.load import load_house
 
 
 def run_missing(
-    setup: Setup, episodes: Sequence[Episode], split: dict[str, Any], console: Console
+    setup: Setup, episodes: Sequence[Episode], split: Mapping[str, str], console: Console
 ) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     """Runs the episodes that the folder of the run, `--out`, does not hold yet.
 
@@ -109,13 +109,6 @@ def _require_own_lines(options: RunOptions, run: RunDirectory, episodes: Sequenc
         drawn = (line for line in others if re.fullmatch(rf"{stem}_\d{{4,}}(~\d+)?", line["episode_id"]))
         known |= {line["episode_id"]: (options.house.stem, options.goal or line["goal"]) for line in drawn}
     run.require_of(known)
-
-
-def report_house(options: RunOptions, console: Console) -> None:
-    """Prints what was left out of a house with `--labels`, and what has no label."""
-    if options.house is not None and options.labels is not None:
-        for note in load_house(options.house, labels_path=options.labels, root=options.root).notes:
-            console.print(f"House '{options.house.stem}': {note}", highlight=False, markup=False, soft_wrap=True)
 
 
 def _report_resumed(run: RunDirectory, total: int, todo: int, code: str, console: Console) -> None:

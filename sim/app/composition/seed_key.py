@@ -1,4 +1,4 @@
-"""Finds the key of a run, from which the seeds of its agents are computed (`sim.app.evaluation.rollout.agent_seed`)."""
+"""Finds the key of a run, from which the seeds of its agents are computed (`sim.episodes.seeds`)."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import os
 import secrets
 from pathlib import Path
 
-from sim.app.composition.options import RunOptions
 from sim.app.evaluation.results import read_record
+from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.files import open_to_grow
 from sim.core.reading import read_bytes

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import difflib
 import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -19,7 +18,7 @@ from safetensors import SafetensorError, safe_open
 
 from sim.app.composition.own_segmentation import load_specification, make_own
 from sim.core.configuration import as_json
-from sim.core.errors import ConfigError
+from sim.core.errors import ConfigError, did_you_mean
 from sim.core.interface import CameraModel, Observation, Scores, SegmentationSpec, Segmenter, SegmenterSpec
 from sim.core.invocation import command
 from sim.core.reading import open_plain, reason_of, sha256_of
@@ -53,7 +52,7 @@ class SegmentationKind:
 
     description: str
     spec: SegmenterSpec
-    config: Any
+    config: object
     """Default configuration; None: there is nothing to configure."""
     make: Callable[[ObjectNavEnv, Any], Segmenter]
     """Builds the segmenter for an environment that provides the images which `spec` names."""
@@ -98,6 +97,11 @@ class NoSegmentation:
         raise ConfigError("This agent reads posteriors but declares uses_segmentation=False in its AgentSpec.")
 
 
+def _make_true(env: ObjectNavEnv, config: None) -> Segmenter:
+    del config
+    return TrueSegmentation(env)
+
+
 def _make_network(env: ObjectNavEnv, config: NetworkConfig) -> Segmenter:
     from stubborn.segmentation.network import NetworkSegmenter
 
@@ -132,7 +136,7 @@ KINDS: Mapping[str, SegmentationKind] = MappingProxyType(
             description="ground truth",
             spec=TrueSegmentation.spec,
             config=None,
-            make=lambda env, config: TrueSegmentation(env),
+            make=_make_true,
         ),
         "noisy": SegmentationKind(
             description="ground truth with the errors of a segmentation network",
@@ -170,10 +174,9 @@ def find_segmentation(semantics: str, weights: Path | None) -> SegmentationKind:
             description=own.description or semantics, spec=own.spec, config=own.config, make=make, own=own
         )
     else:
-        near = difflib.get_close_matches(semantics, KINDS, n=1)
-        hint = f" Did you mean '{near[0]}'?" if near else ""
         raise ConfigError(
-            f"Unknown --semantics '{semantics}'.{hint} Available: {', '.join(KINDS)}, or your own as "
+            f"Unknown --semantics '{semantics}'.{did_you_mean(semantics, KINDS)}"
+            f" Available: {', '.join(KINDS)}, or your own as "
             "package.module:NAME."
         )
     if weights is not None and not isinstance(kind.config, NetworkConfig):
@@ -194,14 +197,14 @@ def is_calibrated(weights: Path) -> bool:
         return False
 
 
-def detector_config(kind: SegmentationKind, weights: Path | None) -> Any:
+def detector_config(kind: SegmentationKind, weights: Path | None) -> object:
     """Returns the default configuration of a kind of segmentation on this machine, with the user's weights if any."""
     if isinstance(kind.config, NetworkConfig):
         return replace(kind.config, weights=weights or kind.config.weights, mirrored=computes_bf16())
     return kind.config
 
 
-def precision_of(config: Any) -> str | None:
+def precision_of(config: object) -> str | None:
     """Returns the precision in which a network computes on this machine, bf16 or fp32; None: it is no network."""
     if not isinstance(config, NetworkConfig):
         return None
@@ -240,7 +243,7 @@ def weights_file(weights: Path | None) -> Path:
     return file
 
 
-def detector_record(config: Any) -> Any:
+def detector_record(config: object) -> Any:
     """Returns a detector's configuration as JSON types, with the checksum of its weights if it has any."""
     content = as_json(config)
     if isinstance(config, NetworkConfig):

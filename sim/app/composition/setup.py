@@ -5,15 +5,14 @@ Environment, agent, viewers, results and workers are made from the setup (`sim.a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from sim.app.bridges.process_command import BridgeConfig
 from sim.app.composition.agents import find_agent, find_explorer, takes_explorer
-from sim.app.composition.checks import check_options
-from sim.app.composition.options import RunOptions, start_pose
 from sim.app.composition.segmenters import (
     NetworkConfig,
     SegmentationKind,
@@ -21,10 +20,14 @@ from sim.app.composition.segmenters import (
     find_segmentation,
     is_calibrated,
 )
-from sim.core.configuration import parse_assignments, read_settings, with_fields
+from sim.app.composition.transfer import Reference, Unpacker, packed
+from sim.app.evaluation.parallel import Shard
+from sim.app.options import WORLD, RunOptions
+from sim.app.viewers import selection
+from sim.core.configuration import parse_assignments, read_settings, with_absolute_paths, with_fields
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
-from sim.core.interface import TRUE_IMAGES, AgentSpec, CameraModel
+from sim.core.interface import TRUE_IMAGES, AgentSpec, CameraModel, SegmenterSpec
 from sim.core.invocation import command
 from sim.episodes.splits import Split
 from sim.renderer.profiles import RenderProfile, get_profile
@@ -42,6 +45,9 @@ from stubborn.detection.verification import (
     has_parameters,
     verifier_for,
 )
+
+MAX_KEY_LENGTH = 200
+"""Largest length of `--seed-key`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,51 +76,61 @@ class RunConfig:
     detector: Any
     """Configuration of the segmentation (`SegmentationKind.config`); None: it has none."""
     verification: VerificationConfig
-    robot: RobotConfig
-    camera: CameraModel
+    robot: Annotated[RobotConfig, WORLD]
+    camera: Annotated[CameraModel, WORLD]
     sensors: tuple[str, ...]
     """Sensors in the agent's observation, by name: those that agent and segmentation declare."""
-    scan: ScanConfig
+    scan: Annotated[ScanConfig, WORLD]
     """The lidar of the sensor `scan`."""
-    profile: RenderProfile
-    noise: NoiseConfig
-    task: TaskConfig
+    profile: Annotated[RenderProfile, WORLD]
+    noise: Annotated[NoiseConfig, WORLD]
+    task: Annotated[TaskConfig, WORLD]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Setup:
     """Everything that determines the results of a run except episode and seed, looked up once from its options.
 
-    A worker gets it as its options and resolves them again in its own process: agents of users cannot be copied.
+    A worker gets it by value; a user's code travels as its name (`sim.app.composition.transfer`).
     """
 
     options: RunOptions
-    spec: AgentSpec
-    """The agent that `options.agent` names."""
+    agent: AgentSpec
+    """The agent that `options.agent` names, as its code declares it."""
     segmentation: SegmentationKind
     """The segmentation that `options.semantics` names."""
     config: RunConfig
-    settings: Mapping[str, Any]
+    settings: Mapping[str, object]
     """Path and value of each field that the settings file or `--config` sets."""
     verifier: Verifier
+    shard: Shard | None
+    """The part of the episodes that `--shard` chooses; None: all."""
     start: Pose | None
     """With `--house`, the start of every episode; None: starts are sampled."""
     planned: str | None = None
     """Checksum of the split or house from which the episodes were planned; None: it is not checked."""
 
-    def __reduce__(self) -> tuple[Callable[..., Setup], tuple[Any, ...]]:
-        """Pickles the setup as its options."""
-        return _resolve_planned, (self.options, self.planned)
+    def __reduce__(self) -> tuple[Callable[[bytes], Setup], tuple[bytes]]:
+        """Returns the form for pickling."""
+        return _received, (packed(vars(self), dict(self._own_code())),)
+
+    def _own_code(self) -> Iterator[tuple[int, Reference]]:
+        """Yields the `id` of each object of the user's code, and its name."""
+        objects = {"agent": self.agent, "semantics": self.segmentation}
+        explorer = getattr(self.config.agent, "explorer", None)
+        configs = {"agent": self.config.agent, "explorer": explorer, "semantics": self.config.detector}
+        for option, name in self.options.own_code.items():
+            if option in objects:
+                yield id(objects[option]), Reference(option, name)
+            if configs[option] is not None:
+                yield id(type(configs[option])), Reference(option, name, "class")
 
     def with_absolute_paths(self) -> Setup:
         """Returns this setup with absolute paths, which stay valid if the current folder changes."""
-        options = self.options
-        named = {name: getattr(options, name) for name in ("out", "house", "labels", "root")}
-        paths = {name: path.absolute() for name, path in named.items() if path is not None}
         robot = self.config.robot
         if robot.file is not None:
-            robot = replace(robot, file=replace(robot.file, path=robot.file.path.absolute()))
-        return replace(self, options=replace(options, **paths), config=replace(self.config, robot=robot))
+            robot = replace(robot, file=with_absolute_paths(robot.file))
+        return replace(self, options=with_absolute_paths(self.options), config=replace(self.config, robot=robot))
 
     def require_planned(self, split: Split) -> None:
         """Raises ConfigError if a split is not the one from which the episodes were planned."""
@@ -122,6 +138,14 @@ class Setup:
             raise ConfigError(
                 f"The houses or episodes of '{split.name}' have changed since this run was planned; start it again."
             )
+
+    @property
+    def spec(self) -> AgentSpec:
+        """The declaration of the agent; `--config sensors=[...]` declares the sensors of code that cannot."""
+        if not isinstance(self.agent.config, BridgeConfig):
+            return self.agent
+        sensors = self.config.sensors
+        return replace(self.agent, sensors=sensors, uses_ground_truth="semantic" in sensors)
 
     @property
     def sensors(self) -> tuple[str | Sensor, ...]:
@@ -187,30 +211,73 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
     Raises:
         ConfigError: options contradict each other, a name does not exist, or a value is not allowed.
     """
-    check_options(options)
+    _check(options)
+    shard = _shard(options)
     segmentation = find_segmentation(options.semantics, options.weights)
     spec = spec or find_agent(options.agent)
     settings = {} if options.config_file is None else read_settings(options.config_file)
     settings |= parse_assignments(options.config)
     config = with_fields(_presets(options, spec, segmentation), settings)
-    if isinstance(spec.config, BridgeConfig):  # its code cannot declare sensors: --config sensors=... does
-        spec = replace(spec, sensors=config.sensors, uses_ground_truth="semantic" in config.sensors)
-    verifier = _verifier(options, segmentation, config.verification)
-    config = replace(config, verification=_with_least_probability(config.verification, verifier))
-    _check_sensors(options, spec, segmentation, config.sensors)
-    return Setup(
+    verification, verifier = _verified(segmentation.spec, config.verification)
+    config = replace(config, verification=verification)
+    setup = Setup(
         options=options,
-        spec=spec,
+        agent=spec,
         segmentation=segmentation,
         config=config,
         settings=settings,
         verifier=verifier,
-        start=start_pose(options.start_deg),
+        shard=shard,
+        start=_start_pose(options.start_deg),
     )
+    _check_sensors(setup)
+    return setup
 
 
-def _resolve_planned(options: RunOptions, planned: str | None) -> Setup:
-    return replace(resolve(options), planned=planned)
+def _received(content: bytes) -> Setup:
+    return Setup(**Unpacker(content).load())
+
+
+def _check(options: RunOptions) -> None:
+    """Raises ConfigError if options contradict each other or are out of range."""
+    if options.house is None and any(each is not None for each in (options.labels, options.root, options.start_deg)):
+        raise ConfigError("--labels, --root and --start-deg need --house.")
+    if options.only and options.house is not None:
+        raise ConfigError("--only names episodes of a split; with --house, episodes are sampled.")
+    if options.retry_errors and options.out is None:
+        raise ConfigError("--retry-errors needs --out: the folder of the run.")
+    if options.seed_key is not None and not 1 <= len(options.seed_key) <= MAX_KEY_LENGTH:
+        raise ConfigError(f"--seed-key must have 1 to {MAX_KEY_LENGTH} characters, got {len(options.seed_key)}.")
+    selection.check(options)
+
+
+def _shard(options: RunOptions) -> Shard | None:
+    """Returns the part of the episodes that `--shard` chooses; raises ConfigError if there is no such part."""
+    if options.shard is None:
+        return None
+    shard = Shard.parse(options.shard)
+    if options.out is None:
+        raise ConfigError(f"--shard {options.shard} needs --out: one folder for all shards.")
+    return shard
+
+
+def _start_pose(start_deg: str | None) -> Pose | None:
+    """Returns the pose in the text "X Y YAW" (metres and degrees); None for None.
+
+    Raises:
+        ConfigError: the text does not hold three finite numbers.
+    """
+    if start_deg is None:
+        return None
+    try:
+        x_m, y_m, yaw_deg = (float(word) for word in start_deg.split())
+    except ValueError:
+        raise ConfigError(
+            f'--start-deg must be three numbers "X Y YAW" in metres and degrees, got "{start_deg}".'
+        ) from None
+    if not all(math.isfinite(value) for value in (x_m, y_m, yaw_deg)):
+        raise ConfigError(f'--start-deg must be finite, got "{start_deg}".')
+    return Pose(x_m, y_m, math.radians(yaw_deg))
 
 
 def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind) -> RunConfig:
@@ -230,7 +297,7 @@ def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKin
     )
 
 
-def _agent_config(options: RunOptions, spec: AgentSpec) -> Any:
+def _agent_config(options: RunOptions, spec: AgentSpec) -> object:
     """Returns the default configuration of the agent, with the explorer of `--explorer`."""
     if options.explorer is None:
         return spec.config
@@ -252,10 +319,9 @@ def _own_sensors(spec: AgentSpec, segmentation: SegmentationKind) -> list[Sensor
     return [each for each in read if not isinstance(each, str)]
 
 
-def _check_sensors(
-    options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind, sensors: tuple[str, ...]
-) -> None:
+def _check_sensors(setup: Setup) -> None:
     """Raises ConfigError if a sensor is missing, or shows the truth to an agent that does not declare it."""
+    options, spec, segmentation, sensors = setup.options, setup.spec, setup.segmentation, setup.config.sensors
     missing = [name for name in _sensor_names(spec, segmentation) if name not in sensors]
     if missing:
         raise ConfigError(f"sensors: agent '{options.agent}' with {options.semantics} needs {', '.join(missing)}.")
@@ -289,17 +355,16 @@ def _noise_reads_truth(sensor: Sensor) -> bool:
     return model is not None and not TRUE_IMAGES.isdisjoint(model.images)
 
 
-def _verifier(options: RunOptions, segmentation: SegmentationKind, config: VerificationConfig) -> Verifier:
-    """Returns the verifier of a run; raises ConfigError if there are no such parameters, or no such method."""
-    verifier = verifier_for(segmentation.spec, config.parameters, config.method)
-    if isinstance(verifier, FittedVerifier) and config.least_probability is not None:
-        return replace(verifier, least_probability=config.least_probability)
-    return verifier
+def _verified(spec: SegmenterSpec, config: VerificationConfig) -> tuple[VerificationConfig, Verifier]:
+    """Returns a configuration with the probability that a candidate needs, and its verifier.
 
-
-def _with_least_probability(config: VerificationConfig, verifier: Verifier) -> VerificationConfig:
-    """Returns the configuration with the probability that a candidate needs; that of the fit where none is set."""
-    if config.least_probability is not None:
-        return config
-    fitted = verifier if isinstance(verifier, FittedVerifier) else FittedVerifier
-    return replace(config, least_probability=fitted.least_probability)
+    Raises:
+        ConfigError: there are no such parameters, or no such method.
+    """
+    verifier = verifier_for(spec, config.parameters, config.method)
+    fitted = verifier if isinstance(verifier, FittedVerifier) else None
+    if config.least_probability is None:
+        return replace(config, least_probability=(fitted or FittedVerifier).least_probability), verifier
+    if fitted is None:
+        return config, verifier
+    return config, replace(fitted, least_probability=config.least_probability)

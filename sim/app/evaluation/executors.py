@@ -7,10 +7,10 @@ An `Executor` takes items and yields result lines; a worker that dies is handled
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Protocol
+from typing import Protocol
 
 from sim.app.evaluation.processes import Isolation, Processes
-from sim.app.evaluation.workers import ItemT, OnStart, RunnerSpec
+from sim.app.evaluation.workers import ItemT, OnStart, ResultT, RunnerSpec
 from sim.core.errors import ConfigError
 
 EXECUTORS = ("local", "ray")
@@ -25,9 +25,9 @@ class Executor(Protocol):
         spec: RunnerSpec,
         items: Sequence[ItemT],
         *,
-        on_death: Callable[[ItemT, str], Any],
+        on_death: Callable[[ItemT, str], ResultT],
         on_start: OnStart[ItemT] | None = None,
-    ) -> Iterator[Any]:
+    ) -> Iterator[ResultT]:
         """Yields a result line for each item, in the order in which the items end.
 
         Args:

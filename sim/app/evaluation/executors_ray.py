@@ -17,7 +17,7 @@ from importlib.metadata import version
 from typing import Any
 
 from sim.app.evaluation.processes import Isolation, Supervisor
-from sim.app.evaluation.workers import ItemRunner, ItemT, OnStart, RunnerSpec, WorkerLost, run_in_pool
+from sim.app.evaluation.workers import ItemRunner, ItemT, OnStart, ResultT, RunnerSpec, WorkerLost, run_in_pool
 from sim.core import invocation
 from sim.core.errors import ConfigError, WorkersError
 from sim.core.paths import code_hash
@@ -70,9 +70,9 @@ class RayCluster:
         spec: RunnerSpec,
         items: Sequence[ItemT],
         *,
-        on_death: Callable[[ItemT, str], Any],
+        on_death: Callable[[ItemT, str], ResultT],
         on_start: OnStart[ItemT] | None = None,
-    ) -> Iterator[Any]:
+    ) -> Iterator[ResultT]:
         """See `sim.app.evaluation.executors.Executor`."""
         pool = _ActorPool(spec, self.isolation)
         yield from run_in_pool(pool, items, max_workers=self.workers, on_death=on_death, on_start=on_start)
@@ -90,7 +90,7 @@ class WorkerActor:
         """Returns the versions that must be the same on all machines."""
         return _versions()
 
-    def run(self, item: Any) -> Any:
+    def run(self, item: object) -> object:
         """See `ItemRunner.run`; it also returns a `WorkerLost`."""
         return self._runner.run(item)
 
@@ -105,13 +105,13 @@ class _Actor:
         self.answer: Any = self.actor.versions.remote()
         self.ready = False
 
-    def send(self, item: Any) -> None:
+    def send(self, item: object) -> None:
         self.answer = self.actor.run.remote(item)
 
     def steps(self) -> None:
         """Returns None: the steps are counted on another machine."""
 
-    def receive(self) -> Any:
+    def receive(self) -> object:
         try:
             message: Any = ray.get(self.answer)
         except RayTaskError as error:

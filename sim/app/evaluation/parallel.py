@@ -7,15 +7,14 @@ import reprlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Generic, TypeVar
 
 from sim.app.evaluation.executors import Executor
 from sim.app.evaluation.processes import Processes
-from sim.app.evaluation.workers import RunnerSpec
+from sim.app.evaluation.workers import ResultT, RunnerSpec
 from sim.core.errors import ConfigError, WorkersError
 
 T = TypeVar("T")
-ResultT = TypeVar("ResultT")
 
 
 @dataclass(frozen=True)
@@ -81,12 +80,16 @@ def ordered_map(
         WorkersError: the worker of an item died twice.
         Exception: any exception that `function` raised.
     """
+
+    def give_up(numbered: _NumberedItem[T], reason: str) -> tuple[int, ResultT]:
+        raise WorkersError(f"Item {numbered.number + 1}, {reprlib.repr(numbered.item)}: {reason}")
+
     executor = executor or Processes(workers if len(items) > 1 else 1)
     numbered = [_NumberedItem(number, item) for number, item in enumerate(items)]
     early: dict[int, ResultT] = {}
     following = 0
     spec = RunnerSpec("sim.app.evaluation.parallel:FunctionRunner", function)
-    for number, result in executor.run(spec, numbered, on_death=_give_up):
+    for number, result in executor.run(spec, numbered, on_death=give_up):
         early[number] = result
         while following in early:
             yield early.pop(following)
@@ -94,11 +97,11 @@ def ordered_map(
 
 
 @dataclass(frozen=True)
-class _NumberedItem:
+class _NumberedItem(Generic[T]):
     """An item with its position; see `sim.app.evaluation.workers.WorkItem`."""
 
     number: int
-    item: Any
+    item: T
 
     @property
     def episode_id(self) -> str:
@@ -110,19 +113,15 @@ class _NumberedItem:
         return ""
 
 
-class FunctionRunner:
+class FunctionRunner(Generic[T, ResultT]):
     """A `Runner` that applies one function."""
 
-    def __init__(self, function: Callable[[Any], Any]) -> None:
+    def __init__(self, function: Callable[[T], ResultT]) -> None:
         self._function = function
 
-    def run(self, numbered: _NumberedItem) -> tuple[int, Any]:
+    def run(self, numbered: _NumberedItem[T]) -> tuple[int, ResultT]:
         """Returns the number of the item and the function's result."""
         return numbered.number, self._function(numbered.item)
 
     def close(self) -> None:
         """Does nothing: no state is kept."""
-
-
-def _give_up(numbered: _NumberedItem, reason: str) -> Any:
-    raise WorkersError(f"Item {numbered.number + 1}, {reprlib.repr(numbered.item)}: {reason}")

@@ -15,10 +15,19 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
-from typing import Any
 
 from sim.app.evaluation.watch import TICK_S, Calls, watched_as
-from sim.app.evaluation.workers import ItemRunner, ItemT, OnStart, RunnerSpec, WorkerLost, run_here, run_in_pool
+from sim.app.evaluation.workers import (
+    ItemRunner,
+    ItemT,
+    OnStart,
+    ResultT,
+    RunnerSpec,
+    WorkerLost,
+    run_here,
+    run_in_pool,
+)
+from sim.app.options import RunOptions, is_process
 
 LAST_WORDS_S = 5.0
 """Longest time in which a process may end with its threads and exit handlers; then it is killed."""
@@ -35,6 +44,19 @@ class Isolation:
     """Longest time of a call of the agent (`sim.app.evaluation.watch`); 0: no limit."""
 
 
+def isolation_of(options: RunOptions) -> Isolation:
+    """Returns whether the episodes of a run need a process of their own, and how long a call of the agent may take.
+
+    A user's code needs one: it may hang, crash, or change the state of its process. An agent `process:COMMAND` has a
+    process already, and `ProcessAgent` ends a call that takes too long, so that the loaded house is not lost.
+    """
+    if is_process(options.agent):
+        return Isolation()
+    limit_s = options.step_limit_s
+    own_process = bool(options.own_code) or options.step_timeout is not None
+    return Isolation(needed=own_process and limit_s > 0.0, limit_s=limit_s)
+
+
 @dataclass(frozen=True)
 class Processes:
     """Runs items in processes of this machine, which are spawned, because OpenGL does not survive a fork."""
@@ -48,9 +70,9 @@ class Processes:
         spec: RunnerSpec,
         items: Sequence[ItemT],
         *,
-        on_death: Callable[[ItemT, str], Any],
+        on_death: Callable[[ItemT, str], ResultT],
         on_start: OnStart[ItemT] | None = None,
-    ) -> Iterator[Any]:
+    ) -> Iterator[ResultT]:
         """See `Executor`."""
         if self.workers == 1 and not self.isolation.needed:
             yield from run_here(spec, items, on_start=on_start)
@@ -88,7 +110,7 @@ class _Process:
         self.calls.rest()
         self.connection.send(spec)
 
-    def send(self, item: Any) -> None:
+    def send(self, item: object) -> None:
         self.busy = True
         self.calls.rest()
         with contextlib.suppress(OSError):  # the process died while it was idle: `receive` finds the pipe closed
@@ -97,7 +119,7 @@ class _Process:
     def steps(self) -> int:
         return self.calls.step_count[0]
 
-    def receive(self) -> Any:
+    def receive(self) -> object:
         try:
             if self.loss:  # the process was killed, but a process that it forked may keep the pipe open
                 raise EOFError
@@ -200,7 +222,7 @@ class Supervisor:
         self._pool = ProcessPool(spec, limit_s=limit_s)
         self._process: _Process | None = None
 
-    def run(self, item: Any) -> Any:
+    def run(self, item: object) -> object:
         """Returns the item's line, the exception that it raised, or a `WorkerLost` if the process ended."""
         try:
             if self._process is None:
@@ -218,7 +240,7 @@ class Supervisor:
             self._pool.stop([self._process])
             self._process = None
 
-    def _answer(self, process: _Process) -> Any:
+    def _answer(self, process: _Process) -> object:
         self._pool.wait([process])
         return process.receive()
 

@@ -20,7 +20,7 @@ from typing import IO, Annotated, Any, Literal
 
 import msgspec
 
-from sim.app.evaluation.config_fields import ABSENT, differing_fields, field_text, is_same_file
+from sim.app.evaluation.config_fields import ABSENT, field_text, run_differences
 from sim.app.evaluation.intervals import estimate, replicate_spread
 from sim.core.errors import ConfigError
 from sim.core.files import open_to_grow, write_atomically
@@ -51,20 +51,6 @@ AT_MOST_ONE = frozenset({"success", "spl", "soft_spl", "gt_explored", "never_see
 """Metrics between 0 and 1."""
 OVER_HOUSES, OVER_ONE_HOUSE = "houses", "the episodes of the one house"
 """The units over which the intervals of a summary are taken."""
-PLACEMENT_OPTIONS = ("executor", "address", "shard")
-"""Options that say where episodes are run; they change no result."""
-VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save", "mcap")
-"""Options that start viewers; they change no result."""
-WITHOUT_EFFECT = frozenset({"workers", "out", "record", "seed_key", *PLACEMENT_OPTIONS, *VIEWER_OPTIONS})
-"""Entries of the config that change no result, or that are random in each run (`seed_key`)."""
-NOT_COMPARED = WITHOUT_EFFECT | {"versions", "codes", "episodes", "only", "settings", "segmentation"}
-"""Entries of the config in which a resumed run may differ; with more episodes it runs the additional ones.
-
-`settings` are the assignments of the command line; only the tree that results from them, `config`, has to be equal.
-`segmentation` follows from `semantics` and the code.
-"""
-
-
 IDENTITY = ("agent", "semantics", "seed")
 """Keys that a line and the config of its run have in common, with equal values."""
 Measured = Number | bool | None
@@ -371,9 +357,8 @@ class RunDirectory:
             return
         existing = read_record(file)
         self._require_same_physics(existing, config)
-        for path, before, now in differing_fields(existing, config):
-            unset = all(value is None or value is ABSENT for value in (before, now))
-            if path.partition(".")[0] not in NOT_COMPARED and not unset and not is_same_file(path, existing, config):
+        for path, before, now in run_differences(existing, config, resumed=True):
+            if not all(value is None or value is ABSENT for value in (before, now)):
                 version = existing.get("versions", {}).get("stubborn-objectnav")
                 older = version != config.get("versions", {}).get("stubborn-objectnav") and version is not None
                 raise ConfigError(

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import reprlib
 import time
 import traceback
-import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -29,20 +27,6 @@ TIMES = ("wall_time_s", "steps_per_s")
 """Keys of a result line that differ between two runs of the same episode."""
 OnStep = Callable[[int, Agent, dict[str, Any]], None]
 """Called with the number of the step, the agent and the environment's info after each step."""
-
-
-def episode_seed(seed: int, episode_id: str) -> int:
-    """Returns the environment's seed for an episode; it depends only on the run's seed and the episode's id."""
-    return int(np.random.SeedSequence([seed, zlib.crc32(episode_id.encode())]).generate_state(1)[0])
-
-
-def agent_seed(seed: int, episode_id: str, key: str) -> int:
-    """Returns the agent's seed for an episode, in [0, 2**32): a hash with the key of the run, which no agent gets.
-
-    Without the key, an agent could identify the episode by its seed, because the episodes of public splits are known.
-    """
-    secret = hashlib.sha256(key.encode()).digest()
-    return int.from_bytes(hashlib.blake2b(f"{seed}/{episode_id}".encode(), key=secret, digest_size=4).digest(), "big")
 
 
 def play_episode(

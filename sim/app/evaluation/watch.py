@@ -11,7 +11,6 @@ import contextlib
 import time
 from collections.abc import Callable, Iterator, MutableSequence
 from multiprocessing.context import SpawnContext
-from typing import Any
 
 Steps = Callable[[], int | None]
 """Returns the number of steps of a running episode so far; None: not known in this process."""
@@ -107,7 +106,7 @@ def is_stop(error: BaseException) -> bool:
 
 
 @contextlib.contextmanager
-def marked(where: str, least_s: float = 0.0) -> Iterator[Any]:
+def marked(where: str, least_s: float = 0.0) -> Iterator[None]:
     """Records a call of the agent while the `with` block runs; its time limit is at least `least_s`."""
     if _calls is None:
         yield

@@ -12,7 +12,7 @@ import logging
 import pickle
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar, cast
 
 from sim.app.evaluation.own_code import text_of
 from sim.app.evaluation.watch import Steps, counted_steps
@@ -20,6 +20,7 @@ from sim.core.errors import WorkersError
 
 _log = logging.getLogger(__name__)
 ItemT = TypeVar("ItemT", bound="WorkItem")
+ResultT = TypeVar("ResultT")
 OnStart = Callable[[ItemT, Steps], None]
 """Called when an item begins, with the item and a function that returns the number of its steps so far."""
 MAX_TRIES = 2
@@ -60,9 +61,9 @@ class RunnerSpec:
     """
 
     entry: str
-    config: Any
+    config: object
 
-    def __reduce__(self) -> tuple[Callable[..., RunnerSpec], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[Callable[..., RunnerSpec], tuple[str, _Packed]]:
         """Pickles the argument as bytes."""
         packed = self.config if isinstance(self.config, _Packed) else _Packed(pickle.dumps(self.config))
         return RunnerSpec, (self.entry, packed)
@@ -98,7 +99,7 @@ def _lost(reason: str, final: bool) -> WorkerLost:
 class Worker(Protocol):
     """A worker process or actor. It reports once that it is ready, then answers each item with a line or an error."""
 
-    def send(self, item: Any) -> None:
+    def send(self, item: object) -> None:
         """Sends it an item. If it has died since, `receive` reports it."""
         ...
 
@@ -106,7 +107,7 @@ class Worker(Protocol):
         """Returns the number of steps of its item so far; None: not known."""
         ...
 
-    def receive(self) -> Any:
+    def receive(self) -> object:
         """Returns its message, after `WorkerPool.wait` has returned it.
 
         Raises:
@@ -142,7 +143,7 @@ class ItemRunner:
         self._spec = spec
         self._runner: Runner | None = None
 
-    def run(self, item: Any) -> Any:
+    def run(self, item: object) -> object:
         """Returns the item's line, or the exception that building or running raised."""
         try:
             if self._runner is None:
@@ -179,13 +180,13 @@ def run_here(spec: RunnerSpec, items: Sequence[ItemT], *, on_start: OnStart[Item
 
 
 def run_in_pool(
-    pool: WorkerPool[Any],
+    pool: WorkerPool[WorkerT],
     items: Sequence[ItemT],
     *,
     max_workers: int,
-    on_death: Callable[[ItemT, str], Any],
+    on_death: Callable[[ItemT, str], ResultT],
     on_start: OnStart[ItemT] | None = None,
-) -> Iterator[Any]:
+) -> Iterator[ResultT]:
     """Yields a result line for each item, in the order in which the items end.
 
     Args:
@@ -229,10 +230,10 @@ class _Queue(Generic[ItemT]):
 
 
 @dataclass
-class _WorkerSlot(Generic[ItemT]):
+class _WorkerSlot(Generic[WorkerT, ItemT]):
     """The state of one worker."""
 
-    worker: Any
+    worker: WorkerT
     ready: bool = False
     item: ItemT | None = None
     house: str | None = None
@@ -243,19 +244,19 @@ class _WorkerSlot(Generic[ItemT]):
 
 
 @dataclass
-class _Scheduler(Generic[ItemT]):
+class _Scheduler(Generic[WorkerT, ItemT, ResultT]):
     """Assigns the items of a queue to the workers of a pool."""
 
-    pool: WorkerPool[Any]
+    pool: WorkerPool[WorkerT]
     queue: _Queue[ItemT]
     max_workers: int
-    on_death: Callable[[ItemT, str], Any]
+    on_death: Callable[[ItemT, str], ResultT]
     on_start: OnStart[ItemT] | None = None
-    slots: list[_WorkerSlot[ItemT]] = field(default_factory=list)
+    slots: list[_WorkerSlot[WorkerT, ItemT]] = field(default_factory=list)
     tries: dict[str, int] = field(default_factory=dict)
     failed_starts: int = 0
 
-    def lines(self) -> Iterator[Any]:
+    def lines(self) -> Iterator[ResultT]:
         while True:
             self._assign_all()
             pending = {id(slot.worker): slot for slot in self.slots if not slot.idle}
@@ -274,19 +275,19 @@ class _Scheduler(Generic[ItemT]):
         for _ in range(min(self.max_workers - len(self.slots), len(self.queue.items) - starting)):
             self.slots.append(_WorkerSlot(self.pool.start()))
 
-    def _assign(self, slot: _WorkerSlot[ItemT]) -> None:
+    def _assign(self, slot: _WorkerSlot[WorkerT, ItemT]) -> None:
         busy = {other.house for other in self.slots if other.item is not None and other.house is not None}
         slot.item = self.queue.take(slot.house, busy)
         if slot.item is not None:
             slot.house = slot.item.house
             slot.worker.send(slot.item)
 
-    def _report_start(self, slot: _WorkerSlot[ItemT]) -> None:
+    def _report_start(self, slot: _WorkerSlot[WorkerT, ItemT]) -> None:
         """Calls `on_start` for the item that a worker got."""
         if self.on_start is not None and slot.item is not None:
             self.on_start(slot.item, slot.worker.steps)
 
-    def _receive(self, slot: _WorkerSlot[ItemT]) -> Iterator[Any]:
+    def _receive(self, slot: _WorkerSlot[WorkerT, ItemT]) -> Iterator[ResultT]:
         """Handles one message of a worker: that it is ready, a line, or its death."""
         try:
             message = slot.worker.receive()
@@ -300,10 +301,10 @@ class _Scheduler(Generic[ItemT]):
         if isinstance(message, BaseException):
             raise message
         if was_ready:
-            yield message
+            yield cast(ResultT, message)
         self._report_start(slot)  # after the line of the item before it
 
-    def _retry_or_fail(self, slot: _WorkerSlot[ItemT], loss: WorkerLost) -> Iterator[Any]:
+    def _retry_or_fail(self, slot: _WorkerSlot[WorkerT, ItemT], loss: WorkerLost) -> Iterator[ResultT]:
         """Puts the item of a dead worker back into the queue, or yields its error line."""
         item = slot.item
         if item is None:

@@ -13,16 +13,14 @@ from numpy.typing import NDArray
 
 from sim.app.analysis.comparison import Line, Run
 from sim.app.analysis.report.facts import command_of
-from sim.app.evaluation.results import WITHOUT_EFFECT
+from sim.app.options import RunOptions
 from sim.app.submissions.contents import FORMAT, PLACE_EVERY, Entry, Manifest, Result, Submission
 from sim.app.submissions.setting import setting_of
 from sim.core.errors import ConfigError
+from sim.core.option_types import meanings
 from sim.core.reading import convert
 from sim.robot.config import PHYSICS_VERSION
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
-
-LEFT_OUT = (WITHOUT_EFFECT - {"seed_key"}) | {"labels", "root"}
-"""Entries of `config.json` that change no result, or name folders of the user."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +74,8 @@ def pack(run: Run, about: About) -> Submission:
         },
         "versions": run.recorded("versions"),
     }
-    kept = _without_folders({key: value for key, value in config.items() if key not in LEFT_OUT})
+    private = {name for name, option in meanings(RunOptions).items() if not option.published}
+    kept = _without_folders({key: value for key, value in config.items() if key not in private})
     return Submission(
         format=FORMAT,
         manifest=convert(manifest, Manifest, where="The manifest"),

@@ -12,7 +12,6 @@ import numpy as np
 from gymnasium.utils.seeding import np_random
 from numpy.typing import NDArray
 
-from sim.app.evaluation.rollout import episode_seed
 from sim.app.submissions.contents import Entry
 from sim.app.submissions.packing import places_of
 from sim.app.submissions.setting import Setting
@@ -20,6 +19,7 @@ from sim.core.errors import EpisodeError, PhysicsError
 from sim.core.interface import Action
 from sim.env.scene import Scene
 from sim.episodes.episode import Episode
+from sim.episodes.seeds import episode_seeds
 from sim.episodes.splits import Split, load_split
 from sim.robot.conditions import Conditions
 from sim.sensors.noise import SensorNoise, noise_from_dict
@@ -86,7 +86,7 @@ def conditions_of(setting: Setting, split: Split, episode: Episode, seed: int) -
     """Returns the conditions of the physics of an episode, as `ObjectNavEnv.reset` draws them from the run's seed."""
     fixed = split.sidecar(episode.house).noise
     noise = SensorNoise(noise_from_dict(fixed) if fixed else setting.noise, setting.camera, ())
-    generator, _ = np_random(episode_seed(seed, episode.episode_id))
+    generator, _ = np_random(episode_seeds(seed, episode.episode_id).environment)
     return noise.begin(generator.spawn(1)[0], np.zeros(0, np.float32))
 
 

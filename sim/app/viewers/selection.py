@@ -2,38 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Protocol
-
+from sim.app.options import RunOptions
 from sim.app.viewers.viewer import MapPainter, SeesFrames, Viewer
 from sim.core.errors import ConfigError
 
 
-class ViewerOptions(Protocol):
-    """The options of a run that concern viewers."""
-
-    @property
-    def out(self) -> Path | None: ...  # noqa: D102
-    @property
-    def workers(self) -> int: ...  # noqa: D102
-    @property
-    def video(self) -> bool: ...  # noqa: D102
-    @property
-    def view(self) -> bool: ...  # noqa: D102
-    @property
-    def rerun(self) -> bool: ...  # noqa: D102
-    @property
-    def rerun_save(self) -> bool: ...  # noqa: D102
-    @property
-    def mcap(self) -> bool: ...  # noqa: D102
-
-
-def any_selected(options: ViewerOptions) -> bool:
-    """Returns True if there is a viewer, so that all images must be rendered."""
-    return options.video or options.view or options.rerun or options.rerun_save or options.mcap
-
-
-def check(options: ViewerOptions) -> None:
+def check(options: RunOptions) -> None:
     """Raises ConfigError if a selected viewer cannot run here."""
     for name, selected in (("--view", options.view), ("--rerun", options.rerun)):
         if selected and options.workers > 1:
@@ -54,18 +28,14 @@ def check(options: ViewerOptions) -> None:
         mcap_log.require_mcap()
 
 
-def make(options: ViewerOptions, painter: MapPainter | None, seen: SeesFrames | None = None) -> list[Viewer]:
+def make(options: RunOptions, painter: MapPainter | None, seen: SeesFrames | None = None) -> list[Viewer]:
     """Returns the selected viewers.
 
     Args:
         options: of the run.
         painter: draws the agent's map; None if it has none.
         seen: provides the segmentation that the agent acts on; None if it has none.
-
-    Raises:
-        ConfigError: see `check`.
     """
-    check(options)
     viewers: list[Viewer] = []
     if options.video and options.out is not None:
         from sim.app.viewers.video import VideoRecorder

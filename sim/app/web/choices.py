@@ -13,12 +13,14 @@ import msgspec
 
 from sim.app.composition.agents import EXPLORERS, SPECS, find_agent, find_explorer, takes_explorer
 from sim.app.composition.driven import HUMAN_NAME
-from sim.app.composition.options import RunOptions
 from sim.app.composition.segmenters import KINDS, NetworkConfig, find_segmentation
+from sim.app.options import RunOptions
 from sim.app.web.controls import Driver, EpisodeRequest
 from sim.core import invocation
+from sim.core.configuration import with_fields
 from sim.core.errors import ConfigError, HouseError
 from sim.core.interface import GOAL_CATEGORIES
+from sim.core.option_types import meanings
 from sim.core.reading import convert
 from sim.episodes.splits import HOUSE_SUFFIXES, load_split, one_house, shipped_splits
 from sim.houses.labels import read_labels
@@ -89,16 +91,15 @@ class Choices:
             "run_command": invocation.command("run", "--video"),
         }
 
-    def request(self, message: Mapping[str, Any]) -> EpisodeRequest:
+    def request(self, message: Mapping[str, object]) -> EpisodeRequest:
         """Returns the request that a message of the page describes.
 
         Raises:
             ConfigError: a part of it cannot be chosen.
         """
-        asked = convert(message, _Start, where="The message")
-        return self._request(asked, self._options)
+        return self._request(convert(message, _Start, where="The message"))
 
-    def again(self, record: Mapping[str, Any], line: Mapping[str, Any], driver: Driver) -> EpisodeRequest:
+    def again(self, record: Mapping[str, object], line: Mapping[str, object], driver: Driver) -> EpisodeRequest:
         """Returns a request for an episode of a finished run, with the agent, seed and settings of that run.
 
         Args:
@@ -112,7 +113,7 @@ class Choices:
         by_person = str(record.get("agent")).partition("+")[0] == HUMAN_NAME
         file = record.get("house")
         asked = {
-            "split": str(Path(file).absolute()) if file else _split_name(str(record.get("split"))),
+            "split": str(Path(str(file)).absolute()) if file else _split_name(str(record.get("split"))),
             "house": line["house"],
             "goal": line["goal"],
             "agent": "stubborn" if by_person else record.get("agent"),
@@ -121,17 +122,16 @@ class Choices:
             "episode": line["episode_id"],
             "driver": driver,
         }
-        options = replace(self._options, config=_settings(record, self._options.config), config_file=None)
-        for name in ("seed", "seed_key", "noise", "profile", "verification"):
-            if record.get(name) is not None:
-                options = replace(options, **{name: record[name]})
-        request = self._request(convert(asked, _Start, where="The run's config.json"), options)
-        if file:  # the episodes are drawn again, so that all options on which they depend must be those of the run
-            drawn = convert(dict(record), _Drawn, where="The run's config.json")
-            request = replace(request, options=replace(request.options, **msgspec.structs.asdict(drawn)))
-        return replace(request, record=record)
+        request = self._request(convert(asked, _Start, where="The run's config.json"))
+        if file and "episodes" not in record:  # the episodes are drawn again, as the run drew them
+            raise ConfigError("The run's config.json does not contain the number of episodes.")
+        meaning = meanings(RunOptions).items()
+        plain = {name for name, option in meaning if option.plain and (file or not option.of_episodes)}
+        options = with_fields(request.options, {name: record[name] for name in plain if name in record})
+        options = replace(options, config=_settings(record, self._options.config), config_file=None)
+        return replace(request, record=record, options=options)
 
-    def _request(self, asked: _Start, options: RunOptions) -> EpisodeRequest:
+    def _request(self, asked: _Start) -> EpisodeRequest:
         """Returns a request; raises ConfigError if a part of it is not offered."""
         is_house = Path(asked.split).suffix.lower() in HOUSE_SUFFIXES
         self._require("house" if is_house else "split", asked.split, self._splits)
@@ -145,7 +145,7 @@ class Choices:
             house, goal = _place_of(asked.episode, houses, asked.split)
         if goal not in houses.get(house, {}):
             raise ConfigError(f"There is no '{goal}' in house '{house}' of '{asked.split}'.")
-        options = replace(options, agent=asked.agent, semantics=asked.semantics, explorer=asked.explorer or None)
+        options = replace(self._options, agent=asked.agent, semantics=asked.semantics, explorer=asked.explorer or None)
         if asked.split in self._houses:
             options = replace(options, house=self._houses[asked.split], goal=goal)
         else:
@@ -156,16 +156,13 @@ class Choices:
             split=asked.split,
             house=house,
             goal=goal,
-            agent=asked.agent,
-            semantics=asked.semantics,
-            explorer=asked.explorer,
             episode_id=asked.episode or None,
             driver=asked.driver,
             options=options,
         )
 
     @staticmethod
-    def _require(option: str, name: str, offered: Mapping[str, Any]) -> None:
+    def _require(option: str, name: str, offered: Mapping[str, object]) -> None:
         if name not in offered:
             command = invocation.command("web", f"--{option}", name)
             raise ConfigError(f"This page does not offer --{option} '{name}'. Start the server with it: {command}")
@@ -182,14 +179,6 @@ class _Start(msgspec.Struct):
     explorer: str = ""
     episode: str = ""
     driver: Literal["agent", "person"] = "agent"
-
-
-class _Drawn(msgspec.Struct):
-    """The options of a run in one house on which its episodes depend."""
-
-    episodes: int
-    goal: str | None = None
-    start_deg: str | None = None
 
 
 def _split_name(name: str) -> str:
@@ -225,7 +214,7 @@ def _place_of(episode_id: str, houses: Goals, split: str) -> tuple[str, str]:
     raise ConfigError(f"Split '{split}' has no episode '{episode_id}'.")
 
 
-def _settings(record: Mapping[str, Any], own: Iterable[str]) -> tuple[str, ...]:
+def _settings(record: Mapping[str, object], own: Iterable[str]) -> tuple[str, ...]:
     """Returns the settings of a run in the form of `--config`.
 
     Args:
@@ -240,7 +229,7 @@ def _settings(record: Mapping[str, Any], own: Iterable[str]) -> tuple[str, ...]:
     return (*plain, *(assignment for assignment in own if assignment.partition("=")[0] in files))
 
 
-def _is_plain(value: Any) -> bool:
+def _is_plain(value: object) -> bool:
     if isinstance(value, list):
         return all(map(_is_plain, value))
     return not isinstance(value, dict) and (not isinstance(value, str) or _PLAIN_TEXT.fullmatch(value) is not None)

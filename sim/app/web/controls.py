@@ -7,9 +7,9 @@ import time
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
-from sim.app.composition.options import RunOptions
+from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.interface import Action
 
@@ -35,22 +35,21 @@ class EpisodeRequest:
     split: str
     house: str
     goal: str
-    agent: str
-    semantics: str
-    explorer: str = ""
-    """Name of the explorer; "" is the agent's own."""
     episode_id: str | None = None
     """Id of the episode; None: another one of this house and goal each time."""
     driver: Driver = "agent"
     options: RunOptions
-    """Options of the run that the episode belongs to."""
-    record: Mapping[str, Any] | None = None
+    """Options of the run that the episode belongs to; they name agent, segmentation and explorer."""
+    record: Mapping[str, object] | None = None
     """The `config.json` of the finished run to which the episode belongs; None: it belongs to none."""
 
-    def as_json(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, object]:
         """Returns the part that the page shows, as JSON types."""
-        names = ("split", "house", "goal", "agent", "semantics", "explorer", "episode_id", "driver")
-        return {name: getattr(self, name) for name in names}
+        chosen: dict[str, object] = {
+            name: getattr(self, name) for name in ("split", "house", "goal", "episode_id", "driver")
+        }
+        options = self.options
+        return chosen | {"agent": options.agent, "semantics": options.semantics, "explorer": options.explorer or ""}
 
 
 class Choice(NamedTuple):
@@ -73,7 +72,7 @@ class Controls:
         self.paused = self.hints = False
         self.per_s = SPEEDS[1]
 
-    def obey(self, message: Mapping[str, Any]) -> None:
+    def obey(self, message: Mapping[str, object]) -> None:
         """Carries out one command of the page.
 
         Args:
@@ -172,13 +171,13 @@ class Controls:
         self.driver = driver
 
 
-def _speed(value: Any) -> float:
-    if value not in SPEEDS or isinstance(value, bool):
+def _speed(value: object) -> float:
+    if not isinstance(value, (int, float)) or isinstance(value, bool) or value not in SPEEDS:
         raise ConfigError(f"The speed must be one of {', '.join(f'{speed:g}' for speed in SPEEDS)} actions per second.")
     return float(value)
 
 
-def _action(value: Any) -> Action:
+def _action(value: object) -> Action:
     if isinstance(value, bool) or value not in tuple(Action):
         raise ConfigError(f"The action must be one of {', '.join(str(int(action)) for action in Action)}.")
     return Action(value)

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from sim.app.composition.driven import record_driven, setup_of_person
-from sim.app.composition.options import RunOptions
 from sim.app.composition.record import record_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.results import RunDirectory
+from sim.app.options import RunOptions
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 
@@ -58,7 +58,7 @@ class DrivenRuns:
             done = self._done
         options = person.options
         person = replace(person, options=replace(person.options, out=run))
-        split = {"name": env.split.name, "version": env.split.version, "sha256": env.split.sha256}
+        split = env.split.identity
         content = record_of(person, split)
         directory = RunDirectory(run, content)
         try:

@@ -9,15 +9,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
-import numpy as np
-
 from sim.app.cli import USAGE_ERRORS
 from sim.app.composition.environments import drawn_episodes
 from sim.app.composition.record import record_of
 from sim.app.composition.runner import Parts, build_parts
 from sim.app.composition.setup import Setup, resolve
-from sim.app.evaluation.config_fields import differing_fields, is_same_file
-from sim.app.evaluation.rollout import agent_seed, episode_seed, play_episode
+from sim.app.evaluation.config_fields import run_differences
+from sim.app.evaluation.rollout import play_episode
 from sim.app.viewers.viewer import Moment
 from sim.app.web.controls import Controls, EpisodeRequest, Interrupted
 from sim.app.web.driven import DrivenRuns
@@ -28,6 +26,7 @@ from sim.core.interface import Action, Agent, Closable, Observation, Overridable
 from sim.core.reading import printable
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
+from sim.episodes.seeds import drawing_generator, episode_seeds
 from sim.task.explanations import ACTION_WORDS, explain_end, in_words, with_article
 
 _NAMED_DIFFERENCES = 4
@@ -113,7 +112,7 @@ class Session:
         self._free()
 
     def _run_episode(self, request: EpisodeRequest) -> None:
-        self._show_state(request, "loading", f"Loading house {request.house} and the agent {request.agent} ...")
+        self._show_state(request, "loading", f"Loading house {request.house} and the agent {request.options.agent} ...")
         made = self._made_for(request)
         parts, pictures = made.parts, made.pictures
         episode = choose_episode(parts.env, request, self._turn, made.setup)
@@ -128,14 +127,15 @@ class Session:
 
         watcher = _Watcher(begun, shared)
         options = request.options
+        seeds = episode_seeds(options.seed, episode.episode_id, options.seed_key)
         line = play_episode(
             parts.env,
             shared,
             episode,
-            seed=episode_seed(options.seed, episode.episode_id),
-            seed_of_agent=agent_seed(options.seed, episode.episode_id, options.seed_key or ""),
+            seed=seeds.environment,
+            seed_of_agent=seeds.agent,
             viewers=[watcher],
-            name=request.agent,
+            name=options.agent,
         )
         shared.show_end()
         nearest_m = parts.env.scene.task.trajectory().nearest_instance_m
@@ -310,8 +310,7 @@ def _draw_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int) -> Epis
         raise EpisodeError(
             f"Episodes of house '{request.house}' are {request.house}_0000 and so on, not {request.episode_id}."
         )
-    rng = np.random.default_rng([request.options.seed, int(number[1])])
-    return env.draw_episode(rng, episode_id=number[0])
+    return env.draw_episode(drawing_generator(request.options.seed, int(number[1])), episode_id=number[0])
 
 
 def unlike_the_run(setup: Setup, env: ObjectNavEnv, record: Mapping[str, Any] | None) -> str:
@@ -324,12 +323,8 @@ def unlike_the_run(setup: Setup, env: ObjectNavEnv, record: Mapping[str, Any] | 
     """
     if record is None:
         return ""
-    now = record_of(setup, {"name": env.split.name, "version": env.split.version, "sha256": env.split.sha256})
-    fields = [
-        path
-        for path, _, _ in differing_fields(record.get("config") or {}, now["config"])
-        if not is_same_file(f"config.{path}", record, now)
-    ]
+    now = record_of(setup, env.split.identity)
+    fields = [path.removeprefix("config.") for path, _, _ in run_differences(record, now) if path.startswith("config.")]
     if (record.get("split_identity") or {}).get("sha256") != env.split.sha256:
         fields.append("the houses")
     if (record.get("versions") or {}).get("code") != now["versions"]["code"]:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sim.app.commands import run
-from sim.app.composition.options import RunOptions
+from sim.app.options import RunOptions
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, Action, ConfigError
 from sim.detectors.confusions import CONFUSIONS

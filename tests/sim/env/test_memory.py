@@ -118,7 +118,7 @@ def test_freed_layers_are_returned_though_small_blocks_between_them_live_on() ->
 SHREDS = """
 import numpy as np
 
-from sim.app.composition.options import RunOptions
+from sim.app.options import RunOptions
 from sim.app.composition.environments import episodes_of
 from sim.app.composition.runner import EpisodeRunner
 from sim.app.composition.setup import resolve
@@ -147,7 +147,7 @@ def test_memory_freed_in_pieces_is_returned_before_the_next_episode() -> None:
 
 @pytest.mark.parametrize("options", ["semantics='gt'", "semantics='noisy'", "agent='random'", "agent='oracle'"])
 def test_a_worker_imports_no_library_that_it_does_not_need(options: str) -> None:
-    imports = "from sim.app.composition.options import RunOptions; from sim.app.composition.runner import EpisodeRunner"
+    imports = "from sim.app.options import RunOptions; from sim.app.composition.runner import EpisodeRunner"
     imports += "; from sim.app.composition.setup import resolve"
     runner = f"{imports}; runner = EpisodeRunner(resolve(RunOptions({options}))); runner.close()"
     heavy = ("torch", "sklearn", "ray", "rerun", "webdataset")

@@ -13,8 +13,8 @@ import pytest
 
 import sim.gym  # registers the environment
 from sim.app.commands.run import entry
-from sim.app.composition.options import RunOptions
 from sim.app.composition.setup import resolve
+from sim.app.options import RunOptions
 from sim.core.geometry.pose import Pose
 from sim.core.interface import AgentSpec, CameraModel, ConfigError, reads_truth
 from sim.env.objectnav import ObjectNavEnv

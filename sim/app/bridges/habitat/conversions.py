@@ -14,7 +14,6 @@ Source: `habitat.tasks.nav` and `habitat.sims.habitat_simulator` of Habitat-Lab 
 
 from __future__ import annotations
 
-import difflib
 import math
 import operator
 import reprlib
@@ -29,7 +28,7 @@ from gymnasium import spaces
 from sim.app.bridges.habitat_client import ACTION_IDS, HabitatActions
 from sim.app.bridges.stubborn_client import Observation as _Observation
 from sim.app.bridges.stubborn_client import from_habitat
-from sim.core.errors import AgentError, ConfigError
+from sim.core.errors import AgentError, ConfigError, did_you_mean
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40, Action, CameraModel, Observation
 
 HM3D_GOALS = ("chair", "bed", "plant", "toilet", "tv_monitor", "sofa")
@@ -61,8 +60,7 @@ class Conversion:
 
     def __post_init__(self) -> None:
         if self.categories not in CATEGORIES:
-            near = difflib.get_close_matches(str(self.categories), CATEGORIES, n=1)
-            hint = f" Did you mean '{near[0]}'?" if near else ""
+            hint = did_you_mean(str(self.categories), CATEGORIES)
             raise ConfigError(f"categories must be one of {', '.join(CATEGORIES)}, got '{self.categories}'.{hint}")
 
     @property

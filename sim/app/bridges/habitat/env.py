@@ -16,12 +16,12 @@ from sim.app.bridges.habitat.config import Config, log_ignored, make_config, set
 from sim.app.bridges.habitat.conversions import Conversion, Observations, to_action
 from sim.app.bridges.habitat.episodes import ObjectGoalNavEpisode, to_habitat
 from sim.app.bridges.habitat.shortest_path import ShortestPaths
-from sim.app.evaluation.rollout import episode_seed
 from sim.core.errors import AgentError, ConfigError, EpisodeError
 from sim.core.interface import Action, CameraModel
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes import habitat
 from sim.episodes.episode import Episode
+from sim.episodes.seeds import drawing_generator, episode_seeds
 
 DRAWN_EPISODES = 5
 """Number of episodes that are drawn in a house file if `episodes` is not given."""
@@ -131,7 +131,7 @@ class Env:
         """Starts the next episode and returns its observations."""
         self._number = (self._number + 1) % len(self._listed)
         self._episode = self._listed[self._number]
-        seed = episode_seed(self._seed, self._episode.episode_id)
+        seed = episode_seeds(self._seed, self._episode.episode_id).environment
         observation, self._info = self._env.reset(seed=seed, options={"episode": self._episode})
         self._over = False
         return self._conversion.observations(observation)
@@ -190,7 +190,7 @@ class Env:
         if count is not None and count < 1:
             raise ConfigError(f"episodes must be at least 1, got {count}.")
         if not env.split.episodes:
-            rngs = (np.random.default_rng([self._seed, i]) for i in range(count or DRAWN_EPISODES))
+            rngs = (drawing_generator(self._seed, i) for i in range(count or DRAWN_EPISODES))
             names = ",".join(env.split.houses)
             drawn = [env.draw_episode(rng, episode_id=f"{names}_{i:04d}") for i, rng in enumerate(rngs)]
             return [self._known(episode) for episode in drawn]

@@ -97,7 +97,7 @@ def segmenter_for(name: str, camera: CameraModel, settings: Mapping[str, Any]) -
     missing = [*own.spec.truth, *(each for each in sensors if each not in ("rgb", "depth"))]
     if missing:
         raise ConfigError(f"--semantics '{name}' reads '{missing[0]}', and stored views have rgb and depth only.")
-    return built(name, own, {"camera": camera, "config": with_fields(_Settings(own.config), settings).detector})
+    return built(name, own, camera=camera, config=with_fields(_Settings(own.config), settings).detector)
 
 
 def _add_view(measured: OwnMeasured, segmenter: OwnSegmenter, view: LabelledView, block_px: int) -> None:

@@ -39,12 +39,13 @@ from sim.app.analysis.tables import ResultTable, to_csv, to_markdown, to_rich
 from sim.app.commands.reproduce.paper_figures import beside_paper
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, PaperTable, table_named
 from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, file_name, key_of, run_in_turns
-from sim.app.composition.options import RunOptions
-from sim.app.composition.setup import resolve
+from sim.app.composition.setup import RunConfig, resolve
 from sim.app.evaluation.config_fields import differing_fields, field_text
 from sim.app.evaluation.intervals import MIN_PAIRS
+from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically, write_together
+from sim.core.option_types import meanings
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split, load_split
 from sim.task.failures import cause_of_failure
@@ -55,8 +56,6 @@ MAX_NAME = 120
 longer ones get a checksum."""
 SAME_IN_ALL = ("profile", "robot")
 """Entries of config.json in which the runs of a table must be equal, if both have them."""
-SAME_IN_TREE = ("robot", "camera", "profile", "noise", "task")
-"""Parts of the configuration tree in which the runs of a table must be equal, if both have them."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,7 +176,8 @@ def _conditions(of: Run, other: Run) -> dict[str, Any]:
     """Returns the entries of a run's config that must be equal in all runs, if the other run has them too."""
     flat = {key: of.config[key] for key in SAME_IN_ALL if key in of.config and key in other.config}
     tree, others = of.config.get("config", {}), other.config.get("config", {})
-    return flat | {"config": {key: tree[key] for key in SAME_IN_TREE if key in tree and key in others}}
+    of_world = [name for name, option in meanings(RunConfig).items() if option.of_world]
+    return flat | {"config": {key: tree[key] for key in of_world if key in tree and key in others}}
 
 
 def _has_own_weights(run: Run) -> bool:

@@ -17,9 +17,9 @@ from rich.console import Console
 from sim.app import cli
 from sim.app.analysis.comparison import Run, read_run
 from sim.app.composition.agents import find_agent
-from sim.app.composition.options import RunOptions
 from sim.app.composition.running import run_missing
 from sim.app.composition.setup import resolve
+from sim.app.options import RunOptions
 from sim.core.configuration import parse_assignments
 from sim.core.errors import ConfigError
 from sim.core.reading import convert
@@ -139,13 +139,8 @@ def run_in_turns(runs: Sequence[TableRun], chunk: int, minutes: float | None, co
                 is_complete = all(episode.episode_id in run.lines for episode in episodes)
                 checks_options = not first and not run.options.keep_results  # also those of a complete run
                 if checks_options or not is_complete:
-                    run_missing(resolve(run.options), episodes, identity(run.split), console)
+                    run_missing(resolve(run.options), episodes, run.split.identity, console)
             longest_s = max(longest_s, time.monotonic() - chunk_began_s)
-
-
-def identity(split: Split) -> dict[str, str]:
-    """Returns what config.json records of a split."""
-    return {"name": split.name, "version": split.version, "sha256": split.sha256}
 
 
 class _Recorded(msgspec.Struct):

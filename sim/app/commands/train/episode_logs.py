@@ -179,7 +179,7 @@ def log_config(args: LogOptions, split: Split) -> dict[str, Any]:
         "detector": detector_record(detector_config(find_segmentation(args.semantics, args.weights), args.weights)),
         "seed": args.seed,
         "max_steps": args.max_steps,
-        "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
+        "split_identity": split.identity,
         "code": code_hash(parameters=False) + _own_code(args.semantics),
     }
 

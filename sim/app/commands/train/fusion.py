@@ -34,12 +34,12 @@ from sim.app.commands.train.episode_logs import (
     parameters_file,
 )
 from sim.app.composition.segmenters import find_segmentation, make_segmenter
-from sim.app.evaluation.rollout import episode_seed
 from sim.app.evaluation.workers import RunnerSpec
 from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
+from sim.episodes.seeds import episode_seeds
 from sim.episodes.splits import Split
 from sim.training.fits.fusion import fit, judge, probabilities, samples_of
 from sim.training.fits.track_log import TrackLine, TrackRecorder, compared, file_of, read_tracks, write_tracks
@@ -109,7 +109,7 @@ class TrackRunner:
 
     def run(self, episode: Episode) -> dict[str, Any]:
         """Runs one episode to its last step and writes its tracks; returns its line."""
-        arrays = self._recorder.run(episode, episode_seed(self._seed, episode.episode_id))
+        arrays = self._recorder.run(episode, episode_seeds(self._seed, episode.episode_id).environment)
         if arrays is None:
             return line_of(episode, 0, tracks=0)
         write_tracks(self._log, episode.episode_id, arrays)

@@ -35,12 +35,12 @@ from sim.app.commands.train.episode_logs import (
     parameters_file,
 )
 from sim.app.composition.segmenters import find_segmentation, make_segmenter
-from sim.app.evaluation.rollout import episode_seed
 from sim.app.evaluation.workers import RunnerSpec
 from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
+from sim.episodes.seeds import episode_seeds
 from sim.episodes.splits import Split
 from sim.training.fits.candidates import CandidateLine, CandidateRecorder
 from stubborn.detection.verification import FOLDER, NAIVE_BAYES, FittedVerifier
@@ -104,7 +104,7 @@ class CandidateRunner:
 
     def run(self, episode: Episode) -> dict[str, Any]:
         """Runs one episode to its last step, or until it fails; returns its line."""
-        seed = episode_seed(self._seed, episode.episode_id)
+        seed = episode_seeds(self._seed, episode.episode_id).environment
         steps = self._recorder.run(episode, seed)
         return line_of(episode, steps, candidates=self._recorder.candidates)
 

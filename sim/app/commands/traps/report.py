@@ -29,9 +29,9 @@ from sim.app.commands.traps.grid import grid, markdown_of, table_of
 from sim.app.commands.traps.picture import draw_trial
 from sim.app.commands.traps.trial import Trial, run_trial
 from sim.app.composition.agents import build_agent, find_agent
-from sim.app.composition.options import RunOptions
 from sim.app.composition.record import code_of
 from sim.app.evaluation.config_fields import differing_fields, field_text
+from sim.app.options import RunOptions
 from sim.core.files import csv_text, open_to_grow, write_atomically, write_together
 from sim.core.files import write_picture as save_picture
 from sim.core.interface import Agent, ConfigError
@@ -120,7 +120,7 @@ def write_or_compare_config(args: Args, split: Split) -> None:
     file = args.out / "config.json"
     own = {name: code_of(RunOptions(agent=name)).partition("+")[2] for name in args.agents}
     config: dict[str, Any] = {
-        "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
+        "split_identity": split.identity,
         "physics": PHYSICS_VERSION,
         "max_steps": args.max_steps,
         "own_code": {name: code for name, code in own.items() if code},

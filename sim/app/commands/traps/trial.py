@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from sim.app.evaluation.rollout import episode_seed
 from sim.core.interface import Action, Agent
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
+from sim.episodes.seeds import episode_seeds
 from sim.gl import mujoco
 from sim.robot.body import PREFIX
 from sim.robot.contacts import Contact
@@ -81,7 +81,7 @@ def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode, *, s
         PhysicsError: the robot fell or tipped over, or the simulation diverged.
     """
     trial = Trial(episode.house, episode.episode_id, name)
-    seed = episode_seed(seed, episode.episode_id)
+    seed = episode_seeds(seed, episode.episode_id).environment
     observation, info = env.reset(seed=seed, options={"episode": episode})
     agent.reset(episode.goal, seed)
     zone = env.split.sidecar(episode.house).zone_m

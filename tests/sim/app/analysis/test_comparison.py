@@ -12,7 +12,6 @@ import pytest
 
 from sim.app.analysis.comparison import (
     code_of,
-    config_differences,
     differences_table,
     differing_fields,
     read_run,
@@ -21,7 +20,7 @@ from sim.app.analysis.comparison import (
 from sim.app.analysis.replicates import replicate_note
 from sim.app.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_csv, to_markdown, to_rich
 from sim.app.commands.compare import Args, compare, main, verdict
-from sim.app.evaluation.config_fields import ABSENT
+from sim.app.evaluation.config_fields import ABSENT, run_differences
 from sim.app.evaluation.intervals import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.core.interface import ConfigError
 
@@ -217,7 +216,7 @@ def test_options_that_change_no_result_are_no_difference_between_runs(tmp_path: 
     changes = {"workers": 8, "out": "elsewhere", "video": True, "config": {"robot": {"radius_m": 0.2}}}
     (second / "config.json").write_text(json.dumps(config | changes))
     runs = read_run(first), read_run(second)
-    assert config_differences(*runs) == [("config.robot.radius_m", ABSENT, 0.2)]
+    assert run_differences(runs[0].config, runs[1].config) == [("config.robot.radius_m", ABSENT, 0.2)]
     assert differences_table(*runs).rows == [("config.robot.radius_m", ["(absent)", "0.2"])]
     assert differences_table(runs[0], runs[0]).notes == ("The configurations are equal.",)
     to_rich(differences_table(*runs))

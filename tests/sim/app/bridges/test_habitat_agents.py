@@ -18,9 +18,8 @@ from sim.app.bridges.habitat.agents import HabitatAgent, spec_of
 from sim.app.bridges.habitat.conversions import Conversion, to_action
 from sim.app.commands.run import entry
 from sim.app.composition.agents import find_agent
-from sim.app.composition.isolation import own_modules
-from sim.app.composition.options import RunOptions
 from sim.app.composition.record import code_of
+from sim.app.options import RunOptions
 from sim.core.configuration import with_fields
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import GOAL_CATEGORIES, Action, AgentSpec, CameraModel, RobotModel, SuccessRule
@@ -257,7 +256,7 @@ def test_what_the_stand_in_lacks_is_named(published: str, tmp_path: Path, line: 
 
 
 def test_the_modules_of_the_user_do_not_include_the_prefix() -> None:
-    assert own_modules(RunOptions(agent="habitat:pack.mod:X")) == ["pack.mod"]
+    assert RunOptions(agent="habitat:pack.mod:X").own_modules == ["pack.mod"]
     with pytest.raises(ConfigError, match="must have the form habitat:package"):
         find_agent("habitat:mod")
 

@@ -15,8 +15,8 @@ from sim.app.bridges.habitat_client import HABITAT_MODULES
 from sim.app.bridges.process import ProcessAgent
 from sim.app.bridges.process_command import ProcessConfig
 from sim.app.commands.agent_client import client_file
-from sim.app.composition.options import RunOptions
 from sim.app.composition.setup import resolve
+from sim.app.options import RunOptions
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import Action, CameraModel, RobotModel, SuccessRule
 from tests.helpers.habitat_agents import Wanderer

@@ -16,15 +16,16 @@ from sim.app.bridges.habitat.config import settings_of
 from sim.app.bridges.habitat.env import default_options
 from sim.app.commands.main import entry as stubborn
 from sim.app.composition.environments import episodes_of
-from sim.app.composition.options import RunOptions
 from sim.app.composition.setup import resolve
-from sim.app.evaluation.rollout import episode_seed, play_episode
+from sim.app.evaluation.rollout import play_episode
+from sim.app.options import RunOptions
 from sim.core.errors import AgentError, ConfigError, EpisodeError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.habitat import to_agent_state
+from sim.episodes.seeds import episode_seeds
 from sim.episodes.splits import write_split
 from tests.helpers.habitat_agents import Wanderer
 from tests.helpers.runners import Script
@@ -125,7 +126,10 @@ def test_a_loop_gives_the_metrics_of_a_run_with_habitats_names(split: Path) -> N
             env.step(0)
     own = ObjectNavEnv(split=split, camera=SMALL, sensors=("depth",))
     line = play_episode(
-        own, Script(actions), own.split.episode(episode.episode_id), seed=episode_seed(0, episode.episode_id)
+        own,
+        Script(actions),
+        own.split.episode(episode.episode_id),
+        seed=episode_seeds(0, episode.episode_id).environment,
     )
     own.close()
     assert (found["spl"], found["success"], found["num_steps"]) == (line["spl"], line["success"], line["num_steps"])

@@ -15,9 +15,9 @@ from sim.app.bridges.process import ProcessAgent
 from sim.app.bridges.process_command import ProcessConfig
 from sim.app.bridges.stubborn_client import from_habitat
 from sim.app.commands.run import entry
-from sim.app.composition.options import RunOptions
 from sim.app.composition.setup import resolve
 from sim.app.evaluation.rollout import TIMES
+from sim.app.options import RunOptions
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import CameraModel, RobotModel, SuccessRule
 from tests.helpers.results import lines_of

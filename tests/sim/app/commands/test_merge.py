@@ -11,10 +11,10 @@ import pytest
 
 from sim.app.commands import run
 from sim.app.commands.merge import Args, main
-from sim.app.composition.options import RunOptions
 from sim.app.composition.setup import resolve
 from sim.app.evaluation.results import RunDirectory
 from sim.app.evaluation.rollout import TIMES
+from sim.app.options import RunOptions
 from sim.core.interface import ConfigError
 from tests.helpers.worlds import room, with_box
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from sim.app.commands.run import entry
-from sim.app.composition.options import RunOptions
 from sim.app.composition.perception import StatedByAgent, seen_by
 from sim.app.composition.segmenters import find_segmentation
 from sim.app.composition.setup import resolve
+from sim.app.options import RunOptions
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import AgentSpec, CameraModel, Perceived, Scores, SegmenterSpec
 from sim.env.objectnav import ObjectNavEnv

@@ -12,9 +12,9 @@ import pytest
 from sim.app import cli
 from sim.app.analysis.report.facts import command_of
 from sim.app.commands.run import entry
-from sim.app.composition.options import RunOptions
 from sim.app.composition.record import error_line, record_of
 from sim.app.composition.setup import resolve
+from sim.app.options import RunOptions
 from sim.core.configuration import as_json, field_paths, with_fields
 from sim.core.geometry.pose import Pose
 from sim.episodes.episode import Episode

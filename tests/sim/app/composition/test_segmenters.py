@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 import torch
 
-from sim.app.composition.options import RunOptions
 from sim.app.composition.record import record_of
 from sim.app.composition.segmenters import make_segmenter
 from sim.app.composition.setup import resolve
+from sim.app.options import RunOptions
 from sim.core.interface import CameraModel, ConfigError
 from stubborn.segmentation.checkpoints import save_network
 from stubborn.segmentation.network import NetworkSegmenter

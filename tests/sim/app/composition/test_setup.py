@@ -5,15 +5,20 @@ from __future__ import annotations
 import pickle
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import ModuleType
+from typing import Any
 
 import pytest
 
 from sim.app.commands.run import entry
 from sim.app.composition import setup as composition
-from sim.app.composition.options import RunOptions
+from sim.app.composition import transfer
 from sim.app.composition.seed_key import KEY_FILE, seed_key_of
 from sim.app.composition.setup import resolve
-from sim.core.interface import CameraModel, RobotModel
+from sim.app.options import RunOptions
+from sim.core.configuration import as_json
+from sim.core.errors import ConfigError
+from sim.core.interface import AgentSpec, CameraModel, RobotModel
 from stubborn import agents
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.detection.seeker import Seeker, SeekerParts, TargetSeekerConfig
@@ -39,12 +44,53 @@ def test_each_name_of_a_run_is_looked_up_once(tmp_path: Path, monkeypatch: pytes
     assert sorted(calls) == ["find_agent", "find_explorer", "find_segmentation", "verifier_for"]
 
 
-def test_a_setup_is_pickled_as_its_options() -> None:
-    setup = resolve(RunOptions(agent="tests.helpers.agents:SPY", semantics="gt", config=SMALL))
-    again = pickle.loads(pickle.dumps(setup))
-    assert again.options == setup.options
-    assert again.config == setup.config
-    assert again.spec is setup.spec
+@pytest.mark.parametrize(
+    ("options", "imported"),
+    [
+        ({"agent": "stubborn-plus", "semantics": "rednet"}, []),
+        ({"agent": "stubborn", "semantics": "gt", "explorer": "informed-tour"}, []),
+        ({"agent": "process:true", "semantics": "gt"}, []),
+        ({"agent": "tests.helpers.agents:SPY", "semantics": "gt", "config": ("agent.forwards=7",)}, ["find_agent"]),
+        (
+            {"explorer": "stubborn.agents:INFORMED_TOUR", "config": ("agent.explorer.replan_steps=3",)},
+            ["find_explorer"],
+        ),
+        ({"agent": "habitat:tests.helpers.habitat_agents:Wanderer", "config": ("agent.stop_after=7",)}, ["find_agent"]),
+        ({"semantics": "tests.helpers.segmentations:FLAT", "config": ("detector.level=0.4",)}, ["find_segmentation"]),
+    ],
+)
+def test_a_setup_travels_by_value_and_only_code_of_users_is_imported_again(
+    options: dict[str, Any], imported: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    setup = resolve(RunOptions(**options))
+    content = pickle.dumps(setup)
+    assert str(transfer.ROOT).encode() not in content  # another machine may have the package in another folder
+    calls: list[str] = []
+
+    def count(module: ModuleType, name: str) -> None:
+        original = getattr(module, name)
+        monkeypatch.setattr(module, name, lambda *given: (calls.append(name), original(*given))[1])
+
+    for name in ("find_agent", "find_explorer", "find_segmentation"):
+        count(composition, name)
+        count(transfer, name)
+    for name in ("resolve", "verifier_for", "load_robot"):
+        count(composition, name)
+    again = pickle.loads(content)
+    assert calls == imported
+    assert as_json(again.config) == as_json(setup.config)
+    assert (again.options, again.settings, again.sensors) == (setup.options, setup.settings, setup.sensors)
+    assert (again.spec.description, again.uses_ground_truth) == (setup.spec.description, setup.uses_ground_truth)
+
+
+def test_a_configuration_that_cannot_travel_is_refused_in_one_line() -> None:
+    @dataclass(frozen=True)
+    class Local:
+        size: int = 1
+
+    spec = AgentSpec(make=StubbornAgent, config=Local())
+    with pytest.raises(ConfigError, match="top level"):
+        pickle.dumps(resolve(RunOptions(agent="stubborn", semantics="gt"), spec))
 
 
 def test_an_agent_accepts_a_seeker_of_a_user() -> None:

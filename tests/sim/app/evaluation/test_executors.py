@@ -69,6 +69,9 @@ class NeverReady:
     def send(self, item: object) -> None:
         raise AssertionError("no worker was ready")
 
+    def steps(self) -> None:
+        raise AssertionError("no worker was ready")
+
     def stop(self, workers: Sequence[NeverReady]) -> None:
         pass
 
@@ -274,7 +277,9 @@ def test_the_supervisor_of_a_clusters_process_reports_its_end_and_goes_on(tmp_pa
     supervisor = Supervisor(SPEC, limit_s=60.0)
     loss = supervisor.run(Job("deadly", "house_0", kill=tmp_path / "died", always=True))
     assert isinstance(loss, WorkerLost)
-    assert supervisor.run(Job("works", "house_0"))["pid"] != os.getpid()
+    line = supervisor.run(Job("works", "house_0"))
+    assert isinstance(line, dict)
+    assert line["pid"] != os.getpid()
     supervisor.close()
 
 

@@ -17,7 +17,7 @@ import torch
 
 from sim.app.commands.run import entry
 from sim.app.evaluation.results import summarise
-from sim.app.evaluation.rollout import agent_seed, episode_seed, play_episode
+from sim.app.evaluation.rollout import play_episode
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action, CameraModel
 from sim.env.objectnav import ObjectNavEnv
@@ -187,19 +187,6 @@ def test_a_broken_episode_does_not_change_the_next_one(env: ObjectNavEnv) -> Non
         play_episode(env, script, EPISODE, seed=0, on_step=on_step) for on_step in (None, break_it, None)
     )
     assert {k: v for k, v in before.items() if k not in times} == {k: v for k, v in after.items() if k not in times}
-
-
-def test_the_seed_of_an_agent_tells_nothing_without_the_key_of_the_run() -> None:
-    seeds = {agent_seed(run, name, key) for run in (0, 1) for name in ("a", "b") for key in ("k", "l" * 200)}
-    assert len(seeds) == 8
-    assert all(0 <= each < 2**32 for each in seeds)
-    assert agent_seed(1, "a", "k") == agent_seed(1, "a", "k")
-
-
-def test_the_seed_of_the_environment_depends_on_run_and_episode_only() -> None:
-    seeds = {episode_seed(run, name) for run in (0, 1) for name in ("a", "b")}
-    assert len(seeds) == 4
-    assert episode_seed(1, "a") == episode_seed(1, "a")
 
 
 def test_a_fall_is_a_line_and_no_error(tmp_path) -> None:

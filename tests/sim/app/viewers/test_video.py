@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from sim.app.commands.run import entry
 from sim.app.composition.perception import AskedSegmenter
 from sim.app.composition.segmenters import make_segmenter
-from sim.app.evaluation.results import VIEWER_OPTIONS
 from sim.app.evaluation.rollout import play_episode
+from sim.app.options import RunOptions
 from sim.app.viewers import overlay, video
 from sim.app.viewers.chase import ChaseView, hidden_obstacles
 from sim.app.viewers.topview import (
@@ -38,6 +38,7 @@ from sim.app.viewers.video import FRAMES_PER_S, VideoRecorder, VideoWriter, vide
 from sim.app.viewers.viewer import VIEWER_IMAGES, Moment
 from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40, Action, CameraModel, ConfigError, Scores, SuccessRule
+from sim.core.option_types import meanings
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.gl import mujoco
@@ -100,7 +101,8 @@ def test_a_run_resumed_with_two_workers_records_the_remaining_episodes(house: Pa
     assert set((tmp_path / "videos").iterdir()) == filmed
     assert all(len(frames_of(file)) == 1 + WHOLE_END_FRAMES for file in filmed)
     assert first["episode_id"] not in {line["episode_id"] for line in left}
-    assert set(VIEWER_OPTIONS) <= set(json.loads((tmp_path / "config.json").read_text()))
+    viewers = {name for name, option in meanings(RunOptions).items() if option.viewer}
+    assert viewers <= set(json.loads((tmp_path / "config.json").read_text()))
 
 
 def test_a_video_is_h264_in_an_mp4_of_1280_pixels_and_its_name_holds_any_episode(

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from sim.app.commands import run as sim_run
-from sim.app.composition.options import RunOptions
 from sim.app.evaluation.results import read_record, read_result_lines
+from sim.app.options import RunOptions
 from sim.app.web.choices import Choices, Offer
 from sim.app.web.controls import EpisodeRequest
 from sim.app.web.driven import DrivenRuns

@@ -7,15 +7,13 @@ import time
 
 import pytest
 
-from sim.app.composition.options import RunOptions
+from sim.app.options import RunOptions
 from sim.app.web.controls import Choice, Controls, EpisodeRequest, Interrupted
 from sim.core.errors import ConfigError
 from sim.core.interface import Action
 
 LEFT, AHEAD = Action.TURN_LEFT, Action.MOVE_FORWARD
-REQUEST = EpisodeRequest(
-    split="val", house="val_00", goal="bed", agent="stubborn", semantics="gt", options=RunOptions()
-)
+REQUEST = EpisodeRequest(split="val", house="val_00", goal="bed", options=RunOptions(semantics="gt"))
 
 
 def later(action, delay_s: float = 0.1) -> None:
