@@ -23,7 +23,7 @@ import zipfile
 import zlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Annotated, Any, BinaryIO, NamedTuple, TypeVar
+from typing import Annotated, Any, BinaryIO, Generic, NamedTuple, TypeVar
 
 import msgspec
 import numpy as np
@@ -62,10 +62,10 @@ Name = Annotated[str, Meta(min_length=1, max_length=1000, pattern=r"^[^\x00-\x1f
 """An id or a name: text without control characters, which a terminal would interpret."""
 
 
-class Lines(NamedTuple):
+class Lines(NamedTuple, Generic[T]):
     """The lines of a file that grows while it is written."""
 
-    values: list[dict[str, Any]]
+    values: list[T]
     whole_bytes: int
     """Length of the complete lines."""
     torn: str
@@ -204,8 +204,10 @@ def read_json(file: Path, kind: type[T] | Any, *, what: str, error: type[ObjectN
     return parse_json(read_bytes(file, what=what, error=error), kind, where=f"{what} '{file}'", error=error)
 
 
-def read_gzip_json(file: Path, kind: type[T] | Any, *, what: str, error: type[ObjectNavError] = ConfigError) -> T:
-    """Returns the content of a gzipped JSON file as the declared type.
+def read_gzip_json(
+    file: Path, kind: type[T] | Any, *, what: str, error: type[ObjectNavError] = ConfigError, strict: bool = True
+) -> T:
+    """Returns the content of a gzipped JSON file as the declared type; `strict` is that of `parse_json`.
 
     Raises:
         ObjectNavError: of class `error`; the file cannot be read, expands to more than `MAX_BYTES`, or has other
@@ -218,14 +220,23 @@ def read_gzip_json(file: Path, kind: type[T] | Any, *, what: str, error: type[Ob
             raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
     if len(content) > MAX_BYTES:
         raise error(f"{what} '{file}' expands to more than {MAX_BYTES >> 20} MB.")
-    return parse_json(content, kind, where=f"{what} '{file}'", error=error)
+    return parse_json(content, kind, where=f"{what} '{file}'", error=error, strict=strict)
 
 
-def read_lines(file: Path, kind: type, *, what: str, error: type[ObjectNavError] = ConfigError) -> Lines:
-    """Returns the JSON objects of a file with one per line, each checked against a type; all their fields are kept.
+def read_lines(
+    file: Path, kind: type[T], *, what: str, older: str = "", error: type[ObjectNavError] = ConfigError
+) -> Lines[T]:
+    """Returns the JSON objects of a file with one per line as the declared type.
 
     A process that is killed can leave a last line without its end; some file systems leave a last line of zero bytes
     after a power failure. Such a line is left out and described in `Lines.torn`.
+
+    Args:
+        file: it may be absent; there is no line then.
+        kind: the type of a line.
+        what: kind of the file for the error message.
+        older: what the error message says where a line lacks a field, as in files of an older format.
+        error: class of the error.
 
     Raises:
         ObjectNavError: of class `error`; the file cannot be read, or a line before the last is broken.
@@ -235,12 +246,15 @@ def read_lines(file: Path, kind: type, *, what: str, error: type[ObjectNavError]
     content = read_bytes(file, what=what, error=error, most=MAX_LINES_BYTES)
     whole = content[: content.rfind(b"\n") + 1]
     rest = content[len(whole) :]
-    values = []
+    values: list[T] = []
     for number, line in enumerate(whole.splitlines(), start=1):
-        where = f"{what} '{file}', line {number}"
-        value = parse_json(_without_lone_surrogates(line), dict[str, Any], where=where, error=error)
-        convert(value, kind, where=where, error=error)
-        values.append(value)
+        try:
+            where = f"{what} '{file}', line {number}"
+            values.append(parse_json(_without_lone_surrogates(line), kind, where=where, error=error))
+        except error as fault:
+            if older and "missing required field" in str(fault):
+                raise error(f"{str(fault).rstrip('.')}: {older}.") from None
+            raise
     torn = f"{what} '{file}': the incomplete line {len(values) + 1} was dropped ({len(rest)} bytes)." if rest else ""
     return Lines(values, len(whole), torn)
 
@@ -282,7 +296,12 @@ def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErr
 
 
 def parse_json(
-    content: bytes | str, kind: type[T] | Any, *, where: str, error: type[ObjectNavError] = ConfigError
+    content: bytes | str,
+    kind: type[T] | Any,
+    *,
+    where: str,
+    error: type[ObjectNavError] = ConfigError,
+    strict: bool = True,
 ) -> T:
     """Returns JSON text as the declared type.
 
@@ -291,12 +310,14 @@ def parse_json(
         kind: any type that msgspec knows.
         where: the file and line for the error message.
         error: class of the error.
+        strict: False: an integer may be written as 3.0 or "3".
 
     Raises:
         ObjectNavError: of class `error`; the text is not JSON, nested too deeply, or of another type.
     """
     try:
-        return msgspec.json.decode(without_mark(content) if isinstance(content, bytes) else content, type=kind)
+        text = without_mark(content) if isinstance(content, bytes) else content
+        return msgspec.json.decode(text, type=kind, strict=strict)
     except msgspec.ValidationError as fault:
         raise error(f"{where}{_fault(fault)}") from None
     except RecursionError:

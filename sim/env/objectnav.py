@@ -315,15 +315,13 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         return self._noise.apply(readings, images), images["semantic"]
 
     def _info(self, collided: bool) -> dict[str, Any]:
-        episode, measured = self.episode, self.scene.task.metrics()
-        if measured["first_seen_step"] is None:
-            del measured["first_seen_step"]  # Gymnasium's vector environments take numbers only
+        episode = self.episode
         return {
             "episode_id": episode.episode_id,
             "house": episode.house,
             "goal": episode.goal,
             "collided": collided,
-            **measured,
+            **self.scene.task.metrics().as_info(),
         }
 
 

@@ -1,6 +1,6 @@
 """Explains in sentences how and why an episode ended, and names actions and categories in words.
 
-Viewers use `explain_end`, which needs only the result line and the distance to the goal. Reports use `explain` and
+Viewers use `explain_end`, which needs only the result and the distance to the goal. Reports use `explain` and
 `marks`, which give the numbers of the trajectory to which the rules of `sim.task.failures` applied.
 """
 
@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.core.interface import Action, SuccessRule
 from sim.task.failures import (
@@ -21,10 +21,9 @@ from sim.task.failures import (
     first_trapped_step,
 )
 from sim.task.metrics import EXPLORED_SHARE, TRAPPED_RADIUS_M, TRAPPED_WINDOW_STEPS
+from sim.task.result import EpisodeResult, RolloutResult
 from sim.task.trajectory import Trajectory
 
-Line = Mapping[str, Any]
-"""The result line of an episode."""
 ACTION_WORDS: Mapping[Action, str] = {
     Action.STOP: "stop",
     Action.MOVE_FORWARD: "forward",
@@ -81,47 +80,49 @@ def with_article(category: str) -> str:
     return name if name in ("clothes", "gym equipment", "seating") else f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
 
 
-def explain_end(line: Line, goal: str, rule: SuccessRule, nearest_m: float | None, *, detects: bool) -> Outcome:
+def explain_end(
+    result: RolloutResult, goal: str, rule: SuccessRule, nearest_m: float | None, *, detects: bool
+) -> Outcome:
     """Returns the end of an episode in words.
 
     Args:
-        line: the episode's result line.
+        result: of the episode.
         goal: category that the episode asked for.
         rule: when a STOP succeeds.
         nearest_m: distance in plan to the nearest instance of the goal on the storey; None: there is none.
         detects: whether the agent stops because of a segmentation. A person, or an agent without one, has
             stopped too early where the goal is not; that is no false detection.
     """
-    found, steps = bool(line["success"]), f"{line['num_steps']} step" + "s" * (line["num_steps"] != 1)
+    found, steps = bool(result.success), f"{result.num_steps} step" + "s" * (result.num_steps != 1)
     headline = f"{'Found' if found else 'Not found'} after {steps}"
-    if line.get("error"):
-        return Outcome(False, headline, str(line["error"]))
-    if line.get("end_reason") == "fallen":
+    if result.error:
+        return Outcome(False, headline, result.error)
+    if result.end_reason == "fallen":
         return Outcome(False, headline, "The robot drove over an edge and fell.")
-    if line.get("end_reason") == "stop":
-        stop = _success(line, goal, nearest_m) if found else _wrong_stop(line, goal, rule, nearest_m, detects)
+    if result.end_reason == "stop":
+        stop = _success(result, goal, nearest_m) if found else _wrong_stop(result, goal, rule, nearest_m, detects)
         return Outcome(found, headline, stop)
-    left_m = line.get("distance_to_goal")
-    cause = _CAUSES.get(line.get("failure") or "", "The goal was in sight.")
+    left_m = result.distance_to_goal
+    cause = _CAUSES.get(result.failure or "", "The goal was in sight.")
     left = "" if left_m is None else f" A place where a STOP counts is {left_m:.1f} m away."
     if left_m == 0.0:
         left = " The robot is where a STOP counts, and STOP was not called."
     return Outcome(False, headline, f"All {steps} are used up. {cause}{left}")
 
 
-def _success(line: Line, goal: str, nearest_m: float | None) -> str:
-    shortest_m = line.get("shortest_path")
+def _success(result: RolloutResult, goal: str, nearest_m: float | None) -> str:
+    shortest_m = result.shortest_path
     near = "" if nearest_m is None else f": the nearest {in_words(goal)} is {nearest_m:.2f} m away and in sight"
-    shortest = "" if shortest_m is None else f" The shortest path is {shortest_m:.1f} m (SPL {line['spl']:.2f})."
-    return f"The STOP counts{near}. The robot drove {line['path_length']:.1f} m.{shortest}"
+    shortest = "" if shortest_m is None else f" The shortest path is {shortest_m:.1f} m (SPL {result.spl:.2f})."
+    return f"The STOP counts{near}. The robot drove {result.path_length:.1f} m.{shortest}"
 
 
-def _wrong_stop(line: Line, goal: str, rule: SuccessRule, nearest_m: float | None, detects: bool) -> str:
+def _wrong_stop(result: RolloutResult, goal: str, rule: SuccessRule, nearest_m: float | None, detects: bool) -> str:
     name = in_words(goal)
-    mistaken = detects and line.get("failure") == "false_detection"
+    mistaken = detects and result.failure == "false_detection"
     if nearest_m is None:
         return f"The STOP does not count: there is no {name} on this storey."
-    if mistaken and (target := _stop_target(line, name)):
+    if mistaken and (target := _stop_target(result, name)):
         return f"False detection: the agent stopped {target}."
     if nearest_m <= rule.distance_m:
         return f"The STOP does not count: the nearest {name} is {nearest_m:.2f} m away, but a wall or a door hides it."
@@ -143,31 +144,31 @@ class Mark:
     words: str
 
 
-def outcome(line: Line) -> str:
+def outcome(result: EpisodeResult) -> str:
     """Returns `found`, the cause of the failure, `error`, or `failed` where no cause was recorded."""
-    if line.get("end_reason") == "error":
+    if result.is_error:
         return "error"
-    return "found" if line["success"] else str(line.get("failure") or "failed")
+    return "found" if result.success else result.failure or "failed"
 
 
-def explain(line: Line, trajectory: Trajectory | None) -> str:
+def explain(result: EpisodeResult, trajectory: Trajectory | None) -> str:
     """Returns a few sentences on why the episode ended as it did, with numbers of the trajectory if there is one."""
-    result = outcome(line)
-    if result == "error":
-        return f"The episode ended with an error: {line.get('error') or 'no reason was recorded'}"
+    cause = outcome(result)
+    if cause == "error":
+        return f"The episode ended with an error: {result.error or 'no reason was recorded'}"
     if trajectory is None:
-        return "Found." if result == "found" else f"Not found. {MEANING.get(result, 'No cause was recorded.')}"
-    reason = _REASONS.get(result, _other_reason)
-    sentences = [reason(line, trajectory).strip()]
+        return "Found." if cause == "found" else f"Not found. {MEANING.get(cause, 'No cause was recorded.')}"
+    reason = _REASONS.get(cause, _other_reason)
+    sentences = [reason(result, trajectory).strip()]
     current = cause_of_failure(trajectory) if trajectory.end_reason is not None else None
-    if not trajectory.success and current is not None and current != result:
+    if not trajectory.success and current is not None and current != cause:
         sentences.append(f"By the rules of the code that wrote this report the cause is {in_words(current)}.")
     return " ".join(sentences)
 
 
-def marks(line: Line, trajectory: Trajectory) -> list[Mark]:
+def marks(result: EpisodeResult, trajectory: Trajectory) -> list[Mark]:
     """Returns the decisive moments in the order of their steps; the end is always among them."""
-    goal, last = _goal(line), trajectory.num_steps
+    goal, last = in_words(result.goal), trajectory.num_steps
     found: list[Mark] = []
     seen, at_goal = _seen(trajectory), _at_goal(trajectory)
     if len(seen):
@@ -183,66 +184,67 @@ def marks(line: Line, trajectory: Trajectory) -> list[Mark]:
     if looping is not None:
         until = looping + LOOP_STEPS
         found.append(Mark("loop", looping, until, f"{LOOP_STEPS} steps over visited ground"))
-    found.append(Mark("end", last, None, _end(line, trajectory)))
+    found.append(Mark("end", last, None, _end(result, trajectory)))
     return sorted(found, key=lambda mark: mark.step)
 
 
-def _found(line: Line, trajectory: Trajectory) -> str:
-    shortest_m = line.get("shortest_path")
+def _found(result: EpisodeResult, trajectory: Trajectory) -> str:
+    shortest_m = result.shortest_path
     shortest = f" The shortest path is {shortest_m:.1f} m." if shortest_m is not None else ""
     return f"Found: stopped after {trajectory.num_steps} steps and {_driven(trajectory)}.{shortest}"
 
 
-def _false_detection(line: Line, trajectory: Trajectory) -> str:
-    target = _stop_target(line, _goal(line), trajectory)
-    place = f" {target}" if target else f": {_distance_to_instance(_goal(line), trajectory)}"
-    return f"Called STOP at step {trajectory.num_steps}{place}. {_view(line, trajectory)}"
+def _false_detection(result: EpisodeResult, trajectory: Trajectory) -> str:
+    goal = in_words(result.goal)
+    target = _stop_target(result, goal)
+    place = f" {target}" if target else f": {_distance_to_instance(goal, trajectory)}"
+    return f"Called STOP at step {trajectory.num_steps}{place}. {_view(result, trajectory)}"
 
 
-def _missed_detection(line: Line, trajectory: Trajectory) -> str:
+def _missed_detection(result: EpisodeResult, trajectory: Trajectory) -> str:
     at_goal = _at_goal(trajectory)
     if len(at_goal):
-        return f"{_view(line, trajectory)} At step {at_goal[0]} a STOP would have succeeded, but the agent drove on."
-    return f"{_view(line, trajectory)} The robot drove {_driven(trajectory)} in all and did not go there."
+        return f"{_view(result, trajectory)} At step {at_goal[0]} a STOP would have succeeded, but the agent drove on."
+    return f"{_view(result, trajectory)} The robot drove {_driven(trajectory)} in all and did not go there."
 
 
-def _trapped(line: Line, trajectory: Trajectory) -> str:
+def _trapped(result: EpisodeResult, trajectory: Trajectory) -> str:
     step = first_trapped_step(trajectory.positions_m)
     since = "" if step is None else f", from step {step} on"  # None: the cause comes from rules of another version
-    return f"The robot was trapped: {TRAPPED}{since}. {_view(line, trajectory)}"
+    return f"The robot was trapped: {TRAPPED}{since}. {_view(result, trajectory)}"
 
 
-def _loop(line: Line, trajectory: Trajectory) -> str:
+def _loop(result: EpisodeResult, trajectory: Trajectory) -> str:
     step = first_looping_step(trajectory)
     if step is None:  # the cause comes from rules of another version
-        return f"The robot drove in a loop. {_view(line, trajectory)}"
+        return f"The robot drove in a loop. {_view(result, trajectory)}"
     driven_m = float(trajectory.moved_m[step : step + LOOP_STEPS].sum())
     driven = f"the robot drove {driven_m:.1f} m in {LOOP_STEPS} steps, nearly all of it over visited ground"
-    return f"From step {step} on {driven}. {_view(line, trajectory)}"
+    return f"From step {step} on {driven}. {_view(result, trajectory)}"
 
 
-def _explore(line: Line, trajectory: Trajectory) -> str:
+def _explore(result: EpisodeResult, trajectory: Trajectory) -> str:
     nearest = _nearest(trajectory)
     near = f"; a place where a STOP counts was {nearest[1]:.1f} m away at step {nearest[0]}" if nearest else ""
-    return f"{_never_seen(line)} in {trajectory.num_steps} steps and {_driven(trajectory)}{near}."
+    return f"{_never_seen(result)} in {trajectory.num_steps} steps and {_driven(trajectory)}{near}."
 
 
-def _stairs(line: Line, trajectory: Trajectory) -> str:
+def _stairs(result: EpisodeResult, trajectory: Trajectory) -> str:
     if trajectory.end_reason == "fallen":
-        return f"The robot drove over an edge at step {trajectory.num_steps} and fell. {_view(line, trajectory)}"
-    return f"No {_goal(line)} is on the storey where the episode starts."
+        return f"The robot drove over an edge at step {trajectory.num_steps} and fell. {_view(result, trajectory)}"
+    return f"No {in_words(result.goal)} is on the storey where the episode starts."
 
 
-def _other_reason(line: Line, trajectory: Trajectory) -> str:
+def _other_reason(result: EpisodeResult, trajectory: Trajectory) -> str:
     if trajectory.end_reason == "stop":
-        distance = _distance_to_instance(_goal(line), trajectory)
-        seen = _view(line, trajectory) if len(_seen(trajectory)) else ""
+        distance = _distance_to_instance(in_words(result.goal), trajectory)
+        seen = _view(result, trajectory) if len(_seen(trajectory)) else ""
         return f"Called STOP at step {trajectory.num_steps} short of the goal: {distance}. {seen}"
-    at_goal = "It ended where a STOP counts, and STOP was not called. " if line.get("distance_to_goal") == 0.0 else ""
-    return f"{_view(line, trajectory)} {at_goal}{_end(line, trajectory).capitalize()}."
+    at_goal = "It ended where a STOP counts, and STOP was not called. " if result.distance_to_goal == 0.0 else ""
+    return f"{_view(result, trajectory)} {at_goal}{_end(result, trajectory).capitalize()}."
 
 
-_REASONS: Mapping[str, Callable[[Line, Trajectory], str]] = {
+_REASONS: Mapping[str, Callable[[EpisodeResult, Trajectory], str]] = {
     "found": _found,
     "false_detection": _false_detection,
     "missed_detection": _missed_detection,
@@ -254,16 +256,16 @@ _REASONS: Mapping[str, Callable[[Line, Trajectory], str]] = {
 """For each outcome the function that describes it; the others are described by `_other_reason`."""
 
 
-def _view(line: Line, trajectory: Trajectory) -> str:
+def _view(result: EpisodeResult, trajectory: Trajectory) -> str:
     """Returns a sentence on when the goal was in view."""
     seen = _seen(trajectory)
     if not len(seen):
-        return f"{_never_seen(line)}."
-    return f"The {_goal(line)} was in view from step {seen[0]} on, in {len(seen)} frames."
+        return f"{_never_seen(result)}."
+    return f"The {in_words(result.goal)} was in view from step {seen[0]} on, in {len(seen)} frames."
 
 
-def _never_seen(line: Line) -> str:
-    return f"The {_goal(line)} never covered {100 * EXPLORED_SHARE:g} % of a frame"
+def _never_seen(result: EpisodeResult) -> str:
+    return f"The {in_words(result.goal)} never covered {100 * EXPLORED_SHARE:g} % of a frame"
 
 
 def _driven(trajectory: Trajectory) -> str:
@@ -274,36 +276,32 @@ def _distance_to_instance(goal: str, trajectory: Trajectory) -> str:
     nearest_m = trajectory.nearest_instance_m
     if nearest_m is None:
         return f"no {goal} is on this storey"
-    too_far = trajectory.stop_target_xy_m is None and nearest_m > STOPPED_AT_GOAL_M
+    too_far = trajectory.stop.stop_target_xy_m is None and nearest_m > STOPPED_AT_GOAL_M
     return f"the nearest {goal} is {nearest_m:.1f} m away{', too far for a stop at it' if too_far else ''}"
 
 
-def _stop_target(line: Line, goal: str, trajectory: Trajectory | None = None) -> str:
+def _stop_target(result: RolloutResult, goal: str) -> str:
     """Returns a text on the object for which the agent stopped: "at a sofa, 1.8 m from the nearest chair", or ""."""
-    off_m = line.get("stop_target_to_goal_m")
-    category = line.get("stop_target_category")
-    if trajectory is not None:  # in results of older versions, one of the two may lack a value that the other has
-        off_m = trajectory.stop_target_to_goal_m if off_m is None else off_m
-        category = category or trajectory.stop_target_category
+    off_m, category = result.stop_target_to_goal_m, result.stop_target_category
     if off_m is None:
         return ""
     return f"{f'at {with_article(category)},' if category else 'for something'} {off_m:.1f} m from the nearest {goal}"
 
 
-def _end(line: Line, trajectory: Trajectory) -> str:
+def _end(result: EpisodeResult, trajectory: Trajectory) -> str:
     end = ENDS.get(str(trajectory.end_reason), "the file ends here")
     if trajectory.success:
         return f"{end} at the goal"
-    left_m = line.get("distance_to_goal")
+    left_m = result.distance_to_goal
     return f"{end}, {left_m:.1f} m to go" if left_m is not None else f"{end}, no path to the goal from here"
 
 
-def _seen(trajectory: Trajectory) -> np.ndarray[Any, np.dtype[np.intp]]:
+def _seen(trajectory: Trajectory) -> NDArray[np.intp]:
     """Returns the steps at which the goal was in view."""
     return np.flatnonzero(trajectory.goal_share >= EXPLORED_SHARE)
 
 
-def _at_goal(trajectory: Trajectory) -> np.ndarray[Any, np.dtype[np.intp]]:
+def _at_goal(trajectory: Trajectory) -> NDArray[np.intp]:
     """Returns the steps at which a STOP would have succeeded, from the first view of the goal on if there is one."""
     at_goal, seen = np.flatnonzero(trajectory.distance_m <= 0.0), _seen(trajectory)
     return at_goal[at_goal >= seen[0]] if len(seen) else at_goal
@@ -315,7 +313,3 @@ def _nearest(trajectory: Trajectory) -> tuple[int, float] | None:
         return None
     step = int(np.nanargmin(trajectory.distance_m))
     return step, float(trajectory.distance_m[step])
-
-
-def _goal(line: Line) -> str:
-    return in_words(str(line["goal"]))

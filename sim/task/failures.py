@@ -95,8 +95,8 @@ def cause_of_failure(trajectory: Trajectory) -> Cause | None:
 
 def _stopped_for_the_goal(trajectory: Trajectory) -> bool:
     """Returns whether the agent stopped for an instance: by its statement, else near one that it had just seen."""
-    if trajectory.stop_target_xy_m is not None:
-        off_m = trajectory.stop_target_to_goal_m
+    if trajectory.stop.stop_target_xy_m is not None:
+        off_m = trajectory.stop.stop_target_to_goal_m
         return off_m is not None and off_m <= TARGET_ON_GOAL_M
     nearest_m = trajectory.nearest_instance_m
     if nearest_m is None or nearest_m > STOPPED_AT_GOAL_M:

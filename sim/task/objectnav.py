@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,11 +17,11 @@ from sim.task import metrics
 from sim.task.config import TaskConfig
 from sim.task.failures import TARGET_ON_GOAL_M, Cause, cause_of_failure
 from sim.task.ground_truth import GroundTruth
+from sim.task.result import NO_STOP_TARGET, EndReason, EpisodeMetrics, StopTarget
 from sim.task.seen_floor import SeenFloor
 from sim.task.trajectory import Recorder, Trajectory, by_action
 from sim.world.world import World
 
-EndReason = Literal["stop", "max_steps", "fallen"]
 _EXACT_TEST_M = 0.1
 """Farther than this from the nearest cell where a STOP succeeds, the exact test of success is left out."""
 
@@ -51,9 +51,7 @@ class _Record:
     end_reason: EndReason | None = None
     nearest_instance_m: float | None = None
     """Set at the end; see `sim.task.trajectory`."""
-    stop_target_xy_m: tuple[float, float] | None = None
-    stop_target_to_goal_m: float | None = None
-    stop_target_category: str | None = None
+    stop: StopTarget = NO_STOP_TARGET
     failure: Cause | None = None
 
 
@@ -156,10 +154,12 @@ class Task:
         The cause of a wrong STOP depends on it; to be called before `observe` of the STOP.
         """
         record, floor_z_m = self._running, self.world.pose.floor_z_m
-        record.stop_target_xy_m = x_m, y_m
-        record.stop_target_to_goal_m = self.truth.nearest_now_m(record.goal, x_m, y_m, floor_z_m)
-        record.stop_target_category = self.truth.category_at(
-            x_m, y_m, floor_z_m, goal=record.goal, within_m=TARGET_ON_GOAL_M
+        record.stop = StopTarget(
+            stop_target_xy_m=(x_m, y_m),
+            stop_target_to_goal_m=self.truth.nearest_now_m(record.goal, x_m, y_m, floor_z_m),
+            stop_target_category=self.truth.category_at(
+                x_m, y_m, floor_z_m, goal=record.goal, within_m=TARGET_ON_GOAL_M
+            ),
         )
 
     @property
@@ -217,40 +217,31 @@ class Task:
             f"where a STOP for '{goal}' succeeds."
         )
 
-    def metrics(self) -> dict[str, Any]:
-        """Returns the contract's metrics so far; `failure` is None until the episode has failed."""
+    def metrics(self) -> EpisodeMetrics:
+        """Returns the metrics so far; `failure` is None until the episode has failed."""
         record = self._running
         distance_m = record.distance_m
-        return {
-            "success": float(record.success),
-            "spl": metrics.spl(record.success, record.shortest_path_m, record.path_length_m),
-            "soft_spl": metrics.soft_spl(record.shortest_path_m, distance_m, record.path_length_m),
-            "distance_to_goal": distance_m,
-            "num_steps": self.num_steps,
-            "path_length": record.path_length_m,
-            "shortest_path": record.shortest_path_m,
-            "collisions": record.collisions,
-            "touches": record.touches,
-            "gt_explored": record.first_seen_step is not None,
-            "first_seen_step": record.first_seen_step,
-            "steps_to_first_sight": metrics.steps_to_first_sight(record.first_seen_step, self.config.max_steps),
-            "area_seen_m2": record.floor.area_m2,
-            "area_per_metre": metrics.per_metre(record.floor.area_m2, record.path_length_m),
-            "trapped": record.trapped,
-            "simulated_s": record.simulated_s,
-            "failure": record.failure,
-            "end_reason": record.end_reason,
-        }
-
-    def stop_target(self) -> dict[str, Any]:
-        """Returns the entries of a result line on the place for which the agent stopped."""
-        record = self._running
-        place = record.stop_target_xy_m
-        return {
-            "stop_target_xy_m": None if place is None else list(place),
-            "stop_target_to_goal_m": record.stop_target_to_goal_m,
-            "stop_target_category": record.stop_target_category,
-        }
+        return EpisodeMetrics(
+            success=float(record.success),
+            spl=metrics.spl(record.success, record.shortest_path_m, record.path_length_m),
+            soft_spl=metrics.soft_spl(record.shortest_path_m, distance_m, record.path_length_m),
+            distance_to_goal=distance_m,
+            num_steps=self.num_steps,
+            path_length=record.path_length_m,
+            shortest_path=record.shortest_path_m,
+            collisions=record.collisions,
+            touches=record.touches,
+            gt_explored=record.first_seen_step is not None,
+            first_seen_step=record.first_seen_step,
+            steps_to_first_sight=metrics.steps_to_first_sight(record.first_seen_step, self.config.max_steps),
+            area_seen_m2=record.floor.area_m2,
+            area_per_metre=metrics.per_metre(record.floor.area_m2, record.path_length_m),
+            trapped=record.trapped,
+            simulated_s=record.simulated_s,
+            failure=record.failure,
+            end_reason=record.end_reason,
+            **msgspec.structs.asdict(record.stop),
+        )
 
     def trajectory(self) -> Trajectory:
         """Returns the trajectory of the episode so far."""
@@ -259,9 +250,7 @@ class Task:
             success=record.success,
             end_reason=record.end_reason,
             nearest_instance_m=record.nearest_instance_m,
-            stop_target_xy_m=record.stop_target_xy_m,
-            stop_target_to_goal_m=record.stop_target_to_goal_m,
-            stop_target_category=record.stop_target_category,
+            stop=record.stop,
         )
 
     def _end(self, reason: EndReason) -> None:

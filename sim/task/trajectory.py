@@ -1,19 +1,18 @@
 """Trajectories: the true record of an episode, step by step; recorded, written with `--record`, read back.
 
-A file `trajectories/<episode_id>.npz` holds the arrays of a `Trajectory` and, as JSON in `about`, the identity of the
-episode (agent, semantics, seed, house, goal, start, versions) and its scores. No pickle; 500 steps are about 10 KB.
+A file `trajectories/<episode_id>.npz` holds the arrays of a `Trajectory` and, as JSON, a `Recording`. No pickle; 500
+steps are about 10 KB.
 """
 
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import urllib.parse
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import get_args
 
 import msgspec
 import numpy as np
@@ -21,9 +20,9 @@ from numpy.typing import NDArray
 
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action, ConfigError
-from sim.core.reading import MAX_BYTES, Metres, Number, parse_json, read_npz, reason_of
+from sim.core.reading import MAX_BYTES, Metres, parse_json, read_npz, reason_of
 from sim.robot.drive import Ended, Motion
-from sim.task.metrics import EXPLORED_SHARE
+from sim.task.result import NO_STOP_TARGET, READ_BY, EndReason, EpisodeResult, StopTarget
 
 FORMAT = 1
 """Version of the file format; it is increased when the arrays change their meaning."""
@@ -31,6 +30,35 @@ FARTHEST_M = 10_000.0
 FOLDER = "trajectories"
 ENDED: tuple[str, ...] = get_args(Ended)
 """Meaning of the numbers in `Trajectory.ended`."""
+
+
+class StartPose(msgspec.Struct, frozen=True):
+    """The start of a recorded episode in the world."""
+
+    x_m: Metres
+    y_m: Metres
+    yaw_rad: float
+    floor_z_m: Metres
+
+
+class SplitName(msgspec.Struct, frozen=True):
+    """The split of a recorded episode."""
+
+    name: str
+    version: str
+
+
+class Recording(msgspec.Struct, frozen=True, kw_only=True):
+    """The identity of a recorded episode, and its result."""
+
+    profile: str
+    noise: str
+    split: SplitName
+    versions: dict[str, str]
+    """Packages, processor, OpenGL renderer and code."""
+    start: StartPose
+    scores: EpisodeResult
+    """The result without times."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -51,6 +79,8 @@ class Trajectory:
     """Share of the frame that the goal's true mask covers, in [0, 1]; nan: there was no frame."""
     distance_m: NDArray[np.float32]  # (n + 1,)
     """Geodesic distance to the nearest place where a STOP succeeds; nan: no path."""
+    duration_s: NDArray[np.float32]  # (n,)
+    """Simulated time of each action."""
     contacts: NDArray[np.float32]  # (m, 3)
     """Contacts that stopped a motion: number of the action, x and y in the world, metres."""
     goal_on_storey: bool
@@ -58,18 +88,11 @@ class Trajectory:
     nearest_instance_m: float | None
     """Metres in plan from the end of the episode to the nearest instance, walls ignored; None: storey has none."""
     success: bool
-    end_reason: str | None
-    """`stop`, `max_steps`, `fallen` or `error`; None: the episode still runs."""
-    stop_target_xy_m: tuple[float, float] | None = None
-    """Place in the world for which the agent stopped, as it stated; None: no STOP, or it stated none."""
-    stop_target_to_goal_m: float | None = None
-    """Metres in plan from that place to the nearest instance, walls ignored; None: no place, or storey has none."""
-    stop_target_category: str | None = None
-    """Category of the object at that place; None if there is no place or object, or in a file of an older version."""
-    duration_s: NDArray[np.float32] | None = None  # (n,)
-    """Simulated time of each action; None in a file of an older version."""
-    about: Mapping[str, Any] = field(default_factory=dict)
-    """Identity of the episode, and its scores; JSON types."""
+    end_reason: EndReason | None
+    """None: the episode still runs."""
+    stop: StopTarget = NO_STOP_TARGET
+    about: Recording | None = None
+    """None: the trajectory was not read from a run."""
 
     @property
     def num_steps(self) -> int:
@@ -86,12 +109,6 @@ class Trajectory:
         """Displacement of each action in plan, (n,) metres."""
         return np.hypot(*np.diff(self.positions_m.astype(np.float64), axis=0).T)
 
-    @property
-    def first_seen_step(self) -> int | None:
-        """Number of actions before the first frame that showed the goal by the GT-exploration rule; None: no frame."""
-        seen = np.flatnonzero(self.goal_share >= EXPLORED_SHARE)
-        return int(seen[0]) if len(seen) else None
-
 
 _ARRAYS: Mapping[str, tuple[type, int, int]] = {
     "poses": (np.float32, 2, 1),
@@ -101,12 +118,9 @@ _ARRAYS: Mapping[str, tuple[type, int, int]] = {
     "touched": (np.bool_, 1, 0),
     "goal_share": (np.float32, 1, 1),
     "distance_m": (np.float32, 1, 1),
+    "duration_s": (np.float32, 1, 0),
 }
 """Dtype, number of axes, and number of entries beyond the number of actions."""
-_SCALARS = (
-    "goal_on_storey", "nearest_instance_m", "success", "end_reason", "stop_target_xy_m", "stop_target_to_goal_m",
-    "stop_target_category",
-)  # fmt: skip
 
 
 class Recorder:
@@ -134,11 +148,9 @@ class Recorder:
         self,
         *,
         success: bool = False,
-        end_reason: str | None = None,
+        end_reason: EndReason | None = None,
         nearest_instance_m: float | None = None,
-        stop_target_xy_m: tuple[float, float] | None = None,
-        stop_target_to_goal_m: float | None = None,
-        stop_target_category: str | None = None,
+        stop: StopTarget = NO_STOP_TARGET,
     ) -> Trajectory:
         """Returns the trajectory so far."""
         stops = [
@@ -161,9 +173,7 @@ class Recorder:
             nearest_instance_m=nearest_instance_m,
             success=success,
             end_reason=end_reason,
-            stop_target_xy_m=stop_target_xy_m,
-            stop_target_to_goal_m=stop_target_to_goal_m,
-            stop_target_category=stop_target_category,
+            stop=stop,
         )
 
 
@@ -186,7 +196,7 @@ def by_action(trajectory: Trajectory, steps: int) -> Trajectory:
         ended=trajectory.ended[moments[1:] - 1],
         collided=np.logical_or.reduceat(trajectory.collided, begins),
         touched=np.logical_or.reduceat(trajectory.touched, begins),
-        duration_s=None if trajectory.duration_s is None else np.add.reduceat(trajectory.duration_s, begins),
+        duration_s=np.add.reduceat(trajectory.duration_s, begins),
     )
 
 
@@ -195,27 +205,31 @@ def trajectory_file(run: Path, episode_id: str) -> Path:
     return run / FOLDER / f"{urllib.parse.quote(episode_id, safe=' ')}.npz"
 
 
-def write_trajectory(file: Path, trajectory: Trajectory, about: Mapping[str, Any]) -> None:
+def write_trajectory(file: Path, trajectory: Trajectory, about: Recording | None) -> None:
     """Writes one file, completely or not at all.
 
     Args:
         file: its folder is created.
         trajectory: of one episode.
-        about: identity of the episode and its scores, JSON types.
+        about: identity and result of the episode; None: unknown.
 
     Raises:
         ConfigError: the file cannot be written.
     """
-    scalars = {name: getattr(trajectory, name) for name in _SCALARS}
-    text = json.dumps({"format": FORMAT, "scalars": scalars, "about": dict(about)}, allow_nan=False)
+    scalars = _Scalars(
+        goal_on_storey=trajectory.goal_on_storey,
+        nearest_instance_m=trajectory.nearest_instance_m,
+        success=trajectory.success,
+        end_reason=trajectory.end_reason,
+        **msgspec.structs.asdict(trajectory.stop),
+    )
+    text = msgspec.json.encode(_Header(format=FORMAT, scalars=scalars, about=about))
     arrays = {name: getattr(trajectory, name) for name in (*_ARRAYS, "contacts")}
-    if trajectory.duration_s is not None:
-        arrays["duration_s"] = trajectory.duration_s
     part = file.with_name(f"{file.name}.part-{os.getpid()}")
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         with part.open("wb") as stream:
-            np.savez_compressed(stream, about=np.frombuffer(text.encode(), np.uint8), **arrays)
+            np.savez_compressed(stream, about=np.frombuffer(text, np.uint8), **arrays)
         part.replace(file)
     except OSError as error:
         raise ConfigError(f"Cannot write the trajectory '{file}': {error.strerror}.") from None
@@ -236,28 +250,36 @@ def read_trajectory(file: Path) -> Trajectory:
     names = (*_ARRAYS, "contacts", "about")
     missing = next((name for name in names if name not in arrays), None)
     if missing is not None:
-        raise ConfigError(f"'{file}' is not a trajectory: it has no '{missing}'.")
-    arrays = {name: arrays[name] for name in (*names, "duration_s") if name in arrays}
+        raise ConfigError(
+            f"'{file}' is not a trajectory: it has no '{missing}'; version {READ_BY} reads files of an older format."
+        )
+    arrays = {name: arrays[name] for name in names}
     try:
         header = parse_json(arrays.pop("about").tobytes(), _Header, where="its header 'about'")
         if header.format != FORMAT:
             raise ValueError(f"its format is {header.format}, this program reads {FORMAT}")
-        scalars = {name: getattr(header.scalars, name) for name in _SCALARS}
-        trajectory = Trajectory(**arrays, **scalars, about=header.about)
+        scalars = header.scalars
+        stop = StopTarget(**{name: getattr(scalars, name) for name in StopTarget.__struct_fields__})
+        trajectory = Trajectory(
+            **arrays,
+            goal_on_storey=scalars.goal_on_storey,
+            nearest_instance_m=scalars.nearest_instance_m,
+            success=scalars.success,
+            end_reason=scalars.end_reason,
+            stop=stop,
+            about=header.about,
+        )
         _check(trajectory)
     except ValueError as error:
         raise ConfigError(f"'{file}' is not a trajectory: {reason_of(error)}.") from None
     return trajectory
 
 
-class _Scalars(msgspec.Struct):
+class _Scalars(StopTarget, frozen=True, kw_only=True):
     goal_on_storey: bool
     nearest_instance_m: Metres | None
     success: bool
-    end_reason: Literal["stop", "max_steps", "fallen", "error"] | None
-    stop_target_xy_m: tuple[Number, Number] | None = None  # older versions write neither
-    stop_target_to_goal_m: Number | None = None
-    stop_target_category: str | None = None
+    end_reason: EndReason | None
 
 
 class _Header(msgspec.Struct):
@@ -265,7 +287,7 @@ class _Header(msgspec.Struct):
 
     format: int
     scalars: _Scalars
-    about: dict[str, Any]
+    about: Recording | None
 
 
 def _check(trajectory: Trajectory) -> None:
@@ -275,9 +297,8 @@ def _check(trajectory: Trajectory) -> None:
         array = getattr(trajectory, name)
         if array.dtype != kind or array.ndim != axes or len(array) != count + more:
             raise ValueError(f"{name} is {array.dtype} {array.shape} for {count} actions")
-    times = trajectory.duration_s
-    if times is not None and (times.dtype.kind != "f" or times.shape != (count,) or not np.isfinite(times).all()):
-        raise ValueError(f"duration_s is {times.dtype} {times.shape} for {count} actions")
+    if not np.isfinite(trajectory.duration_s).all():
+        raise ValueError("duration_s holds NaN or infinity")
     if trajectory.contacts.dtype.kind != "f":
         raise ValueError(f"contacts is {trajectory.contacts.dtype}")
     if trajectory.poses.shape[1:] != (4,) or trajectory.contacts.shape[1:] != (3,):

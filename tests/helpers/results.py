@@ -1,4 +1,4 @@
-"""Reads the result lines of runs, for comparisons of two runs."""
+"""Makes results of episodes for tests, and reads those of runs without their times."""
 
 from __future__ import annotations
 
@@ -6,11 +6,53 @@ import json
 from pathlib import Path
 from typing import Any
 
-from sim.app.evaluation.rollout import TIMES
+import msgspec
+
+from sim.app.evaluation.results import read_results
+from sim.task.result import EpisodeResult, RolloutResult, metrics_without_episode
+
+ENTRIES: dict[str, Any] = msgspec.to_builtins(metrics_without_episode(4.2)) | {
+    "episode_id": "val_0000",
+    "house": "val_00",
+    "goal": "bed",
+    "agent": "stubborn",
+    "uses_ground_truth": False,
+    "isolated": False,
+    "semantics": "gt",
+    "seed": 0,
+    "success": 1.0,
+    "spl": 0.5,
+    "soft_spl": 0.5,
+    "distance_to_goal": 0.0,
+    "num_steps": 10,
+    "path_length": 8.4,
+    "gt_explored": True,
+    "trapped": False,
+    "end_reason": "stop",
+    "stop_confidence": None,
+    "wall_time_s": 1.5,
+    "steps_per_s": 6.67,
+}
+"""A line of `results.jsonl`: a success of the agent `stubborn`."""
+
+
+def a_result(**changes: Any) -> EpisodeResult:
+    """Returns the result of `ENTRIES` with some changes."""
+    return msgspec.convert(ENTRIES | changes, EpisodeResult)
+
+
+def write_lines(folder: Path, *lines: dict[str, Any]) -> None:
+    """Writes the `results.jsonl` of a run: for each line, what differs from `ENTRIES`."""
+    text = "".join(json.dumps(ENTRIES | line) + "\n" for line in lines)
+    (folder / "results.jsonl").write_text(text)
 
 
 def lines_of(out: Path) -> list[dict[str, Any]]:
     """Returns the result lines of a run without their times, in the order of their episode ids."""
-    lines = [json.loads(line) for line in (out / "results.jsonl").read_text().splitlines()]
-    kept = [{key: value for key, value in line.items() if key not in TIMES} for line in lines]
-    return sorted(kept, key=lambda line: line["episode_id"])
+    results = sorted(read_results(out / "results.jsonl").values, key=lambda result: result.episode_id)
+    return [result.without_times().as_json() for result in results]
+
+
+def entries_of(result: RolloutResult) -> dict[str, Any]:
+    """Returns the entries of a result without its times."""
+    return msgspec.to_builtins(result.without_times())

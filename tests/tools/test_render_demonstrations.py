@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,6 +13,7 @@ from sim.core.interface import Action, ConfigError
 from sim.robot.drive import Motion
 from sim.task.trajectory import Recorder, trajectory_file, write_trajectory
 from sim.training.cloned.demonstrations import list_demonstrations, read_demonstration
+from tests.helpers.results import write_lines
 from tests.helpers.worlds import room, with_box
 from tools.training import render_demonstrations
 
@@ -26,15 +26,12 @@ def test_an_episode_that_failed_at_its_first_action_is_left_out(
     run = tmp_path / "run"
     run.mkdir()
     (run / "config.json").write_text("{}")
-    lines = []
     for steps in (0, 2):
         recorder = Recorder(Pose(-1.0, 0.0, 0.0), distance_m=2.0, goal_on_storey=True)
         for _ in range(steps):
             recorder.move(Motion(Action.TURN_LEFT, 0.0, 0.5, 1.0, "reached", ()), Pose(-1.0, 0.0, 0.5), 2.0)
-        write_trajectory(trajectory_file(run, f"e{steps}"), recorder.trajectory(end_reason="error"), {})
-        line = {"episode_id": f"e{steps}", "house": "h", "goal": "bed", "end_reason": "error", "success": 0.0}
-        lines.append(json.dumps(line) + "\n")
-    (run / "results.jsonl").write_text("".join(lines))
+        write_trajectory(trajectory_file(run, f"e{steps}"), recorder.trajectory(end_reason="error"), None)
+    write_lines(run, *({"episode_id": name, "end_reason": "error", "success": 0.0} for name in ("e0", "e2")))
     args = render_demonstrations.Args(runs=(run,), out=tmp_path / "out", failed=True, width_px=16, height_px=12)
     assert render_demonstrations.main(args) == 0
     (file,) = list_demonstrations([tmp_path / "out"])

@@ -16,6 +16,7 @@ from sim.app.commands.reproduce import runs as table_runs
 from sim.app.commands.reproduce.runs import AgentSetup, RunKey, runs_in
 from sim.core.errors import ConfigError
 from stubborn.segmentation.shipped import SHIPPED_REDNET
+from tests.helpers.results import ENTRIES
 from tools.research import result_tables
 from tools.research.result_archive import ARCHIVE, CHECKSUM_DIGITS, VERSION, ArchivedRun, pack, read_archive, unpack
 from tools.research.result_definitions import comparisons, needed_rows, page_tables
@@ -46,13 +47,7 @@ CONFIG: dict[str, Any] = {
     "split_identity": {"name": "val", "version": "3.0.0", "sha256": "0" * 64},
     "versions": {"stubborn-objectnav": "0.1.0"},
 }
-LINE: dict[str, Any] = {
-    "episode_id": "val_0000",
-    "house": "val_00",
-    "goal": "bed",
-    "end_reason": "stop",
-    "success": 1.0,
-}
+LINE = ENTRIES
 
 
 @pytest.fixture(scope="module")
@@ -220,7 +215,12 @@ def test_replicates_are_no_episodes_and_their_spread_is_in_the_table(tmp_path: P
         for mark, success in zip(("", "~1"), outcomes, strict=True)
     ]
     run = archived(write_run(tmp_path / "a", lines, replicates=2).parent)
-    assert [line["episode_id"] for line in run.first_lines(2)] == ["val_0000", "val_0000~1", "val_0001", "val_0001~1"]
+    assert [result.episode_id for result in run.first_results(2)] == [
+        "val_0000",
+        "val_0000~1",
+        "val_0001",
+        "val_0001~1",
+    ]
     record = result_record(run, 3)
     assert (record["episodes"], record["options"], record["success"]) == ("3", "--replicates 2", "0.500000")
     assert float(record["success_replicates_sd"]) == pytest.approx((0.5 / 3 / 3) ** 0.5, abs=1e-6)

@@ -11,6 +11,7 @@ import pytest
 from sim.app.commands.traps.curves import MOST_BINS, QUANTITIES, bin_edges, curve
 from sim.app.commands.traps.family_report import as_csv, draw_curves, draw_families, family_grid
 from sim.app.commands.traps.report import Args, main
+from sim.app.commands.traps.trial import TrapResult
 from sim.core.interface import ConfigError
 from sim.houses.sidecar import TrapFacts
 
@@ -24,8 +25,11 @@ def facts(family: str, gap_m: float, difficulty: str = "easy") -> TrapFacts:
     )  # fmt: skip
 
 
-def row(trap: str, agent: str, escaped: bool, collisions: int) -> dict[str, object]:
-    return {"trap": trap, "agent": agent, "escaped": escaped, "collisions": collisions, "fell": not escaped}
+def row(trap: str, agent: str, escaped: bool, collisions: int) -> TrapResult:
+    return TrapResult(
+        trap=trap, episode_id="e", agent=agent, escaped=escaped, steps=9, steps_in_trap=3, collisions=collisions,
+        trapped=False, spl=0.0, forward_mean_m=None, deepest_mm=0.0, fell=not escaped,
+    )  # fmt: skip
 
 
 TRAPS = {f"pane_{i}": facts("pane_gap", 0.4 + 0.02 * i, "hard" if i < 10 else "easy") for i in range(20)}

@@ -102,8 +102,8 @@ def test_the_oracle_escapes_from_every_trap_without_contact(truth_env, trap, hea
     episode = truth_env.split.episode(f"{trap}_{heading}")
     trial = run_trial(truth_env, make_agent("oracle", truth_env), "oracle", episode)
     assert trial.escaped
-    assert trial.metrics["collisions"] == 0
-    assert trial.metrics["spl"] > 0.8
+    assert trial.result().collisions == 0
+    assert trial.result().spl > 0.8
 
 
 @pytest.mark.costly
@@ -111,7 +111,7 @@ def test_the_oracle_escapes_from_every_trap_without_contact(truth_env, trap, hea
 def test_penetration_is_small_and_no_forward_action_is_too_long(short_env, trap, heading, name):
     trial, _ = run_in_trap(short_env, trap, heading, name)  # a fall or a tumble raises PhysicsError
     assert trial.deepest_m < 0.003
-    assert trial.metrics["collisions"] == sum(motion.collided for motion in trial.motions)
+    assert trial.result().collisions == sum(motion.collided for motion in trial.motions)
     if trap != "slippery_floor":  # a robot on wet tiles glides on
         assert max(trial.forwards_m) <= FORWARD_M + 0.006
         for motion in trial.motions:
@@ -126,7 +126,7 @@ def test_the_full_agent_escapes_where_the_one_without_collision_avoidance_does_n
     bare, _ = run_in_trap(short_env, trap, 0, "stubborn-i")
     assert full.escaped
     assert not bare.escaped
-    assert bare.metrics["collisions"] > 5 * full.metrics["collisions"]
+    assert bare.result().collisions > 5 * full.result().collisions
     assert bare.steps_in_trap > full.steps_in_trap
     assert np.mean(bare.forwards_m) < 0.5 * np.mean(full.forwards_m)
 

@@ -14,21 +14,20 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from sim.app import cli
 from sim.app.commands import run
+from sim.app.evaluation.results import read_results
 from sim.app.viewers.chase import ChaseView
 from sim.core.errors import EpisodeError
 from sim.core.files import write_atomically, write_picture
 from sim.core.geometry.pose import Pose
 from sim.core.interface import FORWARD_M, TURN_RAD, Action, CameraModel
-from sim.core.reading import read_text
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import load_split
 from sim.gl import mujoco
@@ -37,6 +36,7 @@ from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot
 from sim.robot.menagerie import ENTRIES, PREFIX
 from sim.robot.velocity import Velocity
+from sim.task.result import EpisodeResult
 from sim.world.world import World
 from tools.research.physics_tables import Row, floor, show
 
@@ -171,14 +171,14 @@ def episodes(args: Args, robot: str) -> Iterator[Row]:
     """Yields the results of each agent with a robot."""
     houses = _houses(args)
     for agent in cli.chosen(args.agents, args.agents.split(","), option="--agents"):
-        lines = [line for house in houses if (line := episode(args, robot, agent, house)) is not None]
-        row: Row = {"robot": robot, "agent": agent, "houses": len(houses), "episodes": len(lines)}
+        results = [result for house in houses if (result := episode(args, robot, agent, house)) is not None]
+        row: Row = {"robot": robot, "agent": agent, "houses": len(houses), "episodes": len(results)}
         for name in ("success", "spl", "collisions", "num_steps", "path_length"):
-            row[name] = float(np.mean([line[name] for line in lines])) if lines else math.nan
+            row[name] = float(np.mean([getattr(result, name) for result in results])) if results else math.nan
         yield row
 
 
-def episode(args: Args, robot: str, agent: str, house: Path) -> Mapping[str, Any] | None:
+def episode(args: Args, robot: str, agent: str, house: Path) -> EpisodeResult | None:
     """Runs an agent for one episode in a house; returns the result, or None if the robot has no room for one."""
     out = args.out / robot / agent / house.stem
     options = ["--house", str(house), "--agent", agent, "--semantics", "gt", "--episodes", "1"]
@@ -187,7 +187,7 @@ def episode(args: Args, robot: str, agent: str, house: Path) -> Mapping[str, Any
         options += ["--robot", PREFIX + robot]
     if run.entry(options) != 0 or not (out / "results.jsonl").is_file():
         return None
-    return json.loads(read_text(out / "results.jsonl", what="Results").splitlines()[0])
+    return read_results(out / "results.jsonl").values[0]
 
 
 def draw(args: Args, robot: str) -> None:

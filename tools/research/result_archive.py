@@ -15,12 +15,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from sim.app.analysis.comparison import Line, Run, read_run
+from sim.app.analysis.comparison import Run, read_run
 from sim.app.commands.reproduce.runs import RunKey, runs_in
 from sim.app.composition.agents import find_agent
 from sim.core.errors import ConfigError
 from sim.core.reading import read_bytes
 from sim.episodes.replicates import episode_of
+from sim.task.result import EpisodeResult
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = ROOT / "docs" / "tables"
@@ -40,8 +41,8 @@ class ArchivedRun:
     key: RunKey
     run: Run
 
-    def first_lines(self, count: int | None = None) -> list[Line]:
-        """Returns the lines of the first episodes of the split, with their replicates.
+    def first_results(self, count: int | None = None) -> list[EpisodeResult]:
+        """Returns the results of the first episodes of the split, with their replicates.
 
         The ids of episodes are numbered in the order of the split.
 
@@ -50,13 +51,13 @@ class ArchivedRun:
         """
         if count is not None and count > self.episodes:
             raise ConfigError(f"'{self.run.path.name}' has {self.episodes} episodes; a table needs {count}.")
-        chosen = set(sorted({episode_of(number) for number in self.run.lines})[:count])
-        return [self.run.lines[number] for number in sorted(self.run.lines) if episode_of(number) in chosen]
+        chosen = set(sorted({episode_of(number) for number in self.run.results})[:count])
+        return [self.run.results[number] for number in sorted(self.run.results) if episode_of(number) in chosen]
 
     @property
     def episodes(self) -> int:
         """The number of episodes; replicates are not counted."""
-        return len({episode_of(number) for number in self.run.lines})
+        return len({episode_of(number) for number in self.run.results})
 
     @property
     def uses_ground_truth(self) -> bool:
@@ -107,7 +108,7 @@ def unpack(archive: Path, out: Path) -> None:
     with tempfile.TemporaryDirectory() as folder:
         for key, run in read_archive(archive, Path(folder)).items():
             target = present.get(key, out / run.run.path.name)
-            if not target.exists() or len(read_run(target).lines) < len(run.run.lines):
+            if not target.exists() or len(read_run(target).results) < len(run.run.results):
                 shutil.copytree(run.run.path, target, dirs_exist_ok=True)
 
 

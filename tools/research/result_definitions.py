@@ -9,13 +9,12 @@ import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from sim.app.analysis.metrics import COLLISIONS, EXPLORED, FIRST_SIGHT, SPL, STEPS, SUCCESS, TRAPPED, Metric
+from sim.app.analysis.metrics import COLLISIONS, EXPLORED, FIRST_SIGHT, SPL, STEPS, SUCCESS, TRAPPED
 from sim.app.commands.reproduce.runs import AgentSetup, RunKey
+from sim.task.result import METRICS, Metric
 from tools.research.result_archive import VERSION
 
-SOFT_SPL = Metric("soft SPL", "soft_spl", digits=3)
-DISTANCE = Metric("distance to goal, m", "distance_to_goal", digits=2)
-MEANS = (SUCCESS, SPL, SOFT_SPL, DISTANCE, EXPLORED, COLLISIONS, TRAPPED, STEPS)
+MEANS = (SUCCESS, SPL, METRICS["soft_spl"], METRICS["distance_to_goal"], EXPLORED, COLLISIONS, TRAPPED, STEPS)
 """Metrics whose mean and interval each row of results.csv has."""
 COMPARED = (SUCCESS, SPL, COLLISIONS, TRAPPED, FIRST_SIGHT, STEPS)
 """Metrics whose paired difference each row of comparisons.csv has."""

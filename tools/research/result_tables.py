@@ -31,20 +31,20 @@ from rich.console import Console
 
 from sim.app import cli
 from sim.app.analysis import display
-from sim.app.analysis.comparison import Line, require_same_episodes
-from sim.app.analysis.metrics import FIRST_SIGHT, Metric, episodes_of, houses_of
+from sim.app.analysis.comparison import require_same_episodes
+from sim.app.analysis.metrics import FIRST_SIGHT, difference_cell, episodes_of, houses_of, mean_cell, median_text
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, table_named
 from sim.app.commands.reproduce.reproduce import Args as ReproduceArgs
 from sim.app.commands.reproduce.reproduce import make_table, part_of
 from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, file_name, run_in_turns, runs_in
 from sim.app.evaluation.intervals import Estimate, replicate_spread
-from sim.app.evaluation.results import metric_value
 from sim.core.errors import ConfigError
 from sim.core.files import csv_text, write_atomically, write_together
 from sim.core.reading import read_bytes, read_text
 from sim.core.reading import read_csv as read_table
 from sim.episodes.splits import load_split
 from sim.task.failures import CAUSES
+from sim.task.result import EpisodeResult, Metric
 from tools.research.result_archive import ARCHIVE, ROOT, TABLES, VERSION, ArchivedRun, pack, read_archive, unpack
 from tools.research.result_definitions import (
     COMPARED,
@@ -158,8 +158,8 @@ def run_missing_rows(args: Args, console: Console) -> int:
     folders = runs_in(args.out, VERSION)
     write_atomically(args.archive, pack(folders))
     for key, run in runs.items():
-        if len(run.lines) < len(run.episodes):
-            counts = f"{len(run.lines)} of {len(run.episodes)} episodes"
+        if len(run.results) < len(run.episodes):
+            counts = f"{len(run.results)} of {len(run.episodes)} episodes"
             console.print(f"{key.split}: {key.setup.name}, {key.setup.semantics}: {counts}", highlight=False)
     console.print(f"{len(folders)} runs in {args.archive}", highlight=False)
     return 0
@@ -218,15 +218,15 @@ def row_keys(runs: Mapping[RunKey, ArchivedRun]) -> list[RowKey]:
 
 def result_record(run: ArchivedRun, episodes: int) -> Record:
     """Returns a row of results.csv, of the first episodes of a run."""
-    lines = run.first_lines(episodes)
+    lines = run.first_results(episodes)
     record = {**_identity(run.key), "ground_truth": _yes(run.uses_ground_truth), **_counts(lines)}
     for metric in MEANS:
-        record |= _estimate_columns(metric, metric.cell(lines).estimate)
+        record |= _estimate_columns(metric, mean_cell(metric, lines).estimate)
     for metric in PRIMARY_METRICS:
-        spread = replicate_spread([metric_value(line, metric.key) for line in lines], episodes_of(lines))
+        spread = replicate_spread(list(map(metric.value, lines)), episodes_of(lines))
         record[f"{metric.key}_replicates_sd"] = "" if spread is None else f"{spread:.6f}"
-    record[MEDIAN] = FIRST_SIGHT.median(lines)
-    failed = Counter(line["failure"] for line in lines if not line["success"])
+    record[MEDIAN] = median_text(FIRST_SIGHT, lines)
+    failed = Counter(result.failure for result in lines if not result.success)
     record |= {f"{FAILED}{cause}": str(failed[cause]) for cause in CAUSES}
     config = run.run.config
     versions, split = config.get("versions", {}), config["split_identity"]
@@ -248,18 +248,20 @@ def comparison_record(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> R
     }
     record = {"table": pair.table, **_identity(pair.first.run), **minus, **_counts(first)}
     for metric in COMPARED:
-        found = metric.difference(second, first).estimate
+        found = difference_cell(metric, second, first).estimate
         record |= _estimate_columns(metric, found) | {f"{metric.key}_significant": _yes(found.significant)}
         if metric in PRIMARY_METRICS:
             record |= {f"{metric.key}_p": f"{1.0 if found.p is None else found.p:.6f}", f"{metric.key}_p_holm": ""}
-    outcomes = [(bool(a["success"]), bool(b["success"])) for a, b in zip(first, second, strict=True)]
+    outcomes = [(bool(a.success), bool(b.success)) for a, b in zip(first, second, strict=True)]
     return record | {
         "only_first_succeeds": str(outcomes.count((True, False))),
         "only_second_succeeds": str(outcomes.count((False, True))),
     }
 
 
-def paired_lines(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> tuple[list[Line], list[Line]]:
+def paired_lines(
+    pair: Comparison, runs: Mapping[RunKey, ArchivedRun]
+) -> tuple[list[EpisodeResult], list[EpisodeResult]]:
     """Returns the lines of the episodes of both runs, in the same order.
 
     Raises:
@@ -268,7 +270,7 @@ def paired_lines(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> tuple[
     rows = (pair.first, pair.second)
     shared = set(require_same_episodes(*(runs[row.run].run for row in rows)))
     first, second = (
-        [line for line in runs[row.run].first_lines(row.episodes) if line["episode_id"] in shared] for row in rows
+        [result for result in runs[row.run].first_results(row.episodes) if result.episode_id in shared] for row in rows
     )
     return first, second
 
@@ -372,7 +374,7 @@ def _identity_names() -> Iterator[str]:
     yield from _identity(RunKey("", AgentSetup("", "", ""), ""))
 
 
-def _counts(lines: Sequence[Line]) -> Record:
+def _counts(lines: Sequence[EpisodeResult]) -> Record:
     return {"episodes": str(len(set(episodes_of(lines)))), "houses": str(len(set(houses_of(lines))))}
 
 

@@ -121,25 +121,25 @@ def _work_of(run: Run, args: Args) -> Iterator[HouseWork]:
     if run.config.get("robot"):
         raise ConfigError(f"'{run.path}' was run with another robot; demonstrations are rendered for the default one.")
     mount_m = CameraModel().height_m
-    recorded = run.config.get("config", {}).get("camera", {}).get("height_m", mount_m)
-    if recorded != mount_m:
-        raise ConfigError(f"'{run.path}' has a camera at {recorded} m; demonstrations are rendered from {mount_m} m.")
+    height_m = run.config.get("config", {}).get("camera", {}).get("height_m", mount_m)
+    if height_m != mount_m:
+        raise ConfigError(f"'{run.path}' has a camera at {height_m} m; demonstrations are rendered from {mount_m} m.")
     split_of(run)  # refuses another version now, not in a worker
     camera = CameraModel(width_px=args.width_px, height_px=args.height_px)
-    lines = sorted(run.lines.values(), key=lambda line: (line["house"], line["episode_id"]))
-    wanted = [line for line in lines if line["success"] or args.failed]
-    there = [line for line in wanted if trajectory_file(run.path, line["episode_id"]).is_file()]
-    if not there:
+    results = sorted(run.results.values(), key=lambda result: (result.house, result.episode_id))
+    wanted = [result for result in results if result.success or args.failed]
+    recorded = [result for result in wanted if trajectory_file(run.path, result.episode_id).is_file()]
+    if not recorded:
         raise ConfigError(f"'{run.path}' has no trajectory of an episode that succeeded: run it with --record.")
-    files = {line["episode_id"]: _file_of(run.path, line["episode_id"], args.out) for line in there}
+    files = {result.episode_id: _file_of(run.path, result.episode_id, args.out) for result in recorded}
     known = next((file for file in files.values() if file.exists()), None)
     if known is not None:
         rows, cols = read_demonstration(known).depth_mm.shape[1:]
         if (cols, rows) != (args.width_px, args.height_px):
             raise ConfigError(f"'{known}' has images of {cols} x {rows} pixels; take another --out.")
-    todo = [line for line in there if not files[line["episode_id"]].exists()]
-    for house, members in itertools.groupby(todo, key=lambda line: line["house"]):
-        episodes = tuple((line["episode_id"], line["goal"]) for line in members)
+    todo = [result for result in recorded if not files[result.episode_id].exists()]
+    for house, members in itertools.groupby(todo, key=lambda result: result.house):
+        episodes = tuple((result.episode_id, result.goal) for result in members)
         yield HouseWork(run.path, house, episodes, args.out, camera)
 
 

@@ -14,16 +14,16 @@ from typing import Any
 
 from sim.app.analysis.tables import ResultTable
 from sim.app.evaluation.config_fields import ABSENT, differing_fields, field_text, run_differences
-from sim.app.evaluation.results import read_record, read_result_lines
+from sim.app.evaluation.results import read_record, read_results
 from sim.core.errors import ConfigError
+from sim.task.result import EpisodeResult
 from sim.task.trajectory import read_trajectory, trajectory_file
 
 __all__ = [
-    "Line", "Run", "code_of", "differences_table", "differing_fields", "read_run",
+    "Run", "code_of", "differences_table", "differing_fields", "read_run",
     "require_same_episodes",
 ]  # fmt: skip
 
-Line = Mapping[str, Any]
 LETTERS = "ABCDEFGHIJKL"
 """Names of the runs that are compared, the first one `A`."""
 SAME_PATH_M = 0.05
@@ -38,8 +38,8 @@ class Run:
 
     path: Path
     config: Mapping[str, Any]
-    lines: Mapping[str, Line]
-    """Result lines by `episode_id`."""
+    results: Mapping[str, EpisodeResult]
+    """Results by `episode_id`."""
 
     def recorded(self, name: str) -> Any:
         """Returns a field of config.json; raises ConfigError if a run of an older version does not have it."""
@@ -60,17 +60,18 @@ def read_run(path: Path) -> Run:
         if not file.is_file():
             raise ConfigError(f"'{path}' is not a run: it has no {file.name}.")
     try:
-        record, lines = read_record(config), read_result_lines(results).values
+        record, lines = read_record(config), read_results(results).values
     except ConfigError as error:
         raise ConfigError(f"'{path}' is not a run: {error}") from None
-    return Run(path, record, {line["episode_id"]: line for line in lines})
+    return Run(path, record, {result.episode_id: result for result in lines})
 
 
 def code_of(run: Run, episode_id: str) -> str:
     """Returns the hash of the code that ran an episode (its trajectory's), or all hashes of the run ("a1 or b2")."""
     file = trajectory_file(run.path, episode_id)
     if file.is_file():
-        return str(read_trajectory(file).about.get("versions", {}).get("code", "unknown"))
+        recording = read_trajectory(file).about
+        return "unknown" if recording is None else recording.versions.get("code", "unknown")
     return " or ".join(run.config.get("codes") or [str(run.config.get("versions", {}).get("code", "unknown"))])
 
 
@@ -119,7 +120,7 @@ def require_same_episodes(first: Run, *others: Run) -> list[str]:
         ConfigError: a run is of another split than the first, shares no episode with it, or shares only ids of
             episodes; or no episode is in all runs.
     """
-    common = list(first.lines)
+    common = list(first.results)
     for other in others:
         shared = set(_shared_episodes(first, other))
         common = [episode_id for episode_id in common if episode_id in shared]
@@ -134,17 +135,18 @@ def _shared_episodes(first: Run, second: Run) -> list[str]:
     if identities[0] != identities[1]:
         named = " and ".join(f"{i.get('name')} {i.get('version')} ({str(i.get('sha256'))[:8]})" for i in identities)
         raise ConfigError(f"'{first.path}' and '{second.path}' were not run on the same episodes: {named}.")
-    common = [episode_id for episode_id in first.lines if episode_id in second.lines]
+    common = [episode_id for episode_id in first.results if episode_id in second.results]
     keys = ("house", "goal", "shortest_path") if _same_paths_expected(first, second) else ("house", "goal")
     if not common:
         raise ConfigError(f"'{first.path}' and '{second.path}' have no episode in common.")
     for episode_id in common:
-        a, b = first.lines[episode_id], second.lines[episode_id]
+        a, b = first.results[episode_id], second.results[episode_id]
         for key in keys:
-            if not (_same_path(a, b) if key == "shortest_path" else a.get(key) == b.get(key)):
+            one, other = getattr(a, key), getattr(b, key)
+            if not (_same_path(a, b) if key == "shortest_path" else one == other):
                 raise ConfigError(
                     f"'{first.path}' and '{second.path}' were not run on the same episodes: '{episode_id}' has "
-                    f"{key} {json.dumps(a.get(key))} and {json.dumps(b.get(key))}."
+                    f"{key} {json.dumps(one)} and {json.dumps(other)}."
                 )
     return common
 
@@ -158,8 +160,8 @@ def _same_paths_expected(first: Run, second: Run) -> bool:
     return not (same_starts and all(trees) and differs)  # a run without a tree is older than the choice of a rule
 
 
-def _same_path(first: Line, second: Line) -> bool:
-    if "error" in (first.get("end_reason"), second.get("end_reason")):  # the path may not have been measured
+def _same_path(first: EpisodeResult, second: EpisodeResult) -> bool:
+    if first.is_error or second.is_error:  # the path may not have been measured
         return True
-    a_m, b_m = first.get("shortest_path"), second.get("shortest_path")
+    a_m, b_m = first.shortest_path, second.shortest_path
     return a_m == b_m if a_m is None or b_m is None else abs(a_m - b_m) <= SAME_PATH_M

@@ -12,12 +12,11 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from sim.app.evaluation.results import SUMMARY_METRICS
 from sim.core import invocation
 from sim.core.errors import debug
 from sim.core.reading import printable
+from sim.task.result import METRICS, EpisodeResult
 
-Line = Mapping[str, Any]
 MOST_EPISODES_SHOWN = 20
 PLAIN_WIDTH = 120
 """Columns of output that is not a terminal (a file, a pipe, a CI log)."""
@@ -63,16 +62,16 @@ def print_where_to_look(
     say(f"Watch an agent in the browser, or drive yourself: {invocation.command('web')}")
 
 
-def describe(line: Line) -> str:
+def describe(result: EpisodeResult) -> str:
     """Returns one sentence about an episode."""
-    if line["success"]:
+    if result.success:
         outcome = "found"
-    elif _is_error(line):
+    elif result.is_error:
         outcome = "ended with an error"
     else:
-        outcome = f"not found ({line['end_reason']}, {line['failure']})"
-    goal, steps = line["goal"].replace("_", " "), counted(line["num_steps"], "step")
-    return f"{line['episode_id']}: {goal} {outcome} after {steps}, {line['wall_time_s']:.0f} s"
+        outcome = f"not found ({result.end_reason}, {result.failure})"
+    goal, steps = result.goal.replace("_", " "), counted(result.num_steps, "step")
+    return f"{result.episode_id}: {goal} {outcome} after {steps}, {result.wall_time_s or 0.0:.0f} s"
 
 
 def file_size(size_bytes: int) -> str:
@@ -87,18 +86,18 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}" + "s" * (number != 1)
 
 
-def print_results(console: Console, lines: Sequence[Line], summary: Mapping[str, Any]) -> None:
+def print_results(console: Console, results: Sequence[EpisodeResult], summary: Mapping[str, Any]) -> None:
     """Prints the episodes if they are few, and the means with their intervals."""
-    if len(lines) <= MOST_EPISODES_SHOWN:
-        console.print(_episode_table(lines))
+    if len(results) <= MOST_EPISODES_SHOWN:
+        console.print(_episode_table(results))
     console.print(_summary_table(summary))
-    causes = Counter(_cause(line) for line in lines if _cause(line) is not None)
+    causes = Counter(cause for cause in map(_cause, results) if cause is not None)
     if causes:
         console.print("Failed by " + ", ".join(f"{cause}: {count}" for cause, count in causes.most_common()))
-    for line in lines:
-        if line.get("error"):
-            console.print(f"error in {line['episode_id']}: {line['error']}", markup=False, soft_wrap=True)
-    if any(map(_is_error, lines)) and not debug():
+    for result in results:
+        if result.error:
+            console.print(f"error in {result.episode_id}: {result.error}", markup=False, soft_wrap=True)
+    if any(result.is_error for result in results) and not debug():
         console.print(
             "--debug shows the traceback of an error; --retry-errors with the same --out runs these episodes again.",
             highlight=False,
@@ -106,37 +105,33 @@ def print_results(console: Console, lines: Sequence[Line], summary: Mapping[str,
         )
 
 
-def _is_error(line: Line) -> bool:
-    return line.get("end_reason") == "error"
-
-
-def _cause(line: Line) -> str | None:
+def _cause(result: EpisodeResult) -> str | None:
     """Returns the cause of a failure, `error` where the episode broke; None if none was recorded, as for a success.
 
     `results.jsonl` has `misc` for an error, because the causes are those of the paper.
     """
-    return "error" if _is_error(line) else line.get("failure")
+    return "error" if result.is_error else result.failure
 
 
-def _episode_table(lines: Sequence[Line]) -> Table:
+def _episode_table(results: Sequence[EpisodeResult]) -> Table:
     table = Table(title="Episodes")
     for name in ("episode", "goal"):
         table.add_column(name)
     table.add_column("success")
     for name in ("SPL", "steps", "path m", "shortest m", "left m", "collisions", "steps/s"):
         table.add_column(name, justify="right")
-    for line in sorted(lines, key=lambda line: line["episode_id"]):
+    for result in sorted(results, key=lambda result: result.episode_id):
         table.add_row(
-            line["episode_id"],
-            line["goal"].replace("_", " "),
-            "yes" if line["success"] else f"no: {_cause(line)}",
-            _number(line["spl"]),
-            str(line["num_steps"]),
-            _number(line["path_length"]),
-            _number(line["shortest_path"]),
-            _number(line["distance_to_goal"]),
-            str(line["collisions"]),
-            _number(line["steps_per_s"], digits=1),
+            result.episode_id,
+            result.goal.replace("_", " "),
+            "yes" if result.success else f"no: {_cause(result)}",
+            _number(result.spl),
+            str(result.num_steps),
+            _number(result.path_length),
+            _number(result.shortest_path),
+            _number(result.distance_to_goal),
+            str(result.collisions),
+            _number(result.steps_per_s, digits=1),
         )
     return table
 
@@ -151,7 +146,7 @@ def _summary_table(summary: Mapping[str, Any]) -> Table:
     table.add_column("metric")
     table.add_column("mean", justify="right")
     table.add_column("95 % interval", justify="right")
-    for metric in SUMMARY_METRICS:
+    for metric in (metric.key for metric in METRICS.values() if metric.in_summary):
         low, high = summary[metric]["ci95"]
         interval = "-" if low is None else f"[{_number(low, 3)}, {_number(high, 3)}]"
         table.add_row(metric, _number(summary[metric]["mean"], 3), interval)

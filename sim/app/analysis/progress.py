@@ -6,15 +6,16 @@ import contextlib
 import itertools
 import threading
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from sim.app.analysis.display import describe
 from sim.app.evaluation.watch import Steps
+from sim.task.result import EpisodeResult
 
 QUIET_S = 5.0
 """First interval between two lines on a running episode, if the output is not a terminal; the interval then grows."""
@@ -75,8 +76,8 @@ class ProgressReport:
             goal = episode.goal.replace("_", " ")
             self._print(f"{episode.episode_id} begins: looking for {goal} in house {episode.house}")
 
-    def over(self, lines: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-        """Yields the result lines, and reports the progress until the last one."""
+    def over(self, results: Iterable[EpisodeResult]) -> Iterator[EpisodeResult]:
+        """Yields the results, and reports the progress until the last one."""
         watch = threading.Thread(target=self._report_running, daemon=True, name="progress")
         with contextlib.ExitStack() as stack:
             if self._bar is not None:
@@ -85,19 +86,19 @@ class ProgressReport:
             watch.start()
             stack.callback(watch.join)
             stack.callback(self._over.set)
-            for line in lines:
-                self._ended(line)
-                yield line
+            for result in results:
+                self._ended(result)
+                yield result
 
-    def _ended(self, line: Mapping[str, Any]) -> None:
+    def _ended(self, result: EpisodeResult) -> None:
         with self._lock:
-            self._running.pop(line["episode_id"], None)
+            self._running.pop(result.episode_id, None)
             self._done += 1
             self._wait_s = self._quiet_s
-            self._steps_done += line["num_steps"]
+            self._steps_done += result.num_steps
             if self._bar is not None:
                 self._bar.update(self._task, completed=self._done)
-            self._print(f"[{self._done}/{self._total}] {describe(line)}")
+            self._print(f"[{self._done}/{self._total}] {describe(result)}")
 
     def _report_running(self) -> None:
         while not self._over.wait(min(0.5, self._quiet_s)):

@@ -18,12 +18,12 @@ import tyro
 from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.comparison import Run, differences_table, read_run, require_same_episodes
-from sim.app.analysis.metrics import SPL, SUCCESS, episodes_of
+from sim.app.analysis.metrics import SPL, SUCCESS, difference_cell, episodes_of, mean_cell
 from sim.app.analysis.replicates import difference_note
-from sim.app.analysis.report.figures import METRICS
 from sim.app.analysis.tables import NOT_SIGNIFICANT, ResultTable, to_csv, to_markdown, to_rich
 from sim.app.evaluation.intervals import MIN_PAIRS
 from sim.core.files import write_together
+from sim.task.result import METRICS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,29 +60,29 @@ def compare(first: Run, second: Run) -> ResultTable:
         ConfigError: the runs are of different splits, or share no episode.
     """
     common = require_same_episodes(first, second)
-    a, b = ([of.lines[i] for i in common] for of in (first, second))
+    a, b = ([of.results[i] for i in common] for of in (first, second))
     episodes = len(set(episodes_of(a)))
-    against = {metric: metric.difference(a, b) for metric in METRICS}
-    rows = [(metric.title, [metric.cell(a), metric.cell(b), against[metric]]) for metric in METRICS]
-    changed = [i for i in common if bool(first.lines[i]["success"]) != bool(second.lines[i]["success"])]
+    against = {metric: difference_cell(metric, a, b) for metric in METRICS.values()}
+    rows = [(metric.title, [mean_cell(metric, a), mean_cell(metric, b), cell]) for metric, cell in against.items()]
+    changed = [i for i in common if first.results[i].success != second.results[i].success]
     notes = [
         f"A: {first.path}, B: {second.path}; {episodes} episodes of both runs.",
         f"not significant: the interval holds 0, or there are fewer than {MIN_PAIRS} pairs.",
     ]
-    errors = [sum(line["end_reason"] == "error" for line in lines) for lines in (a, b)]
+    errors = [sum(result.is_error for result in results) for results in (a, b)]
     if any(errors):
         notes.append(f"Ended with an error: {errors[0]} of A, {errors[1]} of B; failures, in no other metric's means.")
     if note := difference_note(a, b):
         notes.append(note)
-    ends = [(x["end_reason"], y["end_reason"]) for x, y in zip(a, b, strict=True)]
-    whole = {episode for episode, both in zip(episodes_of(a), ends, strict=True) if "error" not in both}
+    broken = [x.is_error or y.is_error for x, y in zip(a, b, strict=True)]
+    whole = {episode for episode, is_broken in zip(episodes_of(a), broken, strict=True) if not is_broken}
     pairs = {metric.title: cell.estimate.count for metric, cell in against.items()}
     fewer = [f"{title} {count}" for title, count in pairs.items() if count < len(whole)]
     if fewer:
         notes.append(f"Differences of fewer episodes, because the others have no value: {', '.join(fewer)}.")
     if changed:
-        lost = [i for i in changed if first.lines[i]["success"]]
-        gained = [i for i in changed if not first.lines[i]["success"]]
+        lost = [i for i in changed if first.results[i].success]
+        gained = [i for i in changed if not first.results[i].success]
         notes.append(f"Only A succeeds in {len(lost)}: {' '.join(lost) or '-'}.")
         notes.append(f"Only B succeeds in {len(gained)}: {' '.join(gained) or '-'}.")
     title = f"B - A, paired over {episodes} episodes"
@@ -96,10 +96,10 @@ def verdict(first: Run, second: Run) -> str:
         ConfigError: the runs are of different splits, or share no episode.
     """
     common = require_same_episodes(first, second)
-    a, b = ([of.lines[i] for i in common] for of in (first, second))
+    a, b = ([of.results[i] for i in common] for of in (first, second))
     sentences = []
     for metric in (SUCCESS, SPL):
-        cell = metric.difference(a, b)
+        cell = difference_cell(metric, a, b)
         if not cell.verdict:
             sentences.append(f"{metric.title}: no pairs")
         elif cell.verdict == NOT_SIGNIFICANT:

@@ -10,7 +10,6 @@ same options and this --out runs the missing episodes.
 
 from __future__ import annotations
 
-import json
 import urllib.parse
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
@@ -21,13 +20,14 @@ import tyro
 
 from sim.app import cli
 from sim.app.analysis import display
-from sim.app.analysis.comparison import Line, Run, read_run
+from sim.app.analysis.comparison import Run, read_run
 from sim.app.evaluation.config_fields import field_text, run_differences
 from sim.app.evaluation.results import RunDirectory, read_record
-from sim.app.evaluation.rollout import TIMES
+from sim.app.evaluation.summary import summarise
 from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
 from sim.core.reading import read_bytes
+from sim.task.result import EpisodeResult
 
 SHARDS = "shard_*_of_*"
 MAX_FILE_BYTES = 4 << 30
@@ -52,26 +52,27 @@ def main(args: Args) -> int:
     runs = [read_run(folder) for folder in folders]
     for run in runs[1:]:
         require_same_options(runs[0], run)
-    lines = merged_lines(runs)
+    results = merged_results(runs)
     console = display.make_console()
-    merged = RunDirectory(out, merged_config(runs))
+    merged = RunDirectory(out, merged_config(runs), EpisodeResult)
     try:
-        existing, added = {line["episode_id"]: line for line in merged.lines}, set[str]()
-        for episode_id, line in lines.items():
+        existing, added = {result.episode_id: result for result in merged.lines}, set[str]()
+        for episode_id, result in results.items():
             before = existing.get(episode_id)
-            if before is None or (before["end_reason"] == "error" and before != line):  # a shard has run it again
-                merged.append(line)
+            if before is None or (before.is_error and before != result):  # a shard has run it again
+                merged.append(result)
                 added.add(episode_id)
-            elif line["end_reason"] != "error" and without_times(before) != without_times(line):
-                raise _conflict(episode_id, out, line)
+            elif not result.is_error and before.without_times() != result.without_times():
+                raise _conflict(out, result)
         for code in merged.config["codes"]:
             merged.record_code(code)  # the folder may hold lines of an earlier merge
-        summary = merged.write_summary({"split": runs[0].recorded("split_identity")})
+        summary = {"split": runs[0].recorded("split_identity")} | summarise(merged.lines)
+        merged.write_summary(summary)
         display.print_results(console, merged.lines, summary)
     finally:
         merged.close()
     for run in runs:
-        copy_files(run, lines, added, out)
+        copy_files(run, results, added, out)
     stored = read_record(out / "config.json")  # the folder may hold an earlier merge of other episodes
     missing = max(stored["episodes"] - len(merged.lines), 0)
     message = f"{len(merged.lines)} episodes of {len(runs)} runs, {missing} missing; results in {out}"
@@ -79,7 +80,7 @@ def main(args: Args) -> int:
     keys = list(dict.fromkeys(str(run.config["seed_key"]) for run in runs if run.config.get("seed_key")))
     if len(keys) > 1:
         console.print(f"The runs have different seed keys ({', '.join(keys)}); with --seed-key they share one.")
-    if lacking := sorted(set(stored.get("only") or ()) - {line["episode_id"] for line in merged.lines}):
+    if lacking := sorted(set(stored.get("only") or ()) - {result.episode_id for result in merged.lines}):
         console.print(f"Missing: {' '.join(lacking)}", highlight=False, soft_wrap=True)
     return 1 if missing or summary["errors"] else 0
 
@@ -107,26 +108,21 @@ def require_same_options(first: Run, other: Run) -> None:
         )
 
 
-def merged_lines(runs: Sequence[Run]) -> dict[str, Line]:
-    """Returns all lines by episode id, sorted; an episode of two runs counts once.
+def merged_results(runs: Sequence[Run]) -> dict[str, EpisodeResult]:
+    """Returns all results by episode id, sorted; an episode of two runs counts once.
 
     Raises:
         ConfigError: the results of an episode differ between two runs.
     """
-    lines: dict[str, Line] = {}
+    merged: dict[str, EpisodeResult] = {}
     for run in runs:
-        for episode_id, line in run.lines.items():
-            first = lines.setdefault(episode_id, line)
-            if "error" in (first["end_reason"], line["end_reason"]):
-                lines[episode_id] = line if first["end_reason"] == "error" else first
-            elif without_times(first) != without_times(line):
-                raise _conflict(episode_id, run.path, lines[episode_id])
-    return dict(sorted(lines.items()))
-
-
-def without_times(line: Line) -> dict[str, Any]:
-    """Returns the entries of a line that are equal in two runs of the same episode."""
-    return {key: value for key, value in line.items() if key not in TIMES}
+        for episode_id, result in run.results.items():
+            first = merged.setdefault(episode_id, result)
+            if first.is_error or result.is_error:
+                merged[episode_id] = result if first.is_error else first
+            elif first.without_times() != result.without_times():
+                raise _conflict(run.path, first)
+    return dict(sorted(merged.items()))
 
 
 def merged_config(runs: Sequence[Run]) -> dict[str, Any]:
@@ -145,25 +141,25 @@ def merged_config(runs: Sequence[Run]) -> dict[str, Any]:
     return config | ({"only": only} if any(of_each) else {})
 
 
-def copy_files(run: Run, lines: Mapping[str, Line], added: Set[str], out: Path) -> None:
+def copy_files(run: Run, results: Mapping[str, EpisodeResult], added: Set[str], out: Path) -> None:
     """Copies the files of a run's episodes that the merged run lacks, or has of an earlier result.
 
     Args:
         run: one of the merged runs.
-        lines: the merged lines; an episode that ended otherwise in this run, with an error, is not copied.
-        added: episodes whose line is new in the merged run.
+        results: the merged results; an episode that ended otherwise in this run, with an error, is not copied.
+        added: episodes whose result is new in the merged run.
         out: folder of the merged run.
     """
     for name in COPIED:
         for file in sorted((run.path / name).glob("*")):
             episode_id = urllib.parse.unquote(file.stem)
-            line, target = run.lines.get(episode_id), out / name / file.name
-            if line is None or without_times(line) != without_times(lines[episode_id]):
+            result, target = run.results.get(episode_id), out / name / file.name
+            if result is None or result.without_times() != results[episode_id].without_times():
                 continue
             if file.is_file() and (episode_id in added or not target.exists()):
                 write_atomically(target, read_bytes(file, what="File of a run", most=MAX_FILE_BYTES))
 
 
-def _conflict(episode_id: str, path: Path, line: Line) -> ConfigError:
-    other = json.dumps({key: line.get(key) for key in ("success", "num_steps", "end_reason")})
-    return ConfigError(f"'{path}' has another result of '{episode_id}' than another run, which has {other}.")
+def _conflict(path: Path, result: EpisodeResult) -> ConfigError:
+    other = f"success {result.success:g}, num_steps {result.num_steps}, end_reason {result.end_reason}"
+    return ConfigError(f"'{path}' has another result of '{result.episode_id}' than another run, which has {other}.")

@@ -44,7 +44,7 @@ def main(args: Args) -> int:
     require_writable(out, name="--out", folder=False)
     console = display.make_console()
     console.print(
-        f"{display.counted(max(len(run.lines) for run in runs), 'episode')}; "
+        f"{display.counted(max(len(run.results) for run in runs), 'episode')}; "
         "each house takes about a second, each goal in it a tenth."
     )
     command = shlex.join(["stubborn", "report", *map(str, args.runs)])

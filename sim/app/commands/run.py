@@ -56,9 +56,9 @@ def _run(options: RunOptions, console: Console) -> int:
             console.print(f"Shard {options.shard} holds none of the {display.counted(count, 'episode')}.")
             return 0
     setup = replace(setup, options=replace(options, episodes=count, out=out))
-    lines, summary = run_missing(setup, episodes, split, console)
-    display.print_results(console, lines, summary)
-    failures = (line["episode_id"] for line in lines if not line["success"] and options.house is None)
+    results, summary = run_missing(setup, episodes, split, console)
+    display.print_results(console, results, summary)
+    failures = (result.episode_id for result in results if not result.success and options.house is None)
     display.print_where_to_look(
         console, out, video=options.video, failed=next(failures, None), sharded=options.shard is not None
     )

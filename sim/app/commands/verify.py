@@ -27,7 +27,7 @@ from typing import Annotated, Any
 import tyro
 
 from sim.app import cli
-from sim.app.analysis.metrics import SPL, SUCCESS
+from sim.app.analysis.metrics import SPL, SUCCESS, mean_cell
 from sim.app.composition.agents import SPECS
 from sim.app.submissions.checks import truth_of
 from sim.app.submissions.leaderboard import results_of
@@ -130,8 +130,8 @@ def _summary(checked: Checked, choices: Choices, found: list[Verdict], seconds: 
         f"{len(found)} episodes: {each}. Frames of {framed} were rendered (--draw-seed {choices.draw_seed}). "
         f"{_speed(len(found) - count['error'], seconds)}"
     )
-    lines = results_of(checked.submission)
-    yield f"Success {SUCCESS.cell(lines).text()} %, SPL {SPL.cell(lines).text()} (95 % intervals)."
+    results = results_of(checked.submission)
+    yield f"Success {mean_cell(SUCCESS, results).text()} %, SPL {mean_cell(SPL, results).text()} (95 % intervals)."
     if count["different"]:
         yield (
             f"NOT VERIFIED: {count['different']} episodes are different. A tolerance repairs neither success nor "

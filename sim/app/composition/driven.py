@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn
 
-from sim.app.composition.record import identity_of
+import msgspec
+
+from sim.app.composition.record import recording_of, result_of
 from sim.app.composition.setup import RunConfig, Setup, resolve
 from sim.app.evaluation.last_view import write_last_view
 from sim.app.evaluation.rollout import record_episode
@@ -18,6 +19,8 @@ from sim.core.invocation import command
 from sim.core.option_types import meanings
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
+from sim.task.result import EpisodeResult, RolloutResult
+from sim.task.trajectory import SplitName
 
 HUMAN_NAME = "human"
 """The agent's name in the results of a person."""
@@ -67,32 +70,32 @@ def _of_world(options: RunOptions | RunConfig) -> dict[str, Any]:
 
 
 def record_driven(
-    setup: Setup, env: ObjectNavEnv, episode: Episode, metrics: Mapping[str, Any], content: Mapping[str, Any]
-) -> dict[str, Any]:
-    """Writes trajectory and last picture of the episode that has just ended; returns its result line.
+    setup: Setup, env: ObjectNavEnv, episode: Episode, result: RolloutResult, versions: dict[str, str]
+) -> EpisodeResult:
+    """Writes trajectory and last picture of the episode that has just ended; returns its result.
 
     Args:
         setup: the setup of the person.
         env: the environment of the episode.
         episode: the episode.
-        metrics: the entries that `play_episode` returned.
-        content: content of the record's `config.json`.
+        result: what `play_episode` returned.
+        versions: those of the record's `config.json`.
 
     Raises:
         ConfigError: the folder is not writable.
     """
-    options = setup.options
-    assert options.out is not None
-    line = identity_of(setup, episode) | judged(metrics)
-    about = {"profile": options.profile, "noise": options.noise, "split": content["split_identity"]}
-    record_episode(env, options.out, line, about | {"versions": content["versions"]})
-    write_last_view(env, options.out, line["episode_id"])
-    return line
+    out = setup.options.out
+    assert out is not None
+    judged = result_of(setup, episode, judged_result(result))
+    split = SplitName(env.split.name, env.split.version)
+    record_episode(env, out, recording_of(setup, episode, judged, split, versions))
+    write_last_view(env, out, episode.episode_id)
+    return judged
 
 
-def judged(line: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the result line of an episode that a person ended: a STOP far from the goal is `misc`.
+def judged_result(result: RolloutResult) -> RolloutResult:
+    """Returns the result of an episode that a person ended: a STOP far from the goal is `misc`.
 
     `false_detection` says that a segmentation took another object for the goal. A person has no segmentation.
     """
-    return {**line, "failure": "misc"} if line["failure"] == "false_detection" else dict(line)
+    return msgspec.structs.replace(result, failure="misc") if result.failure == "false_detection" else result

@@ -1,4 +1,4 @@
-"""Builds what a run records: `config.json`, versions, and the part of a result line that identifies its episode."""
+"""Builds what a run records: `config.json`, versions, results with their episode and agent, and their recordings."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from sim.app.bridges.process_command import files_of, is_file
 from sim.app.composition.segmenters import NetworkConfig, file_sha256, precision_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.own_code import hash_of_own
-from sim.app.evaluation.rollout import broken_metrics
+from sim.app.evaluation.rollout import rollout_result
 from sim.app.options import RunOptions, is_process
 from sim.core.configuration import as_json
 from sim.core.option_types import meanings
@@ -21,6 +23,8 @@ from sim.episodes.episode import Episode
 from sim.renderer.opengl import describe_gl
 from sim.robot.config import PHYSICS_VERSION
 from sim.robot.foreign import robot_sha256
+from sim.task.result import EpisodeResult, RolloutResult, metrics_without_episode
+from sim.task.trajectory import Recording, SplitName, StartPose
 
 
 def record_of(setup: Setup, split: Mapping[str, str]) -> dict[str, Any]:
@@ -89,30 +93,36 @@ def _files_in(tree: object, name: str) -> Iterator[tuple[str, Path]]:
         yield name, Path(tree)
 
 
-_UNKNOWN = (
-    "distance_to_goal", "trapped", "gt_explored", "first_seen_step", "steps_to_first_sight", "area_seen_m2",
-    "area_per_metre", "stop_confidence", "stop_target_xy_m", "stop_target_to_goal_m", "stop_target_category",
-)  # fmt: skip
-"""Entries that are null in the line of an episode that could not be run to its end."""
+def error_result(setup: Setup, episode: Episode, error: str) -> EpisodeResult:
+    """Returns the result of an episode that could not be run to its end."""
+    return result_of(setup, episode, rollout_result(metrics_without_episode(episode.shortest_path_m), error))
 
 
-def error_line(setup: Setup, episode: Episode, error: str) -> dict[str, Any]:
-    """Returns the result line of an episode that could not be run to its end."""
-    counts = dict.fromkeys(("num_steps", "collisions", "touches"), 0)
-    amounts = dict.fromkeys(("path_length", "simulated_s", "wall_time_s", "steps_per_s"), 0.0)
-    found = {**dict.fromkeys(_UNKNOWN), **counts, **amounts, "shortest_path": episode.shortest_path_m}
-    return identity_of(setup, episode) | found | broken_metrics(error)
+def result_of(setup: Setup, episode: Episode, result: RolloutResult) -> EpisodeResult:
+    """Returns the result of an episode with the episode, the agent and the segmentation."""
+    return EpisodeResult(
+        **msgspec.structs.asdict(result),
+        episode_id=episode.episode_id,
+        house=episode.house,
+        goal=episode.goal,
+        agent=setup.options.agent,
+        uses_ground_truth=setup.uses_ground_truth,
+        isolated=is_process(setup.options.agent),
+        semantics=setup.options.semantics,
+        seed=setup.options.seed,
+    )
 
 
-def identity_of(setup: Setup, episode: Episode) -> dict[str, Any]:
-    """Returns the part of a result line that names episode, agent and segmentation."""
-    return {
-        "episode_id": episode.episode_id,
-        "house": episode.house,
-        "goal": episode.goal,
-        "agent": setup.options.agent,
-        "uses_ground_truth": setup.uses_ground_truth,
-        "isolated": is_process(setup.options.agent),
-        "semantics": setup.options.semantics,
-        "seed": setup.options.seed,
-    }
+def recording_of(
+    setup: Setup, episode: Episode, result: EpisodeResult, split: SplitName, versions: dict[str, str]
+) -> Recording:
+    """Returns what a recorded trajectory says about its episode."""
+    start = episode.start
+    return Recording(
+        profile=setup.options.profile,
+        noise=setup.options.noise,
+        split=split,
+        versions=versions,
+        start=StartPose(start.x_m, start.y_m, start.yaw_rad, start.floor_z_m),
+        scores=result.without_times(),
+    )

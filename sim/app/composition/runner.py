@@ -5,12 +5,11 @@ from __future__ import annotations
 import contextlib
 import traceback
 from dataclasses import dataclass
-from typing import Any
 
 from sim.app.composition.agents import build_agent
 from sim.app.composition.environments import make_env
 from sim.app.composition.perception import AskedSegmenter, seen_by
-from sim.app.composition.record import error_line, identity_of, versions
+from sim.app.composition.record import error_result, recording_of, result_of, versions
 from sim.app.composition.segmenters import NoSegmentation
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.last_view import write_last_view
@@ -25,6 +24,8 @@ from sim.env.memory import give_large_blocks_pages_of_their_own, return_freed_me
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.seeds import episode_seeds
+from sim.task.result import EpisodeResult
+from sim.task.trajectory import SplitName
 
 
 @dataclass(frozen=True)
@@ -75,21 +76,16 @@ class EpisodeRunner:
         setup.require_planned(self._env.split)
         self._house = ""
         self._viewers = selection.make(options, parts.painter, parts.seen)
-        self._about = {
-            "profile": options.profile,
-            "noise": options.noise,
-            "split": {"name": self._env.split.name, "version": self._env.split.version},
-            "versions": versions(options),
-        }
+        self._versions = versions(options)
 
-    def run(self, episode: Episode) -> dict[str, Any]:
-        """Runs one episode and returns its result line."""
+    def run(self, episode: Episode) -> EpisodeResult:
+        """Runs one episode and returns its result."""
         return_freed_memory()
         options = self._options
         seeds = episode_seeds(options.seed, episode.episode_id, options.seed_key)
         try:
             self._require_same_house(episode.house)
-            metrics = play_episode(
+            played = play_episode(
                 self._env,
                 self._agent,
                 episode,
@@ -104,13 +100,14 @@ class EpisodeRunner:
             if is_stop(error):
                 raise
             return self._broken(episode, error)
-        line = identity_of(self._setup, episode) | metrics
-        if self._options.record and self._options.out is not None:
-            record_episode(self._env, self._options.out, line, self._about)
-        filmed = self._options.record or self._options.video
-        if filmed and self._options.out is not None and line["end_reason"] != "error":
-            write_last_view(self._env, self._options.out, line["episode_id"])
-        return line
+        result = result_of(self._setup, episode, played)
+        if options.record and options.out is not None:
+            split = SplitName(self._env.split.name, self._env.split.version)
+            recording = recording_of(self._setup, episode, result, split, self._versions)
+            record_episode(self._env, options.out, recording)
+        if (options.record or options.video) and options.out is not None and not result.is_error:
+            write_last_view(self._env, options.out, episode.episode_id)
+        return result
 
     def _require_same_house(self, house: str) -> None:
         """Raises HouseError if a file of a house has changed since the run was planned.
@@ -121,8 +118,8 @@ class EpisodeRunner:
             self._env.split.require_unchanged(house)
             self._house = house
 
-    def _broken(self, episode: Episode, error: BaseException) -> dict[str, Any]:
-        """Returns the line of an episode that raised an error; unfinished recordings are discarded."""
+    def _broken(self, episode: Episode, error: BaseException) -> EpisodeResult:
+        """Returns the result of an episode that raised an error; unfinished recordings are discarded."""
         if debug():
             traceback.print_exc()
         for viewer in self._viewers:
@@ -130,7 +127,7 @@ class EpisodeRunner:
         reason = text_of(error)
         if not isinstance(error, ObjectNavError):
             reason = f"{type(error).__name__}: {reason} (unexpected; --debug shows where)"
-        return error_line(self._setup, episode, reason)
+        return error_result(self._setup, episode, reason)
 
     def close(self) -> None:
         """Frees the renderers and the agent; viewers discard an unfinished recording."""

@@ -13,23 +13,25 @@ from sim.app.analysis import display
 from sim.app.analysis.progress import ProgressReport
 from sim.app.composition import RUNNER
 from sim.app.composition.agents import notes_on
-from sim.app.composition.record import error_line, record_of
+from sim.app.composition.record import error_result, record_of
 from sim.app.composition.seed_key import seed_key_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.executors import make_executor
 from sim.app.evaluation.processes import isolation_of
 from sim.app.evaluation.results import RunDirectory
+from sim.app.evaluation.summary import summarise
 from sim.app.evaluation.workers import RunnerSpec
 from sim.app.options import RunOptions
 from sim.core.geometry.compiling import choose_cache, must_compile
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates
 from sim.episodes.splits import load_split
+from sim.task.result import EpisodeResult
 
 
 def run_missing(
     setup: Setup, episodes: Sequence[Episode], split: Mapping[str, str], console: Console
-) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+) -> tuple[list[EpisodeResult], dict[str, Any]]:
     """Runs the episodes that the folder of the run, `--out`, does not hold yet.
 
     Args:
@@ -51,13 +53,13 @@ def run_missing(
         options.executor, workers=options.workers, address=options.address, isolation=isolation_of(options)
     )
     record = record_of(setup, split)
-    run, code = RunDirectory(options.out, record), record["versions"]["code"]
+    run, code = RunDirectory(options.out, record, EpisodeResult), record["versions"]["code"]
     try:
         if run.healed:
             console.print(run.healed)
         _require_own_lines(options, run, episodes)
         again = run.errors([episode.episode_id for episode in episodes]) if options.retry_errors else set()
-        done = {line["episode_id"] for line in run.lines} - again
+        done = {line.episode_id for line in run.lines} - again
         if not options.keep_results:
             run.require_own_code(code, done)
         if options.retry_errors:
@@ -81,37 +83,39 @@ def run_missing(
         spec = RunnerSpec(f"{RUNNER}:EpisodeRunner", setup)
         progress = ProgressReport(console, total=len(todo), max_steps=setup.config.task.max_steps)
 
-        def lost(episode: Episode, reason: str) -> dict[str, Any]:
-            return error_line(setup, episode, reason)
+        def lost(episode: Episode, reason: str) -> EpisodeResult:
+            return error_result(setup, episode, reason)
 
-        def written() -> Iterator[dict[str, Any]]:
+        def written() -> Iterator[EpisodeResult]:
             for line in executor.run(spec, todo, on_death=lost, on_start=progress.started):
                 run.append(line)  # before anything is printed, because printing may fail
                 yield line
 
         for _ in progress.over(written()) if todo else ():
             pass
-        return run.lines, run.write_summary({"split": split})
+        summary = {"split": split} | summarise(run.lines)
+        run.write_summary(summary)
+        return run.lines, summary
     finally:
         run.discard_if_empty()
         run.close()
 
 
-def _require_own_lines(options: RunOptions, run: RunDirectory, episodes: Sequence[Episode]) -> None:
+def _require_own_lines(options: RunOptions, run: RunDirectory[EpisodeResult], episodes: Sequence[Episode]) -> None:
     """Raises ConfigError if the folder holds a line of another split, or one that contradicts its episode."""
     known = {episode.episode_id: (episode.house, episode.goal) for episode in episodes}
-    others = [line for line in run.lines if line["episode_id"] not in known]
+    others = [line for line in run.lines if line.episode_id not in known]
     if others and options.house is None:  # of the same split, but not asked for now
         every = with_replicates(load_split(options.split).episodes, options.replicates)
         known |= {each.episode_id: (each.house, each.goal) for each in every}
     elif options.house is not None:
         stem = re.escape(options.house.stem)
-        drawn = (line for line in others if re.fullmatch(rf"{stem}_\d{{4,}}(~\d+)?", line["episode_id"]))
-        known |= {line["episode_id"]: (options.house.stem, options.goal or line["goal"]) for line in drawn}
+        drawn = (line for line in others if re.fullmatch(rf"{stem}_\d{{4,}}(~\d+)?", line.episode_id))
+        known |= {line.episode_id: (options.house.stem, options.goal or line.goal) for line in drawn}
     run.require_of(known)
 
 
-def _report_resumed(run: RunDirectory, total: int, todo: int, code: str, console: Console) -> None:
+def _report_resumed(run: RunDirectory[EpisodeResult], total: int, todo: int, code: str, console: Console) -> None:
     """Prints how many episodes the folder holds already, and whether other code ran them."""
     if todo < total:
         console.print(f"{total - todo} of them exist already, {todo} remain.")

@@ -10,18 +10,15 @@ import contextlib
 import fcntl
 import hashlib
 import json
-import math
 import os
-from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Annotated, Any, Literal
+from typing import IO, Any, Generic, Protocol, TypeVar
 
 import msgspec
 
 from sim.app.evaluation.config_fields import ABSENT, field_text, run_differences
-from sim.app.evaluation.intervals import estimate, replicate_spread
 from sim.core.errors import ConfigError
 from sim.core.files import open_to_grow, write_atomically
 from sim.core.reading import (  # fmt: skip
@@ -29,7 +26,6 @@ from sim.core.reading import (  # fmt: skip
     Count,
     Lines,
     Name,
-    Number,
     Seed,
     convert,
     read_bytes,
@@ -38,65 +34,31 @@ from sim.core.reading import (  # fmt: skip
     reason_of,
     sha256_of,
 )
-from sim.episodes.replicates import episode_of, replicate_number
+from sim.task.result import READ_BY, EpisodeResult
 
-SUMMARY_METRICS = (
-    "success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "never_seen", "steps_to_first_sight",
-    "area_seen_m2", "area_per_metre", "trapped", "collisions",
-)  # fmt: skip
-"""Metrics (`metric_value`) that the summary averages."""
-OF_ERRORS = ("success", "spl", "soft_spl")
-"""Metrics in which an episode that ended with an error counts."""
-AT_MOST_ONE = frozenset({"success", "spl", "soft_spl", "gt_explored", "never_seen", "trapped"})
-"""Metrics between 0 and 1."""
-OVER_HOUSES, OVER_ONE_HOUSE = "houses", "the episodes of the one house"
-"""The units over which the intervals of a summary are taken."""
 IDENTITY = ("agent", "semantics", "seed")
 """Keys that a line and the config of its run have in common, with equal values."""
-Measured = Number | bool | None
+LineT = TypeVar("LineT", bound="Line")
 
 
-class ResultLine(msgspec.Struct):
-    """The fields of a line of `results.jsonl` that are read; fields that older versions do not write have a default."""
+class Line(Protocol):
+    """A line of the file of results."""
 
-    episode_id: Name
-    house: Name
-    goal: Name
-    end_reason: Literal["stop", "max_steps", "fallen", "error"]
-    success: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] | bool
-    agent: str = ""
-    semantics: str = ""
-    seed: Seed = 0
-    failure: str | None = None
-    error: str | None = None
-    spl: Measured = None
-    soft_spl: Measured = None
-    distance_to_goal: Measured = None
-    num_steps: Count | None = None
-    path_length: Measured = None
-    shortest_path: Measured = None
-    collisions: Measured = None
-    gt_explored: Measured = None
-    first_seen_step: Measured = None
-    steps_to_first_sight: Measured = None
-    area_seen_m2: Measured = None
-    area_per_metre: float | None = None  # not bounded: older runs divided by path lengths near 0
-    trapped: Measured = None
-    simulated_s: Measured = None
-    stop_confidence: Measured = None
-    stop_target_xy_m: tuple[Number, Number] | None = None
-    stop_target_to_goal_m: Measured = None
-    stop_target_category: str | None = None
-    wall_time_s: Measured = None
-    steps_per_s: Measured = None
+    @property
+    def episode_id(self) -> str: ...  # noqa: D102
+    @property
+    def house(self) -> str: ...  # noqa: D102
+    @property
+    def goal(self) -> str: ...  # noqa: D102
 
+    @property
+    def is_error(self) -> bool:
+        """True: a line of the next run of this episode replaces it."""
+        ...
 
-_NOT_WRITTEN = {
-    name: None
-    for name in ResultLine.__struct_fields__[-len(ResultLine.__struct_defaults__) :]
-    if name not in (*IDENTITY, "error")
-}
-"""Fields that a line may lack, which readers then find as None."""
+    def as_json(self) -> dict[str, Any]:
+        """Returns the JSON values of the line."""
+        ...
 
 
 class SplitIdentity(msgspec.Struct):
@@ -132,13 +94,12 @@ class RunRecord(msgspec.Struct):
 
 
 @dataclass
-class RunDirectory:
+class RunDirectory(Generic[LineT]):
     """The folder of one run, locked against a second writer while it is open."""
 
     path: Path
     config: Mapping[str, Any]
-    line_type: type = ResultLine
-    """Type of the lines."""
+    line_type: type[LineT]
 
     def __post_init__(self) -> None:
         self.path = self.path.absolute()  # an agent may change the current folder
@@ -158,8 +119,8 @@ class RunDirectory:
         """A sentence on an incomplete last line that was removed; "" if every line was complete."""
         try:
             self._write_or_compare_config()
-            self.lines: list[dict[str, Any]] = self._read_and_heal()
-            self._places = {line["episode_id"]: place for place, line in enumerate(self.lines)}
+            self.lines: list[LineT] = self._read_and_heal()
+            self._places = {line.episode_id: place for place, line in enumerate(self.lines)}
             self._open(self._content())
         except BaseException:
             self._lock.close()
@@ -177,7 +138,7 @@ class RunDirectory:
 
     def errors(self, episode_ids: Collection[str]) -> set[str]:
         """Returns the ids of the given episodes whose line is an error; `append` replaces such a line."""
-        return {line["episode_id"] for line in self.lines if line.get("end_reason") == "error"} & set(episode_ids)
+        return {line.episode_id for line in self.lines if line.is_error} & set(episode_ids)
 
     def require_own_code(self, code: str, kept: Collection[str]) -> None:
         """Raises ConfigError if the user's code has changed since it ran the episodes that are kept.
@@ -208,42 +169,41 @@ class RunDirectory:
         """
         for number, line in enumerate(self.lines, start=1):
             where = f"Results '{self.path / 'results.jsonl'}', line {number}"
-            house, goal = episodes.get(line["episode_id"], (None, None))
-            if house is None:
-                raise ConfigError(
-                    f"{where}: '{line['episode_id']}' is not an episode of this run; choose another folder."
-                )
-            for key, wanted in (("house", house), ("goal", goal)):
-                if line[key] != wanted:
-                    raise ConfigError(f"{where}: {key} is '{line[key]}', but '{wanted}' in the episode of this run.")
+            if line.episode_id not in episodes:
+                raise ConfigError(f"{where}: '{line.episode_id}' is not an episode of this run; choose another folder.")
+            house, goal = episodes[line.episode_id]
+            for key, recorded, expected in (("house", line.house, house), ("goal", line.goal, goal)):
+                if recorded != expected:
+                    raise ConfigError(f"{where}: {key} is '{recorded}', but '{expected}' in the episode of this run.")
 
-    def _read_and_heal(self) -> list[dict[str, Any]]:
+    def _read_and_heal(self) -> list[LineT]:
         """Returns the lines of earlier processes; an incomplete last line is cut off the file."""
         file = self.path / "results.jsonl"
-        found = read_result_lines(file, self.line_type)
-        for number, line in enumerate(found.values, start=1):
+        lines = read_result_lines(file, self.line_type)
+        for number, line in enumerate(lines.values, start=1):
+            values = line.as_json()
             for key in IDENTITY:
-                if key in line and key in self.config and line[key] != self.config[key]:
+                if key in values and key in self.config and values[key] != self.config[key]:
                     raise ConfigError(
-                        f"Results '{file}', line {number}: {key} is {field_text(line[key])}, but this run has "
+                        f"Results '{file}', line {number}: {key} is {field_text(values[key])}, but this run has "
                         f"{field_text(self.config[key])}; choose another folder."
                     )
-        if found.torn:
-            self.healed = found.torn
+        if lines.torn:
+            self.healed = lines.torn
             with open_to_grow(file, "r+b") as stream:
-                stream.truncate(found.whole_bytes)
-        return found.values
+                stream.truncate(lines.whole_bytes)
+        return lines.values
 
-    def append(self, line: Mapping[str, Any]) -> None:
+    def append(self, line: LineT) -> None:
         """Writes one result line and syncs it to disk; it replaces the line of an earlier error in the same episode.
 
         Raises:
             ConfigError: another program removed or changed the results.
         """
-        self._require_untouched(new=str(line["episode_id"]))
-        line, place = dict(line), self._places.get(line["episode_id"])
-        if place is None or self.lines[place].get("end_reason") != "error":
-            self._places[line["episode_id"]] = len(self.lines)
+        self._require_untouched(new=line.episode_id)
+        place = self._places.get(line.episode_id)
+        if place is None or not self.lines[place].is_error:
+            self._places[line.episode_id] = len(self.lines)
             self.lines.append(line)
             self._write(_as_bytes(line))
         else:
@@ -286,7 +246,7 @@ class RunDirectory:
         except (OSError, ConfigError):
             same, found = False, "was removed by another program"
         if not same:
-            ids = [line["episode_id"] for line in self.lines] + [new] * bool(new)
+            ids = [line.episode_id for line in self.lines] + [new] * bool(new)
             named = f"'{ids[0]}' to '{ids[-1]}'" if len(ids) > 1 else "".join(f"'{each}'" for each in ids)
             raise ConfigError(
                 f"While the run wrote to it, '{self._file}' {found}. The results of {len(ids)} episodes are lost or "
@@ -321,16 +281,14 @@ class RunDirectory:
             if name != "code" and before.get(name, now[name]) != now[name]
         }
 
-    def write_summary(self, extra: Mapping[str, Any]) -> dict[str, Any]:
-        """Averages all lines, writes `summary.json` and returns its content.
+    def write_summary(self, summary: Mapping[str, Any]) -> None:
+        """Writes `summary.json`.
 
         Raises:
             ConfigError: another program removed or changed the results.
         """
         self._require_untouched(content=True)
-        summary = {**extra, **summarise(self.lines)}
         _write_json(self.path / "summary.json", summary)
-        return summary
 
     def close(self) -> None:
         """Closes the files and releases the folder."""
@@ -381,68 +339,8 @@ class RunDirectory:
             _write_json(file, existing | changed)
 
 
-def metric_value(line: Mapping[str, Any], metric: str) -> float | None:
-    """Returns a metric of a result line; None if the line, for example of an older version, does not have it.
-
-    An episode that ended with an error is a failure, whose success and SPL are 0. It has no other metric: it did not
-    run to its end, so that it has too few steps, collisions and metres.
-
-    `never_seen` is 1 - `gt_explored`. It belongs to `steps_to_first_sight`, whose value is `max_steps` in an episode
-    that never showed the goal: the mean is the restricted mean time to first sight.
-    """
-    value = line.get("gt_explored" if metric == "never_seen" else metric)
-    if value is None or (line.get("end_reason") == "error" and metric not in OF_ERRORS):
-        return None
-    return 1.0 - float(value) if metric == "never_seen" else float(value)
-
-
-def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """Returns the number of episodes and, for each of `SUMMARY_METRICS`, the mean and its 95 % interval.
-
-    Intervals are over houses (`sim.app.evaluation.intervals`); `ci95_over` says so, and says when one house leaves only
-    its episodes. `failures` counts the failed lines by cause (`sim.task.failures`), the most frequent first. Episodes
-    whose value is null do not count for that metric. An episode with replicates (`--replicates`) counts once, with
-    their mean; `replicates` then has the means of each replicate and their standard deviation (`replicate_spread`).
-    """
-    lines = list(lines)
-    houses = [str(line["house"]) for line in lines]
-    episodes = [episode_of(line["episode_id"]) for line in lines]
-    summary: dict[str, Any] = {
-        "episodes": len(set(episodes)),
-        "errors": sum(line["end_reason"] == "error" for line in lines),
-        "falls": sum(line["end_reason"] == "fallen" for line in lines),
-        "houses": len(set(houses)),
-        "ci95_over": OVER_ONE_HOUSE if len(set(houses)) == 1 else OVER_HOUSES,
-    }
-    for metric in SUMMARY_METRICS:
-        values = [metric_value(line, metric) for line in lines]
-        value = estimate(values, houses, episodes=episodes, most=1.0 if metric in AT_MOST_ONE else math.inf)
-        summary[metric] = {"mean": value.mean, "ci95": [value.low, value.high]}
-    summary |= _replicates(lines, episodes)
-    causes = Counter(line["failure"] for line in lines if line.get("failure") is not None)
-    summary["failures"] = dict(causes.most_common())
-    return summary
-
-
-def _replicates(lines: Sequence[Mapping[str, Any]], episodes: Sequence[str]) -> dict[str, Any]:
-    """Returns, under `replicates`, the mean of each replicate of all episodes and their spread; {} without any."""
-    numbers = [replicate_number(line["episode_id"]) for line in lines]
-    if len(set(numbers)) < 2:
-        return {}
-    found = {}
-    for metric in ("success", "spl"):
-        values = [metric_value(line, metric) for line in lines]
-        each = [
-            [v for v, of in zip(values, numbers, strict=True) if of == number and v is not None]
-            for number in sorted(set(numbers))
-        ]
-        means = [sum(of_number) / len(of_number) if of_number else None for of_number in each]
-        found[metric] = {"means": means, "std": replicate_spread(values, episodes)}
-    return {"replicates": found}
-
-
-def _as_bytes(line: Mapping[str, Any]) -> bytes:
-    return (json.dumps(line, allow_nan=False) + "\n").encode()
+def _as_bytes(line: Line) -> bytes:
+    return (json.dumps(line.as_json(), allow_nan=False) + "\n").encode()
 
 
 def _write_json(file: Path, content: Mapping[str, Any]) -> None:
@@ -460,22 +358,26 @@ def read_record(file: Path) -> dict[str, Any]:
     return content
 
 
-def read_result_lines(file: Path, line_type: type = ResultLine) -> Lines:
+def read_results(file: Path) -> Lines[EpisodeResult]:
+    """Returns the lines of a run's `results.jsonl`; see `read_result_lines`."""
+    return read_result_lines(file, EpisodeResult)
+
+
+def read_result_lines(file: Path, line_type: type[LineT]) -> Lines[LineT]:
     """Returns the lines of a `results.jsonl`; no line where there is no such file.
 
     Raises:
-        ConfigError: a line before the last is broken, or an episode has two lines.
+        ConfigError: a line before the last is broken or of an older format, or an episode has two lines.
     """
-    found = read_lines(file, line_type, what="Results")
-    if line_type is ResultLine:
-        found = found._replace(values=[_NOT_WRITTEN | line for line in found.values])
+    older = f"results of an older format are read by version {READ_BY}"
+    lines = read_lines(file, line_type, what="Results", older=older)
     first: dict[str, int] = {}
-    for number, line in enumerate(found.values, start=1):
-        before = first.setdefault(line["episode_id"], number)
+    for number, line in enumerate(lines.values, start=1):
+        before = first.setdefault(line.episode_id, number)
         if before != number:
-            same = "the same" if line == found.values[before - 1] else "another"
+            same = "the same" if line == lines.values[before - 1] else "another"
             raise ConfigError(
-                f"Results '{file}', line {number}: episode '{line['episode_id']}' has {same} result in line {before}; "
+                f"Results '{file}', line {number}: episode '{line.episode_id}' has {same} result in line {before}; "
                 "remove one of the lines."
             )
-    return found
+    return lines

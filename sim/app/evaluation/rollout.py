@@ -1,16 +1,16 @@
-"""Runs one episode with one agent and returns its result line."""
+"""Runs one episode with one agent and returns its result."""
 
 from __future__ import annotations
 
-import math
 import reprlib
 import time
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from sim.app.evaluation.own_code import MOST_LETTERS, one_line, place_of, text_of
@@ -21,10 +21,9 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import Action, Agent, Observation, StatesConfidence, StatesTarget
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
-from sim.task.trajectory import FARTHEST_M, trajectory_file, write_trajectory
+from sim.task.result import EpisodeMetrics, RolloutResult, failed_metrics
+from sim.task.trajectory import FARTHEST_M, Recording, trajectory_file, write_trajectory
 
-TIMES = ("wall_time_s", "steps_per_s")
-"""Keys of a result line that differ between two runs of the same episode."""
 OnStep = Callable[[int, Agent, dict[str, Any]], None]
 """Called with the number of the step, the agent and the environment's info after each step."""
 
@@ -39,7 +38,7 @@ def play_episode(
     on_step: OnStep | None = None,
     viewers: Sequence[Viewer] = (),
     name: str | None = None,
-) -> dict[str, Any]:
+) -> RolloutResult:
     """Runs the agent until it stops, the steps are used up, or the physics or the agent fail.
 
     Args:
@@ -53,7 +52,7 @@ def play_episode(
         name: the agent's name in messages; that of its class when None.
 
     Returns:
-        The episode's line of `results.jsonl` without the fields of the run (`agent`, `semantics`, `seed`).
+        The result without the episode and the agent.
 
     Raises:
         AgentError: the agent's `reset` failed; a failure of `act` ends the episode as `error`.
@@ -61,20 +60,19 @@ def play_episode(
     """
     name = type(agent).__name__ if name is None else name
     count_steps(0)
-    observation, info = env.reset(seed=seed, options={"episode": episode})
+    observation, _ = env.reset(seed=seed, options={"episode": episode})
     ask(f"Agent '{name}', reset", lambda: agent.reset(episode.goal, seed if seed_of_agent is None else seed_of_agent))
     for viewer in viewers:
         viewer.begin(env)
     began_s = time.perf_counter()
-    running = _RunningEpisode(env, agent, name, on_step, viewers, observation, info)
+    running = _RunningEpisode(env, agent, name, on_step, viewers, observation)
     while not running.done:
         running.step()
     wall_time_s = time.perf_counter() - began_s
-    line = running.line()
+    result = running.result(wall_time_s)
     for viewer in viewers:
-        viewer.end(line)
-    rate = running.steps / wall_time_s if running.steps else 0.0
-    return line | {"wall_time_s": round(wall_time_s, 3), "steps_per_s": round(rate, 2)}
+        viewer.end(result)
+    return result
 
 
 @dataclass
@@ -87,7 +85,6 @@ class _RunningEpisode:
     on_step: OnStep | None
     viewers: Sequence[Viewer]
     observation: Observation
-    info: dict[str, Any]
     steps: int = 0
     done: bool = False
     error: str | None = None
@@ -132,22 +129,38 @@ class _RunningEpisode:
         scene.task.stops_for(round(x_m, 6), round(y_m, 6))
 
     def _carry_out(self, action: Action) -> None:
-        self.observation, _, terminated, truncated, self.info = self.env.step(action)
+        self.observation, _, terminated, truncated, info = self.env.step(action)
         self.steps += 1
         count_steps(self.steps)
         self.done = terminated or truncated
         if self.on_step is not None:
-            self.on_step(self.steps, self.agent, self.info)
+            self.on_step(self.steps, self.agent, info)
         for viewer in self.viewers:
-            viewer.moved(self.info)
+            viewer.moved(info)
 
-    def line(self) -> dict[str, Any]:
-        """Returns the result line without times."""
-        line = {key: _plain(value) for key, value in self.info.items() if key != "collided"}
-        line.setdefault("first_seen_step", None)  # `info` has it from the first sight on
-        line["stop_confidence"] = self.confidence
-        line |= self.env.scene.task.stop_target()
-        return line if self.error is None else line | broken_metrics(self.error)
+    def result(self, wall_time_s: float) -> RolloutResult:
+        """Returns the result of the episode, which took some seconds."""
+        rate = self.steps / wall_time_s if self.steps else 0.0
+        return rollout_result(
+            self.env.scene.task.metrics(), self.error, self.confidence, round(wall_time_s, 3), round(rate, 2)
+        )
+
+
+def rollout_result(
+    metrics: EpisodeMetrics,
+    error: str | None,
+    stop_confidence: float | None = None,
+    wall_time_s: float = 0.0,
+    steps_per_s: float = 0.0,
+) -> RolloutResult:
+    """Returns the result of an episode from its metrics; with an error it is a failure."""
+    return RolloutResult(
+        **msgspec.structs.asdict(metrics if error is None else failed_metrics(metrics)),
+        stop_confidence=stop_confidence,
+        wall_time_s=wall_time_s,
+        steps_per_s=steps_per_s,
+        error=None if error is None else one_line(error, 2 * MOST_LETTERS),
+    )
 
 
 def ask(where: str, call: Callable[[], Any]) -> Any:
@@ -227,36 +240,12 @@ def target_of(agent: Agent, where: str) -> tuple[float, float] | None:
     return x_m, y_m
 
 
-def record_episode(env: ObjectNavEnv, run: Path, line: Mapping[str, Any], about: Mapping[str, Any]) -> None:
-    """Writes the trajectory of the episode that has just ended.
-
-    Args:
-        env: the environment of the episode.
-        run: folder of the run; the file goes to `trajectories/` in it.
-        line: the episode's result line, with `episode_id`.
-        about: further metadata of the file; JSON types.
+def record_episode(env: ObjectNavEnv, run: Path, recording: Recording) -> None:
+    """Writes the trajectory of the episode that has just ended to `trajectories/` in the folder of a run.
 
     Raises:
         ConfigError: the folder is not writable.
     """
-    start = env.episode.start
-    pose = {"x_m": start.x_m, "y_m": start.y_m, "yaw_rad": start.yaw_rad, "floor_z_m": start.floor_z_m}
-    scores = {key: value for key, value in line.items() if key not in TIMES}
-    trajectory = env.scene.task.trajectory()
-    trajectory = replace(trajectory, success=bool(line["success"]), end_reason=line["end_reason"])
-    write_trajectory(trajectory_file(run, line["episode_id"]), trajectory, {**about, "start": pose, "scores": scores})
-
-
-def broken_metrics(error: str) -> dict[str, Any]:
-    """Returns the entries of a result line for an episode that ended with an error."""
-    zero = {"success": 0.0, "spl": 0.0, "soft_spl": 0.0, "failure": "misc"}
-    return zero | {"end_reason": "error", "error": one_line(error, 2 * MOST_LETTERS)}
-
-
-def _plain(value: Any) -> Any:
-    """Returns a JSON type, with null for a number that is not finite."""
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
+    result, trajectory = recording.scores, env.scene.task.trajectory()
+    trajectory = replace(trajectory, success=bool(result.success), end_reason=result.end_reason)
+    write_trajectory(trajectory_file(run, result.episode_id), trajectory, recording)

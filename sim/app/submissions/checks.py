@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import msgspec
 
-from sim.app.submissions.contents import Entry, Inputs, Result, Submission
+from sim.app.submissions.contents import Entry, Inputs, Submission
 from sim.app.submissions.setting import Setting
 from sim.core.errors import ConfigError
 from sim.core.interface import TRUE_IMAGES, Action
@@ -20,6 +20,7 @@ from sim.episodes.replicates import find_episode, replicate_number, with_replica
 from sim.episodes.splits import Split
 from sim.robot.config import PHYSICS_VERSION
 from sim.task import metrics
+from sim.task.result import EpisodeResult
 
 Truth = Literal["none", "noisy", "yes"]
 """Whether ground truth reached the agent: `noisy` is the true segmentation with the errors of a simulated detector."""
@@ -149,7 +150,7 @@ def _require_entry(entry: Entry, known: Episode, submission: Submission, setting
         if getattr(result, name) != value:
             of = "the split" if name in ("house", "goal") else "the manifest"
             raise ConfigError(f"{where}: its result has {name} {getattr(result, name)!r}, {of} has {value!r}.")
-    if result.end_reason == "error":
+    if result.is_error:
         if result.success or result.spl or result.soft_spl:
             raise ConfigError(f"{where} ended with an error and cannot be a success.")
         if actions:
@@ -164,7 +165,7 @@ def _require_entry(entry: Entry, known: Episode, submission: Submission, setting
     _require_coherent(result, actions, where)
 
 
-def _require_coherent(result: Result, actions: str, where: str) -> None:
+def _require_coherent(result: EpisodeResult, actions: str, where: str) -> None:
     """Raises ConfigError where the numbers of a result contradict each other."""
     stopped = actions.endswith(STOP)
     if stopped != (result.end_reason == "stop"):
@@ -174,7 +175,8 @@ def _require_coherent(result: Result, actions: str, where: str) -> None:
         raise ConfigError(f"{where} is a success without STOP.")
     if bool(result.success) != (result.failure is None):
         raise ConfigError(f"{where} has success {result.success:g} and the cause of failure '{result.failure}'.")
-    wanted = metrics.spl(bool(result.success), result.shortest_path, result.path_length or 0.0)
-    spl = result.spl or 0.0
-    if not abs(spl - wanted) <= ROUNDING:
-        raise ConfigError(f"{where} has spl {spl:.6g}; its success, shortest_path and path_length give {wanted:.6g}.")
+    wanted = metrics.spl(bool(result.success), result.shortest_path, result.path_length)
+    if not abs(result.spl - wanted) <= ROUNDING:
+        raise ConfigError(
+            f"{where} has spl {result.spl:.6g}; its success, shortest_path and path_length give {wanted:.6g}."
+        )

@@ -15,10 +15,10 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta
 
-from sim.app.evaluation.results import ResultLine
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
 from sim.core.reading import Count, Metres, Name, Seed, parse_json, read_bytes, read_gzip_json
+from sim.task.result import EpisodeResult
 
 FORMAT: Literal["stubborn-submission-1"] = "stubborn-submission-1"
 SUFFIX = ".json.gz"
@@ -79,20 +79,10 @@ class Manifest(msgspec.Struct, forbid_unknown_fields=True):
     """Packages, processor, OpenGL renderer and code with which the run was made."""
 
 
-class Result(ResultLine):
-    """The result line of an episode; fields that no check needs are dropped."""
-
-    failure: Name | None = None
-    stop_target_xy_m: tuple[Metres, Metres] | None = None
-    touches: int | None = None
-    uses_ground_truth: bool = False
-    isolated: bool = False
-
-
 class Entry(msgspec.Struct, forbid_unknown_fields=True):
     """One episode."""
 
-    result: Result
+    result: EpisodeResult
     actions: Actions
     """A digit for each action (`sim.core.interface.Action`)."""
     places_m: Annotated[tuple[tuple[Metres, Metres], ...], Meta(max_length=MAX_ACTIONS)] = ()
@@ -130,7 +120,7 @@ def read_submission(file: Path) -> Submission:
         ConfigError: the file cannot be read, is damaged or too large, has another format, or has an episode twice.
     """
     read_bytes(file, what="Submission", most=MAX_FILE_BYTES)  # refuses a large file before it is decompressed
-    found: Submission = read_gzip_json(file, Submission, what="Submission")
+    found: Submission = read_gzip_json(file, Submission, what="Submission", strict=False)  # 0.2.0 writes 3.0 steps
     counts = Counter(entry.result.episode_id for entry in found.episodes)
     twice = next((name for name, count in counts.items() if count > 1), None)
     if twice is not None:

@@ -14,17 +14,15 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-import msgspec
-
-from sim.app.analysis.metrics import COLLISIONS, SPL, SUCCESS, episodes_of
-from sim.app.analysis.tables import ResultTable
+from sim.app.analysis.metrics import COLLISIONS, SPL, SUCCESS, episodes_of, mean_cell
+from sim.app.analysis.tables import Cell, ResultTable
 from sim.app.submissions.checks import truth_of
 from sim.app.submissions.contents import SUFFIX, Submission
 from sim.app.submissions.report import Report
 from sim.core.errors import ConfigError
 from sim.robot.config import PHYSICS_VERSION
+from sim.task.result import EpisodeResult
 
 LEAST_EPISODES = 50
 """Least number of episodes of a row; replicates do not count. In 20, the interval of a success of 65 % is 42 points."""
@@ -120,7 +118,7 @@ def csv_of(rows: Sequence[Row]) -> str:
     writer.writerow(CSV_COLUMNS)
     for row in sorted((each for each in rows if not each.refusal), key=lambda each: (_split(each), _rank(each))):
         manifest, lines = row.submission.manifest, results_of(row.submission)
-        estimates = [metric.cell(lines).estimate for metric in (SUCCESS, SPL, COLLISIONS)]
+        estimates = [mean_cell(metric, lines).estimate for metric in (SUCCESS, SPL, COLLISIONS)]
         numbers = (n for each in estimates for n in (each.mean, each.low, each.high))
         writer.writerow([
             *_split(row), manifest.name, "; ".join(manifest.authors), " ".join(manifest.links), manifest.inputs.agent,
@@ -130,12 +128,12 @@ def csv_of(rows: Sequence[Row]) -> str:
     return stream.getvalue()
 
 
-def results_of(submission: Submission) -> list[dict[str, Any]]:
-    """Returns the result lines of a submission."""
-    return [msgspec.structs.asdict(entry.result) for entry in submission.episodes]
+def results_of(submission: Submission) -> list[EpisodeResult]:
+    """Returns the results of a submission."""
+    return [entry.result for entry in submission.episodes]
 
 
-def _cells(row: Row) -> list[Any]:
+def _cells(row: Row) -> list[Cell | str]:
     manifest, lines = row.submission.manifest, results_of(row.submission)
     return [
         plain(", ".join(manifest.authors)),
@@ -143,7 +141,7 @@ def _cells(row: Row) -> list[Any]:
         "yes" if manifest.inputs.isolated else "no",
         plain(manifest.inputs.noise),
         str(row.episodes),
-        *(metric.cell(lines) for metric in (SUCCESS, SPL, COLLISIONS)),
+        *(mean_cell(metric, lines) for metric in (SUCCESS, SPL, COLLISIONS)),
         _verified(row),
     ]
 
@@ -167,7 +165,7 @@ def _name(row: Row) -> str:
 
 def _rank(row: Row) -> tuple[int, str, float, str]:
     inputs, lines = row.submission.manifest.inputs, results_of(row.submission)
-    success = sum(float(line["success"]) for line in lines) / len(lines)
+    success = sum(result.success for result in lines) / len(lines)
     return ("none", "noisy", "yes").index(truth_of(inputs)), inputs.noise, -success, row.file.name
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
 from typing import Any
@@ -11,15 +11,16 @@ from typing import Any
 import msgspec
 from numpy.typing import NDArray
 
-from sim.app.analysis.comparison import Line, Run
+from sim.app.analysis.comparison import Run
 from sim.app.analysis.report.facts import command_of
 from sim.app.options import RunOptions
-from sim.app.submissions.contents import FORMAT, PLACE_EVERY, Entry, Manifest, Result, Submission
+from sim.app.submissions.contents import FORMAT, PLACE_EVERY, Entry, Manifest, Submission
 from sim.app.submissions.setting import setting_of
 from sim.core.errors import ConfigError
 from sim.core.option_types import meanings
 from sim.core.reading import convert
 from sim.robot.config import PHYSICS_VERSION
+from sim.task.result import EpisodeResult
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 
 
@@ -46,16 +47,16 @@ def pack(run: Run, about: About) -> Submission:
             f"'{run.path}' is a run in one house (--house); a submission needs a split, which `stubborn episodes "
             "--house FILE --out FOLDER` makes of it."
         )
-    physics = config.get("physics", 1)  # runs of the first version do not have it
+    physics = config.get("physics")
     if physics != PHYSICS_VERSION:
         raise ConfigError(
             f"'{run.path}' was made with physics of version {physics}, this is version {PHYSICS_VERSION}; run it "
             f"again: {recording(run)}"
         )
-    if not run.lines:
+    if not run.results:
         raise ConfigError(f"'{run.path}' holds no episode.")
     setting = setting_of(config, where=f"Run '{run.path}'")
-    first = next(iter(run.lines.values()))
+    first = next(iter(run.results.values()))
     manifest = {
         "name": about.name,
         "authors": list(about.authors),
@@ -69,8 +70,8 @@ def pack(run: Run, about: About) -> Submission:
             "semantics": run.recorded("semantics"),
             "sensors": run.recorded("config")["sensors"],
             "noise": setting.noise_name,
-            "uses_ground_truth": first.get("uses_ground_truth", False),
-            "isolated": first.get("isolated", False),
+            "uses_ground_truth": first.uses_ground_truth,
+            "isolated": first.isolated,
         },
         "versions": run.recorded("versions"),
     }
@@ -100,11 +101,10 @@ def recording(run: Run) -> str:
 
 
 def _entries(run: Run) -> Iterator[Entry]:
-    """Yields the episodes of a run in the order of its lines."""
-    for episode_id, line in run.lines.items():
-        result = convert(dict(line), Result, where=f"'{run.path}', episode '{episode_id}'")
+    """Yields the episodes of a run in the order of its results."""
+    for episode_id, result in run.results.items():
         file = trajectory_file(run.path, episode_id)
-        if line["end_reason"] == "error":
+        if result.is_error:
             yield Entry(result, "")
             continue
         if not file.is_file():
@@ -113,17 +113,19 @@ def _entries(run: Run) -> Iterator[Entry]:
                 f"Record them: {recording(run)}"
             )
         trajectory = read_trajectory(file)
-        _require_of(trajectory, line, f"'{file}'")
+        _require_of(trajectory, result, f"'{file}'")
         yield Entry(result, "".join(map(str, trajectory.actions.tolist())), places_of(trajectory.positions_m[1:]))
 
 
-def _require_of(trajectory: Trajectory, line: Line, where: str) -> None:
-    """Raises ConfigError where a trajectory is not that of a result line."""
-    scores: Mapping[str, Any] = trajectory.about.get("scores") or {}
+def _require_of(trajectory: Trajectory, result: EpisodeResult, where: str) -> None:
+    """Raises ConfigError where a trajectory is not that of a result."""
+    scores = None if trajectory.about is None else trajectory.about.scores
     for key in ("num_steps", "success", "path_length"):
-        recorded = trajectory.num_steps if key == "num_steps" else scores.get(key)
-        if recorded != line.get(key):
-            raise ConfigError(f"{where} is of another result than its line: {key} is {recorded}, not {line.get(key)}.")
+        recorded = trajectory.num_steps if key == "num_steps" else getattr(scores, key, None)
+        if recorded != getattr(result, key):
+            raise ConfigError(
+                f"{where} is of another result than its line: {key} is {recorded}, not {getattr(result, key)}."
+            )
 
 
 def places_of(positions_m: NDArray[Any]) -> tuple[tuple[float, float], ...]:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from gymnasium.utils.seeding import np_random
@@ -24,6 +23,7 @@ from sim.episodes.splits import Split, load_split
 from sim.robot.conditions import Conditions
 from sim.sensors.noise import SensorNoise, noise_from_dict
 from sim.task.objectnav import Task
+from sim.task.result import EpisodeMetrics
 from sim.world.world import World
 
 Look = Callable[[], NDArray[np.uint8]]
@@ -45,8 +45,8 @@ class Replay:
     """An episode whose actions were replayed."""
 
     episode_id: str
-    metrics: Mapping[str, Any]
-    """`Task.metrics` at the end, and what they say about the place for which the agent stopped."""
+    metrics: EpisodeMetrics | None
+    """At the end; None: the actions could not be replayed."""
     places_m: tuple[tuple[float, float], ...]
     """See `Entry.places_m`."""
     framed: bool
@@ -117,7 +117,7 @@ def _replay(
     began_s: float,
 ) -> Replay:
     """Replays one episode; an error of the episode or the physics is its fault."""
-    fault, metrics, places = "", dict[str, Any](), ()
+    fault, metrics, places = "", None, ()
     try:
         world.reset(episode.start, conditions)
         task.begin(episode.goal, episode.start)
@@ -125,7 +125,7 @@ def _replay(
             task.look(look())
         positions = np.array(list(_positions(world, task, entry, look))).reshape(-1, 2)
         places = places_of(positions)
-        metrics = task.metrics() | task.stop_target()
+        metrics = task.metrics()
         if not task.done:
             fault = f"the episode has not ended after its {len(entry.actions)} actions"
     except (EpisodeError, PhysicsError) as error:

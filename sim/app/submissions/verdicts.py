@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 from sim.app.submissions.contents import PLACE_EVERY, Entry
 from sim.app.submissions.replay import Replay
+from sim.task.result import EpisodeMetrics
 
 Judgement = Literal["equal", "within tolerance", "different", "error"]
 TOLERANCE_M = 0.01
@@ -53,10 +54,10 @@ def judge(entry: Entry, replay: Replay | None, *, tolerance_m: float = TOLERANCE
     episode_id = entry.result.episode_id
     if replay is None:
         return Verdict(episode_id, "error", False, "it ended with an error: a failure, which is not replayed", 0.0)
-    if replay.fault:
+    if replay.fault or replay.metrics is None:
         text = f"{replay.fault}. The result does not come from these actions in this episode"
         return Verdict(episode_id, "different", replay.framed, text, math.inf)
-    differing, largest, near = _differences(entry, replay, tolerance_m)
+    differing, largest, near = _differences(entry, replay.metrics, replay.framed, tolerance_m)
     if differing:
         text = f"{'; '.join(differing)}. {_meaning(entry, replay, tolerance_m)}"
         return Verdict(episode_id, "different", replay.framed, text, largest)
@@ -65,17 +66,19 @@ def judge(entry: Entry, replay: Replay | None, *, tolerance_m: float = TOLERANCE
     return Verdict(episode_id, "equal", replay.framed, "", 0.0)
 
 
-def _differences(entry: Entry, replay: Replay, tolerance_m: float) -> tuple[list[str], float, list[str]]:
+def _differences(
+    entry: Entry, metrics: EpisodeMetrics, framed: bool, tolerance_m: float
+) -> tuple[list[str], float, list[str]]:
     """Returns the differences beyond the tolerance, the largest difference in metres, and those within it."""
     differing, near, largest = [], [], 0.0
-    shortest_m = max(_number(replay.metrics["shortest_path"]), LEAST_PATH_M)
+    shortest_m = max(metrics.shortest_path or 0.0, LEAST_PATH_M)
     allowed = dict.fromkeys(EXACT, 0.0) | dict.fromkeys(LENGTHS, tolerance_m)
     allowed |= dict.fromkeys(SHARES, tolerance_m / shortest_m)
-    if replay.framed:
-        area = AREA_OF_RENDERER * _number(replay.metrics[SEEN_AREA])
+    if framed:
+        area = AREA_OF_RENDERER * (metrics.area_seen_m2 or 0.0)
         allowed |= dict.fromkeys(SEEN_EXACT, 0.0) | {SEEN_STEPS: STEPS_OF_RENDERER, SEEN_AREA: area}
     for name, most in allowed.items():
-        there, here = getattr(entry.result, name), replay.metrics[name]
+        there, here = getattr(entry.result, name), getattr(metrics, name)
         off = _off(there, here)
         if name in LENGTHS and math.isfinite(off):
             largest = max(largest, off)
@@ -101,7 +104,7 @@ def _meaning(entry: Entry, replay: Replay, tolerance_m: float) -> str:
     return "The recorded path has another number of places than the actions: one of them was changed"
 
 
-def _off(there: Any, here: Any) -> float:
+def _off(there: object, here: object) -> float:
     """Returns how far apart two values are; infinity where one is missing or they are no numbers."""
     if isinstance(there, (bool, int, float)) and isinstance(here, (bool, int, float)):
         off = abs(float(there) - float(here))
@@ -109,9 +112,5 @@ def _off(there: Any, here: Any) -> float:
     return 0.0 if there == here else math.inf
 
 
-def _number(value: Any) -> float:
-    return float(value) if isinstance(value, (int, float)) and math.isfinite(value) else 0.0
-
-
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     return f"{value:.4f}".rstrip("0").rstrip(".") if isinstance(value, float) else str(value)

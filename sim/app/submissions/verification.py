@@ -111,7 +111,7 @@ def verdicts(checked: Checked, choices: Choices) -> Iterator[tuple[Verdict, floa
     framed = drawn(entries, choices)
     groups: dict[str, list[tuple[Entry, bool]]] = {}
     for entry in entries:
-        if entry.result.end_reason == "error":
+        if entry.result.is_error:
             yield judge(entry, None), 0.0
         else:
             episode_id = entry.result.episode_id
@@ -125,7 +125,7 @@ def verdicts(checked: Checked, choices: Choices) -> Iterator[tuple[Verdict, floa
 
 def drawn(entries: Sequence[Entry], choices: Choices) -> set[str]:
     """Returns the ids of the episodes whose frames are rendered."""
-    ids = sorted(entry.result.episode_id for entry in entries if entry.result.end_reason != "error")
+    ids = sorted(entry.result.episode_id for entry in entries if not entry.result.is_error)
     count = min(len(ids), math.ceil(choices.frames * len(ids)))
     rng = np.random.default_rng(choices.draw_seed)
     return {ids[number] for number in rng.choice(len(ids), count, replace=False)} if count else set()

@@ -25,6 +25,7 @@ from sim.env.scene import Scene
 from sim.gl import mujoco
 from sim.robot.body import PREFIX, ROBOT_GROUP
 from sim.task.explanations import ACTION_WORDS, in_words
+from sim.task.result import RolloutResult
 
 ACTION_S = 0.3
 """Display time of an action; in the simulation it takes up to two seconds."""
@@ -95,10 +96,10 @@ class LiveView:
             time.sleep(1.0 / FRAMES_PER_S)
         self._before = after
 
-    def end(self, line: Mapping[str, Any]) -> None:
+    def end(self, result: RolloutResult) -> None:
         """Shows the outcome for a second."""
         if self._is_open:
-            outcome = "found" if line["success"] else f"not found ({line.get('failure') or line.get('end_reason')})"
+            outcome = "found" if result.success else f"not found ({result.failure or result.end_reason})"
             place = mujoco.mjtGridPos.mjGRID_TOPLEFT.value
             words = (mujoco.mjtFontScale.mjFONTSCALE_100.value, place, in_words(self._env.episode.goal), outcome)
             self._handle.set_texts(words)

@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import IO, Any
 
 import cv2
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -40,6 +41,7 @@ from sim.core.interface import SCAN, Action
 from sim.env.objectnav import ObjectNavEnv
 from sim.sensors.scan import ScanSensor
 from sim.sensors.sensor import SensorContext
+from sim.task.result import RolloutResult
 from sim.world.freespace import FreeSpace
 
 FOLDER = "mcap"
@@ -149,10 +151,10 @@ class McapLog:
     def moved(self, info: Mapping[str, Any]) -> None:
         """Does nothing: the next decision shows the outcome."""
 
-    def end(self, line: Mapping[str, Any]) -> None:
+    def end(self, result: RolloutResult) -> None:
         """Writes the result and completes the file."""
         assert self._stream is not None
-        self._out.describe("result", line)
+        self._out.describe("result", msgspec.to_builtins(result.without_times()))
         self._out.finish()
         self._stream.close()
         self._stream = None

@@ -41,6 +41,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40, CameraModel, ConfigError
 from sim.env.objectnav import ObjectNavEnv
 from sim.task.explanations import ACTION_WORDS, in_words
+from sim.task.result import RolloutResult
 
 FOLDER = "rerun"
 PORT = 9876
@@ -135,10 +136,10 @@ class RerunLog:
         if info["collided"]:
             self._text("collision", level="WARN")
 
-    def end(self, line: Mapping[str, Any]) -> None:
+    def end(self, result: RolloutResult) -> None:
         """Logs the outcome of the episode and completes the file."""
-        outcome = "found" if line["success"] else f"not found: {line.get('failure') or line.get('end_reason')}"
-        self._text(f"{outcome} after {line['num_steps']} steps", level="INFO" if line["success"] else "ERROR")
+        outcome = "found" if result.success else f"not found: {result.failure or result.end_reason}"
+        self._text(f"{outcome} after {result.num_steps} steps", level="INFO" if result.success else "ERROR")
         self._disconnect()
         if self._part is not None and self._run is not None:
             self._part.replace(rerun_file(self._run, self._env.episode.episode_id))

@@ -31,6 +31,7 @@ from sim.core.reading import reason_of
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.scene import Scene
 from sim.task.explanations import explain_end
+from sim.task.result import RolloutResult
 
 FOLDER = "videos"
 FRAMES_PER_S = 5.0
@@ -190,7 +191,7 @@ class VideoRecorder:
         self._composer.add_outcome(self._frame, info)
         self._writer.write(self._frame)
 
-    def end(self, line: Mapping[str, Any]) -> None:
+    def end(self, result: RolloutResult) -> None:
         """Holds the last frame with an explanation of the outcome, and closes the file."""
         writer, self._writer = self._writer, None
         assert writer is not None
@@ -200,7 +201,7 @@ class VideoRecorder:
         last = self._frame.copy()
         nearest_m = self._env.scene.task.trajectory().nearest_instance_m
         rule, detects = self._env.success_rule, self._seen is not None
-        self._composer.add_end(last, explain_end(line, self._env.episode.goal, rule, nearest_m, detects=detects))
+        self._composer.add_end(last, explain_end(result, self._env.episode.goal, rule, nearest_m, detects=detects))
         for _ in range(END_FRAMES):
             writer.write(last)
         self._frame = None

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.interface import Action, Observation, Perceived
+from sim.task.result import RolloutResult
 
 if TYPE_CHECKING:  # only for the annotation
     from sim.env.objectnav import ObjectNavEnv
@@ -56,8 +57,8 @@ class Viewer(Protocol):
         """Called after the environment has executed the action; `info` is that of `env.step`."""
         ...
 
-    def end(self, line: Mapping[str, Any]) -> None:
-        """Called at the end of the episode; `line` holds its metrics, and `error` if it failed."""
+    def end(self, result: RolloutResult) -> None:
+        """Called at the end of the episode, also of one that failed."""
         ...
 
     def close(self) -> None:

@@ -24,6 +24,7 @@ from sim.core.option_types import meanings
 from sim.core.reading import convert
 from sim.episodes.splits import HOUSE_SUFFIXES, load_split, one_house, shipped_splits
 from sim.houses.labels import read_labels
+from sim.task.result import EpisodeResult
 
 NOT_OFFERED = ("test", "large-test", "hazards-test", "contact-test", "contact-heldout")
 """Splits that are kept for a last measurement; the page offers them only if `--split` names them."""
@@ -99,12 +100,12 @@ class Choices:
         """
         return self._request(convert(message, _Start, where="The message"))
 
-    def again(self, record: Mapping[str, object], line: Mapping[str, object], driver: Driver) -> EpisodeRequest:
+    def again(self, record: Mapping[str, object], result: EpisodeResult, driver: Driver) -> EpisodeRequest:
         """Returns a request for an episode of a finished run, with the agent, seed and settings of that run.
 
         Args:
             record: the run's `config.json`.
-            line: the episode's result line.
+            result: of the episode.
             driver: the agent or a person, who drives the robot first.
 
         Raises:
@@ -114,12 +115,12 @@ class Choices:
         file = record.get("house")
         asked = {
             "split": str(Path(str(file)).absolute()) if file else _split_name(str(record.get("split"))),
-            "house": line["house"],
-            "goal": line["goal"],
+            "house": result.house,
+            "goal": result.goal,
             "agent": "stubborn" if by_person else record.get("agent"),
             "semantics": record.get("semantics"),
             "explorer": record.get("explorer") or "",
-            "episode": line["episode_id"],
+            "episode": result.episode_id,
             "driver": driver,
         }
         request = self._request(convert(asked, _Start, where="The run's config.json"))

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+
+import msgspec
 
 from sim.app.composition.driven import record_driven, setup_of_person
 from sim.app.composition.record import record_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.results import RunDirectory
+from sim.app.evaluation.summary import summarise
 from sim.app.options import RunOptions
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
+from sim.task.result import EpisodeResult, RolloutResult
 
 
 class DrivenRuns:
@@ -31,7 +33,7 @@ class DrivenRuns:
         setup: Setup,
         env: ObjectNavEnv,
         episode: Episode,
-        metrics: Mapping[str, Any],
+        result: RolloutResult,
         *,
         person_steps: int,
         hint_steps: int,
@@ -42,14 +44,14 @@ class DrivenRuns:
             setup: the setup of the agent, which may have driven a part of the episode.
             env: the environment of the episode.
             episode: the episode.
-            metrics: the entries that `play_episode` returned.
+            result: what `play_episode` returned.
             person_steps: number of actions that a person chose.
             hint_steps: number of these actions for which a hint was shown.
 
         Raises:
             ConfigError: the folder is not writable.
         """
-        with_agent = person_steps < metrics["num_steps"]
+        with_agent = person_steps < result.num_steps
         person = setup_of_person(setup, None, with_agent=with_agent)
         run = self._run
         if run is None or person.options != self._options or episode.episode_id in self._done:
@@ -60,12 +62,14 @@ class DrivenRuns:
         person = replace(person, options=replace(person.options, out=run))
         split = env.split.identity
         content = record_of(person, split)
-        directory = RunDirectory(run, content)
+        directory = RunDirectory(run, content, EpisodeResult)
         try:
-            line = record_driven(person, env, episode, metrics, content)
-            counts = {"person_steps": person_steps, "hint_steps": hint_steps}
-            directory.append(line | counts | {"other_driver": setup.options.agent if with_agent else None})
-            directory.write_summary({"split": split})
+            driven = record_driven(person, env, episode, result, content["versions"])
+            other = setup.options.agent if with_agent else None
+            directory.append(
+                msgspec.structs.replace(driven, person_steps=person_steps, hint_steps=hint_steps, other_driver=other)
+            )
+            directory.write_summary({"split": split} | summarise(directory.lines))
         finally:
             directory.discard_if_empty()
             directory.close()

@@ -11,16 +11,16 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
-from sim.app.analysis.comparison import Line, Run, differences_table, require_same_episodes
-from sim.app.analysis.metrics import episodes_of
-from sim.app.analysis.report.figures import METRICS
+from sim.app.analysis.comparison import Run, differences_table, require_same_episodes
+from sim.app.analysis.metrics import difference_cell, episodes_of, mean_cell
 from sim.app.analysis.tables import Cell, ResultTable
 from sim.app.evaluation.last_view import picture_file
-from sim.app.evaluation.results import read_record, read_result_lines
+from sim.app.evaluation.results import read_record, read_results
 from sim.app.viewers.video import video_file
 from sim.core import invocation
 from sim.core.errors import ConfigError
 from sim.core.reading import open_plain, printable
+from sim.task.result import METRICS, EpisodeResult
 
 MOST_RUNS = 100
 """Largest number of runs that are listed, the newest ones."""
@@ -58,8 +58,8 @@ class Runs:
         """
         run = self.run(name)
         return [
-            {key: line.get(key) for key in _COLUMNS} | {"video": self._there(video_file(run.path, each))}
-            for each, line in run.lines.items()
+            {key: getattr(result, key) for key in _COLUMNS} | {"video": self._there(video_file(run.path, each))}
+            for each, result in run.results.items()
         ]
 
     def run(self, name: str) -> Run:
@@ -70,16 +70,16 @@ class Runs:
         """
         return self._content(self._folder_of(name))
 
-    def line(self, name: str, episode_id: str) -> tuple[Run, Line]:
-        """Returns a run and the result line of one of its episodes.
+    def result(self, name: str, episode_id: str) -> tuple[Run, EpisodeResult]:
+        """Returns a run and the result of one of its episodes.
 
         Raises:
             ConfigError: there is no such run or episode.
         """
         run = self.run(name)
-        if episode_id not in run.lines:
+        if episode_id not in run.results:
             raise ConfigError(f"Run '{name}' has no episode '{episode_id}'.")
-        return run, run.lines[episode_id]
+        return run, run.results[episode_id]
 
     def video(self, name: str, episode_id: str) -> BinaryIO:
         """Returns the video of an episode, open for reading.
@@ -88,7 +88,7 @@ class Runs:
             ConfigError: it does not exist.
         """
         run = self.run(name)
-        if episode_id in run.lines:
+        if episode_id in run.results:
             file = video_file(run.path, episode_id)
             if self._there(file):
                 return self._open(file)
@@ -106,7 +106,7 @@ class Runs:
             ConfigError: no episode of the run has such a file.
         """
         run = self.run(name)
-        for episode_id in run.lines if kind in _FILES else ():
+        for episode_id in run.results if kind in _FILES else ():
             file = _FILES[kind](run.path, episode_id)
             if file.name == file_name and self._there(file):
                 return self._open(file)
@@ -131,10 +131,10 @@ class Runs:
         """
         a, b = self.run(first), self.run(second)
         common = require_same_episodes(a, b)
-        lines = [[of.lines[each] for each in common] for of in (a, b)]
+        lines = [[of.results[each] for each in common] for of in (a, b)]
         rows = [
-            (metric.title, [metric.cell(lines[0]), metric.cell(lines[1]), metric.difference(lines[0], lines[1])])
-            for metric in METRICS
+            (metric.title, [mean_cell(metric, lines[0]), mean_cell(metric, lines[1]), difference_cell(metric, *lines)])
+            for metric in METRICS.values()
         ]
         title = f"B - A, paired over {len(set(episodes_of(lines[0])))} episodes of both"
         means = ResultTable("comparison", title, ("metric", f"A: {first}", f"B: {second}", "B - A"), rows)
@@ -170,16 +170,16 @@ class Runs:
             run = self._content(folder)
         except ConfigError as error:
             return about | {"broken": printable(str(error))}
-        lines, record = run.lines.values(), run.config
+        lines, record = run.results.values(), run.config
         return about | {
             "agent": record.get("agent"),
             "semantics": record.get("semantics"),
             "explorer": record.get("explorer"),
             "split": (record.get("split_identity") or {}).get("name"),
             "episodes": len(lines),
-            "found": sum(bool(line.get("success")) for line in lines),
-            "errors": sum(line.get("end_reason") == "error" for line in lines),
-            "spl": sum(float(line.get("spl") or 0.0) for line in lines) / max(1, len(lines)),
+            "found": sum(bool(result.success) for result in lines),
+            "errors": sum(result.is_error for result in lines),
+            "spl": sum(result.spl for result in lines) / max(1, len(lines)),
             "report": self._there(folder / REPORT),
         }
 
@@ -196,8 +196,7 @@ class Runs:
         known = self._read.get(folder)
         if known is not None and known.state == state:
             return known.run
-        lines = read_result_lines(results).values
-        run = Run(folder, read_record(config), {line["episode_id"]: line for line in lines})
+        run = Run(folder, read_record(config), {result.episode_id: result for result in read_results(results).values})
         self._read[folder] = _Read(state, run)
         while len(self._read) > MOST_RUNS:
             self._read.pop(next(iter(self._read)), None)

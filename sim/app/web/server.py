@@ -230,8 +230,8 @@ def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -
     def make_request(message: Mapping[str, Any]) -> EpisodeRequest:
         if message.get("do") != "again":
             return choices.request(message)
-        run, line = runs.line(str(message.get("run")), str(message.get("episode")))
-        return choices.again(run.config, line, "person" if message.get("driver") == "person" else "agent")
+        run, result = runs.result(str(message.get("run")), str(message.get("episode")))
+        return choices.again(run.config, result, "person" if message.get("driver") == "person" else "agent")
 
     @contextlib.asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:

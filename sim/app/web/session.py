@@ -28,6 +28,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.seeds import drawing_generator, episode_seeds
 from sim.task.explanations import ACTION_WORDS, explain_end, in_words, with_article
+from sim.task.result import RolloutResult
 
 _NAMED_DIFFERENCES = 4
 
@@ -128,7 +129,7 @@ class Session:
         watcher = _Watcher(begun, shared)
         options = request.options
         seeds = episode_seeds(options.seed, episode.episode_id, options.seed_key)
-        line = play_episode(
+        result = play_episode(
             parts.env,
             shared,
             episode,
@@ -140,17 +141,17 @@ class Session:
         shared.show_end()
         nearest_m = parts.env.scene.task.trajectory().nearest_instance_m
         detects = parts.seen is not None and not shared.stopped_by_person
-        outcome = explain_end(line, request.goal, parts.env.success_rule, nearest_m, detects=detects)
-        recorded = self._record(made, episode, line, shared)
+        outcome = explain_end(result, request.goal, parts.env.success_rule, nearest_m, detects=detects)
+        recorded = self._record(made, episode, result, shared)
         self._show_state(request, "ended", outcome.headline, outcome=asdict(outcome) | {"recorded": recorded}, **about)
 
-    def _record(self, made: _Made, episode: Episode, line: Mapping[str, Any], shared: SharedAgent) -> str:
+    def _record(self, made: _Made, episode: Episode, result: RolloutResult, shared: SharedAgent) -> str:
         """Records an episode in which a person drove; returns a sentence about it, "" where no person did."""
-        if shared.person_steps == 0 or line["end_reason"] == "error":
+        if shared.person_steps == 0 or result.is_error:
             return ""
         counts = {"person_steps": shared.person_steps, "hint_steps": shared.hint_steps}
         try:
-            folder = self._driven.write(made.setup, made.parts.env, episode, line, **counts)
+            folder = self._driven.write(made.setup, made.parts.env, episode, result, **counts)
         except (*USAGE_ERRORS, OSError) as error:
             return f"It could not be recorded: {error}"
         return f"Recorded in {folder}."
@@ -227,7 +228,7 @@ class SharedAgent:
     def _show(self, observation: Observation, advised: Action | None) -> None:
         env, painter = self._parts.env, self._parts.painter
         images, metrics = env.truth_images, env.scene.task.metrics()
-        step, action = metrics["num_steps"], advised or Action.STOP
+        step, action = metrics.num_steps, advised or Action.STOP
         moment = Moment(step=step, observation=observation, images=images, action=action)
         names = self._display.wanted()
         if advised is None:  # after the end, the agent's pictures are those of the previous frame
@@ -243,10 +244,10 @@ class SharedAgent:
             "hint": None if hint is None else {"action": int(hint), "words": ACTION_WORDS[hint]},
             "doing": painter.words() if painter is not None and not self.stopped_by_person else "",
             "collided": bool(self.info.get("collided", False)),
-            "collisions": int(metrics["collisions"]),
-            "driven_m": float(metrics["path_length"]),
-            "left_m": None if metrics["distance_to_goal"] is None else float(metrics["distance_to_goal"]),
-            "shortest_m": None if metrics["shortest_path"] is None else float(metrics["shortest_path"]),
+            "collisions": metrics.collisions,
+            "driven_m": metrics.path_length,
+            "left_m": metrics.distance_to_goal,
+            "shortest_m": metrics.shortest_path,
             "in_sight": in_sight(images["semantic"], env.episode.goal),
         }
         self._display.show(Frame(facts, self._pictures.draw(names, moment) if names else {}))
@@ -267,7 +268,7 @@ class _Watcher:
     def moved(self, info: Mapping[str, Any]) -> None:
         self._shared.info = info
 
-    def end(self, line: Mapping[str, Any]) -> None:
+    def end(self, result: RolloutResult) -> None:
         pass
 
     def close(self) -> None:

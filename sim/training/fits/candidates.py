@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import msgspec
-
 from sim.core.errors import EpisodeError, PhysicsError
 from sim.core.interface import Action, Segmenter
-from sim.core.reading import Count as ReadCount
-from sim.core.reading import Name, Number
+from sim.core.reading import Number
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
+from sim.training.fits.log_line import LogLine
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.detection.classifiers import Features
 from stubborn.detection.distances import TargetConfig
@@ -18,14 +16,10 @@ NEVER = 1_000_000
 """A step that no episode reaches."""
 
 
-class CandidateLine(msgspec.Struct):
+class CandidateLine(LogLine, frozen=True, kw_only=True):
     """A line of the log."""
 
-    episode_id: Name
-    goal: Name
-    house: Name
-    steps: ReadCount
-    candidates: list[tuple[Number, Number, Number, Number, Number, Number, Number]]
+    candidates: tuple[tuple[Number, Number, Number, Number, Number, Number, Number], ...] = ()
 
 
 class RecordingVerifier:

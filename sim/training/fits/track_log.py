@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 from jaxtyping import Int
 
@@ -16,10 +15,11 @@ from sim.core.errors import EpisodeError, PhysicsError
 from sim.core.files import inside, write_atomically
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40, Action, Segmenter
 from sim.core.reading import Count as ReadCount
-from sim.core.reading import Name, read_npz
+from sim.core.reading import read_npz
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.training.fits.fusion import PLAUSIBLE, Sample, judge, left_out, probabilities
+from sim.training.fits.log_line import LogLine
 from stubborn.agent import StubbornAgent
 from stubborn.agents import PLUS
 from stubborn.detection.fusion import Fusion
@@ -40,14 +40,10 @@ MAX_FILE_BYTES = 256 << 20
 _ARRAYS = ("counts", "track", "sample", "view", "mean", "weight")
 
 
-class TrackLine(msgspec.Struct):
+class TrackLine(LogLine, frozen=True, kw_only=True):
     """A line of the log."""
 
-    episode_id: Name
-    goal: Name
-    house: Name
-    steps: ReadCount
-    tracks: ReadCount
+    tracks: ReadCount = 0
 
 
 def compared(samples: Sequence[Sample]) -> dict[str, Any]:

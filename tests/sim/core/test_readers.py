@@ -19,7 +19,7 @@ import torch
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sim.app.evaluation.results import read_record, read_result_lines
+from sim.app.evaluation.results import read_record, read_results
 from sim.core.configuration import read_settings
 from sim.core.errors import ConfigError, ObjectNavError
 from sim.core.geometry.grid import GridFrame
@@ -46,6 +46,7 @@ from stubborn.network_files import read_checkpoint
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
 from tests.helpers import wording
+from tests.helpers.results import ENTRIES
 from tests.helpers.worlds import room
 from tests.sim.task.test_trajectory import walked
 
@@ -155,8 +156,8 @@ class Reader:
 READERS = (
     Reader(
         "results.jsonl",
-        lambda _: "".join(json.dumps(LINE | {"episode_id": i}) + "\n" for i in "ab").encode(),
-        read_result_lines,
+        lambda _: "".join(json.dumps(ENTRIES | {"episode_id": i}) + "\n" for i in "ab").encode(),
+        read_results,
     ),
     Reader(
         "config.json", lambda _: json.dumps({"seed": 0, "versions": {"code": "a"}, "config": {}}).encode(), read_record
@@ -194,7 +195,7 @@ READERS = (
         written(lambda f: np.savez(f, **SHAPE), "a.npz"),
         lambda file: read_shape(file.parent.parent, MODEL),
     ),
-    Reader("e.npz", written(lambda f: write_trajectory(f, walked(3), {"a": 1}), "b.npz"), read_trajectory),
+    Reader("e.npz", written(lambda f: write_trajectory(f, walked(3), None), "b.npz"), read_trajectory),
     Reader("a.toml", lambda _: b'[agent.planning]\ndilation_m = 0.1\nnames = ["a"]\n', read_settings),
     Reader("a.json", lambda _: b'{"agent": {"planning": {"dilation_m": 0.1}}}', read_settings),
     Reader(

@@ -11,6 +11,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import Action
 from sim.env.oracle import Oracle
 from sim.task.objectnav import Task
+from sim.task.result import EpisodeMetrics
 from sim.world.world import World
 from tests.helpers.worlds import room, with_box, with_movable
 
@@ -25,7 +26,7 @@ class RunningEpisode:
         return self
 
 
-def run_oracle(house, goal: str, start: Pose) -> dict:
+def run_oracle(house, goal: str, start: Pose) -> EpisodeMetrics:
     world = World(house)
     task = Task(world)
     world.reset(start)
@@ -48,23 +49,23 @@ def maze():
 @pytest.mark.parametrize("yaw", [0.0, 1.0, 2.5, -2.0])
 def test_the_oracle_finds_its_path_through_a_maze_from_any_heading(yaw):
     result = run_oracle(maze(), "bed", Pose(-3.0, -2.0, yaw))
-    assert result["success"] == 1.0
-    assert result["spl"] > 0.9
-    assert result["collisions"] == result["touches"] == 0
-    assert result["num_steps"] < 100
+    assert result.success == 1.0
+    assert result.spl > 0.9
+    assert result.collisions == result.touches == 0
+    assert result.num_steps < 100
 
 
 def test_the_oracle_turns_no_more_than_it_must():
     house = with_box(room(10, 4), "bed_00", centre_m=(4.0, 0, 0.25), half_m=(0.5, 1.0, 0.25))
     result = run_oracle(house, "bed", Pose(-3.0, 0.0, 0.0))
-    assert result["num_steps"] == math.ceil(result["shortest_path"] / 0.25) + 1
+    assert result.num_steps == math.ceil((result.shortest_path or 0.0) / 0.25) + 1
 
 
 def test_the_oracle_stops_at_once_where_a_stop_succeeds():
     house = with_box(room(6, 4), "bed_00", centre_m=(2.0, 0, 0.25), half_m=(0.5, 1.0, 0.25))
     result = run_oracle(house, "bed", Pose(1.0, 0.0, 0.0))
-    assert result["num_steps"] == 1
-    assert result["success"] == result["spl"] == 1.0
+    assert result.num_steps == 1
+    assert result.success == result.spl == 1.0
 
 
 def test_the_oracle_finds_another_path_around_an_unexpected_obstacle():
@@ -85,8 +86,8 @@ def test_the_oracle_finds_another_path_around_an_unexpected_obstacle():
         action = Action(oracle.act({}))
         task.observe(action, world.move(action))
     result = task.metrics()
-    assert result["success"] == 1.0
-    assert result["collisions"] > 0
+    assert result.success == 1.0
+    assert result.collisions > 0
 
 
 def test_the_oracle_leaves_a_gap_too_narrow_for_a_whole_step_on_any_of_its_headings():
@@ -95,5 +96,5 @@ def test_the_oracle_leaves_a_gap_too_narrow_for_a_whole_step_on_any_of_its_headi
     house = with_box(house, "wall_11", centre_m=(-2.4, -1.0 - half_m, 0.6), half_m=(1.0, 1.0, 0.6))
     house = with_box(house, "bed_00", centre_m=(3.5, 0, 0.25), half_m=(0.4, 0.8, 0.25))
     result = run_oracle(house, "bed", Pose(-2.4, 0.0, math.radians(15.0)))
-    assert result["success"] == 1.0
-    assert result["num_steps"] < 100
+    assert result.success == 1.0
+    assert result.num_steps < 100

@@ -17,12 +17,15 @@ from sim.task.failures import (
     on_new_ground,
 )
 from sim.task.metrics import TRAPPED_WINDOW_STEPS, stayed_near
+from sim.task.result import EndReason, StopTarget
 from sim.task.trajectory import Trajectory
 
 SEEN, UNSEEN = 0.01, 0.0079
 
 
-def walk(places_m: np.ndarray, *, end: str = "max_steps", seen_at: int | None = None, **known: object) -> Trajectory:
+def walk(
+    places_m: np.ndarray, *, end: EndReason = "max_steps", seen_at: int | None = None, **known: object
+) -> Trajectory:
     """Returns an episode along positions (n + 1, 2); by default the goal is always 9 m away and out of sight."""
     n = len(places_m) - 1
     poses = np.zeros((n + 1, 4), np.float32)
@@ -37,12 +40,17 @@ def walk(places_m: np.ndarray, *, end: str = "max_steps", seen_at: int | None = 
         ended=np.zeros(n, np.uint8),
         collided=np.zeros(n, np.bool_),
         touched=np.zeros(n, np.bool_),
+        duration_s=np.ones(n, np.float32),
         goal_share=share,
         contacts=np.zeros((0, 3), np.float32),
         success=False,
         end_reason=end,
         **values,  # pyright: ignore[reportArgumentType]
     )
+
+
+def stop_at(to_goal_m: float | None) -> StopTarget:
+    return StopTarget(stop_target_xy_m=(1.0, 2.0), stop_target_to_goal_m=to_goal_m, stop_target_category=None)
 
 
 def line(steps: int, speed_m: float = 0.2) -> np.ndarray:
@@ -111,14 +119,14 @@ def test_a_stop_near_an_unseen_instance_behind_a_wall_is_a_false_detection() -> 
 def test_a_stated_place_decides_whether_a_wrong_stop_was_for_the_goal(
     off_m: float, cause: str, nearest_m: float, seen_at: int | None
 ) -> None:
-    stated = {"stop_target_xy_m": (1.0, 2.0), "stop_target_to_goal_m": off_m}
+    stated = {"stop": stop_at(off_m)}
     assert (
         cause_of_failure(walk(line(30), end="stop", seen_at=seen_at, nearest_instance_m=nearest_m, **stated)) == cause
     )
 
 
 def test_a_stated_place_on_a_storey_without_instance_is_a_false_detection() -> None:
-    stated = {"stop_target_xy_m": (1.0, 2.0), "stop_target_to_goal_m": None, "nearest_instance_m": None}
+    stated = {"stop": stop_at(None), "nearest_instance_m": None}
     assert cause_of_failure(walk(line(30), end="stop", seen_at=29, **stated)) == "false_detection"
 
 

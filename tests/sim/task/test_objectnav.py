@@ -15,6 +15,7 @@ from sim.gl import mujoco
 from sim.task.config import TaskConfig
 from sim.task.ground_truth import GroundTruth
 from sim.task.objectnav import Task
+from sim.task.result import NO_STOP_TARGET, EpisodeMetrics, StopTarget
 from sim.world.world import World
 from tests.helpers.worlds import room, two_storeys, with_box, with_movable
 
@@ -33,7 +34,7 @@ def begin(world: World, goal: str, start: Pose, **config) -> Task:
     return task
 
 
-def act(world: World, task: Task, *actions: Action) -> dict:
+def act(world: World, task: Task, *actions: Action) -> EpisodeMetrics:
     for action in actions:
         task.observe(action, world.move(action), np.zeros((4, 4), np.uint8))
     return task.metrics()
@@ -42,15 +43,15 @@ def act(world: World, task: Task, *actions: Action) -> dict:
 def test_the_straight_path_to_the_goal_has_success_and_spl_one():
     world = bed_room()
     task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
-    assert task.metrics()["distance_to_goal"] == pytest.approx(2.0, abs=0.02)
+    assert task.metrics().distance_to_goal == pytest.approx(2.0, abs=0.02)
     result = act(world, task, *[FORWARD] * 8, STOP)
-    assert result["success"] == 1.0
-    assert result["spl"] == pytest.approx(1.0, abs=0.01)
-    assert result["soft_spl"] == pytest.approx(result["spl"])
-    assert result["distance_to_goal"] == 0.0
-    assert result["num_steps"] == 9
-    assert result["path_length"] == pytest.approx(2.0, abs=0.01)
-    assert result["end_reason"] == "stop"
+    assert result.success == 1.0
+    assert result.spl == pytest.approx(1.0, abs=0.01)
+    assert result.soft_spl == pytest.approx(result.spl)
+    assert result.distance_to_goal == 0.0
+    assert result.num_steps == 9
+    assert result.path_length == pytest.approx(2.0, abs=0.01)
+    assert result.end_reason == "stop"
     assert task.terminated
     assert not task.truncated
 
@@ -59,30 +60,30 @@ def test_a_stop_one_step_too_early_fails_with_the_distance_that_was_left():
     world = bed_room()
     task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
     result = act(world, task, *[FORWARD] * 7, STOP)
-    assert result["success"] == result["spl"] == 0.0
-    assert result["distance_to_goal"] == pytest.approx(0.25, abs=0.02)
-    assert result["soft_spl"] == pytest.approx(1.75 / 2.0, abs=0.02)
+    assert result.success == result.spl == 0.0
+    assert result.distance_to_goal == pytest.approx(0.25, abs=0.02)
+    assert result.soft_spl == pytest.approx(1.75 / 2.0, abs=0.02)
 
 
 def test_a_robot_at_the_goal_without_stop_is_not_a_success():
     world = bed_room()
     task = begin(world, "bed", Pose(1.2, 0.0, 0.0))
     result = act(world, task, LEFT)
-    assert result["success"] == 0.0
-    assert result["distance_to_goal"] == 0.0
+    assert result.success == 0.0
+    assert result.distance_to_goal == 0.0
 
 
 def test_a_stop_at_once_at_the_goal_has_spl_one():
     world = bed_room()
     result = act(world, begin(world, "bed", Pose(1.2, 0.0, 0.0)), STOP)
-    assert result["success"] == result["spl"] == result["soft_spl"] == 1.0
-    assert result["path_length"] == 0.0
+    assert result.success == result.spl == result.soft_spl == 1.0
+    assert result.path_length == 0.0
 
 
 def test_the_last_step_truncates_and_no_action_counts_after_it():
     world = bed_room()
     task = begin(world, "bed", Pose(-1.0, 0.0, 0.0), max_steps=3)
-    assert act(world, task, LEFT, LEFT, LEFT)["end_reason"] == "max_steps"
+    assert act(world, task, LEFT, LEFT, LEFT).end_reason == "max_steps"
     assert task.truncated
     assert not task.terminated
     with pytest.raises(EpisodeError, match="has ended"):
@@ -92,7 +93,7 @@ def test_the_last_step_truncates_and_no_action_counts_after_it():
 def test_a_stop_as_the_last_step_is_a_stop():
     world = bed_room()
     task = begin(world, "bed", Pose(1.2, 0.0, 0.0), max_steps=1)
-    assert act(world, task, STOP)["end_reason"] == "stop"
+    assert act(world, task, STOP).end_reason == "stop"
     assert task.success
 
 
@@ -100,17 +101,17 @@ def test_blocked_motions_are_collisions_and_path_length_is_the_true_displacement
     world = bed_room()
     task = begin(world, "bed", Pose(-3.7, 0.0, math.pi))
     result = act(world, task, FORWARD, FORWARD)
-    assert (result["collisions"], result["touches"]) == (2, 0)
-    assert result["path_length"] < 0.2
-    assert result["distance_to_goal"] == pytest.approx(4.8, abs=0.03)
+    assert (result.collisions, result.touches) == (2, 0)
+    assert result.path_length < 0.2
+    assert result.distance_to_goal == pytest.approx(4.8, abs=0.03)
 
 
 def test_an_object_that_is_pushed_along_is_a_touch_and_no_collision():
     world = World(with_movable(bed_room().house, "stool_00", xy_m=(-0.4, 0.0), mass_kg=1.0))
     task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
     result = act(world, task, FORWARD, FORWARD, LEFT)
-    assert result["collisions"] == 0
-    assert 1 <= result["touches"] <= 2
+    assert result.collisions == 0
+    assert 1 <= result.touches <= 2
 
 
 def test_a_new_episode_starts_from_nothing():
@@ -121,15 +122,15 @@ def test_a_new_episode_starts_from_nothing():
     task.begin("bed", Pose(-1.0, 0.0, 0.0))
     result = task.metrics()
     assert not task.done
-    assert (result["collisions"], result["num_steps"], result["path_length"]) == (0, 0, 0.0)
+    assert (result.collisions, result.num_steps, result.path_length) == (0, 0, 0.0)
 
 
 def test_the_goal_seen_once_in_any_frame_counts_as_explored():
     world = bed_room()
     task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
-    assert task.metrics()["gt_explored"] is False
+    assert task.metrics().gt_explored is False
     task.look(np.full((4, 4), MPCAT40_ID["bed"], np.uint8))
-    assert act(world, task, LEFT)["gt_explored"] is True
+    assert act(world, task, LEFT).gt_explored is True
 
 
 def test_a_robot_that_turns_on_the_spot_for_a_hundred_steps_is_trapped():
@@ -138,9 +139,9 @@ def test_a_robot_that_turns_on_the_spot_for_a_hundred_steps_is_trapped():
     still = world.move(STOP)
     for _ in range(99):
         task.observe(LEFT, still)
-    assert task.metrics()["trapped"] is False
+    assert task.metrics().trapped is False
     task.observe(LEFT, still)
-    assert task.metrics()["trapped"] is True
+    assert task.metrics().trapped is True
 
 
 def test_a_goal_that_was_pushed_counts_where_it_was_pushed_to():
@@ -150,8 +151,8 @@ def test_a_goal_that_was_pushed_counts_where_it_was_pushed_to():
     world.data.qpos[joint] = -2.0
     mujoco.mj_forward(world.model, world.data)
     result = act(world, task, STOP)
-    assert result["success"] == 1.0
-    assert result["distance_to_goal"] == 0.0
+    assert result.success == 1.0
+    assert result.distance_to_goal == 0.0
 
 
 @pytest.mark.parametrize(
@@ -181,32 +182,32 @@ NEARER = Pose(0.501, 0.0, 0.0, floor_z_m=3.0)
 def test_a_goal_on_another_storey_can_be_asked_for_and_fails_by_stairs():
     world = World(two_storeys())
     task = begin(world, "sofa", Pose(1.5, 1.4, 0.0), max_steps=3)
-    assert task.metrics()["shortest_path"] is None
+    assert task.metrics().shortest_path is None
     result = act(world, task, FORWARD, LEFT, LEFT)
-    assert (result["failure"], result["end_reason"]) == ("stairs", "max_steps")
-    assert result["distance_to_goal"] is None
-    assert (result["success"], result["spl"], result["soft_spl"]) == (0.0, 0.0, 0.0)
+    assert (result.failure, result.end_reason) == ("stairs", "max_steps")
+    assert result.distance_to_goal is None
+    assert (result.success, result.spl, result.soft_spl) == (0.0, 0.0, 0.0)
 
 
 def test_a_stop_right_under_the_goal_is_not_a_success():
     world = World(two_storeys())
     result = act(world, begin(world, "sofa", Pose(1.5, 1.4, 0.0)), STOP)
-    assert (result["success"], result["failure"]) == (0.0, "false_detection")
+    assert (result.success, result.failure) == (0.0, "false_detection")
 
 
 def test_a_goal_on_the_storey_of_the_robot_is_found():
     world = World(two_storeys())
     for goal, start in (("sofa", NEARER), ("bed", Pose(0.5, 0.0, 0.0))):
         result = act(world, begin(world, goal, start), FORWARD, FORWARD, STOP)
-        assert result["success"] == 1.0, goal
-        assert result["failure"] is None
-        assert result["spl"] > 0.7
+        assert result.success == 1.0, goal
+        assert result.failure is None
+        assert result.spl > 0.7
 
 
 def test_a_goal_on_the_other_storey_is_not_found():
     world = World(two_storeys())
     result = act(world, begin(world, "bed", UPSTAIRS, max_steps=2), FORWARD, LEFT)
-    assert (result["success"], result["failure"]) == (0.0, "stairs")
+    assert (result.success, result.failure) == (0.0, "stairs")
 
 
 def test_no_sampled_episode_has_its_goal_on_another_storey():
@@ -227,8 +228,8 @@ def test_the_trajectory_has_a_line_for_each_moment_and_action():
     assert walked.contacts[0] == pytest.approx([0.0, -4.0, 0.0], abs=0.05)
     assert walked.poses[0] == pytest.approx([-3.7, 0.0, math.pi, 0.0])
     assert walked.poses[-1] == pytest.approx([world.pose.x_m, world.pose.y_m, world.pose.yaw_rad, 0.0], abs=1e-5)
-    assert walked.moved_m.sum() == pytest.approx(result["path_length"], abs=1e-5)
-    assert walked.distance_m[-1] == pytest.approx(result["distance_to_goal"], abs=1e-5)
+    assert walked.moved_m.sum() == pytest.approx(result.path_length, abs=1e-5)
+    assert walked.distance_m[-1] == pytest.approx(result.distance_to_goal, abs=1e-5)
     assert walked.nearest_instance_m == pytest.approx(2.0 - world.pose.x_m, abs=1e-3)
     assert (walked.end_reason, walked.success, walked.goal_on_storey) == ("stop", False, True)
 
@@ -240,35 +241,23 @@ def test_the_place_for_which_the_agent_stops_is_measured_to_the_footprint_and_de
     ):
         world = bed_room()
         task = begin(world, "bed", Pose(-3.0, 0.0, math.pi))
-        assert task.stop_target() == {
-            "stop_target_xy_m": None,
-            "stop_target_to_goal_m": None,
-            "stop_target_category": None,
-        }
+        assert task.trajectory().stop == NO_STOP_TARGET
         task.stops_for(*xy_m)
-        assert act(world, task, STOP)["failure"] == cause
-        walked = task.trajectory()
-        assert walked.stop_target_xy_m == xy_m
-        assert walked.stop_target_to_goal_m == pytest.approx(off_m, abs=1e-3)
-        assert task.stop_target() == {
-            "stop_target_xy_m": list(xy_m),
-            "stop_target_to_goal_m": walked.stop_target_to_goal_m,
-            "stop_target_category": category,
-        }
+        assert act(world, task, STOP).failure == cause
+        for ended in (task.trajectory().stop, task.metrics()):
+            assert (ended.stop_target_xy_m, ended.stop_target_category) == (xy_m, category)
+            assert ended.stop_target_to_goal_m == pytest.approx(off_m, abs=1e-3)
         task.begin("bed", Pose(-3.0, 0.0, math.pi))
-        assert task.trajectory().stop_target_xy_m is None
+        assert task.trajectory().stop == NO_STOP_TARGET
 
 
 def test_a_place_on_a_storey_without_the_goal_has_no_distance_to_it():
     world = World(two_storeys())
     task = begin(world, "bed", UPSTAIRS)
     task.stops_for(0.0, 0.0)
-    assert act(world, task, STOP)["failure"] == "false_detection"
-    assert task.stop_target() == {
-        "stop_target_xy_m": [0.0, 0.0],
-        "stop_target_to_goal_m": None,
-        "stop_target_category": None,
-    }
+    assert act(world, task, STOP).failure == "false_detection"
+    stop = StopTarget(stop_target_xy_m=(0.0, 0.0), stop_target_to_goal_m=None, stop_target_category=None)
+    assert task.trajectory().stop == stop
 
 
 def test_nothing_counts_before_an_episode_has_begun():
@@ -294,7 +283,6 @@ def test_the_simulated_time_of_an_episode_is_the_sum_of_its_actions():
     began_s = world.data.time
     result = act(world, task, FORWARD, LEFT, FORWARD)
     durations = task.trajectory().duration_s
-    assert result["simulated_s"] == pytest.approx(world.data.time - began_s)
-    assert durations is not None
-    assert durations.sum() == pytest.approx(result["simulated_s"], abs=1e-4)
+    assert result.simulated_s == pytest.approx(world.data.time - began_s)
+    assert durations.sum() == pytest.approx(result.simulated_s, abs=1e-4)
     assert (durations > 0.4).all()

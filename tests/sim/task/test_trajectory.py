@@ -15,8 +15,27 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import Action, ConfigError
 from sim.robot.contacts import Contact
 from sim.robot.drive import Motion
-from sim.task.trajectory import Recorder, Trajectory, read_trajectory, trajectory_file, write_trajectory
+from sim.task.result import StopTarget
+from sim.task.trajectory import (
+    Recorder,
+    Recording,
+    SplitName,
+    StartPose,
+    Trajectory,
+    read_trajectory,
+    trajectory_file,
+    write_trajectory,
+)  # fmt: skip
+from tests.helpers.results import a_result
 
+RECORDING = Recording(
+    profile="fast",
+    noise="none",
+    split=SplitName("val", "3.0.0"),
+    versions={"code": "1"},
+    start=StartPose(0.0, 1.0, 0.0, 0.0),
+    scores=a_result().without_times(),
+)
 STOPPED = Contact("chair_00", "leg", (1.0, 2.0, 0.3), (-1.0, 0.0, 0.0), 0.2, stopped=True)
 
 
@@ -38,7 +57,7 @@ def walked(steps: int) -> Trajectory:
 
 
 def test_a_trajectory_written_and_read_is_the_same(tmp_path: Path) -> None:
-    before, about = walked(30), {"agent": "stubborn", "goal": "chair", "start": [0.0, 1.0], "versions": {"a": "1"}}
+    before, about = walked(30), RECORDING
     write_trajectory(tmp_path / "t" / "e.npz", before, about)
     after = read_trajectory(tmp_path / "t" / "e.npz")
     for name, value in vars(before).items():
@@ -52,48 +71,27 @@ def test_a_trajectory_written_and_read_is_the_same(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("off_m", [0.7, None])
 def test_a_stated_place_is_kept(off_m: float | None, tmp_path: Path) -> None:
-    stated = replace(walked(3), stop_target_xy_m=(-1.25, 3.5), stop_target_to_goal_m=off_m)
-    write_trajectory(tmp_path / "e.npz", stated, {})
-    after = read_trajectory(tmp_path / "e.npz")
-    assert (after.stop_target_xy_m, after.stop_target_to_goal_m) == ((-1.25, 3.5), off_m)
+    stop = StopTarget(stop_target_xy_m=(-1.25, 3.5), stop_target_to_goal_m=off_m, stop_target_category=None)
+    write_trajectory(tmp_path / "e.npz", replace(walked(3), stop=stop), None)
+    assert read_trajectory(tmp_path / "e.npz").stop == stop
 
 
-def test_a_file_of_an_older_version_states_no_place(tmp_path: Path) -> None:
-    write_trajectory(tmp_path / "e.npz", walked(3), {})
+def test_a_file_of_an_older_format_is_refused_with_the_version_that_reads_it(tmp_path: Path) -> None:
+    write_trajectory(tmp_path / "e.npz", walked(3), None)
     arrays = _arrays(tmp_path / "e.npz")
-    head = json.loads(arrays["about"].tobytes())
-    del head["scalars"]["stop_target_xy_m"], head["scalars"]["stop_target_to_goal_m"]
-    np.savez(
-        tmp_path / "e.npz", allow_pickle=False, **arrays | {"about": np.frombuffer(json.dumps(head).encode(), np.uint8)}
-    )
-    after = read_trajectory(tmp_path / "e.npz")
-    assert (after.stop_target_xy_m, after.stop_target_to_goal_m) == (None, None)
-    assert after.nearest_instance_m == 1.25
-
-
-def test_a_file_without_durations_is_read(tmp_path: Path) -> None:
-    write_trajectory(tmp_path / "e.npz", replace(walked(3), duration_s=None), {})
-    after = read_trajectory(tmp_path / "e.npz")
-    assert after.duration_s is None
-    assert after.num_steps == 3
+    del arrays["duration_s"]
+    np.savez(tmp_path / "e.npz", allow_pickle=False, **arrays)
+    with pytest.raises(ConfigError, match=r"it has no 'duration_s'; version 0\.2\.0 reads"):
+        read_trajectory(tmp_path / "e.npz")
 
 
 def test_five_hundred_steps_fit_into_fifty_kilobytes(tmp_path: Path) -> None:
-    write_trajectory(tmp_path / "e.npz", walked(500), {})
+    write_trajectory(tmp_path / "e.npz", walked(500), None)
     assert (tmp_path / "e.npz").stat().st_size < 50_000
 
 
-def test_no_half_written_file_is_left(tmp_path: Path) -> None:
-    write_trajectory(tmp_path / "e.npz", walked(3), {})
-    before = (tmp_path / "e.npz").read_bytes()
-    with pytest.raises(ValueError, match="JSON"):
-        write_trajectory(tmp_path / "e.npz", walked(4), {"bad": float("nan")})
-    assert [file.name for file in tmp_path.iterdir()] == ["e.npz"]
-    assert (tmp_path / "e.npz").read_bytes() == before
-
-
 def test_a_write_that_fails_leaves_only_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    write_trajectory(tmp_path / "e.npz", walked(3), {})
+    write_trajectory(tmp_path / "e.npz", walked(3), None)
     before = (tmp_path / "e.npz").read_bytes()
 
     def full_disk(stream: IO[bytes], **_: object) -> None:
@@ -102,7 +100,7 @@ def test_a_write_that_fails_leaves_only_the_old_file(tmp_path: Path, monkeypatch
 
     monkeypatch.setattr(np, "savez_compressed", full_disk)
     with pytest.raises(ConfigError, match="No space left"):
-        write_trajectory(tmp_path / "e.npz", walked(4), {})
+        write_trajectory(tmp_path / "e.npz", walked(4), None)
     assert [file.name for file in tmp_path.iterdir()] == ["e.npz"]
     assert (tmp_path / "e.npz").read_bytes() == before
 
@@ -110,7 +108,7 @@ def test_a_write_that_fails_leaves_only_the_old_file(tmp_path: Path, monkeypatch
 def test_a_folder_that_cannot_be_created_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(ConfigError, match="Cannot write the trajectory"):
-        write_trajectory(tmp_path / "file" / "e.npz", walked(3), {})
+        write_trajectory(tmp_path / "file" / "e.npz", walked(3), None)
 
 
 def test_episodes_whose_ids_differ_have_files_that_differ() -> None:
@@ -166,7 +164,7 @@ def _pickled(file: Path) -> None:
 )
 def test_a_file_that_is_no_trajectory_is_named(harm, message: str, tmp_path: Path) -> None:
     file = tmp_path / "e.npz"
-    write_trajectory(file, walked(5), {})
+    write_trajectory(file, walked(5), None)
     harm(file)
     with pytest.raises(ConfigError, match=message) as refusal:
         read_trajectory(file)

@@ -91,8 +91,8 @@ def test_a_fall_ends_the_episode_without_success_and_counts_as_stairs():
     while not task.done:
         task.observe(FORWARD, world.move(FORWARD), np.zeros((4, 4), np.uint8))
     result = task.metrics()
-    assert (result["end_reason"], result["failure"], result["success"]) == ("fallen", "stairs", 0.0)
-    assert result["distance_to_goal"] is None
-    assert result["soft_spl"] == 0.0
+    assert (result.end_reason, result.failure, result.success) == ("fallen", "stairs", 0.0)
+    assert result.distance_to_goal is None
+    assert result.soft_spl == 0.0
     assert task.terminated
     assert not task.truncated

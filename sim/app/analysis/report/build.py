@@ -11,7 +11,7 @@ from typing import Any
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
-from sim.app.analysis.comparison import LETTERS, Line, Run, differences_table, require_same_episodes
+from sim.app.analysis.comparison import LETTERS, Run, differences_table, require_same_episodes
 from sim.app.analysis.replicates import replicate_note
 from sim.app.analysis.report import distributions
 from sim.app.analysis.report.drawings import Drawings, Trajectories, draw_episodes, read_trajectories
@@ -41,10 +41,10 @@ def build_page(runs: Sequence[Run], *, out_folder: Path, command: str) -> str:
     if not 1 <= len(runs) <= MOST_RUNS:
         raise ConfigError(f"A report shows 1 to {MOST_RUNS} runs, got {len(runs)}.")
     for run in runs:
-        if not run.lines:
+        if not run.results:
             raise ConfigError(f"'{run.path}' has no result yet: its first episode has not ended.")
     episode_ids = sorted(require_same_episodes(*runs), key=by_number)
-    lines = [[run.lines[i] for i in episode_ids] for run in runs]
+    lines = [[run.results[i] for i in episode_ids] for run in runs]
     labels = list(LETTERS[: len(runs)]) if len(runs) > 1 else [""]
     trajectories, unreadable = read_trajectories(runs, episode_ids)
     drawings, undrawn = draw_episodes(runs, trajectories)
@@ -88,12 +88,12 @@ def _figures(lines: Runs, labels: Sequence[str], house_m2: Mapping[str, float | 
 
 def _by_distance(lines: Runs) -> list[Group]:
     bins = distributions.DISTANCES
-    return grouped(lines, [bins.name(line.get("shortest_path")) for line in lines[0]], bins.names)
+    return grouped(lines, [bins.name(result.shortest_path) for result in lines[0]], bins.names)
 
 
 def _by_size(lines: Runs, house_m2: Mapping[str, float | None]) -> list[Group]:
     bins = distributions.HOUSE_SIZES
-    return grouped(lines, [bins.name(house_m2.get(str(line["house"]))) for line in lines[0]], bins.names)
+    return grouped(lines, [bins.name(house_m2.get(result.house)) for result in lines[0]], bins.names)
 
 
 def _template() -> Any:
@@ -126,11 +126,11 @@ def _replicate_notes(lines: Runs, labels: Sequence[str]) -> list[str]:
     return [f"{label}: {note}".removeprefix(": ") for label, note in found if note]
 
 
-def _errors(lines: Sequence[Sequence[Line]], labels: Sequence[str]) -> Iterable[tuple[str, str, str]]:
+def _errors(lines: Runs, labels: Sequence[str]) -> Iterable[tuple[str, str, str]]:
     for label, of_run in zip(labels, lines, strict=True):
-        for line in of_run:
-            if line.get("end_reason") == "error":
-                yield label, line["episode_id"], str(line.get("error") or "no reason was recorded")
+        for result in of_run:
+            if result.is_error:
+                yield label, result.episode_id, result.error or "no reason was recorded"
 
 
 def _data(labels: Sequence[str], drawings: Drawings, episodes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -151,7 +151,7 @@ def _episodes(
     problems: list[str] = []
     episodes = []
     for row in rows:
-        lines = [run.lines[row.episode_id] for run in runs]
+        lines = [run.results[row.episode_id] for run in runs]
         paths = trajectories[row.episode_id]
         thumbs = [_thumbnail(run, row.episode_id, problems) for run in runs]
         episode = {

@@ -7,8 +7,8 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from sim.app.analysis.comparison import Line
 from sim.app.analysis.report.figures import Proportion, Runs, proportion_of
+from sim.task.result import EpisodeResult
 
 NEVER = "never"
 SPL_LABELS = ("failed", *(f"{low / 10:g}-{(low + 1) / 10:g}" for low in range(10)))
@@ -73,12 +73,12 @@ def spl_histogram(runs: Runs) -> Histogram:
 def first_sight_histogram(runs: Runs) -> Histogram:
     """Returns the distribution of the steps to first sight, with episodes that never showed the goal as the last bin.
 
-    Lines of older versions, and of episodes that could not begin, do not count.
+    Episodes that could not begin do not count.
     """
     return _histogram(runs, FIRST_SIGHT_LABELS, _sight_bin)
 
 
-def _histogram(runs: Runs, labels: Sequence[str], bin_of: Callable[[Line], int | None]) -> Histogram:
+def _histogram(runs: Runs, labels: Sequence[str], bin_of: Callable[[EpisodeResult], int | None]) -> Histogram:
     shares = []
     for lines in runs:
         counted = [line for line in lines if bin_of(line) is not None]
@@ -87,19 +87,16 @@ def _histogram(runs: Runs, labels: Sequence[str], bin_of: Callable[[Line], int |
     return Histogram(labels, shares)
 
 
-def _spl_bin(line: Line) -> int | None:
-    spl = line.get("spl")
-    if spl is None:
-        return None
-    return 1 + min(9, int(10.0 * spl)) if line["success"] and spl > 0.0 else 0
+def _spl_bin(result: EpisodeResult) -> int:
+    return 1 + min(9, int(10.0 * result.spl)) if result.success and result.spl > 0.0 else 0
 
 
-def _sight_bin(line: Line) -> int | None:
-    if line.get("gt_explored") is None:
+def _sight_bin(result: EpisodeResult) -> int | None:
+    if result.gt_explored is None:
         return None
-    step = line.get("first_seen_step")
+    step = result.first_seen_step
     if step is None:
-        return None if line["gt_explored"] else len(FIRST_SIGHT_LABELS) - 1
+        return len(FIRST_SIGHT_LABELS) - 1
     return FIRST_SIGHTS.names.index(FIRST_SIGHTS.name(float(step)))
 
 
@@ -133,27 +130,22 @@ class Calibration:
         return sum(distances) / self.correct.of if self.correct.of else 0.0
 
 
-def calibration(lines: Sequence[Line]) -> Calibration:
+def calibration(lines: Sequence[EpisodeResult]) -> Calibration:
     """Returns the calibration of a run's stops; a stop is correct if the episode is a success."""
-    stops = [line for line in lines if line["end_reason"] == "stop"]
-    rated = [line for line in stops if _is_rated(line)]
+    stops = [result for result in lines if result.end_reason == "stop"]
+    rated = [(result, result.stop_confidence) for result in stops if result.stop_confidence is not None]
     bins = []
     for i in range(CONFIDENCE_BINS):
-        some = [line for line in rated if min(CONFIDENCE_BINS - 1, int(line["stop_confidence"] * CONFIDENCE_BINS)) == i]
+        some = [rating for rating in rated if min(CONFIDENCE_BINS - 1, int(rating[1] * CONFIDENCE_BINS)) == i]
         if some:
             low, high = i / CONFIDENCE_BINS, (i + 1) / CONFIDENCE_BINS
             bins.append(StopBin(low, high, _mean_confidence(some), _correct(some)))
     return Calibration(bins, len(stops), _correct(rated), _mean_confidence(rated))
 
 
-def _is_rated(line: Line) -> bool:
-    confidence = line.get("stop_confidence")
-    return confidence is not None and 0.0 <= confidence <= 1.0
+def _mean_confidence(rated: Sequence[tuple[EpisodeResult, float]]) -> float:
+    return sum(confidence for _, confidence in rated) / len(rated) if rated else 0.0
 
 
-def _mean_confidence(rated: Sequence[Line]) -> float:
-    return sum(float(line["stop_confidence"]) for line in rated) / len(rated) if rated else 0.0
-
-
-def _correct(rated: Sequence[Line]) -> Proportion:
-    return proportion_of([bool(line["success"]) for line in rated], rated)
+def _correct(rated: Sequence[tuple[EpisodeResult, float]]) -> Proportion:
+    return proportion_of([bool(result.success) for result, _ in rated], [result for result, _ in rated])

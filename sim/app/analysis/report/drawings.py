@@ -87,13 +87,13 @@ class Drawings:
             episode: dict[str, Any] = {"size": sheet.size_px}
             radius_m = RobotModel().radius_m
         else:
-            line, floor_z_m = runs[0].lines[episode_id], float(existing[0].poses[0, 3])
+            result, floor_z_m = runs[0].results[episode_id], float(existing[0].poses[0, 3])
             sheet = Sheet(truth.space(floor_z_m).frame)
-            plan = f"{line['house']}@{floor_z_m:g}"
+            plan = f"{result.house}@{floor_z_m:g}"
             if plan not in self.plans:
                 self.plans[plan] = draw_plan(truth, floor_z_m)
             start_m, radius_m = existing[0].positions_m[0].tolist(), truth.world.robot.radius_m
-            episode = {"plan": plan, **self._target(truth, plan, str(line["goal"]), floor_z_m, start_m)}
+            episode = {"plan": plan, **self._target(truth, plan, result.goal, floor_z_m, start_m)}
         episode["paths"] = [
             None
             if trajectory is None
@@ -148,8 +148,8 @@ def draw_episodes(runs: Sequence[Run], trajectories: Trajectories) -> tuple[Draw
 def _by_house(run: Run, episode_ids: Iterable[str]) -> dict[str, list[str]]:
     """Returns the episodes of each house, houses by name."""
     houses: dict[str, list[str]] = {}
-    for episode_id in sorted(episode_ids, key=lambda i: str(run.lines[i]["house"])):
-        houses.setdefault(str(run.lines[episode_id]["house"]), []).append(episode_id)
+    for episode_id in sorted(episode_ids, key=lambda i: run.results[i].house):
+        houses.setdefault(run.results[episode_id].house, []).append(episode_id)
     return houses
 
 
@@ -197,7 +197,7 @@ def path_on(sheet: Sheet, trajectory: Trajectory, *, radius_m: float) -> dict[st
 
 
 def _marks(run: Run, episode_id: str, trajectory: Trajectory) -> list[list[Any]]:
-    found = marks(run.lines[episode_id], trajectory)
+    found = marks(run.results[episode_id], trajectory)
     return [[mark.kind, mark.step, mark.until, mark.words] for mark in found]
 
 

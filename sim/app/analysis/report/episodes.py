@@ -7,8 +7,9 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sim.app.analysis.comparison import LETTERS, Line
+from sim.app.analysis.comparison import LETTERS
 from sim.task.explanations import outcome
+from sim.task.result import EpisodeResult
 
 
 @dataclass(frozen=True)
@@ -61,34 +62,32 @@ def columns_of(runs: int) -> list[Column]:
     return [*words, Column("outcomes", False, False), Column("found by"), Column("mean SPL")]
 
 
-def row_of(episode_id: str, lines: Sequence[Line]) -> Row:
+def row_of(episode_id: str, lines: Sequence[EpisodeResult]) -> Row:
     """Returns the row of an episode from its line in each run."""
     named = list(enumerate(outcome(line) for line in lines))
     cells = [[each] for each in named] if len(lines) <= 2 else [named]
-    collisions = sum(int(line.get("collisions") or 0) for line in lines)
+    collisions = sum(result.collisions for result in lines)
     tokens = _tokens([name for _, name in named])
-    return Row(episode_id, str(lines[0]["goal"]), str(lines[0]["house"]), cells, tokens, _numbers(lines), collisions)
+    return Row(episode_id, lines[0].goal, lines[0].house, cells, tokens, _numbers(lines), collisions)
 
 
-def _numbers(lines: Sequence[Line]) -> list[tuple[str, float | None]]:
+def _numbers(lines: Sequence[EpisodeResult]) -> list[tuple[str, float | None]]:
     if len(lines) > 2:
-        found, spl = sum(bool(line["success"]) for line in lines), [line.get("spl") for line in lines]
-        known = [float(value) for value in spl if value is not None]
-        mean = sum(known) / len(known) if known else None
-        return [(f"{found} of {len(lines)}", float(found)), _shown(mean, 2)]
+        successes = sum(bool(result.success) for result in lines)
+        mean = sum(result.spl for result in lines) / len(lines)
+        return [(f"{successes} of {len(lines)}", float(successes)), _shown(mean, 2)]
     numbers: list[tuple[str, float | None]] = []
     for _, key, digits in _ALONE if len(lines) == 1 else _IN_PAIRS:
-        values = [None if line.get(key) is None else float(line[key]) for line in lines]
-        numbers += [_shown(value, digits) for value in values]
+        numbers += [_shown(getattr(result, key), digits) for result in lines]
     if len(lines) == 2:
         numbers.append(_shown(_difference(numbers[0][1], numbers[1][1]), 2, sign="+"))
     return numbers
 
 
-def facts_of_line(line: Line) -> list[str]:
+def facts_of_line(result: EpisodeResult) -> list[str]:
     """Returns the numbers of an episode in words, for the picture of one of several runs."""
-    shown = [(f"{title} {_shown(line.get(key), digits)[0]}") for title, key, digits in _ALONE]
-    confidence = line.get("stop_confidence")
+    shown = [f"{title} {_shown(getattr(result, key), digits)[0]}" for title, key, digits in _ALONE]
+    confidence = result.stop_confidence
     return [*shown, *([] if confidence is None else [f"confidence at STOP {confidence:.2f}"])]
 
 

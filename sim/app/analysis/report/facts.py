@@ -93,16 +93,16 @@ def _setting(value: Any) -> str:
 
 def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:
     """Yields sentences about what is missing in a run."""
-    wanted, count, out = run.config.get("episodes"), len(run.lines), run.path
+    wanted, count, out = run.config.get("episodes"), len(run.results), run.path
     if isinstance(wanted, int):
         if shard := run.config.get("shard"):
             wanted, out = len(Shard.parse(str(shard)).select(range(wanted))), run.path.parent
         if count < wanted:
             yield f"Not finished: {count} of {wanted} episodes have ended. The command with --out {out} runs the rest."
-    errors = sum(line.get("end_reason") == "error" for line in run.lines.values())
+    errors = sum(result.is_error for result in run.results.values())
     if errors:
         yield f"{errors} of {count} episodes ended with an error; they count as failures and are listed below."
-    falls = sum(line.get("end_reason") == "fallen" for line in run.lines.values())
+    falls = sum(result.end_reason == "fallen" for result in run.results.values())
     if falls:
         yield f"In {falls} of {count} episodes the robot drove over an edge and fell."
     if len(run.config.get("codes") or []) > 1:
@@ -126,7 +126,7 @@ def _hint(run: Run, trajectories: Trajectories, index: int) -> str:
 
 def _missing(run: Run, trajectories: Trajectories, index: int) -> list[tuple[str, str, int, int]]:
     """Returns for each kind of file its name, its option, and how many episodes lack it, among how many."""
-    ended = [i for i in trajectories if run.lines[i].get("end_reason") != "error"]
+    ended = [i for i in trajectories if not run.results[i].is_error]
     kinds = (
         ("trajectories (plans with paths)", "--record", [trajectories[i][index] for i in ended]),
         ("pictures of the end", "--record", [picture_of(run, i) for i in ended]),

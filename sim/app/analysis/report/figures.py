@@ -4,45 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
-from sim.app.analysis.comparison import Line
-from sim.app.analysis.metrics import (
-    AREA,
-    AREA_PER_METRE,
-    COLLISIONS,
-    EXPLORED,
-    FIRST_SIGHT,
-    NEVER_SEEN,
-    SPL,
-    STEPS,
-    SUCCESS,
-    TRAPPED,
-    Metric,
-    episodes_of,
-    houses_of,
-)
+from sim.app.analysis.metrics import SUCCESS, difference_cell, episodes_of, houses_of, mean_cell
 from sim.app.analysis.tables import Cell
 from sim.app.evaluation.intervals import estimate, paired_difference
 from sim.core.interface import GOAL_CATEGORIES
 from sim.task.explanations import MEANING, outcome
 from sim.task.failures import CAUSES
-
-METRICS = (
-    SUCCESS,
-    SPL,
-    Metric("soft SPL", "soft_spl", digits=3),
-    Metric("distance to goal, m", "distance_to_goal", digits=2),
-    EXPLORED,
-    NEVER_SEEN,
-    FIRST_SIGHT,
-    AREA,
-    AREA_PER_METRE,
-    TRAPPED,
-    COLLISIONS,
-    STEPS,
-    Metric("path, m", "path_length", digits=2),
-)
-"""Metrics by which runs are judged and compared."""
+from sim.task.result import METRICS, EpisodeResult, Metric
 
 
 @dataclass(frozen=True)
@@ -70,7 +40,7 @@ def proportion(values: Sequence[bool], houses: Sequence[str], episodes: Sequence
     return Proportion(sum(values), len(values), share.mean or 0.0, (low, high))
 
 
-def proportion_of(values: Sequence[bool], lines: Sequence[Line]) -> Proportion:
+def proportion_of(values: Sequence[bool], lines: Sequence[EpisodeResult]) -> Proportion:
     """Returns the proportion of some lines with a property; replicates of an episode count once."""
     return proportion(values, houses_of(lines), episodes_of(lines))
 
@@ -87,13 +57,13 @@ class Group:
     note: str = ""
 
 
-Runs = Sequence[Sequence[Line]]
-"""The lines of each run; all have the same episodes in the same order."""
+Runs = Sequence[Sequence[EpisodeResult]]
+"""The results of each run; all have the same episodes in the same order."""
 
 
-def groups(runs: Runs, key: str) -> list[Group]:
+def groups(runs: Runs, key: Literal["goal", "house"]) -> list[Group]:
     """Returns the success by goal category (in the order of the contract) or by house (by name)."""
-    names = [str(line[key]) for line in runs[0]]
+    names = [getattr(result, key) for result in runs[0]]
     order = [goal for goal in GOAL_CATEGORIES if goal in names]
     return grouped(runs, names, [*order, *sorted(set(names).difference(order))])
 
@@ -109,7 +79,7 @@ def grouped(runs: Runs, names: Sequence[str], order: Sequence[str]) -> list[Grou
     found = []
     for name in (name for name in order if name in names):
         some = [[line for line, of in zip(lines, names, strict=True) if of == name] for lines in runs]
-        shares = [proportion_of([bool(line["success"]) for line in lines], lines) for lines in some]
+        shares = [proportion_of([bool(result.success) for result in lines], lines) for lines in some]
         found.append(Group(name, shares, differences(SUCCESS, some)))
     return found
 
@@ -134,12 +104,14 @@ _OTHER = {"error": "The episode ended with an error.", "failed": "No cause was r
 
 def means(runs: Runs) -> list[tuple[Metric, list[Cell], list[Cell]]]:
     """Returns for each metric its mean in each run, and the paired differences of the others from the first run."""
-    return [(metric, [metric.cell(lines) for lines in runs], differences(metric, runs)) for metric in METRICS]
+    return [
+        (metric, [mean_cell(metric, lines) for lines in runs], differences(metric, runs)) for metric in METRICS.values()
+    ]
 
 
 def differences(metric: Metric, runs: Runs) -> list[Cell]:
     """Returns the paired difference of each run after the first: that run minus the first."""
-    return [metric.difference(runs[0], lines) for lines in runs[1:]]
+    return [difference_cell(metric, runs[0], lines) for lines in runs[1:]]
 
 
 def interval_note(runs: Runs) -> str:

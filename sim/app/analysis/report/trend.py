@@ -6,9 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sim.app.analysis.metrics import COLLISIONS, FIRST_SIGHT, SPL, SUCCESS, Metric
+from sim.app.analysis.metrics import COLLISIONS, FIRST_SIGHT, SPL, SUCCESS, mean_cell
 from sim.app.analysis.report.figures import Runs
 from sim.app.analysis.tables import Cell
+from sim.task.result import Metric
 
 METRICS: tuple[Metric, ...] = (SUCCESS, SPL, FIRST_SIGHT, COLLISIONS)
 LEAST_RUNS = 3
@@ -53,7 +54,7 @@ def trend(runs: Runs, labels: Sequence[str]) -> list[Chart]:
     """Returns the charts of at least `LEAST_RUNS` runs; none for fewer. Metrics that no run has are left out."""
     if len(runs) < LEAST_RUNS:
         return []
-    charts = (_chart(metric, [metric.cell(lines) for lines in runs], labels) for metric in METRICS)
+    charts = (_chart(metric, [mean_cell(metric, lines) for lines in runs], labels) for metric in METRICS)
     return [chart for chart in charts if chart.points]
 
 

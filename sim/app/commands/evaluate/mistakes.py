@@ -13,7 +13,7 @@ line of the output names the others.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,6 +38,7 @@ from sim.core.interface import MPCAT40, CameraModel, ConfigError
 from sim.renderer.camera import Camera
 from sim.robot.config import RobotConfig
 from sim.task.failures import CAUSES
+from sim.task.result import EpisodeResult
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 from sim.training.segmentation.dataset import tile
 from sim.world.world import World
@@ -71,20 +72,20 @@ def main(args: Args) -> int:
     run = read_run(args.run)
     segmenter = segmenter_of(run)
     split = split_of(run)
-    failed = [line for line in run.lines.values() if line["failure"] is not None and line["end_reason"] != "error"]
-    recorded = [line for line in failed if trajectory_file(run.path, line["episode_id"]).is_file()]
-    picked = [line for line in recorded if line["failure"] == args.cause]
+    failed = [result for result in run.results.values() if result.failure is not None and not result.is_error]
+    recorded = [result for result in failed if trajectory_file(run.path, result.episode_id).is_file()]
+    picked = [result for result in recorded if result.failure == args.cause]
     if not picked:
         print(f"No recorded episode of '{args.run}' failed by {args.cause}.{_others(recorded, args.cause)}")
         return 1
     found, picked = len(picked), picked[: args.count]
     rows: list[Picture] = []
-    for line in sorted(picked, key=lambda line: line["house"]):
-        trajectory = read_trajectory(trajectory_file(run.path, line["episode_id"]))
+    for result in sorted(picked, key=lambda result: result.house):
+        trajectory = read_trajectory(trajectory_file(run.path, result.episode_id))
         step = decisive_step(trajectory)
-        images = render_at(World(split.load_house(line["house"])), trajectory.poses[step])
-        row, words = draw(images, segmenter, line["goal"])
-        about = f"{line['episode_id']} {line['goal']}, step {step}: {words}"
+        images = render_at(World(split.load_house(result.house)), trajectory.poses[step])
+        row, words = draw(images, segmenter, result.goal)
+        about = f"{result.episode_id} {result.goal}, step {step}: {words}"
         print(about)
         rows.append(_captioned(row, about))
     write_picture(args.out, np.vstack([_headings(rows[0].shape[1]), tile(rows, columns=1)], dtype=np.uint8))
@@ -129,9 +130,9 @@ def segmenter_of(run: Run) -> NetworkSegmenter | OwnSegmenter:
     return network
 
 
-def _others(recorded: Sequence[Mapping[str, Any]], cause: str) -> str:
+def _others(recorded: Sequence[EpisodeResult], cause: str) -> str:
     """Returns a sentence on the recorded failures by other causes; "" if there are no such failures."""
-    others = Counter(line["failure"] for line in recorded if line["failure"] != cause)
+    others = Counter(result.failure for result in recorded if result.failure != cause)
     if not others:
         return ""
     named = ", ".join(f"--cause {name} ({count})" for name, count in others.most_common())

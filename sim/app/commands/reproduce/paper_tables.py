@@ -10,32 +10,32 @@ import itertools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from sim.app.analysis.comparison import Line
 from sim.app.analysis.metrics import (
-    AREA_PER_METRE,
     COLLISIONS,
     EXPLORED,
     FIRST_SIGHT,
-    NEVER_SEEN,
     SPL,
     STEPS,
     SUCCESS,
     TRAPPED,
-    Metric,
+    difference_cell,
     episodes_of,
     houses_of,
+    mean_cell,
+    median_text,
+    ratio_cell,
 )
 from sim.app.analysis.tables import Cell, ResultTable
 from sim.app.commands.reproduce.runs import GROUND_TRUTH, AgentSetup
 from sim.app.evaluation.intervals import estimate, paired_difference
-from sim.app.evaluation.results import metric_value
 from sim.core.errors import ConfigError
 from sim.core.interface import GOAL_CATEGORIES
 from sim.task.failures import CAUSES
+from sim.task.result import METRICS, EpisodeResult, Metric
 from stubborn import agents
 from stubborn.detection.verification import ACCEPT_ALL
 
-Lines = Mapping[AgentSetup, Sequence[Line]]
+Lines = Mapping[AgentSetup, Sequence[EpisodeResult]]
 """The lines of each setup, of the same episodes in the same order."""
 
 
@@ -74,7 +74,7 @@ def failures(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     for cause in CAUSES:
         rows.append((cause, [_share_of_failures(cause, lines[setup]) for setup in setups]))
     rows.append(("failed episodes", [_count_of_failures(lines[setup]) for setup in setups]))
-    rows.append(("success %", [SUCCESS.cell(lines[setup]) for setup in setups]))
+    rows.append(("success %", [mean_cell(SUCCESS, lines[setup]) for setup in setups]))
     header = ("cause", *(setup.label for setup in setups))
     causes = ResultTable("failures", "Causes of failure, % of the failed episodes", header, rows)
     pairs = _against_first(setups)
@@ -103,10 +103,10 @@ def ablation(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
 def exploration(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     """Returns Table IV: how often the goal was seen, by category."""
     rows: list[tuple[str, list[Cell | str]]] = [
-        (f"{goal} ({len(some[setups[0]])})", [EXPLORED.cell(some[setup]) for setup in setups])
+        (f"{goal} ({len(some[setups[0]])})", [mean_cell(EXPLORED, some[setup]) for setup in setups])
         for goal, some in _by_goal(lines)
     ]
-    rows.append((f"all ({len(lines[setups[0]])})", [EXPLORED.cell(lines[setup]) for setup in setups]))
+    rows.append((f"all ({len(lines[setups[0]])})", [mean_cell(EXPLORED, lines[setup]) for setup in setups]))
     header = ("goal (episodes)", *(setup.name for setup in setups))
     seen = ResultTable("exploration", "GT exploration, %: the goal covered 0.8 % of a frame", header, rows)
     pairs = [(a, b) for i, b in enumerate(setups) for a in setups[:i]]
@@ -125,7 +125,10 @@ def categories(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     pairs = _against_first(setups)
 
     def row(of: Lines) -> list[Cell | str]:
-        return [*(SUCCESS.cell(of[setup]) for setup in setups), *(SUCCESS.difference(of[b], of[a]) for a, b in pairs)]
+        return [
+            *(mean_cell(SUCCESS, of[setup]) for setup in setups),
+            *(difference_cell(SUCCESS, of[b], of[a]) for a, b in pairs),
+        ]
 
     rows = [(f"{goal} ({len(some[setups[0]])})", row(some)) for goal, some in _by_goal(lines)]
     rows.append((f"all ({len(lines[setups[0]])})", row(lines)))
@@ -149,7 +152,7 @@ def verification(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable
 
 def splits(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     """Returns the table of one split: success, collisions and exploration, and each setup minus the first one."""
-    metrics = (SUCCESS, SPL, COLLISIONS, TRAPPED, FIRST_SIGHT, NEVER_SEEN, AREA_PER_METRE)
+    metrics = (SUCCESS, SPL, COLLISIONS, TRAPPED, FIRST_SIGHT, METRICS["never_seen"], METRICS["area_per_metre"])
     pairs = [(other, first) for first, other in _against_first(setups)]
     title = f"Agents, {setups[0].semantics} segmentation"
     means, differences = _means_and_differences("splits", title, lines, setups, pairs, metrics, {})
@@ -165,7 +168,7 @@ def explorers(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     """Returns the tables of `splits`, and one of medians of the time to first sight and their ratio to the first."""
     first = lines[setups[0]]
     rows: list[tuple[str, list[Cell | str]]] = [
-        (setup.label, [FIRST_SIGHT.median(lines[setup]), *_against(first, lines[setup])]) for setup in setups
+        (setup.label, [median_text(FIRST_SIGHT, lines[setup]), *_against(first, lines[setup])]) for setup in setups
     ]
     header = ("agent", "median", f"ratio to {setups[0].name}", "sooner", "later")
     note = (
@@ -246,7 +249,7 @@ def _means_and_differences(
     names: Mapping[str, str],
 ) -> list[ResultTable]:
     labels = [f"{names[setup.agent]} {setup.agent}" if _has_own_name(setup, names) else setup.label for setup in setups]
-    cells = [[metric.cell(lines[setup]) for metric in metrics] for setup in setups]
+    cells = [[mean_cell(metric, lines[setup]) for metric in metrics] for setup in setups]
     rows = list(zip(labels, cells, strict=True))
     means = ResultTable(name, title, ("agent", *(metric.title for metric in metrics)), rows)
     return [means, _differences(name, lines, pairs, metrics, names)]
@@ -263,7 +266,7 @@ def _differences(
     rows = [
         (
             " - ".join(names[each.agent] if _has_own_name(each, names) else each.label for each in (a, b)),
-            [metric.difference(lines[b], lines[a]) for metric in metrics],
+            [difference_cell(metric, lines[b], lines[a]) for metric in metrics],
         )
         for a, b in pairs
     ]
@@ -280,13 +283,13 @@ def _against_first(setups: Sequence[AgentSetup]) -> list[tuple[AgentSetup, Agent
     return [(setups[0], other) for other in setups[1:]]
 
 
-def _against(first: Sequence[Line], second: Sequence[Line]) -> list[Cell | str]:
+def _against(first: Sequence[EpisodeResult], second: Sequence[EpisodeResult]) -> list[Cell | str]:
     """Returns the ratio of the median steps to first sight, and how many episodes second has sooner and later."""
     if first is second:
         return ["1", "", ""]
-    values = [[metric_value(line, FIRST_SIGHT.key) for line in lines] for lines in (first, second)]
+    values = [map(FIRST_SIGHT.value, results) for results in (first, second)]
     changes = [b - a for a, b in zip(*values, strict=True) if a is not None and b is not None]
-    ratio = replace(FIRST_SIGHT.ratio_of_medians(first, second), say_significant=True)
+    ratio = replace(ratio_cell(FIRST_SIGHT, first, second), say_significant=True)
     return [ratio, str(sum(change < 0.0 for change in changes)), str(sum(change > 0.0 for change in changes))]
 
 
@@ -294,20 +297,20 @@ def _named(pair: tuple[AgentSetup, AgentSetup]) -> str:
     return f"{pair[0].name} - {pair[1].name}"
 
 
-def _count_of_failures(lines: Sequence[Line]) -> str:
-    return f"{sum(not line['success'] for line in lines)} of {len(lines)}"
+def _count_of_failures(lines: Sequence[EpisodeResult]) -> str:
+    return f"{sum(not result.success for result in lines)} of {len(lines)}"
 
 
-def _share_of_failures(cause: str, lines: Sequence[Line]) -> Cell:
+def _share_of_failures(cause: str, lines: Sequence[EpisodeResult]) -> Cell:
     """Returns the share of the failed episodes that failed by this cause."""
-    failed = [line for line in lines if not line["success"]]
-    found = [line["failure"] == cause for line in failed]
+    failed = [result for result in lines if not result.success]
+    found = [result.failure == cause for result in failed]
     return Cell(estimate(found, houses_of(failed), episodes=episodes_of(failed), most=1.0), percent=True)
 
 
-def _failed_by(cause: str, first: Sequence[Line], second: Sequence[Line]) -> Cell:
+def _failed_by(cause: str, first: Sequence[EpisodeResult], second: Sequence[EpisodeResult]) -> Cell:
     """Returns the difference, second minus first, of the share of all episodes that failed by this cause."""
-    a, b = ([line["failure"] == cause for line in lines] for lines in (first, second))
+    a, b = ([result.failure == cause for result in lines] for lines in (first, second))
     found = paired_difference(a, b, houses_of(first), episodes=episodes_of(first), most=1.0)
     return Cell(found, percent=True, difference=True)
 
@@ -315,7 +318,7 @@ def _failed_by(cause: str, first: Sequence[Line], second: Sequence[Line]) -> Cel
 def _by_goal(lines: Lines) -> list[tuple[str, Lines]]:
     """Returns the goals that occur, in the order of the contract, with their lines."""
     parts = [
-        (goal, {setup: [line for line in of if line["goal"] == goal] for setup, of in lines.items()})
+        (goal, {setup: [result for result in of if result.goal == goal] for setup, of in lines.items()})
         for goal in GOAL_CATEGORIES
     ]
     return [(goal, part) for goal, part in parts if all(part.values())]

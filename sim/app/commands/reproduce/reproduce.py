@@ -30,11 +30,12 @@ from pathlib import Path
 from typing import Any
 
 import tyro
+from msgspec import structs
 from rich.console import Console
 
 from sim.app import cli
 from sim.app.analysis import display
-from sim.app.analysis.comparison import Line, Run, code_of, read_run
+from sim.app.analysis.comparison import Run, code_of, read_run
 from sim.app.analysis.tables import ResultTable, to_csv, to_markdown, to_rich
 from sim.app.commands.reproduce.paper_figures import beside_paper
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, PaperTable, table_named
@@ -49,6 +50,7 @@ from sim.core.option_types import meanings
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split, load_split
 from sim.task.failures import cause_of_failure
+from sim.task.result import EpisodeResult
 from sim.task.trajectory import read_trajectory, trajectory_file
 
 MAX_NAME = 120
@@ -154,7 +156,7 @@ def common_episodes(
     if any(setup not in runs for setup in setups):
         return []
     ids = [episode.episode_id for episode in episodes]
-    return [i for i in ids if all(i in runs[setup].lines for setup in setups)]
+    return [i for i in ids if all(i in runs[setup].results for setup in setups)]
 
 
 def require_same_conditions(runs: Sequence[Run]) -> None:
@@ -194,7 +196,7 @@ def write_table(
     console: Console,
 ) -> str:
     """Builds one table, prints it, and writes it as Markdown and CSV; returns the Markdown."""
-    lines = {setup: [with_cause(of, of.lines[i]) for i in common] for setup, of in runs.items()}
+    lines = {setup: [with_cause(of, of.results[i]) for i in common] for setup, of in runs.items()}
     parts = table.build(lines, list(runs))
     if not args.agents:
         parts[0] = beside_paper(name, parts[0])
@@ -234,18 +236,18 @@ def stem_of(args: Args, name: str) -> str:
     return "_".join(filter(None, (name, args.semantics, agents, noise, split, _seed_name(args))))
 
 
-def with_cause(of: Run, line: Line) -> Line:
-    """Returns the line with the cause of failure by the current rules, if the episode has a trajectory."""
-    file = trajectory_file(of.path, line["episode_id"])
-    return {**line, "failure": cause_of_failure(read_trajectory(file))} if file.is_file() else line
+def with_cause(of: Run, result: EpisodeResult) -> EpisodeResult:
+    """Returns the result with the cause of failure by the current rules, if the episode has a trajectory."""
+    file = trajectory_file(of.path, result.episode_id)
+    return structs.replace(result, failure=cause_of_failure(read_trajectory(file))) if file.is_file() else result
 
 
 def notes_of(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequence[str]) -> list[str]:
     """Returns the notes of a table: episodes, split, how intervals are made, the command, errors and code."""
     some = next(iter(runs.values()))
     config, split, versions = some.config, some.config["split_identity"], some.config["versions"]
-    houses = len({some.lines[i]["house"] for i in common})
-    errors = sum(of.lines[i]["end_reason"] == "error" for of in runs.values() for i in common)
+    houses = len({some.results[i].house for i in common})
+    errors = sum(of.results[i].is_error for of in runs.values() for i in common)
     codes = Counter(code_of(of, i) for of in runs.values() for i in common)
     notes = [
         f"{len(common)} episodes in {houses} houses of {split['name']} {split['version']} ({split['sha256'][:8]}), "
@@ -254,7 +256,7 @@ def notes_of(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequ
         f"or there are fewer than {MIN_PAIRS} pairs.",
         "`" + " ".join(["stubborn reproduce", name, *_named_options(args)]) + "`",
     ]
-    spent_s = sum(of.lines[i].get("wall_time_s", 0.0) for of in runs.values() for i in common)
+    spent_s = sum(of.results[i].wall_time_s or 0.0 for of in runs.values() for i in common)
     if spent_s:
         notes.append(f"One process needed {spent_s / 3600.0:.1f} h for the {len(runs) * len(common)} episodes.")
     if errors:

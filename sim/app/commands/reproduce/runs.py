@@ -25,6 +25,7 @@ from sim.core.errors import ConfigError
 from sim.core.reading import convert
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split
+from sim.task.result import EpisodeResult
 
 GROUND_TRUTH = "gt"
 """The segmentation of agents that do not use one: they are run once, under this name."""
@@ -108,10 +109,10 @@ class TableRun:
     episodes: Sequence[Episode]
 
     @property
-    def lines(self) -> Mapping[str, Any]:
-        """The result lines in its folder by `episode_id`; none if there is no run yet."""
+    def results(self) -> Mapping[str, EpisodeResult]:
+        """The results in its folder by `episode_id`; none if there is no run yet."""
         assert self.options.out is not None
-        return read_run(self.options.out).lines if (self.options.out / "results.jsonl").is_file() else {}
+        return read_run(self.options.out).results if (self.options.out / "results.jsonl").is_file() else {}
 
 
 def run_in_turns(runs: Sequence[TableRun], chunk: int, minutes: float | None, console: Console) -> None:
@@ -136,7 +137,7 @@ def run_in_turns(runs: Sequence[TableRun], chunk: int, minutes: float | None, co
                 return
             for run in of_split:
                 episodes = run.episodes[first : first + chunk]
-                is_complete = all(episode.episode_id in run.lines for episode in episodes)
+                is_complete = all(episode.episode_id in run.results for episode in episodes)
                 checks_options = not first and not run.options.keep_results  # also those of a complete run
                 if checks_options or not is_complete:
                     run_missing(resolve(run.options), episodes, run.split.identity, console)

@@ -12,7 +12,7 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from sim.app import cli
 from sim.app.composition.segmenters import KINDS, detector_config, detector_record, find_segmentation
@@ -24,10 +24,11 @@ from sim.app.evaluation.workers import RunnerSpec
 from sim.core.interface import ConfigError
 from sim.core.paths import assets_dir, code_hash
 from sim.core.reading import read_json
-from sim.episodes.episode import Episode
 from sim.episodes.splits import Split, load_split
+from sim.training.fits.log_line import LogLine
 from sim.training.packages import require_packages
 
+LogLineT = TypeVar("LogLineT", bound=LogLine)
 BATCH = 100
 """Number of episodes that are given to the workers together: a house is loaded once per batch, and a run that is cut
 short is still balanced."""
@@ -127,8 +128,12 @@ def default_log(command: str, args: LogOptions, split: Split) -> Path:
 
 
 def lines_of(
-    args: LogOptions, split: Split, log: Path, line_type: type, runner: RunnerSpec, nothing: Mapping[str, Any]
-) -> list[dict[str, Any]]:
+    args: LogOptions,
+    split: Split,
+    log: Path,
+    line_type: type[LogLineT],
+    runner: RunnerSpec,
+) -> list[LogLineT]:
     """Returns the lines of the first `args.episodes` episodes, by id; those that are not in the log yet are run now.
 
     Args:
@@ -137,7 +142,6 @@ def lines_of(
         log: folder of the log.
         line_type: the fields of a line.
         runner: runs an episode and returns its line.
-        nothing: content of the line of an episode whose worker died.
 
     Raises:
         ConfigError: the log is of another split or of other segmentation.
@@ -148,13 +152,13 @@ def lines_of(
     else:
         run = RunDirectory(log, log_config(args, split), line_type)
         try:
-            _run_episodes(args, split, run, runner, nothing)
+            _run_episodes(args, split, run, runner)
             lines = run.lines
         finally:
             run.discard_if_empty()
             run.close()
     wanted = {episode.episode_id for episode in split.episodes[: args.episodes]}
-    return sorted((line for line in lines if line["episode_id"] in wanted), key=lambda line: line["episode_id"])
+    return sorted((line for line in lines if line.episode_id in wanted), key=lambda line: line.episode_id)
 
 
 def _require_log_of(log: Path, wanted: Mapping[str, Any]) -> None:
@@ -190,24 +194,21 @@ def _own_code(semantics: str) -> str:
     return f"+{hash_of_own((module,))}" if separator else ""
 
 
-def line_of(episode: Episode, steps: int, **found: Any) -> dict[str, Any]:
-    """Returns a line of a log; 0 steps: the episode failed."""
-    about = {"episode_id": episode.episode_id, "goal": episode.goal, "house": episode.house}
-    return about | {"steps": steps} | found
-
-
 def _run_episodes(
-    args: LogOptions, split: Split, run: RunDirectory, runner: RunnerSpec, nothing: Mapping[str, Any]
+    args: LogOptions,
+    split: Split,
+    run: RunDirectory[LogLineT],
+    runner: RunnerSpec,
 ) -> None:
     """Runs the episodes that are not in the log yet, until the time is up."""
-    done = {line["episode_id"] for line in run.lines}
+    done = {line.episode_id for line in run.lines}
     todo = [episode for episode in split.episodes[: args.episodes] if episode.episode_id not in done]
     print(f"{len(done)} episodes are in the log {run.path}, {len(todo)} are run now", flush=True)
     until_s = time.monotonic() + 60.0 * args.minutes if args.minutes is not None else float("inf")
     executor = make_executor("local", workers=args.workers)
     for batch in (todo[first : first + BATCH] for first in range(0, len(todo), BATCH)):
-        for line in executor.run(runner, batch, on_death=lambda episode, _: line_of(episode, 0, **nothing)):
+        for line in executor.run(runner, batch, on_death=lambda episode, _: run.line_type.of(episode)):
             run.append(line)
-            print(f"[{len(run.lines)}/{len(todo) + len(done)}] {line['episode_id']}", flush=True)
+            print(f"[{len(run.lines)}/{len(todo) + len(done)}] {line.episode_id}", flush=True)
             if time.monotonic() > until_s:
                 return

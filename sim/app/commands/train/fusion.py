@@ -29,7 +29,6 @@ from sim.app.commands.train.episode_logs import (
     LogOptions,
     checked_split,
     default_log,
-    line_of,
     lines_of,
     parameters_file,
 )
@@ -86,10 +85,8 @@ def tracks_of(args: Args, split: Split) -> list[dict[str, Any]]:
     """Returns the tracks of the first `args.episodes` episodes; those that are not in the log yet are run now."""
     log = args.log or default_log("tracks", args, split)
     runner = RunnerSpec(f"{__name__}:{TrackRunner.__name__}", (args, log))
-    lines = lines_of(args, split, log, TrackLine, runner, {"tracks": 0})
-    return [
-        {"house": line["house"], **read_tracks(file_of(log, line["episode_id"]))} for line in lines if line["steps"]
-    ]
+    lines = lines_of(args, split, log, TrackLine, runner)
+    return [{"house": line.house, **read_tracks(file_of(log, line.episode_id))} for line in lines if line.steps]
 
 
 class TrackRunner:
@@ -107,13 +104,13 @@ class TrackRunner:
         )
         self._recorder = TrackRecorder(self._env, make_segmenter(args.semantics, self._env, args.weights))
 
-    def run(self, episode: Episode) -> dict[str, Any]:
+    def run(self, episode: Episode) -> TrackLine:
         """Runs one episode to its last step and writes its tracks; returns its line."""
         arrays = self._recorder.run(episode, episode_seeds(self._seed, episode.episode_id).environment)
         if arrays is None:
-            return line_of(episode, 0, tracks=0)
+            return TrackLine.of(episode)
         write_tracks(self._log, episode.episode_id, arrays)
-        return line_of(episode, self._env.scene.task.num_steps, tracks=len(arrays["counts"]))
+        return TrackLine.of(episode, self._env.scene.task.num_steps, tracks=len(arrays["counts"]))
 
     def close(self) -> None:
         """Frees the renderers."""

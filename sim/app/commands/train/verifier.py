@@ -30,7 +30,6 @@ from sim.app.commands.train.episode_logs import (
     LogOptions,
     checked_split,
     default_log,
-    line_of,
     lines_of,
     parameters_file,
 )
@@ -88,7 +87,7 @@ def candidates_of(args: Args, split: Split) -> list[dict[str, Any]]:
     """Returns the lines of the first `args.episodes` episodes; those that are not in the log yet are run now."""
     log = args.log or default_log("verifier", args, split)
     runner = RunnerSpec(f"{__name__}:{CandidateRunner.__name__}", args)  # a script is `__main__` in its workers too
-    return lines_of(args, split, log, CandidateLine, runner, {"candidates": []})
+    return [line.as_json() for line in lines_of(args, split, log, CandidateLine, runner)]
 
 
 class CandidateRunner:
@@ -102,11 +101,11 @@ class CandidateRunner:
         )
         self._recorder = CandidateRecorder(self._env, make_segmenter(args.semantics, self._env, args.weights))
 
-    def run(self, episode: Episode) -> dict[str, Any]:
+    def run(self, episode: Episode) -> CandidateLine:
         """Runs one episode to its last step, or until it fails; returns its line."""
         seed = episode_seeds(self._seed, episode.episode_id).environment
         steps = self._recorder.run(episode, seed)
-        return line_of(episode, steps, candidates=self._recorder.candidates)
+        return CandidateLine.of(episode, steps, candidates=self._recorder.candidates)
 
     def close(self) -> None:
         """Frees the renderers."""

@@ -5,18 +5,18 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.app.analysis.report.figures import proportion
+from sim.app.commands.traps.trial import TrapResult
 from sim.app.evaluation.intervals import estimate
 from sim.homes.housegen.traps.families.catalogue import FAMILIES
 from sim.houses.sidecar import TrapFacts
 
 MOST_BINS = 5
-Rows = Sequence[Mapping[str, Any]]
+Rows = Sequence[TrapResult]
 """Rows of `sim.app.commands.traps.report`."""
 
 
@@ -72,20 +72,20 @@ def curve(rows: Rows, facts: Mapping[str, TrapFacts], quantity: Quantity) -> lis
         facts: of each trap by its name.
         quantity: over which the curve is.
     """
-    values = {trap: quantity.value(facts[trap]) for trap in dict.fromkeys(row["trap"] for row in rows)}
+    values = {trap: quantity.value(facts[trap]) for trap in dict.fromkeys(row.trap for row in rows)}
     known = {trap: value for trap, value in values.items() if value is not None}
     if not known:
         return []
     edges = bin_edges(np.array(list(known.values())))
     points = []
-    for agent in sorted({row["agent"] for row in rows}):
+    for agent in sorted({row.agent for row in rows}):
         for low, high in itertools.pairwise(edges.tolist()):
             inside = [
                 row for row in rows
-                if row["agent"] == agent and row["trap"] in known and low <= known[row["trap"]] < high
+                if row.agent == agent and row.trap in known and low <= known[row.trap] < high
             ]  # fmt: skip
             if inside:
-                points.append(_point(agent, quantity.name, inside, [known[row["trap"]] for row in inside]))
+                points.append(_point(agent, quantity.name, inside, [known[row.trap] for row in inside]))
     return points
 
 
@@ -96,9 +96,9 @@ def bin_edges(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _point(agent: str, quantity: str, rows: Rows, values: Sequence[float]) -> Point:
-    traps = [str(row["trap"]) for row in rows]
-    share = proportion([bool(row["escaped"]) for row in rows], traps)
-    collisions = estimate([float(row["collisions"]) for row in rows], traps)
+    traps = [row.trap for row in rows]
+    share = proportion([row.escaped for row in rows], traps)
+    collisions = estimate([float(row.collisions) for row in rows], traps)
     assert collisions.mean is not None
     return Point(
         agent, quantity, min(values), max(values), float(np.mean(values)), len(rows),

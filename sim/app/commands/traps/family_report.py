@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from sim.app.analysis.report.figures import proportion
 from sim.app.commands.traps.curves import QUANTITIES, Point, Rows, curve
 from sim.app.commands.traps.family_picture import draw_family
 from sim.app.commands.traps.grid import markdown_of
+from sim.app.commands.traps.trial import TrapResult
 from sim.app.evaluation.intervals import estimate
 from sim.core.files import csv_text, write_picture, write_together
 from sim.env.objectnav import ObjectNavEnv
@@ -60,7 +61,7 @@ def write_family_report(
         facts: of its traps, by name.
         pictures: whether the pictures of the families are drawn.
     """
-    ours = [row for row in rows if row["trap"] in facts]
+    ours = [row for row in rows if row.trap in facts]
     if not ours:
         return
     points = [point for quantity in QUANTITIES for point in curve(ours, facts, quantity)]
@@ -74,7 +75,7 @@ def write_family_report(
 
 def family_grid(rows: Rows, facts: Mapping[str, TrapFacts]) -> tuple[list[str], list[list[str]]]:
     """Returns header and lines: successes and mean collisions of each agent, by family and by difficulty."""
-    agents = sorted({row["agent"] for row in rows})
+    agents = sorted({row.agent for row in rows})
     families = _families_of(rows, facts)
     header = ["family", *agents]
     lines = [[name, *(_cell(_of(rows, facts, agent, family=name)) for agent in agents)] for name in families]
@@ -122,7 +123,7 @@ def draw_curves(points: Sequence[Point]) -> Figure:
 def draw_families(rows: Rows, facts: Mapping[str, TrapFacts]) -> Figure:
     """Returns a figure: success above, collisions below, a place for each family, a marker for each agent."""
     families = _families_of(rows, facts)
-    agents = sorted({row["agent"] for row in rows})
+    agents = sorted({row.agent for row in rows})
     figure = empty_figure(max(6.0, 1.1 * len(families) + 1.5), 6.6, what="The curves of traps")
     axes = figure.subplots(2, 1, sharex=True)
     for number, agent in enumerate(agents):
@@ -155,19 +156,19 @@ def draw_family_pictures(folder: Path, name: str, facts: Mapping[str, TrapFacts]
 
 def _families_of(rows: Rows, facts: Mapping[str, TrapFacts]) -> list[str]:
     """Returns the families of some rows in the order of the catalogue, then those that it lacks."""
-    found = {facts[row["trap"]].family for row in rows}
+    found = {facts[row.trap].family for row in rows}
     return [*(name for name in FAMILIES if name in found), *sorted(found - set(FAMILIES))]
 
 
 def _of(
     rows: Rows, facts: Mapping[str, TrapFacts], agent: str, *, family: str | None = None, difficulty: str | None = None
-) -> list[Mapping[str, Any]]:
+) -> list[TrapResult]:
     """Returns the rows of an agent, of one family or difficulty or of all."""
     return [
         row for row in rows
-        if row["agent"] == agent
-        and family in (None, facts[row["trap"]].family)
-        and difficulty in (None, facts[row["trap"]].difficulty)
+        if row.agent == agent
+        and family in (None, facts[row.trap].family)
+        and difficulty in (None, facts[row.trap].difficulty)
     ]  # fmt: skip
 
 
@@ -175,11 +176,11 @@ def _cell(rows: Rows) -> str:
     """Returns successes out of episodes, with the interval of the rate, the mean number of collisions, and falls."""
     if not rows:
         return "-"
-    share = proportion([bool(row["escaped"]) for row in rows], [str(row["trap"]) for row in rows])
+    share = proportion([row.escaped for row in rows], [row.trap for row in rows])
     low, high = (round(100 * value) for value in share.interval)
-    fell = sum(bool(row.get("fell")) for row in rows)
+    fell = sum(row.fell for row in rows)
     falls = f", {fell} fell" if fell else ""
-    collisions = np.mean([row["collisions"] for row in rows])
+    collisions = np.mean([row.collisions for row in rows])
     return f"{share.count}/{share.of} ({low}-{high} %), {collisions:.1f} collisions{falls}"
 
 
@@ -187,9 +188,9 @@ def _family_point(rows: Rows, agent: str, family: str) -> Point | None:
     """Returns success and collisions of an agent in a family; None without episodes."""
     if not rows:
         return None
-    traps = [str(row["trap"]) for row in rows]
-    share = proportion([bool(row["escaped"]) for row in rows], traps)
-    found = estimate([float(row["collisions"]) for row in rows], traps)
+    traps = [row.trap for row in rows]
+    share = proportion([row.escaped for row in rows], traps)
+    found = estimate([float(row.collisions) for row in rows], traps)
     numbers = [found.mean or 0.0, *found.ends]
     return Point(agent, family, 0.0, 0.0, 0.0, len(rows), share.mean, *share.interval, *numbers)
 

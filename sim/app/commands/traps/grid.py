@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from rich.table import Table
 
+from sim.app.commands.traps.trial import TrapResult
 
-def grid(rows: Sequence[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
+
+def grid(rows: Sequence[TrapResult]) -> tuple[list[str], list[list[str]]]:
     """Returns header and lines of the table: a line for each trap, then the totals; a column for each agent."""
-    names = sorted({row["agent"] for row in rows})
-    traps = list(dict.fromkeys(row["trap"] for row in rows))
+    names = sorted({row.agent for row in rows})
+    traps = list(dict.fromkeys(row.trap for row in rows))
     lines = []
     for trap in traps:
-        cells = [[row for row in rows if (row["trap"], row["agent"]) == (trap, name)] for name in names]
+        cells = [[row for row in rows if (row.trap, row.agent) == (trap, name)] for name in names]
         lines.append([trap, *(_cell(cell) for cell in cells)])
-    every = [[row for row in rows if row["agent"] == name] for name in names]
-    lines.append(["**success**", *(f"**{sum(r['escaped'] for r in of)}/{len(of)}**" for of in every)])
+    every = [[row for row in rows if row.agent == name] for name in names]
+    lines.append(["**success**", *(f"**{sum(r.escaped for r in of)}/{len(of)}**" for of in every)])
     for label, key in (("steps in the trap, median", "steps_in_trap"), ("collisions, median", "collisions")):
-        lines.append([label, *(f"{np.median([row[key] for row in of]):.0f}" for of in every)])
+        lines.append([label, *(f"{np.median([getattr(row, key) for row in of]):.0f}" for of in every)])
     lines.append(["metres per forward, mean", *(f"{_forward_m(of):.2f}" for of in every)])
-    lines.append(["deepest contact, mm", *(f"{max(row['deepest_mm'] for row in of):.1f}" for of in every)])
+    lines.append(["deepest contact, mm", *(f"{max(row.deepest_mm for row in of):.1f}" for of in every)])
     return ["trap", *names], lines
 
 
@@ -43,16 +44,16 @@ def table_of(title: str, header: Sequence[str], lines: Sequence[Sequence[str]]) 
     return table
 
 
-def _cell(rows: Sequence[dict[str, Any]]) -> str:
+def _cell(rows: Sequence[TrapResult]) -> str:
     """Returns successes out of episodes, with medians of steps in the trap and of collisions."""
     if not rows:
         return "-"
-    steps = np.median([row["steps_in_trap"] for row in rows])
-    collisions = np.median([row["collisions"] for row in rows])
-    return f"{sum(row['escaped'] for row in rows)}/{len(rows)} ({steps:.0f}, {collisions:.0f})"
+    steps = np.median([row.steps_in_trap for row in rows])
+    collisions = np.median([row.collisions for row in rows])
+    return f"{sum(row.escaped for row in rows)}/{len(rows)} ({steps:.0f}, {collisions:.0f})"
 
 
-def _forward_m(rows: Sequence[dict[str, Any]]) -> float:
+def _forward_m(rows: Sequence[TrapResult]) -> float:
     """Returns the mean displacement of a forward action."""
-    moved = [row["forward_mean_m"] for row in rows if row["forward_mean_m"] is not None]
+    moved = [row.forward_mean_m for row in rows if row.forward_mean_m is not None]
     return float(np.mean(moved)) if moved else 0.0

@@ -19,15 +19,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
-import numpy as np
+from msgspec.structs import asdict
 
 from sim.app import cli
 from sim.app.analysis import display
 from sim.app.commands.traps.family_report import facts_of, family_grid, require_matplotlib, write_family_report
 from sim.app.commands.traps.grid import grid, markdown_of, table_of
 from sim.app.commands.traps.picture import draw_trial
-from sim.app.commands.traps.trial import Trial, run_trial
+from sim.app.commands.traps.trial import TrapResult, Trial, run_trial
 from sim.app.composition.agents import build_agent, find_agent
 from sim.app.composition.record import code_of
 from sim.app.evaluation.config_fields import differing_fields, field_text
@@ -35,8 +34,7 @@ from sim.app.options import RunOptions
 from sim.core.files import csv_text, open_to_grow, write_atomically, write_together
 from sim.core.files import write_picture as save_picture
 from sim.core.interface import Agent, ConfigError
-from sim.core.reading import Count as ReadCount
-from sim.core.reading import Name, Number, read_json, read_lines
+from sim.core.reading import read_json, read_lines
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split, load_split
@@ -47,11 +45,6 @@ from stubborn.drawing import map_painter
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 DEFAULT_AGENTS = ("oracle", "stubborn-i", "stubborn-ii", "stubborn-iii", "stubborn-iv", "stubborn-v")
-COLUMNS: tuple[str, ...] = (
-    "trap", "episode_id", "agent", "escaped", "steps", "steps_in_trap", "collisions", "trapped", "spl",
-    "forward_mean_m", "deepest_mm", "fell",
-)  # fmt: skip
-"""Columns of the CSV, which has one row for each episode."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,24 +80,24 @@ def main(args: Args) -> int:
         find_agent(name)  # a wrong name is refused before anything is written
     write_or_compare_config(args, split)
     results = args.out / "results.jsonl"
-    found = read_lines(results, Row, what="Results")
+    found = read_lines(results, TrapResult, what="Results")
     if found.torn:
         console.print(found.torn, markup=False)
         os.truncate(results, found.whole_bytes)
     ids = {episode.episode_id for episode in episodes}
-    rows = [row for row in found.values if row["episode_id"] in ids]
+    rows = [row for row in found.values if row.episode_id in ids]
     for name in args.agents:
-        done = {row["episode_id"] for row in rows if row["agent"] == name}
+        done = {row.episode_id for row in rows if row.agent == name}
         for trial in run_trials(args, name, episodes, done):
-            rows.append(row_of(trial))
+            rows.append(trial.result())
             with open_to_grow(results, "a") as file:
-                file.write(json.dumps(rows[-1]) + "\n")
+                file.write(json.dumps(asdict(rows[-1])) + "\n")
             outcome = "escaped" if trial.escaped else "stuck"
             console.print(f"{name} {trial.episode_id}: {outcome} after {len(trial.motions)} steps")
     write_together({args.out / "traps.csv": as_csv(rows), args.out / "traps.md": markdown_of(*grid(rows))})
     write_family_report(args.out, rows, args.split, facts, pictures=args.pictures)
     if facts:
-        of_families = [row for row in rows if row["trap"] in facts]
+        of_families = [row for row in rows if row.trap in facts]
         console.print(table_of("successes (95 % interval)", *family_grid(of_families, facts)))
     else:
         console.print(table_of("successes (steps in the trap, collisions: medians)", *grid(rows)))
@@ -136,23 +129,6 @@ def write_or_compare_config(args: Args, split: Split) -> None:
             )
         config["own_code"] = known | config["own_code"]
     write_atomically(file, json.dumps(config, indent=2) + "\n")
-
-
-class Row(msgspec.Struct):
-    """A line of results.jsonl."""
-
-    trap: Name
-    episode_id: Name
-    agent: Name
-    escaped: bool
-    steps: ReadCount
-    steps_in_trap: ReadCount
-    collisions: ReadCount
-    trapped: bool
-    spl: Number
-    forward_mean_m: Number | None
-    deepest_mm: Number
-    fell: bool = False
 
 
 def run_trials(args: Args, name: str, episodes: Sequence[Episode], done: Set[str]) -> Iterator[Trial]:
@@ -211,25 +187,7 @@ def wanted(split: Split, args: Args) -> list[Episode]:
     return [episode for episodes in of_trap.values() for episode in episodes[: args.headings]]
 
 
-def row_of(trial: Trial) -> dict[str, Any]:
-    """Returns one episode as a row of the CSV."""
-    forwards_m = trial.forwards_m
-    return {
-        "trap": trial.trap,
-        "episode_id": trial.episode_id,
-        "agent": trial.agent,
-        "escaped": trial.escaped,
-        "steps": len(trial.motions),
-        "steps_in_trap": trial.steps_in_trap,
-        "collisions": int(trial.metrics["collisions"]),
-        "trapped": bool(trial.metrics["trapped"]),
-        "spl": round(float(trial.metrics["spl"]), 3),
-        "forward_mean_m": round(float(np.mean(forwards_m)), 4) if forwards_m else None,
-        "deepest_mm": round(1000 * trial.deepest_m, 2),
-        "fell": trial.metrics["end_reason"] == "fallen",
-    }
-
-
-def as_csv(rows: Sequence[dict[str, Any]]) -> str:
+def as_csv(rows: Sequence[TrapResult]) -> str:
     """Returns all rows as CSV text."""
-    return csv_text(COLUMNS, ([row[name] for name in COLUMNS] for row in rows), end="\r\n")
+    names = TrapResult.__struct_fields__
+    return csv_text(names, (asdict(row).values() for row in rows), end="\r\n")

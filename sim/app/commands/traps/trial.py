@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
+import msgspec
 import numpy as np
 
 from sim.core.interface import Action, Agent
+from sim.core.reading import Count, Name, Number
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.seeds import episode_seeds
@@ -15,7 +16,25 @@ from sim.gl import mujoco
 from sim.robot.body import PREFIX
 from sim.robot.contacts import Contact
 from sim.robot.drive import Motion
+from sim.task.result import EpisodeMetrics
 from sim.world.world import World
+
+
+class TrapResult(msgspec.Struct, frozen=True, kw_only=True):
+    """A line of the results of traps, and a row of `traps.csv`."""
+
+    trap: Name
+    episode_id: Name
+    agent: Name
+    escaped: bool
+    steps: Count
+    steps_in_trap: Count
+    collisions: Count
+    trapped: bool
+    spl: Number
+    forward_mean_m: Number | None
+    deepest_mm: Number
+    fell: bool
 
 
 @dataclass
@@ -25,8 +44,8 @@ class Trial:
     trap: str
     episode_id: str
     agent: str
-    metrics: dict[str, Any] = field(default_factory=dict)
-    """Metrics of the task at the end."""
+    metrics: EpisodeMetrics | None = None
+    """Metrics of the task at the end; None: the episode still runs."""
     positions_m: list[tuple[float, float]] = field(default_factory=list)
     """Positions of the robot's centre, the start first."""
     yaws_rad: list[float] = field(default_factory=list)
@@ -39,12 +58,31 @@ class Trial:
     @property
     def escaped(self) -> bool:
         """Returns whether the goal was found; every trap is on the path to it."""
-        return bool(self.metrics["success"])
+        return self.metrics is not None and bool(self.metrics.success)
 
     @property
     def forwards_m(self) -> list[float]:
         """Displacement of each forward action."""
         return [motion.displacement_m for motion in self.motions if motion.action == Action.MOVE_FORWARD]
+
+    def result(self) -> TrapResult:
+        """Returns the result of the episode, which must have ended."""
+        assert self.metrics is not None
+        forwards_m = self.forwards_m
+        return TrapResult(
+            trap=self.trap,
+            episode_id=self.episode_id,
+            agent=self.agent,
+            escaped=self.escaped,
+            steps=len(self.motions),
+            steps_in_trap=self.steps_in_trap,
+            collisions=self.metrics.collisions,
+            trapped=bool(self.metrics.trapped),
+            spl=round(self.metrics.spl, 3),
+            forward_mean_m=round(float(np.mean(forwards_m)), 4) if forwards_m else None,
+            deepest_mm=round(1000 * self.deepest_m, 2),
+            fell=self.metrics.end_reason == "fallen",
+        )
 
     @property
     def stops(self) -> list[tuple[int, Contact]]:
@@ -82,7 +120,7 @@ def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode, *, s
     """
     trial = Trial(episode.house, episode.episode_id, name)
     seed = episode_seeds(seed, episode.episode_id).environment
-    observation, info = env.reset(seed=seed, options={"episode": episode})
+    observation, _ = env.reset(seed=seed, options={"episode": episode})
     agent.reset(episode.goal, seed)
     zone = env.split.sidecar(episode.house).zone_m
     world = env.scene.world
@@ -93,14 +131,14 @@ def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode, *, s
         while not done:
             _record_pose(trial, env)
             trial.steps_in_trap += zone is not None and _inside(zone, trial.positions_m[-1])
-            observation, _, terminated, truncated, info = env.step(Action(agent.act(observation)))
+            observation, _, terminated, truncated, _ = env.step(Action(agent.act(observation)))
             assert env.motion is not None
             trial.motions.append(env.motion)
             done = terminated or truncated
     finally:
         mujoco.set_mjcb_control(None)
     _record_pose(trial, env)
-    trial.deepest_m, trial.metrics = deepest.depth_m, info
+    trial.deepest_m, trial.metrics = deepest.depth_m, env.scene.task.metrics()
     return trial
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec.structs import replace as changed
 
 from sim.app.analysis.comparison import (
     code_of,
@@ -23,6 +24,7 @@ from sim.app.commands.compare import Args, compare, main, verdict
 from sim.app.evaluation.config_fields import ABSENT, run_differences
 from sim.app.evaluation.intervals import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.core.interface import ConfigError
+from tests.helpers.results import write_lines
 
 
 def houses(count: int) -> list[str]:
@@ -92,9 +94,7 @@ def run_folder(folder: Path, ids: str, *, split: str = "val", **of_lines: object
     folder.mkdir()
     config = {"split_identity": {"name": split, "version": "1", "sha256": "abc"}, "versions": {"code": "c0de"}}
     (folder / "config.json").write_text(json.dumps(config))
-    about = {"house": "house_0", "goal": "bed", "shortest_path": 4.2, "end_reason": "stop"} | of_lines
-    lines = [{"episode_id": i, "success": 1.0} | about for i in ids]
-    (folder / "results.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    write_lines(folder, *({"house": "house_0", "shortest_path": 4.2} | of_lines | {"episode_id": i} for i in ids))
     return folder
 
 
@@ -168,7 +168,7 @@ def test_reading_a_run_that_is_being_written_leaves_its_last_line_alone(tmp_path
     with (folder / "results.jsonl").open("a") as stream:
         stream.write('{"episode_id": "c", "succ')
     before = (folder / "results.jsonl").read_bytes()
-    assert list(read_run(folder).lines) == ["a", "b"]
+    assert list(read_run(folder).results) == ["a", "b"]
     assert (folder / "results.jsonl").read_bytes() == before
 
 
@@ -222,24 +222,15 @@ def test_options_that_change_no_result_are_no_difference_between_runs(tmp_path: 
     to_rich(differences_table(*runs))
 
 
-def test_a_run_from_before_the_time_to_first_sight_can_be_compared_and_has_no_value_for_it(tmp_path: Path) -> None:
-    common = {"success": 1.0, "gt_explored": True, "end_reason": "stop"}
-    older = read_run(run_folder(tmp_path / "older", "ab", **common))
-    newer = read_run(run_folder(tmp_path / "newer", "ab", **common, steps_to_first_sight=7, area_seen_m2=20.0))
-    cells = dict(compare(older, newer).rows)["steps to first sight"]
-    assert [cell.text() for cell in cells if isinstance(cell, Cell)] == ["-", "7", "-"]
-    cells = dict(compare(newer, newer).rows)["area seen, m2"]
-    assert [cell.mean_text for cell in cells if isinstance(cell, Cell)] == ["20.0", "20.0", "+0.0"]
-
-
 def test_a_comparison_names_errors_and_metrics_without_a_value(tmp_path: Path) -> None:
     first = read_run(run_folder(tmp_path / "first", "abc", gt_explored=True, collisions=3))
     broken = {"success": 0.0, "gt_explored": None, "end_reason": "error"}
-    lines = {**first.lines, "a": {**first.lines["a"], **broken}, "b": {**first.lines["b"], "collisions": None}}
-    notes = compare(first, replace(first, lines=lines)).notes
+    a, b, c = first.results.values()
+    results = {"a": changed(a, **broken), "b": changed(b, distance_to_goal=None), "c": c}
+    notes = compare(first, replace(first, results=results)).notes
     assert "Ended with an error: 0 of A, 1 of B; failures, in no other metric's means." in notes
     (fewer,) = (note for note in notes if note.startswith("Differences of fewer"))
-    assert "collisions 1" in fewer
+    assert "distance to goal, m 1" in fewer
     assert "success" not in fewer
 
 
@@ -281,8 +272,9 @@ def test_the_verdict_names_success_and_spl_and_whether_they_differ(
     changes: dict[str, dict[str, object]] = {
         name: {"house": f"h{i}", "success": float(i < gained), "spl": 0.5 * (i < gained)} for i, name in enumerate(ids)
     }
-    first = replace(first, lines={name: {**first.lines[name], "house": of["house"]} for name, of in changes.items()})
-    second = replace(second, lines={name: {**second.lines[name], **of} for name, of in changes.items()})
+    of_first = {name: changed(first.results[name], house=of["house"]) for name, of in changes.items()}
+    of_second = {name: changed(second.results[name], **of) for name, of in changes.items()}
+    first, second = replace(first, results=of_first), replace(second, results=of_second)
     said = verdict(first, second)
     assert said.startswith(f"Verdict over {episodes} episodes. {words}")
     assert "SPL: " in said
@@ -313,8 +305,8 @@ def test_replicates_of_an_episode_count_once_in_a_comparison_which_states_their_
         "8 replicates of 4 episodes, each of which counts once. Chance alone gives the difference over one replicate "
         f"of each a standard deviation of {100 * (3 / 8 / 4) ** 0.5:.1f} points of success and 0.000 of SPL."
     )
-    assert replicate_note([line for i, line in first.lines.items() if "~" not in i]) == ""
-    assert f" {100 * (1 / 2 / 4 / 4) ** 0.5:.1f} points of success" in replicate_note(list(second.lines.values()))
+    assert replicate_note([result for i, result in first.results.items() if "~" not in i]) == ""
+    assert f" {100 * (1 / 2 / 4 / 4) ** 0.5:.1f} points of success" in replicate_note(list(second.results.values()))
     cells = dict(table.rows)["success %"]
     assert [cell.estimate.count for cell in cells if isinstance(cell, Cell)] == [4, 4, 4]
     assert verdict(first, second).startswith("Verdict over 4 episodes.")

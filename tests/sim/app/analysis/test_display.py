@@ -12,7 +12,8 @@ import pytest
 from rich.table import Table
 
 from sim.app.analysis.display import PlainConsole, describe, file_size, print_results, print_where_to_look
-from sim.app.evaluation.results import summarise
+from sim.app.evaluation.summary import summarise
+from tests.helpers.results import a_result
 
 
 def printed(*objects: object, terminal: bool = False) -> str:
@@ -51,12 +52,11 @@ def test_the_size_of_a_file_has_the_unit_that_fits_it(size_bytes: int, shown: st
     assert file_size(size_bytes) == shown
 
 
-BROKEN = {
-    "episode_id": "e0", "house": "h", "goal": "chest_of_drawers", "success": 0.0, "spl": 0.0, "num_steps": 1,
-    "path_length": 0.0, "shortest_path": None, "distance_to_goal": None, "collisions": 0, "steps_per_s": 1.0,
-    "wall_time_s": 0.4, "failure": "misc", "end_reason": "error", "error": "Agent 'mine:make', step 1: KeyError",
-}  # fmt: skip
-"""The line of an episode that an error of the agent has ended."""
+BROKEN = a_result(
+    episode_id="e0", goal="chest_of_drawers", success=0.0, num_steps=1, shortest_path=None, distance_to_goal=None,
+    wall_time_s=0.4, failure="misc", end_reason="error", error="Agent 'mine:make', step 1: KeyError",
+)  # fmt: skip
+"""The result of an episode that an error of the agent has ended."""
 
 
 def test_an_error_is_called_one_and_the_option_that_shows_where_is_named() -> None:

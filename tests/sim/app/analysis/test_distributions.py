@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import pytest
+from msgspec.structs import replace
 
 from sim.app.analysis.report.distributions import (
     DISTANCES,
@@ -21,14 +22,13 @@ from sim.app.analysis.report.distributions import (
 )
 from sim.app.analysis.report.figures import causes, grouped, means, proportion_of
 from sim.app.analysis.report.trend import HEIGHT, METRICS, TOP, trend
+from sim.task.result import EpisodeResult
+from tests.helpers.results import a_result
 
-Line = dict[str, Any]
 
-
-def line(**changed: Any) -> Line:
-    """Returns the line of a successful episode."""
-    usual = {"episode_id": "e0", "house": "h0", "success": 1.0, "spl": 0.5, "end_reason": "stop", "gt_explored": True}
-    return usual | {"first_seen_step": 7, "steps_to_first_sight": 7, "collisions": 2} | changed
+def line(**changed: Any) -> EpisodeResult:
+    """Returns the result of a successful episode."""
+    return a_result(**{"episode_id": "e0", "first_seen_step": 7, "steps_to_first_sight": 7, "collisions": 2} | changed)
 
 
 @pytest.mark.parametrize("bins", [DISTANCES, HOUSE_SIZES, FIRST_SIGHTS])
@@ -61,7 +61,7 @@ def counts_of(labels: Sequence[str], histogram: Histogram) -> dict[str, int]:
 
 def test_replicates_of_an_episode_do_not_make_the_interval_narrower() -> None:
     once = [line(episode_id=f"e{i}", house=f"h{i}", spl=i / 10, stop_confidence=0.5) for i in range(8)]
-    often = [each | {"episode_id": f"{each['episode_id']}~{k}"} for each in once for k in range(1, 6)]
+    often = [replace(each, episode_id=f"{each.episode_id}~{k}") for each in once for k in range(1, 6)]
     for few, many in zip(spl_histogram([once]).shares[0], spl_histogram([often]).shares[0], strict=True):
         assert many.count == 5 * few.count
         assert many.interval == pytest.approx(few.interval)
@@ -70,8 +70,8 @@ def test_replicates_of_an_episode_do_not_make_the_interval_narrower() -> None:
 
 def test_spl_counts_failures_apart_and_each_tenth_from_its_lower_edge() -> None:
     lines = [line(spl=value) for value in (0.0999, 0.1, 0.95, 1.0)]
-    lines += [line(spl=0.0, success=0.0), line(spl=None)]
-    lines = [each | {"episode_id": f"e{i}", "house": f"h{i}"} for i, each in enumerate(lines)]
+    lines.append(line(spl=0.0, success=0.0))
+    lines = [replace(each, episode_id=f"e{i}", house=f"h{i}") for i, each in enumerate(lines)]
     histogram = spl_histogram([lines, []])
     assert counts_of(SPL_LABELS, histogram) == {"failed": 1, "0-0.1": 1, "0.1-0.2": 1, "0.9-1": 2}
     assert [{share.of for share in shares} for shares in histogram.shares] == [{5}, {0}]
@@ -99,7 +99,7 @@ def test_an_episode_that_never_showed_the_goal_is_the_last_bin_of_first_sights()
     }  # fmt: skip
 
 
-def stops(*pairs: tuple[float, int]) -> list[Line]:
+def stops(*pairs: tuple[float, int]) -> list[EpisodeResult]:
     return [line(stop_confidence=confidence, success=float(success)) for confidence, success in pairs]
 
 
@@ -111,17 +111,17 @@ def test_confidence_that_equals_the_share_of_correct_stops_has_no_calibration_er
 
 
 def test_calibration_counts_stops_with_a_confidence_in_tenths() -> None:
-    lines = [*stops((0.0, 0), (0.31, 0), (0.39, 1), (1.0, 1)), line(stop_confidence=None), line(stop_confidence=7.0)]
+    lines = [*stops((0.0, 0), (0.31, 0), (0.39, 1), (1.0, 1)), line(stop_confidence=None)]
     lines.append(line(end_reason="max_steps", success=0.0, stop_confidence=0.9))
     found = calibration(lines)
-    assert found.stops == 6
+    assert found.stops == 5
     assert found.correct.of == 4
     assert [(b.low, b.correct.count, b.correct.of) for b in found.bins] == [(0.0, 0, 1), (0.3, 1, 2), (0.9, 1, 1)]
     assert found.bins[1].confidence == pytest.approx(0.35)
     assert calibration([line()]).bins == []
 
 
-def runs(*collisions: Sequence[float]) -> list[list[Line]]:
+def runs(*collisions: Sequence[float]) -> list[list[EpisodeResult]]:
     return [[line(house=f"h{i}", collisions=c) for i, c in enumerate(of_run)] for of_run in collisions]
 
 
@@ -139,8 +139,8 @@ def test_a_trend_shows_each_run_in_order_within_the_chart() -> None:
 
 def test_two_runs_are_no_trend_and_a_number_that_no_run_has_is_left_out() -> None:
     assert trend(runs([1], [2]), "AB") == []
-    without = [[line(collisions=None)]] * 3
-    assert "collisions" not in [chart.title for chart in trend(without, "ABC")]
+    without = [[line(steps_to_first_sight=None)]] * 3
+    assert "steps to first sight" not in [chart.title for chart in trend(without, "ABC")]
 
 
 def test_a_proportion_is_over_episodes_whatever_their_number_of_replicates() -> None:

@@ -8,7 +8,6 @@ import re
 import threading
 import time
 from collections.abc import Iterator
-from typing import Any
 
 import pytest
 
@@ -17,8 +16,10 @@ from sim.app.analysis.progress import ProgressReport
 from sim.app.evaluation.watch import Steps
 from sim.core.geometry.pose import Pose
 from sim.episodes.episode import Episode
+from sim.task.result import EpisodeResult
+from tests.helpers.results import a_result
 
-LINE = {"episode_id": "e0", "goal": "tv_monitor", "success": 1.0, "num_steps": 3, "wall_time_s": 1.0}
+RESULT = a_result(episode_id="e0", goal="tv_monitor", num_steps=3, wall_time_s=1.0)
 
 
 def episode(name: str) -> Episode:
@@ -31,9 +32,9 @@ def report(*running: tuple[str, Steps], ended: int = 0, total: int = 10, termina
     console = PlainConsole(file=stream, width=200, force_terminal=terminal, color_system=None)
     progress = ProgressReport(console, total=total, max_steps=500, quiet_s=0.05)
 
-    def lines() -> Iterator[dict[str, Any]]:
+    def lines() -> Iterator[EpisodeResult]:
         for number in range(ended):
-            yield LINE | {"episode_id": f"e{number}", "num_steps": 40}
+            yield a_result(episode_id=f"e{number}", num_steps=40)
         for name, steps in running:
             progress.started(episode(name), steps)
         time.sleep(0.5 if not terminal else 0.7)
@@ -51,12 +52,12 @@ def test_a_pipe_gets_a_line_when_an_episode_begins_while_it_runs_and_when_it_end
     stream = io.StringIO()
     progress = ProgressReport(PlainConsole(file=stream, width=100), total=1, max_steps=500, quiet_s=0.05)
 
-    def lines() -> Iterator[dict[str, Any]]:
+    def lines() -> Iterator[EpisodeResult]:
         progress.started(episode("e0"), itertools.count(2).__next__)
         time.sleep(0.5)
-        yield LINE
+        yield RESULT
 
-    assert list(progress.over(lines())) == [LINE]
+    assert list(progress.over(lines())) == [RESULT]
     first, *running, last = stream.getvalue().splitlines()
     assert first == "e0 begins: looking for tv monitor in house val_00"
     assert running
@@ -70,12 +71,12 @@ def test_silences_grow_so_that_the_log_of_a_long_episode_stays_short() -> None:
     stream = io.StringIO()
     progress = ProgressReport(PlainConsole(file=stream, width=100), total=1, max_steps=500, quiet_s=0.02)
 
-    def lines() -> Iterator[dict[str, Any]]:
+    def lines() -> Iterator[EpisodeResult]:
         progress.started(episode("e0"), lambda: 1)
         time.sleep(0.8)
-        yield LINE
+        yield RESULT
 
-    assert list(progress.over(lines())) == [LINE]
+    assert list(progress.over(lines())) == [RESULT]
     assert 3 < stream.getvalue().count("running") < 12
 
 

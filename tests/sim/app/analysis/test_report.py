@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from msgspec.structs import replace as changed
 
 from sim.app.analysis.comparison import Run, read_run
 from sim.app.analysis.report.drawings import ground_truth_of, path_on, split_of
@@ -28,6 +29,7 @@ from sim.core.interface import ConfigError
 from sim.core.reading import image_size_px
 from sim.task.explanations import explain, marks
 from sim.task.ground_truth import GroundTruth
+from sim.task.result import EpisodeResult, StopTarget
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file, write_trajectory
 from sim.world.world import World
 from tests.helpers.browser import ENTER, Browser, missing
@@ -90,6 +92,10 @@ def _data(page: str) -> dict[str, Any]:
     return json.loads(match[1])
 
 
+def _first(folder: Path) -> EpisodeResult:
+    return next(iter(read_run(folder).results.values()))
+
+
 def _points(numbers: list[int]) -> np.ndarray:
     return np.array(numbers).reshape(-1, 2)
 
@@ -114,7 +120,7 @@ def test_the_shortest_path_has_the_measured_length_and_goes_round_the_wall(recor
     corners = shortest_path(truth.space(), truth.target("sofa"), (-2.0, 1.0))
     assert corners is not None
     length_m = float(np.hypot(*np.diff(corners, axis=0).T).sum())
-    assert length_m == pytest.approx(next(iter(run_read.lines.values()))["shortest_path"], rel=0.02)
+    assert length_m == pytest.approx(next(iter(run_read.results.values())).shortest_path, rel=0.02)
     samples = np.concatenate([np.linspace(a, b, 200) for a, b in itertools.pairwise(corners)])
     assert truth.space().free[tuple(truth.space().frame.to_cells(samples).T)].all()
 
@@ -187,6 +193,7 @@ def test_a_hundred_long_episodes_fit_into_five_megabytes() -> None:
         touched=~no,
         goal_share=rng.uniform(0, 0.016, 501).astype(np.float32),
         distance_m=rng.uniform(0, 20, 501).astype(np.float32),
+        duration_s=np.ones(500, np.float32),
         contacts=contacts,
         goal_on_storey=True,
         nearest_instance_m=2.0,
@@ -377,44 +384,41 @@ def test_runs_of_other_episodes_are_refused(recorded_run: Path, pair: tuple[Path
 
 def test_the_words_give_the_rule_with_its_numbers(pair: tuple[Path, Path]) -> None:
     _, folder = pair
-    line = _lines(folder)[0]
-    trajectory = read_trajectory(trajectory_file(folder, line["episode_id"]))
+    result = _first(folder)
+    trajectory = read_trajectory(trajectory_file(folder, result.episode_id))
     unseen = Trajectory(**{**vars(trajectory), "goal_share": np.full_like(trajectory.goal_share, np.nan)})
-    words = explain(line, unseen)
+    words = explain(result, unseen)
     assert f"never covered 0.8 % of a frame in {unseen.num_steps} steps" in words
-    assert [mark.kind for mark in marks(line, unseen)][-1] == "end"
-    other = explain(line | {"failure": "loop"}, unseen)
+    assert [mark.kind for mark in marks(result, unseen)][-1] == "end"
+    other = explain(changed(result, failure="loop"), unseen)
     assert "By the rules of the code that wrote this report the cause is explore." in other
 
 
 def test_a_wrong_stop_is_reported_with_the_place_for_which_the_agent_stopped(pair: tuple[Path, Path]) -> None:
     _, folder = pair
-    line = _lines(folder)[0] | {"failure": "false_detection", "end_reason": "stop"}
-    whole = read_trajectory(trajectory_file(folder, line["episode_id"]))
+    result = changed(_first(folder), failure="false_detection", stop_target_to_goal_m=None)
+    whole = read_trajectory(trajectory_file(folder, result.episode_id))
     wrong = replace(whole, success=False, end_reason="stop", nearest_instance_m=0.9)
-    aimed = replace(wrong, stop_target_xy_m=(1.0, 2.0), stop_target_to_goal_m=1.84)
     begin = f"Called STOP at step {whole.num_steps}"
-    assert explain(line, wrong).startswith(f"{begin}: the nearest sofa is 0.9 m away. The sofa was in view")
-    assert explain(line, aimed).startswith(f"{begin} for something 1.8 m from the nearest sofa. The sofa was in view")
-    for known in (
-        explain(line | {"stop_target_category": "chest_of_drawers"}, aimed),
-        explain(line, replace(aimed, stop_target_category="chest_of_drawers")),
-    ):
-        assert known.startswith(f"{begin} at a chest of drawers, 1.8 m from the nearest sofa. The sofa was in view")
-    short = replace(aimed, stop_target_to_goal_m=0.1, nearest_instance_m=1.7)
-    words = explain(line | {"failure": "stopped_short"}, short)
+    assert explain(result, wrong).startswith(f"{begin}: the nearest sofa is 0.9 m away. The sofa was in view")
+    aimed = changed(result, stop_target_xy_m=(1.0, 2.0), stop_target_to_goal_m=1.84)
+    assert explain(aimed, wrong).startswith(f"{begin} for something 1.8 m from the nearest sofa. The sofa was in view")
+    named = explain(changed(aimed, stop_target_category="chest_of_drawers"), wrong)
+    assert named.startswith(f"{begin} at a chest of drawers, 1.8 m from the nearest sofa. The sofa was in view")
+    stop = StopTarget(stop_target_xy_m=(1.0, 2.0), stop_target_to_goal_m=0.1, stop_target_category="sofa")
+    words = explain(changed(result, failure="stopped_short"), replace(wrong, stop=stop, nearest_instance_m=1.7))
     assert words.startswith(f"{begin} short of the goal: the nearest sofa is 1.7 m away.")
 
 
 def test_a_missed_goal_was_in_view_before(pair: tuple[Path, Path]) -> None:
     _, folder = pair
-    line = _lines(folder)[0] | {"failure": "missed_detection"}
-    trajectory = read_trajectory(trajectory_file(folder, line["episode_id"]))
+    result = changed(_first(folder), failure="missed_detection")
+    trajectory = read_trajectory(trajectory_file(folder, result.episode_id))
     share, distance_m = np.zeros_like(trajectory.goal_share), np.full_like(trajectory.distance_m, 2.0)
     share[5:7], distance_m[[2, 8]] = 0.1, 0.0
     missed = Trajectory(**{**vars(trajectory), "goal_share": share, "distance_m": distance_m})
-    assert "in view from step 5 on, in 2 frames. At step 8 a STOP would have succeeded" in explain(line, missed)
-    assert [mark.step for mark in marks(line, missed)] == [5, 8, missed.num_steps]
+    assert "in view from step 5 on, in 2 frames. At step 8 a STOP would have succeeded" in explain(result, missed)
+    assert [mark.step for mark in marks(result, missed)] == [5, 8, missed.num_steps]
 
 
 def test_a_single_pair_has_no_interval(pair: tuple[Path, Path]) -> None:

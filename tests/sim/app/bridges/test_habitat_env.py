@@ -132,10 +132,10 @@ def test_a_loop_gives_the_metrics_of_a_run_with_habitats_names(split: Path) -> N
         seed=episode_seeds(0, episode.episode_id).environment,
     )
     own.close()
-    assert (found["spl"], found["success"], found["num_steps"]) == (line["spl"], line["success"], line["num_steps"])
-    assert found["distance_to_goal"] == pytest.approx(line["distance_to_goal"])
-    assert found["softspl"] == found["soft_spl"] == pytest.approx(line["soft_spl"])
-    assert found["collisions"] == {"count": line["collisions"], "is_collision": False}
+    assert (found["spl"], found["success"], found["num_steps"]) == (line.spl, line.success, line.num_steps)
+    assert found["distance_to_goal"] == pytest.approx(line.distance_to_goal)
+    assert found["softspl"] == found["soft_spl"] == pytest.approx(line.soft_spl)
+    assert found["collisions"] == {"count": line.collisions, "is_collision": False}
     assert observations["gps"].shape == (2,)
 
 

@@ -16,7 +16,6 @@ from sim.app.bridges.process_command import ProcessConfig
 from sim.app.bridges.stubborn_client import from_habitat
 from sim.app.commands.run import entry
 from sim.app.composition.setup import resolve
-from sim.app.evaluation.rollout import TIMES
 from sim.app.options import RunOptions
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import CameraModel, RobotModel, SuccessRule
@@ -60,7 +59,7 @@ def results(out: Path, house: Path, agent: str, *config: str) -> list[dict[str, 
     options = ["--house", str(house), "--goal", "sofa", "--episodes", "2", "--out", str(out), "--seed-key", "k"]
     options += ["--step-timeout", "0"]  # in this process
     assert entry([*options, "--agent", agent, "--config", *SMALL, *config]) == 0
-    dropped = {"agent", "isolated", *TIMES}
+    dropped = {"agent", "isolated"}
     return [{key: value for key, value in line.items() if key not in dropped} for line in lines_of(out)]
 
 

@@ -74,8 +74,8 @@ def test_the_episodes_can_be_run_and_goals_that_cannot_be_reached_are_listed(fol
         for episode in (episode for episode in split.episodes if episode.house == house):
             world.reset(episode.start)
             task.begin(episode.goal, episode.start)
-            assert task.metrics()["distance_to_goal"] == pytest.approx(episode.shortest_path_m, abs=1e-6)
-            assert task.metrics()["distance_to_goal"] > 1.9
+            assert task.metrics().distance_to_goal == pytest.approx(episode.shortest_path_m, abs=1e-6)
+            assert (task.metrics().distance_to_goal or 0.0) > 1.9
 
 
 def test_a_stop_at_a_view_point_succeeds(folder):

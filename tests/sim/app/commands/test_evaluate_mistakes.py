@@ -43,7 +43,7 @@ def test_a_row_an_episode_shows_the_picture_of_the_stop(recorded: Path, capsys: 
     out = recorded / "sheets" / "false.png"
     assert show_mistakes.main(Args(run=recorded / "run", out=out)) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert sorted(line.split(" ")[0] for line in lines[:2]) == sorted(read_run(recorded / "run").lines)
+    assert sorted(line.split(" ")[0] for line in lines[:2]) == sorted(read_run(recorded / "run").results)
     assert lines[0].startswith("lounge_0000 sofa, step 1: ")
     assert lines[2] == f"2 episodes that failed by false_detection, in {out}."
     sheet = np.asarray(cv2.imread(str(out)))[..., ::-1]

@@ -13,33 +13,25 @@ from sim.app.commands import run
 from sim.app.commands.merge import Args, main
 from sim.app.composition.setup import resolve
 from sim.app.evaluation.results import RunDirectory
-from sim.app.evaluation.rollout import TIMES
 from sim.app.options import RunOptions
 from sim.core.interface import ConfigError
+from sim.task.result import EpisodeResult
+from tests.helpers.results import a_result, lines_of
 from tests.helpers.worlds import room, with_box
 
 CONFIG = {"agent": "random", "seed": 0, "episodes": 4, "split_identity": {"name": "tiny"}, "versions": {"code": "c0de"}}
 
 
-def line_of(episode: int, **changes: Any) -> dict[str, Any]:
-    scores = {"success": 1.0, "spl": 0.5, "soft_spl": 0.5, "distance_to_goal": 0.0, "shortest_path": 1.0}
-    counts = {"gt_explored": True, "trapped": False, "collisions": 0, "num_steps": 9, "path_length": 2.0}
-    times = {"wall_time_s": 1.0, "steps_per_s": 9.0, "failure": None, "end_reason": "stop"}
-    return {"episode_id": f"e{episode}", "house": "h", "goal": "bed", **scores, **counts, **times, **changes}
+def line_of(episode: int, **changes: Any) -> EpisodeResult:
+    return a_result(episode_id=f"e{episode}", agent="random", **changes)
 
 
-def write(folder: Path, lines: Iterable[dict[str, Any]], **changes: Any) -> Path:
-    written = RunDirectory(folder, {**CONFIG, **changes})
+def write(folder: Path, lines: Iterable[EpisodeResult], **changes: Any) -> Path:
+    written = RunDirectory(folder, {**CONFIG, **changes}, EpisodeResult)
     for line in lines:
         written.append(line)
     written.close()
     return folder
-
-
-def lines_of(out: Path) -> list[dict[str, Any]]:
-    lines = [json.loads(line) for line in (out / "results.jsonl").read_text().splitlines()]
-    kept = [{key: value for key, value in line.items() if key not in TIMES} for line in lines]
-    return sorted(kept, key=lambda line: line["episode_id"])
 
 
 def test_merged_shards_are_the_run_of_one_process(tmp_path: Path) -> None:
@@ -76,7 +68,7 @@ def test_an_episode_in_two_runs_counts_once_if_they_agree_but_for_the_times(tmp_
     second = write(tmp_path / "b", [line_of(1, wall_time_s=7.0)], episodes=2)
     assert main(Args(runs=(first, second), out=tmp_path / "both")) == 0
     assert len(lines_of(tmp_path / "both")) == 2
-    third = write(tmp_path / "c", [line_of(1, num_steps=10)], episodes=2)
+    third = write(tmp_path / "c", [line_of(1, num_steps=11)], episodes=2)
     with pytest.raises(ConfigError, match="has another result of 'e1'"):
         main(Args(runs=(first, third), out=tmp_path / "other"))
     with pytest.raises(ConfigError, match="has another result of 'e1'"):
@@ -84,7 +76,7 @@ def test_an_episode_in_two_runs_counts_once_if_they_agree_but_for_the_times(tmp_
 
 
 def test_the_files_of_an_episode_are_those_of_its_line(tmp_path: Path) -> None:
-    def with_file(name: str, line: dict[str, Any]) -> Path:
+    def with_file(name: str, line: EpisodeResult) -> Path:
         folder = write(tmp_path / name, [line], episodes=1)
         (folder / "trajectories").mkdir()
         (folder / "trajectories" / "e0.npz").write_text(name)
@@ -99,7 +91,7 @@ def test_the_files_of_an_episode_are_those_of_its_line(tmp_path: Path) -> None:
 
 
 def test_runs_with_other_options_are_never_merged(tmp_path: Path) -> None:
-    first, second = write(tmp_path / "a", [line_of(0)]), write(tmp_path / "b", [line_of(1)], seed=1)
+    first, second = write(tmp_path / "a", [line_of(0)]), write(tmp_path / "b", [line_of(1, seed=1)], seed=1)
     with pytest.raises(ConfigError, match=r"has seed = 0, .* has 1: runs with different options"):
         main(Args(runs=(first, second), out=tmp_path / "both"))
     assert not (tmp_path / "both").exists()

@@ -9,21 +9,16 @@ from sim.app.commands.reproduce.paper_tables import ABLATION, TABLES, ablation_r
 from sim.app.commands.reproduce.runs import AgentSetup
 from sim.core.interface import ConfigError
 from sim.task.failures import CAUSES
+from sim.task.result import EpisodeResult
+from tests.helpers.results import a_result
 
 GOALS = ("bed", "sofa")
 
 
-def line(number: int, *, success: bool, failure: str | None = None, **known: object) -> dict:
-    base = {"episode_id": f"e{number:02d}", "house": f"h{number // 2}", "goal": GOALS[number % 2], "failure": failure}
-    base |= {
-        "success": float(success),
-        "spl": 0.5 * success,
-        "gt_explored": True,
-        "trapped": False,
-        "collisions": 2,
-        "num_steps": 100,
-    }
-    return base | known
+def line(number: int, *, success: bool, failure: str | None = None, **known: object) -> EpisodeResult:
+    identity = {"episode_id": f"e{number:02d}", "house": f"h{number // 2}", "goal": GOALS[number % 2]}
+    scores = {"success": float(success), "spl": 0.5 * success, "collisions": 2, "num_steps": 100, "failure": failure}
+    return a_result(**identity | scores | known)
 
 
 def lines_of(setups: tuple[AgentSetup, ...], *, failed: tuple[int, ...]) -> dict:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.app.analysis.comparison import Line, read_run
+from sim.app.analysis.comparison import read_run
 from sim.app.commands import compare as compare_runs
 from sim.app.commands import run
 from sim.app.commands.reproduce import reproduce
@@ -22,6 +22,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import ConfigError
 from sim.episodes.episode import Episode
 from sim.episodes.splits import write_split
+from sim.task.result import EpisodeResult
 from sim.task.trajectory import FOLDER
 from tests.helpers.worlds import room, with_box
 
@@ -88,7 +89,7 @@ def test_another_table_reuses_existing_episodes_and_runs_the_rest(
     capsys.readouterr()
     assert reproduce.main(replace(args, table="overall", episodes=3)) == 0
     assert capsys.readouterr().out.count("] e2:") == 2
-    assert list(read_run(args.out / ORACLE).lines) == ["e0", "e1", "e2"]
+    assert list(read_run(args.out / ORACLE).results) == ["e0", "e1", "e2"]
     assert json.loads((args.out / ORACLE / "config.json").read_text())["episodes"] == 3
 
 
@@ -98,10 +99,8 @@ def test_a_run_of_sim_run_and_a_run_for_a_table_have_the_same_lines(args: reprod
     options = ["--agent", AGENTS[1], "--semantics", "gt", "--split", str(split), "--episodes", "2", "--out", str(alone)]
     options += ["--step-timeout", "0", "--seed-key", read_run(args.out / MINE).recorded("seed_key")]
     assert run.entry(options) == 0
-    times = ("wall_time_s", "steps_per_s")
     first, second = (
-        [{key: value for key, value in line.items() if key not in times} for line in read_run(folder).lines.values()]
-        for folder in (args.out / MINE, alone)
+        [result.without_times() for result in read_run(folder).results.values()] for folder in (args.out / MINE, alone)
     )
     assert first == second
 
@@ -112,7 +111,7 @@ def test_after_the_time_limit_the_table_has_the_episodes_that_all_agents_ran(
     assert reproduce.main(replace(args, minutes=0.0)) == 1
     assert "no episode that oracle, examples.my_agent:make (gt) have all run" in capsys.readouterr().out
     assert reproduce.main(replace(args, minutes=1e-3)) == 0  # the first chunk is always run
-    assert list(read_run(args.out / MINE).lines) == ["e0"]
+    assert list(read_run(args.out / MINE).results) == ["e0"]
     run.main(reproduce._run_args(args, AgentSetup.named("oracle", "gt")))  # the oracle is one ahead
     capsys.readouterr()
     assert reproduce.main(replace(args, minutes=0.0)) == 0
@@ -306,17 +305,17 @@ def test_several_splits_take_turns_and_share_a_page(
 
 
 @pytest.fixture(scope="module")
-def lines(split: Path, tmp_path_factory: pytest.TempPathFactory) -> list[Line]:
+def lines(split: Path, tmp_path_factory: pytest.TempPathFactory) -> list[EpisodeResult]:
     """Returns the result lines of an agent, the goals in turns a sofa and a bed."""
     args = reproduce.Args(
         table="overall", split=str(split), agents=("oracle",), episodes=4, out=tmp_path_factory.mktemp("p")
     )
     reproduce.main(args)
-    return list(read_run(args.out / ORACLE).lines.values())
+    return list(read_run(args.out / ORACLE).results.values())
 
 
 @pytest.mark.parametrize("name", [*PAPER_TABLES, "splits"])
-def test_the_papers_figures_stand_beside_the_rows_of_the_same_name(name: str, lines: list[Line]) -> None:
+def test_the_papers_figures_stand_beside_the_rows_of_the_same_name(name: str, lines: list[EpisodeResult]) -> None:
     table = table_named(name)
     setups = table.setups()
     first = table.build(dict.fromkeys(setups, lines), setups)[0]
@@ -348,7 +347,7 @@ def test_all_tables_of_the_paper_get_a_page(
 
 
 def test_the_paper_is_beside_its_own_agents_only(
-    args: reproduce.Args, monkeypatch: pytest.MonkeyPatch, lines: list[Line]
+    args: reproduce.Args, monkeypatch: pytest.MonkeyPatch, lines: list[EpisodeResult]
 ) -> None:
     monkeypatch.setitem(TABLES, "categories", replace(TABLES["categories"], agents=AGENTS[:1]))
     reproduce.main(replace(args, agents=()))

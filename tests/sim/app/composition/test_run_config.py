@@ -12,7 +12,7 @@ import pytest
 from sim.app import cli
 from sim.app.analysis.report.facts import command_of
 from sim.app.commands.run import entry
-from sim.app.composition.record import error_line, record_of
+from sim.app.composition.record import error_result, record_of
 from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
 from sim.core.configuration import as_json, field_paths, with_fields
@@ -162,8 +162,8 @@ def test_the_line_of_an_episode_that_could_not_begin_has_the_entries_of_every_ot
     assert entry([*options, "--out", str(out)]) == 0
     line = json.loads((out / "results.jsonl").read_text())
     episode = Episode("sofa_room_0000", "sofa_room", "sofa", Pose(0.0, 0.0, 0.0), 2.0)
-    broken = error_line(resolve(RunOptions(agent="random", house=house)), episode, "no floor")
-    assert set(broken) == {*line, "error"}
+    broken = error_result(resolve(RunOptions(agent="random", house=house)), episode, "no floor")
+    assert set(broken.as_json()) == {*line, "error"}
 
 
 def test_a_long_text_among_the_options_of_an_agent_is_no_file() -> None:

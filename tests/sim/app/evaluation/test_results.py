@@ -8,28 +8,31 @@ import math
 import os
 import re
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
 
-from sim.app.evaluation.results import RunDirectory, read_result_lines, summarise
+from sim.app.evaluation.results import RunDirectory, read_results
+from sim.app.evaluation.summary import summarise
 from sim.core.interface import ConfigError
+from sim.task.result import METRICS, EpisodeResult
+from tests.helpers.results import ENTRIES, a_result
 
 CONFIG = {"agent": "stubborn", "episodes": 5, "workers": 1}
 
 
-def line(number: int, **metrics: object) -> dict:
-    base = {
-        "episode_id": f"e{number}",
-        "house": f"h{number % 2}",
-        "goal": "bed",
-        "success": 1.0,
-        "spl": 0.5,
-        "soft_spl": 0.5,
-        "distance_to_goal": 0.1,
-    }
-    return base | {"gt_explored": 1.0, "trapped": 0.0, "collisions": 3, "end_reason": "stop"} | metrics
+def entries(number: int, **changes: object) -> dict[str, object]:
+    base = {"episode_id": f"e{number}", "house": f"h{number % 2}", "distance_to_goal": 0.1, "collisions": 3}
+    return ENTRIES | base | changes
+
+
+def line(number: int, **changes: object) -> EpisodeResult:
+    return a_result(**entries(number, **changes))
+
+
+def opened(folder: Path, config: Mapping[str, object]) -> RunDirectory[EpisodeResult]:
+    return RunDirectory(folder, config, EpisodeResult)
 
 
 def test_the_time_to_first_sight_counts_episodes_that_never_saw_the_goal_with_the_limit() -> None:
@@ -44,54 +47,46 @@ def test_the_time_to_first_sight_counts_episodes_that_never_saw_the_goal_with_th
     assert low < 140.0 < high
 
 
-def test_lines_of_older_versions_have_no_time_to_first_sight_and_do_not_count() -> None:
-    older = summarise([line(0), line(1)])
-    assert older["steps_to_first_sight"] == older["area_seen_m2"] == {"mean": None, "ci95": [None, None]}
-    assert older["never_seen"]["mean"] == 0.0
-    mixed = summarise([line(0), line(1, steps_to_first_sight=30)])
-    assert mixed["steps_to_first_sight"]["mean"] == 30.0
-
-
 def test_a_run_that_was_killed_while_writing_a_line_goes_on_without_that_line(tmp_path: Path) -> None:
-    run = RunDirectory(tmp_path, CONFIG)
+    run = opened(tmp_path, CONFIG)
     run.append(line(1))
     run.append(line(2))
     run.close()
     whole = (tmp_path / "results.jsonl").read_text()
     (tmp_path / "results.jsonl").write_text(whole[:-10])
-    again = RunDirectory(tmp_path, CONFIG)
-    assert [there["episode_id"] for there in again.lines] == ["e1"]
+    again = opened(tmp_path, CONFIG)
+    assert [result.episode_id for result in again.lines] == ["e1"]
     again.append(line(2))
     again.close()
     assert (tmp_path / "results.jsonl").read_text() == whole
 
 
 def test_other_options_in_the_same_folder_are_refused_and_named(tmp_path: Path) -> None:
-    RunDirectory(tmp_path, CONFIG).close()
+    opened(tmp_path, CONFIG).close()
     with pytest.raises(ConfigError, match=r'agent = "stubborn", this run has "oracle"'):
-        RunDirectory(tmp_path, CONFIG | {"agent": "oracle"})
+        opened(tmp_path, CONFIG | {"agent": "oracle"})
 
 
 def test_the_number_of_workers_may_change_when_a_run_goes_on(tmp_path: Path) -> None:
-    RunDirectory(tmp_path, CONFIG).close()
-    RunDirectory(tmp_path, CONFIG | {"workers": 2}).close()
+    opened(tmp_path, CONFIG).close()
+    opened(tmp_path, CONFIG | {"workers": 2}).close()
 
 
 def test_a_run_continues_to_more_episodes_and_says_so(tmp_path: Path) -> None:
     for episodes in (5, 8, 6):
-        RunDirectory(tmp_path, CONFIG | {"episodes": episodes}).close()
+        opened(tmp_path, CONFIG | {"episodes": episodes}).close()
     assert json.loads((tmp_path / "config.json").read_text())["episodes"] == 8
 
 
 def test_a_run_from_before_trajectories_can_go_on_with_them(tmp_path: Path) -> None:
-    RunDirectory(tmp_path, CONFIG).close()
-    RunDirectory(tmp_path, CONFIG | {"record": True}).close()
+    opened(tmp_path, CONFIG).close()
+    opened(tmp_path, CONFIG | {"record": True}).close()
 
 
 def test_every_code_that_ran_in_a_folder_is_recorded(tmp_path: Path) -> None:
     codes = (("a1", []), ("a1", []), ("b2", ["a1"]), ("b2", ["a1"]), ("c3", ["a1", "b2"]))
     for number, (code, others) in enumerate(codes):
-        run = RunDirectory(tmp_path, CONFIG | {"versions": {"code": code}})
+        run = opened(tmp_path, CONFIG | {"versions": {"code": code}})
         assert run.record_code(code) == others
         run.append(line(number))
         run.close()
@@ -101,30 +96,30 @@ def test_every_code_that_ran_in_a_folder_is_recorded(tmp_path: Path) -> None:
 
 
 def test_runs_without_a_list_of_codes_name_their_code_and_code_that_ran_nothing_is_not_named(tmp_path: Path) -> None:
-    RunDirectory(tmp_path, CONFIG | {"versions": {"code": "a1"}}).close()
-    run = RunDirectory(tmp_path, CONFIG | {"versions": {"code": "b2"}})
+    opened(tmp_path, CONFIG | {"versions": {"code": "a1"}}).close()
+    run = opened(tmp_path, CONFIG | {"versions": {"code": "b2"}})
     assert run.record_code("b2") == []
     run.append(line(1))
     run.close()
     config = json.loads((tmp_path / "config.json").read_text())
     assert config.pop("codes") == ["b2"]
     (tmp_path / "config.json").write_text(json.dumps(config))
-    again = RunDirectory(tmp_path, CONFIG | {"versions": {"code": "b2"}})
+    again = opened(tmp_path, CONFIG | {"versions": {"code": "b2"}})
     assert again.record_code("b2") == ["a1"]  # the code that created the folder, if there is no list
     again.close()
 
 
 def test_two_writers_in_one_folder_are_refused(tmp_path: Path) -> None:
-    run = RunDirectory(tmp_path, CONFIG)
+    run = opened(tmp_path, CONFIG)
     with pytest.raises(ConfigError, match="Another process"):
-        RunDirectory(tmp_path, CONFIG)
+        opened(tmp_path, CONFIG)
     run.close()
 
 
 def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(ConfigError, match="Cannot write to --out"):
-        RunDirectory(tmp_path / "file" / "run", CONFIG)
+        opened(tmp_path / "file" / "run", CONFIG)
 
 
 def test_null_metrics_do_not_count_in_the_mean() -> None:
@@ -166,23 +161,20 @@ def test_the_intervals_of_a_summary_are_over_houses() -> None:
 
 def test_a_summary_has_the_means_of_each_replicate_and_their_spread() -> None:
     lines = [
-        line(0, success=s, spl=s) | {"episode_id": f"val_0000{mark}"}
-        for mark, s in (("", 1.0), ("~1", 0.0), ("~2", 1.0))
+        line(0, success=s, spl=s, episode_id=f"val_0000{mark}") for mark, s in (("", 1.0), ("~1", 0.0), ("~2", 1.0))
     ]
     summary = summarise(lines)
     assert (summary["episodes"], summary["success"]["mean"]) == (1, pytest.approx(2 / 3))
     assert summary["replicates"]["success"]["means"] == [1.0, 0.0, 1.0]
     assert summary["replicates"]["success"]["std"] == pytest.approx(math.sqrt(1 / 3))
     assert "replicates" not in summarise(lines[:1])
-    without = [each | {"spl": None} for each in lines]
-    assert summarise(without)["replicates"]["spl"] == {"means": [None, None, None], "std": None}
 
 
 def test_a_field_inside_the_configuration_that_differs_is_named(tmp_path: Path) -> None:
     nested = {"config": {"robot": {"radius_m": 0.18}, "camera": {}}}
-    RunDirectory(tmp_path, CONFIG | nested).close()
+    opened(tmp_path, CONFIG | nested).close()
     with pytest.raises(ConfigError, match=r"config\.robot\.radius_m = 0.18, this run has 0.2;"):
-        RunDirectory(tmp_path, CONFIG | {"config": {"robot": {"radius_m": 0.2}, "camera": {}}})
+        opened(tmp_path, CONFIG | {"config": {"robot": {"radius_m": 0.2}, "camera": {}}})
 
 
 def test_a_run_goes_on_with_the_same_weights_in_another_folder_and_not_with_others(tmp_path: Path) -> None:
@@ -193,15 +185,15 @@ def test_a_run_goes_on_with_the_same_weights_in_another_folder_and_not_with_othe
             "files_sha256": {"weights": checksum, "agent.explorer.weights": "b"},
         }
 
-    RunDirectory(tmp_path, config("/here", "a")).close()
-    RunDirectory(tmp_path, config("/there", "a")).close()
+    opened(tmp_path, config("/here", "a")).close()
+    opened(tmp_path, config("/there", "a")).close()
     with pytest.raises(ConfigError, match="weights"):
-        RunDirectory(tmp_path, config("/there", "c"))
+        opened(tmp_path, config("/there", "c"))
 
 
 def test_the_config_names_the_episodes_of_all_starts(tmp_path: Path) -> None:
     def named(*only: str) -> list[str]:
-        RunDirectory(tmp_path, CONFIG | {"only": list(only)}).close()
+        opened(tmp_path, CONFIG | {"only": list(only)}).close()
         return json.loads((tmp_path / "config.json").read_text())["only"]
 
     assert named("e1") == ["e1"]
@@ -211,13 +203,13 @@ def test_the_config_names_the_episodes_of_all_starts(tmp_path: Path) -> None:
 
 
 def test_an_option_that_a_run_does_not_have_is_the_same_as_null(tmp_path: Path) -> None:
-    RunDirectory(tmp_path, CONFIG).close()
-    RunDirectory(tmp_path, CONFIG | {"explorer": None}).close()
+    opened(tmp_path, CONFIG).close()
+    opened(tmp_path, CONFIG | {"explorer": None}).close()
 
 
-def write_lines(folder: Path, *lines: dict | str) -> None:
+def write_lines(folder: Path, *lines: Mapping[str, object] | str) -> None:
     """Starts a run whose file of results has these lines."""
-    RunDirectory(folder, CONFIG | {"seed": 0}).close()
+    opened(folder, CONFIG | {"seed": 0}).close()
     text = "".join((each if isinstance(each, str) else json.dumps(each)) + "\n" for each in lines)
     (folder / "results.jsonl").write_text(text)
 
@@ -225,18 +217,18 @@ def write_lines(folder: Path, *lines: dict | str) -> None:
 @pytest.mark.parametrize(
     ("lines", "message"),
     [
-        ([line(1), line(1)], "line 2: episode 'e1' has the same result in line 1"),
-        ([line(1), line(2), line(1, success=0.0)], "line 3: episode 'e1' has another result in line 1"),
-        ([line(1, seed=7)], "line 1: seed is 7, but this run has 0"),
-        ([line(1, agent="oracle")], 'line 1: agent is "oracle", but this run has "stubborn"'),
-        ([line(1), "\0\0\0"], "line 2 is empty"),
-        ([line(1, success="yes")], "line 1, field 'success': expected"),
-        ([line(1, success=2.0)], "line 1, field 'success'"),
-        ([line(1, spl=[1.0])], "field 'spl'"),
-        ([line(1, stop_target_xy_m=[1.0])], "field 'stop_target_xy_m'"),
-        ([line(1, stop_target_to_goal_m="near")], "field 'stop_target_to_goal_m'"),
-        ([line(1, end_reason="tired")], "field 'end_reason': invalid enum value 'tired'"),
-        ([{"episode_id": "e1"}], "line 1: object missing required field house"),
+        ([entries(1), entries(1)], "line 2: episode 'e1' has the same result in line 1"),
+        ([entries(1), entries(2), entries(1, success=0.0)], "line 3: episode 'e1' has another result in line 1"),
+        ([entries(1, seed=7)], "line 1: seed is 7, but this run has 0"),
+        ([entries(1, agent="oracle")], 'line 1: agent is "oracle", but this run has "stubborn"'),
+        ([entries(1), "\0\0\0"], "line 2 is empty"),
+        ([entries(1, success="yes")], "line 1, field 'success': expected"),
+        ([entries(1, success=2.0)], "line 1, field 'success'"),
+        ([entries(1, spl=[1.0])], "field 'spl'"),
+        ([entries(1, stop_target_xy_m=[1.0])], "field 'stop_target_xy_m'"),
+        ([entries(1, stop_target_to_goal_m="near")], "field 'stop_target_to_goal_m'"),
+        ([entries(1, end_reason="tired")], "field 'end_reason': invalid enum value 'tired'"),
+        ([{"episode_id": "e1"}], "line 1: object missing required field"),
         (['{"spl": NaN}'], "line 1 is not JSON"),
     ],
 )
@@ -245,9 +237,9 @@ def test_lines_that_are_not_of_this_run_are_refused_by_number_and_field(
 ) -> None:
     write_lines(tmp_path, *lines)
     with pytest.raises(ConfigError, match=re.escape(message)):
-        RunDirectory(tmp_path, CONFIG | {"seed": 0})
+        opened(tmp_path, CONFIG | {"seed": 0})
     (tmp_path / "results.jsonl").write_text("")
-    RunDirectory(tmp_path, CONFIG | {"seed": 0}).close()  # it is not locked
+    opened(tmp_path, CONFIG | {"seed": 0}).close()  # it is not locked
 
 
 @pytest.mark.parametrize(
@@ -260,65 +252,72 @@ def test_lines_that_are_not_of_this_run_are_refused_by_number_and_field(
     ],
 )
 def test_lines_of_another_split_are_refused(episodes: dict, message: str | None, tmp_path: Path) -> None:
-    write_lines(tmp_path, line(1))
-    run = RunDirectory(tmp_path, CONFIG | {"seed": 0})
+    write_lines(tmp_path, entries(1))
+    run = opened(tmp_path, CONFIG | {"seed": 0})
     with contextlib.nullcontext() if message is None else pytest.raises(ConfigError, match=message):
         run.require_of(episodes)
     run.close()
 
 
-def test_the_place_of_a_stop_is_read_back_and_missing_in_lines_of_older_versions(tmp_path: Path) -> None:
-    stated = {"stop_target_xy_m": [1.5, -2.0], "stop_target_to_goal_m": 0.25}
-    write_lines(tmp_path, line(1, **stated), line(2))
-    first, second = read_result_lines(tmp_path / "results.jsonl").values
-    assert {key: first[key] for key in stated} == stated
-    assert {key: second[key] for key in stated} == dict.fromkeys(stated)
+def test_results_of_an_older_format_are_refused_with_the_version_that_reads_them(tmp_path: Path) -> None:
+    older = entries(1)
+    del older["steps_to_first_sight"]
+    write_lines(tmp_path, older)
+    with pytest.raises(ConfigError, match=r"steps_to_first_sight: results of an older format are read by version 0\.2"):
+        read_results(tmp_path / "results.jsonl")
+
+
+def test_every_metric_has_its_mean_in_the_summary_and_a_field_of_the_result(tmp_path: Path) -> None:
+    summary = summarise([line(1), line(2)])
+    assert {key for key, metric in METRICS.items() if metric.in_summary} <= set(summary)
+    assert {metric.field for metric in METRICS.values()} <= set(EpisodeResult.__struct_fields__)
+    assert list(line(1).as_json())[:3] == ["episode_id", "house", "goal"]
 
 
 def test_a_dropped_line_is_reported(tmp_path: Path) -> None:
-    write_lines(tmp_path, line(1))
+    write_lines(tmp_path, entries(1))
     with (tmp_path / "results.jsonl").open("a") as stream:
         stream.write('{"episode_id": "e2", "su')
-    run = RunDirectory(tmp_path, CONFIG | {"seed": 0})
+    run = opened(tmp_path, CONFIG | {"seed": 0})
     assert "line 2 was dropped" in run.healed
     run.close()
 
 
 @pytest.mark.parametrize("content", ["", "{", "[]", '{"seed": "0"}', '{"versions": {"code": 5}}', "\0" * 20])
 def test_a_broken_config_is_refused_with_its_name(content: str, tmp_path: Path) -> None:
-    RunDirectory(tmp_path, CONFIG).close()
+    opened(tmp_path, CONFIG).close()
     (tmp_path / "config.json").write_text(content)
     with pytest.raises(ConfigError, match=r"config\.json"):
-        RunDirectory(tmp_path, CONFIG)
+        opened(tmp_path, CONFIG)
 
 
 def test_a_start_that_wrote_nothing_leaves_no_folder_and_one_that_did_stays(tmp_path: Path) -> None:
-    run = RunDirectory(tmp_path / "run", CONFIG)
+    run = opened(tmp_path / "run", CONFIG)
     run.discard_if_empty()
     run.close()
     assert not (tmp_path / "run").exists()
-    run = RunDirectory(tmp_path / "run", CONFIG)
+    run = opened(tmp_path / "run", CONFIG)
     run.append(line(1))
     run.discard_if_empty()
     run.close()
-    again = RunDirectory(tmp_path / "run", CONFIG)
+    again = opened(tmp_path / "run", CONFIG)
     again.discard_if_empty()  # it did not begin this run
     again.close()
     assert (tmp_path / "run" / "config.json").exists()
 
 
 def test_an_error_stays_until_the_line_of_its_next_run_replaces_it(tmp_path: Path) -> None:
-    run = RunDirectory(tmp_path, CONFIG)
+    run = opened(tmp_path, CONFIG)
     for number, reason in enumerate(("stop", "error", "error")):
         run.append(line(number, end_reason=reason))
     assert run.errors(["e1", "e0"]) == {"e1"}
-    assert len(read_result_lines(tmp_path / "results.jsonl").values) == 3
+    assert len(read_results(tmp_path / "results.jsonl").values) == 3
     run.append(line(1, spl=0.25))
     run.append(line(3))
     run.write_summary({})
     run.close()
-    found = read_result_lines(tmp_path / "results.jsonl").values
-    assert [(each["episode_id"], each["end_reason"]) for each in found] == [
+    found = read_results(tmp_path / "results.jsonl").values
+    assert [(each.episode_id, each.end_reason) for each in found] == [
         ("e0", "stop"), ("e1", "stop"), ("e2", "error"), ("e3", "stop"),
     ]  # fmt: skip
 
@@ -346,7 +345,7 @@ def _overwrite(folder: Path) -> None:
 def test_results_that_another_program_removes_or_changes_end_the_run_with_what_is_lost(
     change: Callable[[Path], None], tmp_path: Path
 ) -> None:
-    run = RunDirectory(tmp_path / "run", CONFIG)
+    run = opened(tmp_path / "run", CONFIG)
     run.append(line(1))
     change(tmp_path / "run")
     lost = r"another program.*The results of \d episodes.*'e1'"
@@ -363,7 +362,7 @@ def test_results_that_another_program_removes_or_changes_end_the_run_with_what_i
 def test_the_config_is_on_the_disk_before_the_first_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     synced: list[str] = []
     monkeypatch.setattr(os, "fsync", lambda handle: synced.append(os.readlink(f"/proc/self/fd/{handle}")))
-    run = RunDirectory(tmp_path / "run", CONFIG)
+    run = opened(tmp_path / "run", CONFIG)
     assert [Path(file).name[:12] for file in synced] == [".config.json", "run"]
     run.append(line(1))
     run.close()
@@ -371,7 +370,7 @@ def test_the_config_is_on_the_disk_before_the_first_line(tmp_path: Path, monkeyp
 
 
 def test_a_change_of_the_users_code_is_refused_with_two_ways_out(tmp_path: Path) -> None:
-    run = RunDirectory(tmp_path, CONFIG | {"versions": {"code": "a+1"}})
+    run = opened(tmp_path, CONFIG | {"versions": {"code": "a+1"}})
     run.append(line(1))
     run.require_own_code("a+1", {"e1"})
     run.require_own_code("b+1", {"e1"})  # this project's code has changed, not the user's
@@ -382,13 +381,13 @@ def test_a_change_of_the_users_code_is_refused_with_two_ways_out(tmp_path: Path)
 
 
 def test_a_seed_of_any_size_and_an_error_with_half_a_surrogate_pair_are_read_back(tmp_path: Path) -> None:
-    write_lines(tmp_path, line(1, seed=2**63 - 1, error="a\udcffb", end_reason="error"))
-    (found,) = read_result_lines(tmp_path / "results.jsonl").values
-    assert (found["seed"], found["error"]) == (2**63 - 1, "a?b")
+    write_lines(tmp_path, entries(1, seed=2**63 - 1, error="a\udcffb", end_reason="error"))
+    (found,) = read_results(tmp_path / "results.jsonl").values
+    assert (found.seed, found.error) == (2**63 - 1, "a?b")
 
 
 def test_a_folder_without_lines_is_removed_with_its_summary(tmp_path: Path) -> None:
-    run = RunDirectory(tmp_path / "run", CONFIG)
+    run = opened(tmp_path / "run", CONFIG)
     run.write_summary({})
     run.discard_if_empty()
     run.close()
@@ -396,16 +395,16 @@ def test_a_folder_without_lines_is_removed_with_its_summary(tmp_path: Path) -> N
 
 
 def test_a_run_resumed_with_another_library_names_it(tmp_path: Path) -> None:
-    RunDirectory(tmp_path, CONFIG | {"versions": {"mujoco": "4.0.0", "numpy": "2.4.6", "code": "a"}}).close()
-    run = RunDirectory(tmp_path, CONFIG | {"versions": {"mujoco": "4.1.0", "numpy": "2.4.6", "code": "b"}})
+    opened(tmp_path, CONFIG | {"versions": {"mujoco": "4.0.0", "numpy": "2.4.6", "code": "a"}}).close()
+    run = opened(tmp_path, CONFIG | {"versions": {"mujoco": "4.1.0", "numpy": "2.4.6", "code": "b"}})
     assert run.other_versions() == {"mujoco": ("4.0.0", "4.1.0")}
     run.close()
 
 
 def test_a_run_of_other_physics_is_not_resumed(tmp_path):
-    RunDirectory(tmp_path / "run", {"agent": "oracle"}).close()  # the first version wrote no number
+    opened(tmp_path / "run", {"agent": "oracle"}).close()  # the first version wrote no number
     with pytest.raises(
         ConfigError, match=r"physics version 1, this program has version 2.*choose another folder"
     ) as error:
-        RunDirectory(tmp_path / "run", {"agent": "oracle", "physics": 2})
+        opened(tmp_path / "run", {"agent": "oracle", "physics": 2})
     assert "\n" not in str(error.value)

@@ -11,12 +11,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 import torch
 
 from sim.app.commands.run import entry
-from sim.app.evaluation.results import summarise
 from sim.app.evaluation.rollout import play_episode
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action, CameraModel
@@ -24,6 +24,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.splits import write_split
 from sim.sensors.noise import NoiseConfig, PoseNoise
+from sim.task.result import RolloutResult
 from tests.helpers.runners import Script
 from tests.helpers.worlds import ledge, sofa_room
 
@@ -42,9 +43,9 @@ def env(tmp_path) -> Iterator[ObjectNavEnv]:
 
 def test_a_finished_episode_is_a_line_that_json_can_hold(env: ObjectNavEnv) -> None:
     line = play_episode(env, Script([Action.MOVE_FORWARD, Action.STOP]), EPISODE, seed=0)
-    assert json.loads(json.dumps(line, allow_nan=False)) == line
-    assert (line["end_reason"], line["num_steps"], line["success"]) == ("stop", 2, 0.0)
-    assert line["path_length"] == pytest.approx(0.25, abs=0.01)
+    assert msgspec.convert(json.loads(json.dumps(msgspec.to_builtins(line), allow_nan=False)), RolloutResult) == line
+    assert (line.end_reason, line.num_steps, line.success) == ("stop", 2, 0.0)
+    assert line.path_length == pytest.approx(0.25, abs=0.01)
 
 
 class Sure(Script):
@@ -68,14 +69,14 @@ class Sure(Script):
     ],
 )
 def test_a_line_records_how_sure_the_agent_was_when_it_stopped(env: ObjectNavEnv, agent: Any, recorded: Any) -> None:
-    assert play_episode(env, agent, EPISODE, seed=0)["stop_confidence"] == recorded
+    assert play_episode(env, agent, EPISODE, seed=0).stop_confidence == recorded
 
 
 @pytest.mark.parametrize("given", [1.5, -0.1, math.nan, "high"])
 def test_a_confidence_that_is_no_share_ends_the_episode_as_an_error(env: ObjectNavEnv, given: Any) -> None:
     line = play_episode(env, Sure([Action.STOP], given), EPISODE, seed=0, name="x:mine")
-    assert line["end_reason"] == "error"
-    assert "'x:mine', step 1: stop_confidence() returned" in line["error"]
+    assert line.end_reason == "error"
+    assert "'x:mine', step 1: stop_confidence() returned" in str(line.error)
 
 
 class Aimed(Script):
@@ -102,10 +103,9 @@ AHEAD_AND_STOP = [Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP]
 def test_a_line_has_the_place_for_which_the_agent_stops_in_the_world(env: ObjectNavEnv, given: Any) -> None:
     episode = replace(EPISODE, start=Pose(-1.0, 1.0, math.pi / 2))
     line = play_episode(env, Aimed(AHEAD_AND_STOP, given), episode, seed=0)
-    assert json.loads(json.dumps(line, allow_nan=False)) == line
-    assert line["stop_target_xy_m"] == pytest.approx([-1.5, 2.5], abs=1e-5)  # 1.5 m along y, 0.5 m to the left
-    assert line["stop_target_to_goal_m"] == pytest.approx(math.hypot(3.6, 1.7), abs=1e-3)  # corner at (2.1, 0.8)
-    assert line["failure"] == "false_detection"
+    assert line.stop_target_xy_m == pytest.approx([-1.5, 2.5], abs=1e-5)  # 1.5 m along y, 0.5 m to the left
+    assert line.stop_target_to_goal_m == pytest.approx(math.hypot(3.6, 1.7), abs=1e-3)  # corner at (2.1, 0.8)
+    assert line.failure == "false_detection"
 
 
 @pytest.mark.parametrize(
@@ -119,15 +119,15 @@ def test_a_line_has_the_place_for_which_the_agent_stops_in_the_world(env: Object
 def test_a_line_without_a_stop_or_a_place_says_so(env: ObjectNavEnv, agent: Any, end: str) -> None:
     env.task_config = replace(env.task_config, max_steps=3)
     line = play_episode(env, agent, EPISODE, seed=0)
-    assert line["end_reason"] == end
-    assert line["stop_target_xy_m"] is None
-    assert line["stop_target_to_goal_m"] is None
-    assert line["stop_target_category"] is None
+    assert line.end_reason == end
+    assert line.stop_target_xy_m is None
+    assert line.stop_target_to_goal_m is None
+    assert line.stop_target_category is None
 
 
 def test_a_line_names_the_object_for_which_the_agent_stops(env: ObjectNavEnv) -> None:
     lines = [play_episode(env, Aimed([Action.STOP], place), EPISODE, seed=0) for place in ((3.4, 0.0), (-1.9, 0.0))]
-    assert [line["stop_target_category"] for line in lines] == ["sofa", "wall"]
+    assert [line.stop_target_category for line in lines] == ["sofa", "wall"]
 
 
 def test_the_place_of_an_agent_with_a_noisy_pose_is_where_it_saw_it_from_the_robot(tmp_path: Path) -> None:
@@ -140,13 +140,13 @@ def test_the_place_of_an_agent_with_a_noisy_pose_is_where_it_saw_it_from_the_rob
     true = env.scene.world.pose
     env.close()
     assert agent.last_pose.distance_to(true.relative_to(EPISODE.start)) > 0.2
-    assert line["stop_target_xy_m"] == pytest.approx(true.place_of(2.0, 1.0), abs=1e-5)
+    assert line.stop_target_xy_m == pytest.approx(true.place_of(2.0, 1.0), abs=1e-5)
 
 
 def test_a_place_that_is_a_tensor_with_a_gradient_ends_the_episode_as_an_error(env: ObjectNavEnv) -> None:
     place = torch.zeros(2, requires_grad=True)
     line = play_episode(env, Aimed([Action.STOP], place), EPISODE, seed=0, name="x:mine")
-    assert "'x:mine', step 1: stop_target_xy_m() returned" in line["error"]
+    assert "'x:mine', step 1: stop_target_xy_m() returned" in str(line.error)
 
 
 @pytest.mark.parametrize(
@@ -154,14 +154,14 @@ def test_a_place_that_is_a_tensor_with_a_gradient_ends_the_episode_as_an_error(e
 )
 def test_a_place_that_is_no_pair_of_numbers_ends_the_episode_as_an_error(env: ObjectNavEnv, given: Any) -> None:
     line = play_episode(env, Aimed([Action.STOP], given), EPISODE, seed=0, name="x:mine")
-    assert line["end_reason"] == "error"
-    assert "'x:mine', step 1: stop_target_xy_m() returned" in line["error"]
-    assert line["stop_target_xy_m"] is None
+    assert line.end_reason == "error"
+    assert "'x:mine', step 1: stop_target_xy_m() returned" in str(line.error)
+    assert line.stop_target_xy_m is None
 
 
 def test_a_stop_target_that_breaks_names_agent_and_step(env: ObjectNavEnv) -> None:
     line = play_episode(env, Aimed([Action.STOP], lambda: {}["sofa"]), EPISODE, seed=0, name="x:mine")
-    assert "'x:mine', step 1: KeyError: 'sofa'" in line["error"]
+    assert "'x:mine', step 1: KeyError: 'sofa'" in str(line.error)
 
 
 def test_a_state_that_is_not_finite_ends_the_episode_as_an_error_that_names_house_and_step(env: ObjectNavEnv) -> None:
@@ -170,11 +170,11 @@ def test_a_state_that_is_not_finite_ends_the_episode_as_an_error_that_names_hous
             env.scene.world.data.qvel[:] = np.nan
 
     line = play_episode(env, Script([Action.MOVE_FORWARD] * 5), EPISODE, seed=0, on_step=break_it)
-    assert line["end_reason"] == "error"
-    assert line["success"] == 0.0
-    assert line["failure"] == "misc"
-    assert "sofa_room" in line["error"]
-    assert "Step 3" in line["error"]
+    assert line.end_reason == "error"
+    assert line.success == 0.0
+    assert line.failure == "misc"
+    assert "sofa_room" in str(line.error)
+    assert "Step 3" in str(line.error)
 
 
 def test_a_broken_episode_does_not_change_the_next_one(env: ObjectNavEnv) -> None:
@@ -182,11 +182,10 @@ def test_a_broken_episode_does_not_change_the_next_one(env: ObjectNavEnv) -> Non
         env.scene.world.data.qvel[:] = np.nan
 
     script = Script([Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP])
-    times = ("wall_time_s", "steps_per_s")
     before, _, after = (
         play_episode(env, script, EPISODE, seed=0, on_step=on_step) for on_step in (None, break_it, None)
     )
-    assert {k: v for k, v in before.items() if k not in times} == {k: v for k, v in after.items() if k not in times}
+    assert before.without_times() == after.without_times()
 
 
 def test_a_fall_is_a_line_and_no_error(tmp_path) -> None:
@@ -196,9 +195,8 @@ def test_a_fall_is_a_line_and_no_error(tmp_path) -> None:
     episode = replace(EPISODE, house="ledge", goal="bed", start=Pose(-0.4, 0.0, 0.0))
     line = play_episode(env, Script([Action.MOVE_FORWARD] * 5), episode, seed=0)
     env.close()
-    assert (line["end_reason"], line["failure"], line["num_steps"]) == ("fallen", "stairs", 2)
-    assert "error" not in line
-    assert summarise([line])["falls"] == 1
+    assert (line.end_reason, line.failure, line.num_steps) == ("fallen", "stairs", 2)
+    assert line.error is None
 
 
 class Answers:
@@ -256,12 +254,13 @@ def test_an_agent_that_breaks_ends_its_episode_as_an_error_that_names_agent_and_
     agent: Any, message: str, env: ObjectNavEnv
 ) -> None:
     line = play_episode(env, agent, EPISODE, seed=0, name="my.agents:mine")
-    assert line["end_reason"] == "error"
-    assert line["error"].startswith("Agent 'my.agents:mine', ")
-    assert message in line["error"]
-    assert len(line["error"]) < 3000
-    assert line["num_steps"] == (0 if isinstance(agent, Signature) else 1)
-    assert play_episode(env, Script([Action.STOP]), EPISODE, seed=0)["end_reason"] == "stop"
+    assert line.end_reason == "error"
+    assert line.error is not None
+    assert line.error.startswith("Agent 'my.agents:mine', ")
+    assert message in str(line.error)
+    assert len(line.error) < 3000
+    assert line.num_steps == (0 if isinstance(agent, Signature) else 1)
+    assert play_episode(env, Script([Action.STOP]), EPISODE, seed=0).end_reason == "stop"
 
 
 @pytest.mark.parametrize("workers", ["1", "2"])

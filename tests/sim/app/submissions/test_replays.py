@@ -110,7 +110,7 @@ LIES: dict[str, tuple[str, Edit, str]] = {
     "a success": ("random", _claimed, "success 1, in the replay 0"),
     "a failure": ("oracle", in_first_result(success=0.0, spl=0.0, failure="misc"), "success 0, in the replay 1"),
     "a higher SPL": ("oracle", _shorter, "spl 1"),
-    "fewer collisions": ("random", in_first_result(collisions=-1), "collisions -1"),
+    "fewer collisions": ("random", in_first_result(collisions=999), "collisions 999"),
     "a shorter distance": ("random", in_first_result(distance_to_goal=0.1), "distance_to_goal 0.1, in the replay"),
     "no shortest path": ("oracle", in_first_result(shortest_path=None, spl=0.0), "shortest_path None"),
     "other actions": ("oracle", in_actions(_turned), "The replay leaves the recorded path before action"),

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.app.evaluation.rollout import TIMES, play_episode
+from sim.app.evaluation.rollout import play_episode
 from sim.app.viewers import live, rerun_log, selection
 from sim.app.viewers.viewer import VIEWER_IMAGES, Viewer
 from sim.core.geometry.pose import Pose
@@ -20,6 +20,7 @@ from sim.core.interface import MPCAT40_ID, Action, CameraModel, ConfigError
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.scene import SceneCache
 from sim.episodes.episode import Episode
+from tests.helpers.results import entries_of
 from tests.helpers.runners import Script
 from tests.helpers.worlds import sofa_room, with_box, with_movable
 
@@ -40,8 +41,7 @@ def env(tmp_path: Path) -> Iterator[ObjectNavEnv]:
 
 
 def line_of(env: ObjectNavEnv, *viewers: Viewer) -> dict[str, Any]:
-    line = play_episode(env, Script(ACTIONS), EPISODE, seed=0, viewers=viewers)
-    return {key: value for key, value in line.items() if key not in TIMES}
+    return entries_of(play_episode(env, Script(ACTIONS), EPISODE, seed=0, viewers=viewers))
 
 
 class Handle:

@@ -49,7 +49,7 @@ from sim.task.ground_truth import GroundTruth
 from sim.world.world import World
 from stubborn.drawing.map_painter import AgentMapPainter
 from tests.helpers import browser
-from tests.helpers.results import lines_of
+from tests.helpers.results import a_result, lines_of
 from tests.helpers.runners import Script
 from tests.helpers.worlds import room, sofa_room, with_box
 
@@ -159,7 +159,7 @@ def test_an_episode_that_breaks_leaves_its_video_too(env: ObjectNavEnv, tmp_path
             env.scene.world.data.qvel[:] = np.nan
 
     line = play_episode(env, Script(AHEAD), EPISODE, seed=0, on_step=break_it, viewers=[VideoRecorder(tmp_path)])
-    assert line["end_reason"] == "error"
+    assert line.end_reason == "error"
     assert len(frames_of(video_file(tmp_path, EPISODE.episode_id))) == 2 + video.END_FRAMES
 
 
@@ -433,7 +433,7 @@ def test_the_shortest_path_of_the_plan_is_as_long_as_the_task_says_and_ends_wher
     target = truth.target("sofa")
     path_m = shortest_path_m(truth.space(), target, (start.x_m, start.y_m))
     length_m = float(np.hypot(*np.diff(path_m, axis=0).T).sum())
-    assert length_m == pytest.approx(env.scene.task.metrics()["shortest_path"], rel=0.05)
+    assert length_m == pytest.approx(env.scene.task.metrics().shortest_path, rel=0.05)
     assert target.reached[tuple(truth.space().frame.to_cells(path_m[-1]))]
 
 
@@ -493,10 +493,11 @@ def test_the_shortest_path_of_the_plan_is_as_long_as_the_task_says_and_ends_wher
 def test_the_explanation_of_the_end_names_its_cause(
     line: dict, nearest_m: float | None, detects: bool, expected: str
 ) -> None:
-    whole = {"success": 0.0, "spl": 0.5, "num_steps": 9, "path_length": 3.0, "shortest_path": 2.0} | line
+    fixed = {"success": 0.0, "spl": 0.5, "num_steps": 9, "path_length": 3.0, "shortest_path": 2.0}
+    whole = a_result(**fixed | {"distance_to_goal": None} | line)
     outcome = explain_end(whole, "chair", SuccessRule(), nearest_m, detects=detects)
     assert expected in outcome.sentence
-    assert outcome.found == bool(whole["success"])
+    assert outcome.found == bool(whole.success)
 
 
 @pytest.mark.parametrize("semantics", ["gt", "noisy"])

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from sim.app.commands import run as sim_run
-from sim.app.evaluation.results import read_record, read_result_lines
+from sim.app.evaluation.results import read_record, read_results
 from sim.app.options import RunOptions
 from sim.app.web.choices import Choices, Offer
 from sim.app.web.controls import EpisodeRequest
@@ -18,6 +18,7 @@ from sim.app.web.driven import DrivenRuns
 from sim.app.web.session import Frame, Session
 from sim.core.errors import ConfigError
 from sim.task.trajectory import read_trajectory, trajectory_file
+from tests.helpers.results import a_result
 from tests.helpers.worlds import room, with_box
 
 START = {"split": "traps", "house": "wedged_spawn", "goal": "bed", "agent": "oracle", "semantics": "gt"}
@@ -110,8 +111,8 @@ def test_nothing_else_can_be_started(choices: Choices, part: str, value: object)
 
 
 def test_an_episode_of_a_run_has_its_options_but_no_file_or_code_that_is_not_offered(choices: Choices) -> None:
-    line = {"episode_id": "traps_0000", "house": "wedged_spawn", "goal": "bed"}
-    line["episode_id"] = choices.as_json()["splits"]["traps"]["wedged_spawn"]["bed"][0]
+    first = choices.as_json()["splits"]["traps"]["wedged_spawn"]["bed"][0]
+    line = a_result(episode_id=first, house="wedged_spawn", goal="bed")
     settings = {"task.max_steps": 30, "agent.weights": "/etc/passwd", "agent.name": "plain", "agent.list": ["../x"]}
     record = {"agent": "random", "semantics": "noisy", "split": "traps", "seed": 7, "noise": "harsh"}
     request = choices.again(record | {"settings": settings}, line, "person")
@@ -126,7 +127,7 @@ def test_an_episode_of_a_run_has_its_options_but_no_file_or_code_that_is_not_off
 
 def test_a_run_in_one_house_without_its_number_of_episodes_is_refused(own: Choices, house: Path) -> None:
     record = {"agent": "random", "semantics": "gt", "house": str(house), "seed": 7}
-    line = {"episode_id": f"{house.stem}_0000", "house": house.stem, "goal": "sofa"}
+    line = a_result(episode_id=f"{house.stem}_0000", house=house.stem, goal="sofa")
     with pytest.raises(ConfigError, match="episodes"):
         own.again(record, line, "agent")
 
@@ -135,13 +136,13 @@ def test_an_episode_of_a_run_is_repeated_exactly(own: Choices, house: Path, tmp_
     options = ["--house", str(house), "--agent", "random", "--semantics", "gt", "--seed", "5", "--noise", "harsh"]
     options += ["--config", "task.max_steps=8", "--episodes", "2", "--record", "--out", str(tmp_path / "run")]
     assert sim_run.entry(options) == 0
-    line = read_result_lines(tmp_path / "run" / "results.jsonl").values[1]
+    line = read_results(tmp_path / "run" / "results.jsonl").values[1]
     request = own.again(read_record(tmp_path / "run" / "config.json"), line, "agent")
     display = play(request, tmp_path)
     (begun,) = (state for state in display.states if state["phase"] == "running")
-    assert (begun["episode_id"], begun["note"]) == (line["episode_id"], "")
+    assert (begun["episode_id"], begun["note"]) == (line.episode_id, "")
     last = display.frames[-1].facts
-    assert (last["step"], last["driven_m"]) == (line["num_steps"], line["path_length"])
+    assert (last["step"], last["driven_m"]) == (line.num_steps, line.path_length)
 
 
 @pytest.mark.costly
@@ -151,11 +152,11 @@ def test_an_episode_of_a_run_without_noise_in_a_house_with_two_goals_begins_wher
     (tmp_path / "two.xml").write_text(built.spec.to_xml())
     options = ["--house", str(tmp_path / "two.xml"), "--agent", "oracle", "--semantics", "gt", "--seed", "3"]
     assert sim_run.entry([*options, "--episodes", "3", "--out", str(tmp_path / "run")]) == 0
-    line = read_result_lines(tmp_path / "run" / "results.jsonl").values[2]
+    line = read_results(tmp_path / "run" / "results.jsonl").values[2]
     offered = Choices(Offer(houses=(tmp_path / "two.xml",), options=RunOptions(weights=None, profile="fast")))
     request = offered.again(read_record(tmp_path / "run" / "config.json"), line, "agent")
     last = play(request, tmp_path).frames[-1].facts
-    assert (last["step"], last["driven_m"]) == (line["num_steps"], line["path_length"])
+    assert (last["step"], last["driven_m"]) == (line.num_steps, line.path_length)
 
 
 def test_an_episode_driven_by_hand_is_recorded_and_one_of_the_agent_is_not(
@@ -172,9 +173,9 @@ def test_an_episode_driven_by_hand_is_recorded_and_one_of_the_agent_is_not(
     assert display.frames[0].facts["hint"] is not None
     (run,) = tmp_path.iterdir()
     assert display.states[-1]["outcome"]["recorded"] == f"Recorded in {run}."
-    (line,) = read_result_lines(run / "results.jsonl").values
-    assert (line["agent"], line["uses_ground_truth"], line["semantics"]) == ("human", True, "gt")
-    assert (line["episode_id"], line["person_steps"], line["hint_steps"]) == ("sofa_room_0003", 3, 3)
+    (line,) = read_results(run / "results.jsonl").values
+    assert (line.agent, line.uses_ground_truth, line.semantics) == ("human", True, "gt")
+    assert (line.episode_id, line.person_steps, line.hint_steps) == ("sofa_room_0003", 3, 3)
     assert read_trajectory(trajectory_file(run, "sofa_room_0003")).actions.tolist() == [2, 1, 0]
     assert read_record(run / "config.json")["config"]["task"]["max_steps"] == 8
     assert {file.name for file in run.iterdir()} >= {"summary.json", "pictures"}

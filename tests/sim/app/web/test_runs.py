@@ -16,8 +16,9 @@ from sim.core.errors import ConfigError
 pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
 
 from sim.app.web.answers import as_ascii
+from tests.helpers.results import ENTRIES
 
-LINE = {"episode_id": "e/0", "house": "h", "goal": "bed", "end_reason": "stop", "success": 1.0}
+LINE = ENTRIES | {"episode_id": "e/0"}
 
 
 def write_run(folder: Path, line: Any = LINE, config: bytes = b'{"agent": "mine"}') -> Path:

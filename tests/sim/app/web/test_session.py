@@ -11,6 +11,7 @@ import pytest
 from sim.app.web.controls import Choice
 from sim.app.web.session import Frame, SharedAgent
 from sim.core.interface import Action, StatesTarget
+from sim.task.result import metrics_without_episode
 
 
 class Stops:
@@ -49,7 +50,7 @@ def test_the_place_is_that_of_the_agents_own_stop(
 
 def test_the_world_can_be_shown_before_the_first_action() -> None:
     shown: list[Frame] = []
-    metrics = {"num_steps": 0, "collisions": 0, "path_length": 0.0, "distance_to_goal": None, "shortest_path": None}
+    metrics = metrics_without_episode(None)
     env = SimpleNamespace(
         truth_images={"semantic": np.zeros((4, 4), np.uint8)},
         scene=SimpleNamespace(task=SimpleNamespace(metrics=lambda: metrics)),

@@ -21,9 +21,10 @@ import pytest
 
 from sim.app.commands import report, web
 from sim.app.commands import run as sim_run
-from sim.app.evaluation.results import read_result_lines
+from sim.app.evaluation.results import read_results
 from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.browser import ESCAPE, Browser, missing
+from tests.helpers.results import ENTRIES
 
 pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
 pytest.importorskip("uvicorn", reason="no uvicorn: pip install -e '.[web]'")
@@ -32,7 +33,7 @@ client = pytest.importorskip("websockets.sync.client", reason="no websockets: pi
 from websockets.exceptions import WebSocketException  # noqa: E402
 
 WISH = {"split": "traps", "house": "wedged_spawn", "goal": "bed", "semantics": "gt"}
-LINE = {"episode_id": "e/0", "house": "h", "goal": "bed", "end_reason": "stop", "success": 1.0, "num_steps": 9}
+LINE = ENTRIES | {"episode_id": "e/0", "house": "h", "num_steps": 9}
 
 
 class Server:
@@ -302,10 +303,10 @@ def test_ten_actions_are_driven_the_agent_is_taken_over_from_and_gets_the_robot_
     sentence = ended["outcome"]["sentence"]
     assert "came too early" in sentence or "The STOP counts" in sentence
     run = runs / Path(ended["outcome"]["recorded"].removeprefix("Recorded in ").removesuffix(".")).name
-    (line,) = read_result_lines(run / "results.jsonl").values
-    assert (line["agent"], line["other_driver"], line["person_steps"]) == ("human+agent", "stubborn", 11)
-    recorded = read_trajectory(trajectory_file(run, line["episode_id"]))
-    assert (recorded.num_steps, recorded.end_reason) == (line["num_steps"], "stop")
+    (line,) = read_results(run / "results.jsonl").values
+    assert (line.agent, line.other_driver, line.person_steps) == ("human+agent", "stubborn", 11)
+    recorded = read_trajectory(trajectory_file(run, line.episode_id))
+    assert (recorded.num_steps, recorded.end_reason) == (line.num_steps, "stop")
     assert browser.console_errors() == []
 
 

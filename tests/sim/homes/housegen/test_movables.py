@@ -283,8 +283,8 @@ def test_the_oracle_reaches_a_goal_among_movables() -> None:
         scene.task.observe(action, scene.world.move(action))
     metrics = scene.task.metrics()
     scene.close()
-    assert metrics["success"] == 1.0
-    assert metrics["collisions"] == 0
+    assert metrics.success == 1.0
+    assert metrics.collisions == 0
 
 
 @pytest.mark.parametrize("split", [name for name in SPLITS if name in ("val", "test")])

@@ -1,0 +1,57 @@
+"""The summary of a run: means of the metrics with their intervals, spread of replicates, and causes of failure."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any
+
+from sim.app.evaluation.intervals import estimate, replicate_spread
+from sim.episodes.replicates import episode_of, replicate_number
+from sim.task.result import METRICS, EpisodeResult
+
+OVER_HOUSES, OVER_ONE_HOUSE = "houses", "the episodes of the one house"
+"""The units over which the intervals of a summary are taken."""
+
+
+def summarise(results: Sequence[EpisodeResult]) -> dict[str, Any]:
+    """Returns the number of episodes and, for each metric of a summary, the mean and its 95 % interval.
+
+    Intervals are over houses (`sim.app.evaluation.intervals`); `ci95_over` says so, and says when one house leaves only
+    its episodes. `failures` counts the failed episodes by cause (`sim.task.failures`), the most frequent first.
+    Episodes whose value is null do not count for that metric. An episode with replicates (`--replicates`) counts once,
+    with their mean; `replicates` then has the means of each replicate and their standard deviation
+    (`replicate_spread`).
+    """
+    houses = [result.house for result in results]
+    episodes = [episode_of(result.episode_id) for result in results]
+    summary: dict[str, Any] = {
+        "episodes": len(set(episodes)),
+        "errors": sum(result.is_error for result in results),
+        "falls": sum(result.end_reason == "fallen" for result in results),
+        "houses": len(set(houses)),
+        "ci95_over": OVER_ONE_HOUSE if len(set(houses)) == 1 else OVER_HOUSES,
+    }
+    for metric in METRICS.values():
+        if metric.in_summary:
+            value = estimate(list(map(metric.value, results)), houses, episodes=episodes, most=metric.most)
+            summary[metric.key] = {"mean": value.mean, "ci95": [value.low, value.high]}
+    summary |= _replicates(results, episodes)
+    causes = Counter(result.failure for result in results if result.failure is not None)
+    return summary | {"failures": dict(causes.most_common())}
+
+
+def _replicates(results: Sequence[EpisodeResult], episodes: Sequence[str]) -> dict[str, Any]:
+    """Returns, under `replicates`, the mean of each replicate of all episodes and their spread; {} without any."""
+    numbers = [replicate_number(result.episode_id) for result in results]
+    if len(set(numbers)) < 2:
+        return {}
+    spreads = {}
+    for metric in (METRICS["success"], METRICS["spl"]):
+        values = list(map(metric.value, results))
+        means = []
+        for number in sorted(set(numbers)):
+            known = [value for value, of in zip(values, numbers, strict=True) if of == number and value is not None]
+            means.append(sum(known) / len(known) if known else None)
+        spreads[metric.key] = {"means": means, "std": replicate_spread(values, episodes)}
+    return {"replicates": spreads}
