@@ -22,6 +22,7 @@ from sim.core.errors import ConfigError
 from sim.core.files import open_to_grow
 from sim.core.geometry import compiling
 from sim.core.reading import image_size_px, read_csv, read_json
+from sim.task.result import EpisodeResult
 from sim.training.segmentation.dataset import read_members, read_shard
 from sim.training.views.coco import decode_mask
 from stubborn.network_files import read_checkpoint, with_weights
@@ -108,7 +109,7 @@ def test_each_exception_is_still_needed() -> None:
 def test_a_run_whose_file_is_a_pipe_is_refused_without_waiting(name: str, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / name)
     with pytest.raises(ConfigError, match=r"not a plain file|Cannot write|has no|has results"):
-        RunDirectory(tmp_path, {"agent": "random"})
+        RunDirectory(tmp_path, {"agent": "random"}, EpisodeResult)
 
 
 def test_a_file_that_grows_is_no_pipe_and_no_folder(tmp_path: Path) -> None:

@@ -12,7 +12,6 @@ import csv
 import gzip
 import hashlib
 import itertools
-import json
 import os
 import re
 import stat
@@ -250,7 +249,7 @@ def read_lines(
     for number, line in enumerate(whole.splitlines(), start=1):
         try:
             where = f"{what} '{file}', line {number}"
-            values.append(parse_json(_without_lone_surrogates(line), kind, where=where, error=error))
+            values.append(parse_json(line, kind, where=where, error=error))
         except error as fault:
             if older and "missing required field" in str(fault):
                 raise error(f"{str(fault).rstrip('.')}: {older}.") from None
@@ -444,16 +443,6 @@ def reason_of(fault: Exception) -> str:
     if isinstance(fault, OSError) and fault.strerror:
         return fault.strerror
     return " ".join(str(fault).split()).rstrip(".") or type(fault).__name__
-
-
-def _without_lone_surrogates(line: bytes) -> bytes:
-    """Returns a line of JSON that UTF-8 can hold: version 0.1 wrote error texts with halves of surrogate pairs."""
-    if b"\\ud" not in line.lower():
-        return line
-    try:
-        return json.dumps(json.loads(line), ensure_ascii=False).encode("utf-8", errors="replace")
-    except (ValueError, RecursionError):
-        return line  # the parser reports the fault
 
 
 def _read_member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
