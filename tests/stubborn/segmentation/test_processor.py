@@ -36,6 +36,7 @@ def test_a_network_averages_over_the_mirror_image_where_the_processor_computes_i
 ) -> None:
     monkeypatch.setattr(segmenters, "computes_bf16", lambda: fast)
     config = segmenters.detector_config(segmenters.KINDS["rednet"], None)
+    assert isinstance(config, segmenters.NetworkConfig)
     assert config.mirrored is fast
     assert segmenters.precision_of(config) == ("bf16" if fast else "fp32")
     assert segmenters.detector_record(config)["precision"] == segmenters.precision_of(config)
