@@ -60,7 +60,7 @@ EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
         "poni": PoniConfig(),
     }
 )
-"""The explorers by name, for `AgentConfig.explorer`: a configuration, whose `make` returns the explorer."""
+"""The explorers by name, for `AgentConfig.explorer`: a configuration with `make`, which returns the explorer."""
 
 
 PLUS = AgentConfig(explorer=INFORMED_TOUR, seeker=TrackSeekerConfig(), feel=FeelConfig())

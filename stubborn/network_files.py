@@ -1,4 +1,4 @@
-"""Reads and writes files of weights: safetensors whose header holds the size of the network, and PyTorch checkpoints.
+"""Reads and writes files of weights: safetensors with the network's size in their header, and PyTorch checkpoints.
 
 A file is written in one step and checked when it is read. The header's values are JSON. One of them, named
 `<family>_config`, holds the size; the others describe how the weights were made. Only modules that need PyTorch import
@@ -49,7 +49,7 @@ NetworkT = TypeVar("NetworkT", bound=nn.Module)
 
 @dataclass(frozen=True)
 class Family(Generic[ConfigT, NetworkT]):
-    """A kind of network whose files are distinguished by their header."""
+    """A kind of network; the header of a file tells its kind."""
 
     name: str
     """The header's entry is `<name>_config`."""

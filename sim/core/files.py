@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
 
-_PREFIX_LETTERS = 40
-"""Number of letters of a file's name that its part file's name begins with, so that long names stay allowed."""
+_PREFIX_CHARACTERS = 40
+"""A part file's name begins with this many characters of the file's name, so that long names stay allowed."""
 _TRIAL_BYTES = 4096
 """Number of bytes written to test whether a folder is writable; the test fails on a full disk."""
 
@@ -54,7 +54,7 @@ def inside(folder: Path, name: str, *, what: str) -> Path:
 
 
 def require_writable(path: Path, *, name: str, folder: bool) -> None:
-    """Checks that a path can be written, before the work whose result goes there; nothing is created.
+    """Checks that a path can be written, before the result is computed; nothing is created.
 
     Args:
         path: the file or the folder.
@@ -113,7 +113,7 @@ def write_together(files: Mapping[Path, bytes | str], *, sync: bool = False) -> 
         for path, content in files.items():
             path.parent.mkdir(parents=True, exist_ok=True)
             handle, parts[path] = tempfile.mkstemp(
-                dir=path.parent, prefix=f".{path.name[:_PREFIX_LETTERS]}.", suffix=".part"
+                dir=path.parent, prefix=f".{path.name[:_PREFIX_CHARACTERS]}.", suffix=".part"
             )
             with os.fdopen(handle, "wb") as file:
                 file.write(content if isinstance(content, bytes) else content.encode("utf-8"))
@@ -155,7 +155,7 @@ def write_picture(file: Path, picture: NDArray[np.uint8]) -> None:
     """Writes a picture, uint8 RGB (h, w, 3), in the format of the file's suffix.
 
     Raises:
-        ConfigError: there is no such format.
+        ConfigError: the suffix does not name a picture format.
         OSError: the file cannot be written.
     """
     import cv2  # only the tools that draw need it
@@ -220,4 +220,4 @@ def _require_short(path: Path, name: str) -> None:
     """Raises ConfigError if a part of a path is longer than file systems allow."""
     for part in path.parts:
         if len(part.encode(errors="surrogateescape")) > 255:
-            raise ConfigError(f"{name} has a name of {len(part)} letters, which is too long: at most 255 bytes.")
+            raise ConfigError(f"{name} has a name of {len(part)} characters, which is too long: at most 255 bytes.")

@@ -133,11 +133,11 @@ class RobotModel:
     radius_m: float = 0.18
     height_m: float = 0.88
     camera_forward_m: float = 0.0
-    """Camera mount ahead of the wheel axis; 0 for the default robot, whose camera turns on the spot."""
+    """Camera mount ahead of the wheel axis; 0 for the default robot: its camera turns on the spot."""
     clearance_m: float = 0.0128
     """Height of the body's lower side above the floor."""
     climb_m: float = CLIMB_M
-    """Height of the highest edge that the wheels climb, of whatever object; anything higher is an obstacle."""
+    """Height of the highest edge that the wheels climb; any object that is higher is an obstacle."""
 
     def __post_init__(self) -> None:
         require_numbers(self)
@@ -259,7 +259,7 @@ class SegmenterSpec:
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}", self.kind):
-            raise ConfigError(f"SegmenterSpec.kind is a name of letters, digits, '_', '-' and '.', got '{self.kind}'.")
+            raise ConfigError(f"SegmenterSpec.kind must consist of A-Z, a-z, 0-9, '_', '-' and '.', got '{self.kind}'.")
         for name in ("sensors", "truth"):
             if isinstance(getattr(self, name), str):
                 raise ConfigError(f"SegmenterSpec.{name} must be a tuple of names, got '{getattr(self, name)}'.")
@@ -331,7 +331,7 @@ class SegmentationSpec:
     description: str = ""
     """One line for lists."""
     config: Any = None
-    """Default configuration, a frozen dataclass whose fields `--config detector.FIELD=VALUE` sets, or None."""
+    """Default configuration, a frozen dataclass, or None; `--config detector.FIELD=VALUE` sets its fields."""
 
     def __post_init__(self) -> None:
         if not callable(self.make):
@@ -434,7 +434,7 @@ class AgentSpec:
     description: str = ""
     """One line for `--list-agents`."""
     config: Any = None
-    """Default configuration, a frozen dataclass whose fields `--config agent.FIELD=VALUE` sets; None: it has none."""
+    """Default configuration, a frozen dataclass, or None; `--config agent.FIELD=VALUE` sets its fields."""
     sensors: tuple[Any, ...] = ("rgb", "depth")
     """Sensors that the agent reads: names of `SENSORS`, or its own objects (`sim.sensors.sensor.Sensor`). Those of its
     segmenter are added."""

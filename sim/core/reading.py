@@ -373,7 +373,7 @@ def read_npz(
 
     Args:
         file: the file.
-        names: the arrays to read, all of which the file must have; None: all arrays of the file.
+        names: the arrays to read; the file must have all of them. None: all arrays of the file.
         what: kind of the file for the error message, for example "trajectory".
         most_bytes: largest size of all its arrays together.
         error: class of the error.

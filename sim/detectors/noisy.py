@@ -129,7 +129,7 @@ class NoisySegmenter:
         """Returns the scores of the frame that the environment rendered last, at 1 / `stride_px` of its size.
 
         Raises:
-            ConfigError: there is no such category.
+            ConfigError: `goal` is not a category of mpcat40.
         """
         category = category_id(goal)
         shown, classified, rng = self._classified()

@@ -64,7 +64,7 @@ def attach(spec: mujoco.MjSpec, model: mujoco.MjSpec, attachment: Attachment) ->
 
     Args:
         spec: it is changed.
-        model: whose files have absolute paths.
+        model: the attached model; its files have absolute paths.
         attachment: where and under which names.
 
     Raises:

@@ -76,12 +76,12 @@ def void_notes(model: mujoco.MjModel, labels: Labels) -> tuple[str, ...]:
 
 
 def _first_name(model: mujoco.MjModel, geom: int) -> str:
-    """Returns the first name among a geom, its body and the body's ancestors; "#<number>" when there is none."""
+    """Returns the first name among a geom, its body and the body's ancestors; "#<number>" if all are unnamed."""
     return next(name for name in names_of_geom(model, geom) if name)
 
 
 def _remove(spec: mujoco.MjSpec, kind: str, elements: Iterable[Any]) -> str:
-    """Deletes elements; returns, for example, "2 cameras (front, top)", or "" when there are none."""
+    """Deletes elements; returns, for example, "2 cameras (front, top)", or "" if the list is empty."""
     elements = list(elements)
     names = [element.name for element in elements]
     for element in elements:

@@ -62,7 +62,7 @@ def geom_polytope(model: mujoco.MjModel, data: mujoco.MjData, geom: int, *, rend
 def geoms_between(
     model: mujoco.MjModel, data: mujoco.MjData, geoms: NDArray[np.int64], low_m: float, high_m: float
 ) -> NDArray[np.int64]:
-    """Returns those of the geoms whose bounding sphere has a part between two heights, and all planes."""
+    """Returns the geoms with a part of their bounding sphere between two heights, and all planes."""
     z, radius = data.geom_xpos[geoms, 2], model.geom_rbound[geoms]
     reaches = (z - radius <= high_m) & (z + radius >= low_m)
     return geoms[reaches | (model.geom_type[geoms] == _GEOM.mjGEOM_PLANE)]

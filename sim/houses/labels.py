@@ -30,7 +30,7 @@ ROBOT_PREFIX = "stubborn_robot/"
 """Prefix of every name of the robot in a compiled world. No house has it; other simulators write `robot/`."""
 RULES_S = 5.0
 """Time for the label rules on all names of a house; those of a scene of 1,000 geoms take some milliseconds."""
-MAX_RULE_LETTERS = 1000
+MAX_RULE_CHARACTERS = 1000
 _LABEL = re.compile(r"(?P<category>[A-Za-z][A-Za-z_]*)_(?P<number>\d+)")
 
 
@@ -72,10 +72,11 @@ def read_labels(
         model: the compiled model.
         rules: regular expressions to search for in names, in this order, and the category of each ("void" is allowed).
             With rules, a visible geom without a label becomes void and is counted.
-        ignore_prefix: geoms whose name or body name begins with it (the robot's) get no label; "" to ignore none.
+        ignore_prefix: a geom gets no label if its name or its body's name begins with it (the robot's); "" ignores
+            no geom.
 
     Raises:
-        HouseError: a visible geom has no label and there are no rules, or a rule is not valid.
+        HouseError: a visible geom has no label and no rules were given, or a rule is not valid.
     """
     compiled_rules = _compile_rules(rules)
     until_s = time.monotonic() + RULES_S
@@ -133,7 +134,7 @@ def cover_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
 
 
 def geoms_of(model: mujoco.MjModel, prefix: str) -> NDArray[np.bool_]:
-    """Returns (ngeom,) True for geoms whose name or body name begins with `prefix`, such as the robot's."""
+    """Returns (ngeom,) True for a geom if its name or its body's name begins with `prefix`, such as the robot's."""
     bodies = np.array([model.body(body).name.startswith(prefix) for body in range(model.nbody)], dtype=np.bool_)
     named = np.array([model.geom(geom).name.startswith(prefix) for geom in range(model.ngeom)], dtype=np.bool_)
     return bodies[model.geom_bodyid] | named
@@ -220,8 +221,8 @@ def _compile_rules(rules: Mapping[str, str] | None) -> list[tuple[regex.Pattern[
     for rule, category in (rules or {}).items():
         if category not in MPCAT40_ID:
             raise HouseError(f"label rule '{rule}' gives '{category}', which is not a category. {suggest(category)}")
-        if len(rule) > MAX_RULE_LETTERS:
-            raise HouseError(f"label rule '{rule[:40]}...' has {len(rule)} letters; at most {MAX_RULE_LETTERS}.")
+        if len(rule) > MAX_RULE_CHARACTERS:
+            raise HouseError(f"label rule '{rule[:40]}...' has {len(rule)} characters; at most {MAX_RULE_CHARACTERS}.")
         try:
             compiled.append((regex.compile(rule), category))
         except (regex.error, RecursionError, OverflowError) as error:

@@ -7,7 +7,7 @@ import numpy as np
 from sim.gl import mujoco
 
 LEAST_AMBIENT = 0.3
-"""A scene without lamps whose headlight has at least this ambient part keeps its light."""
+"""A scene without lamps keeps its light if its headlight has at least this ambient part."""
 AMBIENT, HEADLIGHT = 0.5, 0.2
 """Ambient and diffuse part of the headlight that is set."""
 SIDES = (((0.45, 0.3, -0.85), 0.25), ((-0.6, -0.35, -0.7), 0.12))
@@ -15,7 +15,7 @@ SIDES = (((0.45, 0.3, -0.85), 0.25), ((-0.6, -0.35, -0.7), 0.12))
 
 
 def add_light(spec: mujoco.MjSpec) -> tuple[str, ...]:
-    """Adds light to a scene without lamps whose headlight is weak; returns a sentence if it has added light.
+    """Adds light to a scene without lamps if its headlight is weak; returns a sentence if it has added light.
 
     A bare room of medium grey then has a mean grey level of about 80 of 255 in the images of the robot's camera.
     """
@@ -30,4 +30,4 @@ def add_light(spec: mujoco.MjSpec) -> tuple[str, ...]:
         light.pos, light.dir = [0.0, 0.0, 3.0], list(direction)
         light.ambient, light.diffuse, light.specular = [0.0] * 3, [strength] * 3, [0.0] * 3
         light.castshadow = False
-    return ("Added light: the scene has none of its own.",)
+    return ("Added light: the scene has no lamps and a weak headlight.",)

@@ -35,7 +35,7 @@ def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None
         path: the MJCF file.
         labels_path: a JSON file of label rules, `{"regex over names": "category"}`, for a third-party scene. Elements
             that a house may not contain are then removed and reported in the house's `notes`.
-        root: another folder whose files the house may use, in addition to its own (`sim.houses.references`).
+        root: a folder that the house may use in addition to its own (`sim.houses.references`).
 
     Raises:
         HouseError: the file is missing, is not MJCF, or breaks a rule of the house format; the message names file, geom

@@ -50,8 +50,8 @@ LARGEST = 1e15
 FARTHEST_M = 10_000.0
 """Largest coordinate or size of a geom, a body, a site or a vertex."""
 _SUSPECT = re.compile(r"(?=\s*[-+.\dnNiI])[^nNeExX]*?(?:[nNxX]|[eE]\+?\d{2}|\d{16})", re.DOTALL)
-"""Matches a list of numbers of which one may be nan, inf or beyond `LARGEST`. The test is fast: most names fail at the
-first letter."""
+"""Matches a list of numbers if one of them may be nan, inf or beyond `LARGEST`. The test is fast: most names fail at
+the first character."""
 _LENGTHS: Mapping[str, tuple[str, ...]] = {
     "hfield": ("nrow", "ncol"),
     "numeric": ("size",),
@@ -61,7 +61,7 @@ _LENGTHS: Mapping[str, tuple[str, ...]] = {
     ),
     "user": ("dim",),
 }  # fmt: skip
-"""Attributes whose product is the length of an array."""
+"""Attributes by element; the length of the element's array is their product."""
 _SENSOR_TARGETS = frozenset((
     "site", "joint", "tendon", "actuator", "body", "body1", "body2", "geom1", "geom2", "subtree1", "subtree2",
     "objname",
@@ -72,12 +72,12 @@ _NAMES = frozenset((
     "name", "class", "childclass", "material", "mesh", "texture", "hfield", "file", "target", "body", "body1", "body2",
     "geom", "geom1", "geom2", "joint", "joint1", "joint2", "site", "model", "prefix", "data",
 ))  # fmt: skip
-"""Attributes whose value is a name."""
+"""Attributes with a name as their value."""
 _NOT_FINITE = re.compile(r"[-+]?(?:nan(?:\(\w*\))?|inf(?:inity)?)", re.IGNORECASE)
 """A word that C reads as a number that is not finite, such as `nan(1)`."""
 _READ_AT_ONCE = ("include", "model", "flexcomp")
-"""Elements whose file MuJoCo opens while it parses the text; those of `model` and `flexcomp` first in the current
-folder."""
+"""Elements with a file that MuJoCo opens while it parses the text; it looks for files of `model` and `flexcomp` in the
+current folder first."""
 _FILE_NAME = re.compile(rb"""\bfile\s*=\s*(?:"[^"]*"|'[^']*')""")
 """The attribute `file` of an element, in the bytes of a file."""
 _CONTROL = re.compile(rb"[\x00-\x1f\x7f]")
@@ -94,7 +94,7 @@ def read_spec(
 
     Args:
         path: the file.
-        root: another folder whose files it may use, in addition to its own folder.
+        root: a folder that the file may use in addition to its own.
         error: class of the error; only in a house may other models be attached.
         texture_px: the caller reduces textures with a longer side to this length, so that they count as so large.
 
@@ -130,7 +130,7 @@ def _read_spec(path: Path, scan: _Scan, depth: int = 0) -> mujoco.MjSpec:
     for attachment in attachments:
         file = models.get(attachment.model)
         if file is None:
-            raise error(f"attach: there is no model '{printable(attachment.model)}' with a file.")
+            raise error(f"attach: model '{printable(attachment.model)}' must be declared with a file.")
         if file in read:
             scan.count(read[file][1], f"attach of model '{attachment.model}'")
         else:
@@ -309,7 +309,7 @@ class _Scan:
             self._refuse("an include names no file.")
 
     def _attaches(self, path: Path, tag: str, values: Mapping[str, str], text: Composition, start: int) -> bool:
-        """Records a model or an attachment, in place of which MuJoCo reads nothing or a frame; returns if it is one."""
+        """Records a model or an attachment and returns whether it is one; MuJoCo reads nothing or a frame instead."""
         if tag == "attach":
             if not issubclass(self._error, HouseError) or "replicate" in self._tags:
                 self._refuse("attach is allowed in a house only, outside of `replicate`.")
@@ -348,7 +348,7 @@ class _Scan:
         """
         written = _FILE_NAME.search(content, start)
         if printable(name) != name or "\n" in name or "\t" in name or (written and _CONTROL.search(written[0])):
-            self._refuse(f"it uses '{printable(name)}', whose name holds a control character.")
+            self._refuse(f"the file name '{printable(name)}' contains a control character.")
 
     def _found(self, path: Path, name: str) -> Path:
         """Returns the path of a named file: in the folder of the house file, as in MuJoCo, else in that of `path`.
@@ -361,17 +361,17 @@ class _Scan:
                 self.allowed.require(Reference(name, file))
                 if file.is_file():
                     return file.resolve()
-        return self._refuse(f"it includes '{printable(name)}': there is no such file.")
+        return self._refuse(f"it includes '{printable(name)}', but this file does not exist.")
 
     def _require_small_arrays(self, where: str, tag: str, values: Mapping[str, str]) -> None:
-        """Refuses an element whose array MuJoCo would allocate while it reads the file."""
+        """Refuses an element with a large array, which MuJoCo would allocate while it reads the file."""
         keys = _LENGTHS.get(tag, ()) + tuple(key for key in values if key in _LENGTHS_ANYWHERE)
         asked = math.prod(max(1.0, number) for key in keys for number in _numbers(values.get(key, "")))
         if asked > MAX_ARRAY:
             self._refuse(f"{printable(where)} asks for {asked:g} numbers; at most {MAX_ARRAY:g} are allowed.")
 
     def _require_finite(self, where: str, text: str) -> None:
-        """Refuses a list of numbers of which one is not finite or too large."""
+        """Refuses a list of numbers if one of them is not finite or too large."""
         words = text.split()
         others = [word for word in words if not _NOT_FINITE.fullmatch(word)]
         if len(others) < len(words) and _all_numbers(others):
@@ -401,7 +401,7 @@ def _require_small_assets(
 
 
 def _texture_bytes(spec: mujoco.MjSpec, texture: mujoco.MjsTexture, folder: Path, most_px: int | None) -> int:
-    """Returns the bytes of a texture in memory, whose images are reduced to `most_px`."""
+    """Returns the bytes of a texture in memory after its images were reduced to `most_px`."""
     channels = max(1, int(texture.nchannel))
     size = max(0, texture.width) * max(0, texture.height) * channels * (6 if texture.type else 1)
     for name in filter(None, (texture.file, *texture.cubefiles)):
@@ -418,7 +418,7 @@ def _most_texture_bytes(error: type[ObjectNavError]) -> int:
 
 
 def _bytes_of_asset(file: Path, bytes_per_pixel: int, most_px: int | None = None) -> int:
-    """Returns the bytes of an image in memory, or the size of another file; 0 if there is none (MuJoCo reports it)."""
+    """Returns the bytes of an image in memory, or the size of another file; 0 if it is missing (MuJoCo reports it)."""
     if not file.is_file():
         return 0
     with open_plain(file, what="Asset") as stream:

@@ -27,7 +27,7 @@ from sim.houses.references import asset_path
 MAX_FILE_BYTES = 512 << 20
 FOLDER = "files"
 """Folder of meshes and textures next to the houses."""
-_SUM_LETTERS, _NAME_LETTERS = 12, 60
+_SUM_CHARACTERS, _NAME_CHARACTERS = 12, 60
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def gather_files(spec: mujoco.MjSpec, folder: Path, *, texture_px: int | None = 
         texture_px: PNG textures with a longer side are reduced to this length; None: none are.
 
     Raises:
-        HouseError: a file cannot be read, or is no image that can be reduced.
+        HouseError: a file cannot be read, or is an image that cannot be reduced.
     """
     files: dict[str, PackedFile] = {}
     names: dict[tuple[Path, bool], str] = {}
@@ -79,7 +79,8 @@ def gather_files(spec: mujoco.MjSpec, folder: Path, *, texture_px: int | None = 
             reduced = content
             if texture and texture_px is not None:
                 reduced = reduced_image(content, texture_px, cells=square, where=f"Texture '{file}'")
-            packed = f"{FOLDER}/{hashlib.sha256(reduced).hexdigest()[:_SUM_LETTERS]}_{file.name[-_NAME_LETTERS:]}"
+            checksum = hashlib.sha256(reduced).hexdigest()[:_SUM_CHARACTERS]
+            packed = f"{FOLDER}/{checksum}_{file.name[-_NAME_CHARACTERS:]}"
             files[packed] = PackedFile(reduced, file if reduced is content else None)
             names[file, square] = packed
         return names[file, square]
@@ -98,7 +99,7 @@ def gather_files(spec: mujoco.MjSpec, folder: Path, *, texture_px: int | None = 
 
 
 def text_of(spec: mujoco.MjSpec) -> str:
-    """Returns the text of a specification whose files `gather_files` has gathered.
+    """Returns the MJCF text of a specification; `gather_files` has gathered its files before.
 
     Raises:
         HouseError: MuJoCo cannot write it.
@@ -111,7 +112,7 @@ def text_of(spec: mujoco.MjSpec) -> str:
 
 
 def reduced_image(content: bytes, most_px: int, *, cells: bool, where: str) -> bytes:
-    """Returns a PNG image whose longer side has at most `most_px` pixels; other files are returned unchanged.
+    """Returns a PNG image with at most `most_px` pixels on its longer side; other files are returned unchanged.
 
     Args:
         content: of the file.
@@ -148,8 +149,8 @@ def write_files(folder: Path, files: Mapping[str, PackedFile], *, pack: bool) ->
     Args:
         folder: the folder of the houses.
         files: by their names in it.
-        pack: whether to copy all files. Otherwise a file whose content was not changed becomes a hard link to its
-            source, which needs no space on the disk; it is copied where the file system cannot link it.
+        pack: whether to copy all files. Otherwise an unchanged file becomes a hard link to its source, which needs no
+            space on the disk; it is copied where the file system cannot link it.
 
     Raises:
         OSError: a file cannot be written.

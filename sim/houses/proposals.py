@@ -60,7 +60,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
 }  # fmt: skip
 """For each category, words that name it, in addition to the category's own name."""
 LEAST_ENDING = 4
-"""A word with at least this many letters is also found at the end of a longer one: `hingecabinet`, `backwall`."""
+"""A word with at least this many characters is also found at the end of a longer one: `hingecabinet`, `backwall`."""
 FLAT_M = 0.3
 """Largest thickness of a wall, a floor or a ceiling that is recognized by its size."""
 LARGE_M = 1.5
@@ -103,7 +103,7 @@ def propose(model: mujoco.MjModel) -> tuple[Proposal, ...]:
     visible, collides = rendered_geoms(model), collidable_geoms(model)
     accepted: dict[str, Proposal] = {}
     unknown: list[list[str]] = []
-    around: set[str] = set()  # names of bodies that hold something whose category is known
+    around: set[str] = set()  # names of bodies that hold an object of a known category
     for geom in np.flatnonzero(visible | collides).tolist():
         names = [name for name in names_of_geom(model, geom) if name]
         proposals = list(_by_name(names))
@@ -173,7 +173,7 @@ def category_by_size(low_m: NDArray[np.float64], high_m: NDArray[np.float64], *,
 
 
 def size_doubt(category: str, size_m: NDArray[np.float64]) -> str:
-    """Returns "too large" or "too small" for an instance (3,) whose size its category hardly has; else ""."""
+    """Returns "too large" or "too small" if a size (3,) is implausible for the category; else ""."""
     if category not in LARGEST_M:
         return ""
     longest = float(size_m.max())

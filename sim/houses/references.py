@@ -3,7 +3,7 @@
 MuJoCo opens every path that a file names: of an included file, a mesh or a texture. A file from another source is data
 and must not choose paths: `<include file="../../x.xml"/>` and `<mesh file="/home/me/x.obj"/>` are refused, also if they
 are symbolic links. Textures may also be in `../textures`, which the houses of a split share, and in the shipped folder.
-The user allows one more folder with `--root FOLDER`, for packages whose files are in several folders.
+The user allows one more folder with `--root FOLDER`, for packages that consist of several folders.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from sim.houses.mjcf_text import as_utf8
 SHARED_TEXTURES = "textures"
 """Name of the folder, next to a split's folder, that all its houses may use."""
 MOST_FILES = 10_000
-"""Largest number of files of a house whose checksums are computed."""
+"""Largest number of files of a house for which checksums are computed."""
 _MOST_FOLDERS = 20
 _MOST_BYTES = 64 << 20
 _VALUE = rb"""\s*=\s*(?P<value>"[^"]*"|'[^']*')"""
@@ -53,7 +53,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class Allowed:
-    """The folders whose files one MJCF file may read."""
+    """The folders from which one MJCF file may read."""
 
     file: Path
     """The MJCF file, as an absolute path without symbolic links."""
@@ -142,7 +142,7 @@ def path_as_read(folder: Path, *names: str) -> Path:
 def require_root(root: Path | None) -> None:
     """Raises a HouseError if the folder of `--root` does not exist."""
     if root is not None and not root.is_dir():
-        raise HouseError(f"--root '{root}': there is no such folder.")
+        raise HouseError(f"--root '{root}' must be an existing folder.")
 
 
 def files_of(house_file: Path, root: Path | None = None) -> list[Path]:
@@ -153,7 +153,7 @@ def files_of(house_file: Path, root: Path | None = None) -> list[Path]:
 
     Args:
         house_file: the MJCF file.
-        root: another folder whose files it may use.
+        root: another folder that the house may use.
     """
     shipped, house_file = assets_dir().resolve(), house_file.resolve()
     allowed = Allowed(house_file, root, HouseError).folders

@@ -35,7 +35,7 @@ class TrapFacts:
     gap_m: float
     """Width of the narrowest passage of the route to the goal."""
     hidden_length_m: float
-    """Total length in plan of what is hidden: of panes, stools, sills, rows of legs, or of a drop."""
+    """Total length in plan of the hidden panes, stools, sills, rows of legs, or of the drop."""
     hidden_objects: int
     """Number of hidden geoms."""
     shortest_path_m: float
@@ -102,7 +102,7 @@ def sidecar_path(house_file: Path) -> Path:
 
 
 def read_sidecar(house_file: Path) -> Sidecar:
-    """Returns the sidecar next to a house file; `EMPTY_SIDECAR` when there is none.
+    """Returns the sidecar next to a house file; `EMPTY_SIDECAR` if the file does not exist.
 
     Raises:
         HouseError: it is not a JSON object, has an unknown key, or a value that is not allowed.

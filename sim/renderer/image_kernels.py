@@ -1,4 +1,4 @@
-"""Compiled loops over the pixels of a frame buffer, whose rows run from the bottom to the top."""
+"""Compiled loops over the pixels of a frame buffer; its rows run from the bottom to the top."""
 
 from __future__ import annotations
 

@@ -119,7 +119,7 @@ class Visibility:
     def _strip_walls(self, eye_m: NDArray, yaw: tuple[float, float]) -> StripWalls:
         """Returns the wall of each strip.
 
-        Where the eye is above a floor, or below a ceiling, that reaches past the wall, nothing is visible below or
+        If the eye is above a floor, or below a ceiling, that reaches past the wall, nothing is visible below or
         above the wall either.
         """
         walls, least_m = self._walls(float(eye_m[2])), self._near_m + _SLACK_M
@@ -156,7 +156,7 @@ def _corners(model: mujoco.MjModel, data: mujoco.MjData, ids: NDArray[np.intp]) 
 
 
 def opaque_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
-    """Returns (ngeom,) True for geoms whose colour, material and texture are opaque."""
+    """Returns (ngeom,) True for geoms with an opaque colour, material and texture."""
     opaque = model.geom_rgba[:, 3] >= 1.0
     if model.nmat:
         textures = model.mat_texid  # (nmat, roles) or -1

@@ -48,7 +48,7 @@ def nearest_walls(
     """Returns the depth (strips,) at which the nearest wall blocks a strip, and its index; inf and 0 without one.
 
     A wall counts where both edge rays of the strip enter it farther than `least_m`. Walls that lie completely outside
-    the field of view, whose half width has the slope `right_max`, are skipped.
+    the field of view are skipped; `right_max` is the slope of its half width.
     """
     c, s = yaw
     strips = len(edges) - 1
@@ -133,7 +133,7 @@ def may_be_seen(
     low: Floats,
     high: Floats,
 ) -> NDArray[np.bool_]:
-    """Returns (n,) False for geoms outside the view, and for those whose bounding box is behind the walls.
+    """Returns (n,) False for geoms that are outside the view or have their bounding box behind the walls.
 
     Args:
         corners: (n, 8, 3) of the bounding boxes, in the world.
@@ -207,7 +207,7 @@ def hidden_by_strip(
     low: Floats,
     high: Floats,
 ) -> NDArray[np.bool_]:
-    """Returns (k,) True for those of the chosen boxes whose part in each strip is behind the wall of that strip.
+    """Returns (k,) True for a chosen box if its part in each strip is behind the wall of that strip.
 
     The part of a convex outline in a strip has its corners where the edges of the strip enter the outline, and at the
     corners of the outline. The other arguments are those of `may_be_seen`.

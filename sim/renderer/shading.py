@@ -96,8 +96,8 @@ def make_shading(model: mujoco.MjModel, camera: CameraModel, profile: RenderProf
 
 
 def _other_lights(model: mujoco.MjModel) -> NDArray[np.float64]:
-    """Returns (n, 4) the ambient light (0, 0, 0, strength), then directions and strengths of the headlight, whose
-    direction depends on the camera, and of directional lights.
+    """Returns (n, 4) the ambient light (0, 0, 0, strength), then directions and strengths of the headlight and of the
+    directional lights. The direction of the headlight depends on the camera.
     """
     head, on = model.vis.headlight, model.light_active.astype(np.bool_)
     directional = on & (model.light_type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL.value)

@@ -355,7 +355,7 @@ def _keep_bright(source: NDArray, scale: NDArray, target: NDArray) -> None:
 
 @njit(cache=True, error_model="numpy")
 def _find_edges(i: int, raw: NDArray, share: NDArray, edges: NDArray) -> int:
-    """Writes the columns of the grid's cells of a row whose corners differ in depth and in share; returns how many."""
+    """Writes the columns of a row's grid cells that have corners of different depth and share; returns the count."""
     low, high = raw[i * STEP + _HALF], raw[(i + 1) * STEP + _HALF]
     count = 0
     for j in range(share.shape[1] - 1):

@@ -195,7 +195,7 @@ def _add_hull(base: mujoco.MjsBody, config: RobotConfig) -> None:
 
 
 def add_touch_sensor(spec: mujoco.MjSpec, name: str, part_type: mujoco.mjtObj, part: str) -> None:
-    """Adds a sensor of all contacts of a body or geom. `Body` reads all sensors whose names begin with `touch`."""
+    """Adds a sensor of all contacts of a body or geom. `Body` reads all sensors with the name prefix `touch`."""
     fields = (1 << int(mujoco.mjtConDataField.mjCONDATA_FOUND)) | (1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE))
     spec.add_sensor(
         name=name,
@@ -219,7 +219,7 @@ class Body:
     wheel_qpos: tuple[NDArray[np.float64], NDArray[np.float64]]  # (1,) angle of the left and the right wheel, rad
     wheel_qvel: tuple[NDArray[np.float64], NDArray[np.float64]]  # (1,) the same, rad/s
     wheel_signs: tuple[float, float]
-    """1 for a wheel whose joint turns forward when it drives ahead, else -1."""
+    """1 for a wheel with a positive joint velocity when the robot drives ahead, else -1."""
     tyre_geoms: tuple[int, ...]
     wheel_geoms: tuple[int, ...]
     """Tyres and casters; for a third-party body also its visual geoms."""

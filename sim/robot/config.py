@@ -201,10 +201,10 @@ class PhysicsConfig:
     max_overlap_m: float = 0.001
     """A start where the hull overlaps a geom by more than this is refused."""
     max_step_m: float = 0.05
-    """A wheel or a caster whose floor is farther below it than this is not supported; a rug or a threshold is less."""
+    """A wheel or a caster is not supported if the floor is farther below it than this; a rug or a threshold is less."""
     max_drop_m: float = 0.1
-    """A robot that is lower by more than this after an action has fallen, and so has one whose centre of mass is
-    outside the hull of its supported wheels and casters (`sim.world.support`)."""
+    """A robot has fallen if an action lowers it by more than this, or if its centre of mass is outside the hull of its
+    supported wheels and casters (`sim.world.support`)."""
     max_tilt_rad: float = math.radians(25.0)
     """A free base that leans more than this, and has not fallen, has tipped over."""
 

@@ -47,7 +47,7 @@ class Motion:
 
     @property
     def collided(self) -> bool:
-        """True: a contact ended the motion early, of whatever part of the robot."""
+        """True: a contact of any part of the robot ended the motion early."""
         return any(contact.stopped for contact in self.contacts)
 
 

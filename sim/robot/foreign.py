@@ -47,7 +47,7 @@ CAMERA_KEYS = ("camera_height_m", "camera_forward_m", "camera_hfov_deg")
 LARGEST_M = 1000.0
 """Largest number of a sidecar, also of degrees."""
 SKIN_M = 0.005
-"""`BodyConfig.skin_m` of third-party bodies, whose shapes may be of any kind."""
+"""`BodyConfig.skin_m` of third-party bodies, which may have shapes of any kind."""
 MIN_CLEARANCE_M = 0.005
 """Least distance between the body's skin and the floor, so that the body does not rub on the floor."""
 WHEEL_MASS_SHARE = 0.01
@@ -125,7 +125,7 @@ def _robot_config(path: Path, sidecar: dict[str, Any]) -> RobotConfig:
 
 
 def _wheels(measured: RobotMeasurements, radius_m: float, body: BodyConfig) -> WheelConfig:
-    """Returns wheels whose motors have the lag of the default robot's and at least their force, more by weight."""
+    """Returns wheels with motors of the default lag and at least the default force, in proportion to the weight."""
     default = RobotConfig()
     weight = max(1.0, measured.mass_kg / default.body.mass_kg)
     inertia = weight * (radius_m / default.wheels.radius_m) ** 2

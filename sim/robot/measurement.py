@@ -227,7 +227,7 @@ def _wheels(
 
 
 def _shifted(wheel: Wheel, left_m: float) -> Wheel:
-    """Returns a wheel whose tyre is farther to the left."""
+    """Returns a wheel with its tyre farther to the left."""
     return replace(wheel, centre_m=wheel.centre_m + np.array([0.0, left_m, 0.0]), offset_m=wheel.sign * left_m)
 
 

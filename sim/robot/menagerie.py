@@ -47,7 +47,7 @@ def menagerie_files(robot: Path | str) -> tuple[Path, Path]:
     """Returns the MJCF file of `menagerie:NAME` and its sidecar; the model is downloaded if necessary.
 
     Raises:
-        ConfigError: there is no such robot, it has no differential drive, the package is not installed, or the model
+        ConfigError: the robot is unknown, it has no differential drive, the package is not installed, or the model
             cannot be downloaded.
     """
     name = str(robot).removeprefix(PREFIX)
@@ -57,7 +57,7 @@ def menagerie_files(robot: Path | str) -> tuple[Path, Path]:
 
 
 def _refusal(name: str) -> str:
-    """Returns a sentence that says why there is no robot of this name."""
+    """Returns a sentence that says why a robot of this name is not available."""
     if name in NOT_DIFFERENTIAL:
         return f"this robot {NOT_DIFFERENTIAL[name]}; the simulator drives robots with a differential drive only."
     try:

@@ -30,7 +30,7 @@ def robot_spec(config: RobotConfig) -> mujoco.MjSpec:
     """Returns the robot of a config, to be attached to the world body with the prefix `PREFIX`.
 
     Raises:
-        HouseError: the robot's file has changed since the config was made and is no longer usable.
+        HouseError: the robot's file has changed since the config was made, and it cannot be used any more.
     """
     if config.file is None:
         return built_in_robot_spec(config)

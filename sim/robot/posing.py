@@ -29,7 +29,7 @@ def pose_joints(spec: mujoco.MjSpec, pose: tuple[tuple[str, float], ...]) -> Non
         pose: names of joints and their positions as in `qpos`, rad or m.
 
     Raises:
-        ConfigError: a joint does not exist, is no hinge or slide, or cannot be in this position.
+        ConfigError: a joint does not exist, is neither a hinge nor a slide, or cannot be in this position.
     """
     positions = dict(pose)
     joints = {joint.name: joint for joint in spec.joints if joint.name}
@@ -69,7 +69,7 @@ def _rotated(vector: NDArray[np.float64], quat: NDArray[np.float64]) -> NDArray[
 def _require_position(spec: mujoco.MjSpec, joint: mujoco.MjsJoint, position: float) -> None:
     """Raises ConfigError if a joint cannot be in a position."""
     if _kind(joint) not in _KINDS:
-        raise ConfigError(f"its joint '{joint.name}', which the sidecar names in joints, is no hinge and no slide.")
+        raise ConfigError(f"joint '{joint.name}', listed under \"joints\" in the sidecar, must be a hinge or a slide.")
     low, high = (_radians(spec, joint, limit) for limit in joint.range)
     limited = joint.limited == mujoco.mjtLimited.mjLIMITED_TRUE or (
         joint.limited == mujoco.mjtLimited.mjLIMITED_AUTO and low < high

@@ -63,10 +63,10 @@ def shift_pixels(
 def find_edges(
     near_m: NDArray[np.float32], far_m: NDArray[np.float32], jump_1_m: np.float32, found: NDArray[np.int64]
 ) -> int:
-    """Finds the pixels in whose neighbourhood 1 / z jumps; returns their number.
+    """Finds the pixels with a jump of 1 / z in their neighbourhood; returns their number.
 
     Args:
-        near_m: (n,) smallest depth of each neighbourhood; 0, no return, is no edge.
+        near_m: (n,) smallest depth of each neighbourhood; 0, no return, does not count as an edge.
         far_m: (n,) largest depth.
         jump_1_m: smallest difference of 1 / z.
         found: (n + 1,) the first entries become the indices of the edge pixels.

@@ -35,7 +35,7 @@ from sim.sensors.random_fields import levels, shift_pairs, smooth_normal, unifor
 from sim.sensors.ranges import require_range
 
 _BYTE_MEAN, _BYTE_STD = 127.5, math.sqrt((256.0**2 - 1.0) / 12.0)
-"""Of uniform numbers of 8 bits."""
+"""Mean and standard deviation of uniform numbers of 8 bits."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,7 +71,7 @@ class DepthNoise:
     edge_jump_1_m: float = 0.05
     """A jump is a difference in 1 / z of at least this: 5 cm at 1 m, 20 cm at 2 m; a pixel of disparity of a D435."""
     hole_share: float = 0.0
-    """Share of pixels without return on a surface whose gloss is 1 (see `sim.renderer.gloss`)."""
+    """Share of pixels without return on a surface of gloss 1 (see `sim.renderer.gloss`)."""
     hole_gloss: float = 0.3
     """Gloss at which that share has fallen linearly to 0."""
     hole_patch_px: float = 8.0
@@ -125,7 +125,7 @@ class NoisyDepth:
         self._hole_level = np.full(1, -np.inf, np.float32)
 
     def begin(self, gloss: NDArray[np.float32]) -> None:
-        """Starts an episode in a house whose geoms have this gloss (ngeom,)."""
+        """Starts an episode in a house; `gloss` (ngeom,) is the gloss of its geoms."""
         from scipy.special import ndtri  # on demand: a quarter of a second at every start
 
         shares = np.append(self._config.hole_shares(gloss), 0.0)  # the last entry is for id -1, no geom

@@ -1,4 +1,4 @@
-"""What a robot measures of itself: contacts on its skirt (`bumper`), wheel odometry (`odometry`), inertia (`imu`).
+"""Sensors of the robot itself: contacts on its skirt (`bumper`), wheel odometry (`odometry`), inertia (`imu`).
 
 They are in the observation only when requested. `odometry` is the pose by which the drive itself moves
 (`sim.robot.odometry`): slip, edges and the errors of encoders and gyro are in it. The noise of `imu` is `ImuNoise`.

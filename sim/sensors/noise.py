@@ -136,7 +136,7 @@ def get_noise(name: str) -> NoiseConfig:
     """Returns the preset with this name.
 
     Raises:
-        ConfigError: there is no such preset.
+        ConfigError: the preset is unknown.
     """
     if name not in NOISE_PRESETS:
         raise ConfigError(f"Unknown noise '{name}'. Available: {', '.join(NOISE_PRESETS)}.")

@@ -1,7 +1,7 @@
 """Noise of the colour image of a real camera: varying exposure, shot noise and read noise.
 
-The model is that of the EMVA standard 1288: a pixel counts electrons, whose number is Poisson distributed, and reading
-them adds normal noise. The Poisson part is sampled from the normal distribution with the same mean and variance.
+The model is that of the EMVA standard 1288: a pixel counts electrons, and reading them adds normal noise. Their number
+is Poisson distributed; it is sampled from the normal distribution with the same mean and variance.
 """
 
 from __future__ import annotations

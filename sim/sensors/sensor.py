@@ -101,7 +101,7 @@ class NoiseModel(Protocol):
         ...
 
     def begin(self, gloss: NDArray[np.float32]) -> None:
-        """Starts an episode in a house whose geoms have this gloss, (ngeom,) in [0, 1] (`sim.renderer.gloss`)."""
+        """Starts an episode in a house; `gloss` (ngeom,) in [0, 1] is that of its geoms (`sim.renderer.gloss`)."""
         ...
 
     def apply(
@@ -118,7 +118,7 @@ class NoiseModel(Protocol):
 
 
 class NoiseSettings(Protocol):
-    """Parameters of a noise model, usually a frozen dataclass whose defaults switch it off."""
+    """Parameters of a noise model, usually a frozen dataclass; its defaults switch the noise off."""
 
     def model(self, camera: CameraModel) -> NoiseModel | None:
         """Returns a new noise model for the readings of this camera; None if the noise is switched off."""

@@ -167,7 +167,7 @@ def _checked(sensor: Sensor) -> Sensor:
     if missing:
         raise ConfigError(
             f"Sensor {type(sensor).__name__} has no {', '.join(missing)}; see `sim.sensors.sensor.Sensor` "
-            "(images = () and noise = None where there are none)."
+            "(images = () for a sensor without images, noise = None for one without noise)."
         )
     for member, names in (("images", sensor.images), ("reads", declared_fields(sensor))):
         if isinstance(names, str):

@@ -79,7 +79,7 @@ def options_of(
             their order, by name and size.
 
     Raises:
-        OSError: there is no such file.
+        OSError: a file does not exist.
     """
     kept = {field.name for field in fields(args)} - set(may_change)
     return {name: str(getattr(args, name)) for name in kept} | {
@@ -106,7 +106,7 @@ def require_options(out: Path, before: Mapping[str, str], now: Mapping[str, str]
 
 
 def read_columns(file: Path) -> dict[str, list[float]]:
-    """Returns the columns of a CSV file of numbers, NaN for empty fields; an empty dict if there is no file.
+    """Returns the columns of a CSV file of numbers, NaN for empty fields; an empty dict if the file does not exist.
 
     Raises:
         ConfigError: a field is not a number.
@@ -146,7 +146,7 @@ def load_state(
     device: torch.device | str = "cpu",
     check: Callable[[ProgressT], None] | None = None,
 ) -> ProgressT | None:
-    """Loads the state of a run into its parts and returns the progress; None: there is no file.
+    """Loads the state of a run into its parts and returns the progress; None: the file does not exist.
 
     Args:
         file: `state.pt` of the run.

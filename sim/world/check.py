@@ -47,7 +47,7 @@ def check_house(
     rule: SuccessRule | None = None,
     robot: RobotModel | None = None,
 ) -> list[str]:
-    """Returns a sentence for each fault of a house; an empty list when there is none.
+    """Returns a sentence for each fault of a house; an empty list if the house has no fault.
 
     Args:
         spec: the house, without a robot; it is not changed.
@@ -128,7 +128,7 @@ class _CompiledHouse:
 
 
 def _overlaps(house: _CompiledHouse) -> list[str]:
-    """Finds objects whose collision geoms overlap by more than `MAX_OVERLAP_M`.
+    """Finds objects with collision geoms that overlap by more than `MAX_OVERLAP_M`.
 
     Parts of the building may overlap each other, and so may an object and objects in bodies nested in it.
     """

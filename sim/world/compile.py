@@ -87,7 +87,7 @@ def _set_collision_masks(spec: mujoco.MjSpec, alone: mujoco.MjModel, labels: Lab
 
 
 def _set_options(spec: mujoco.MjSpec, config: RobotConfig) -> None:
-    """Sets the same physics options for every house; none of the file's own remains."""
+    """Replaces the physics options of the file by those that every house has."""
     spec.option = mujoco.MjSpec().option
     option = spec.option
     option.timestep = config.physics.timestep_s
@@ -101,7 +101,7 @@ def _set_options(spec: mujoco.MjSpec, config: RobotConfig) -> None:
 
 
 def _renumber(labels: Labels, names: list[str], model: mujoco.MjModel) -> Labels:
-    """Returns the labels of the house alone, whose geoms have these names, with the geom ids of the world's model."""
+    """Returns the labels of the house alone with the geom ids of the world's model; `names` are those of its geoms."""
     new_id = np.array([model.geom(name).id for name in names], dtype=np.int64)
     category = np.zeros(model.ngeom, dtype=np.uint8)
     category[new_id] = labels.geom_category

@@ -59,7 +59,7 @@ class FreeSpace:
         rule: SuccessRule | None = None,
         floor_z_m: float = 0.0,
     ) -> None:
-        """Computes the free space of the storey whose floor is at `floor_z_m`.
+        """Computes the free space of the storey with its floor at `floor_z_m`.
 
         Args:
             model: a compiled house or world.
@@ -148,8 +148,8 @@ class FreeSpace:
     def distance_at(self, field: NDArray[np.float32], x_m: float, y_m: float) -> float:
         """Returns the value of a geodesic field at an exact position, bilinear where all four cells are finite.
 
-        Elsewhere it is the minimum, over the finite cells near by, of their value plus the distance to them; inf
-        when there is none within `NEAREST_FREE_M`.
+        Elsewhere it is the minimum, over the finite cells within `NEAREST_FREE_M`, of their value plus the distance to
+        them; inf if no cell there is finite.
         """
         u = (x_m - self.frame.origin_xy_m[0]) / self.frame.cell_m - 0.5
         v = (y_m - self.frame.origin_xy_m[1]) / self.frame.cell_m - 0.5
@@ -188,7 +188,7 @@ class FreeSpace:
         return connected_to(free, free & inside)
 
     def _away_from_edges(self, floor: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Returns the cells of the floor (rows, cols) whose disc lies on it; seams and the border of the grid count."""
+        """Returns a mask (rows, cols) of the cells with their disc on the floor; seams and the grid's border count."""
         if floor.all():
             return floor
         seam, disc = (_disc(round(length_m / self.frame.cell_m)) for length_m in (0.5 * SEAM_M, self.radius_m))
@@ -196,7 +196,7 @@ class FreeSpace:
         return floor & (cv2.erode(whole, disc, borderType=cv2.BORDER_CONSTANT, borderValue=1) > 0)
 
     def _covered(self, polygons: Iterable[ConvexPolygon]) -> NDArray[np.bool_]:
-        """Returns the mask (rows, cols) of cells whose centre lies in a polygon."""
+        """Returns the mask (rows, cols) of cells with their centre in a polygon."""
         covered = np.zeros(self.frame.shape, dtype=np.bool_)
         for polygon in polygons:
             window = self.frame.index_of(polygon.bounds_m)

@@ -18,7 +18,7 @@ from sim.world.plan import polygons_between
 LEVEL_FLOOR_M = 0.03
 """Floors at most this far above or below the storey's are part of it, but for edges that are too high to be climbed."""
 TOLERANCE_M = 0.0005
-"""Geoms that are higher than `RobotModel.climb_m` by less than this are no obstacles."""
+"""Geoms that are higher than `RobotModel.climb_m` by less than this do not count as obstacles."""
 EDGE_CELL_M = 0.025
 """Edges between floors are found on cells of this size."""
 
@@ -81,7 +81,7 @@ def _edges(floors: list[tuple[float, ConvexPolygon]], climb_m: float) -> list[Co
 
 
 def _heights(frame: GridFrame, floors: list[tuple[float, ConvexPolygon]]) -> NDArray[np.float32]:
-    """Returns the height of the highest floor (rows, cols); inf where there is none, whose edge is no step."""
+    """Returns the height of the highest floor (rows, cols); inf outside the floors: their edge there is not a step."""
     height_m = np.full(frame.shape, np.inf, np.float32)
     for top_m, plan in floors:
         window = frame.index_of(plan.bounds_m)

@@ -103,7 +103,7 @@ def room_rectangles(room: Room, margin_m: float = 0.0) -> list[ConvexPolygon]:
 
 
 def _bounding_rectangle(polygons: list[ConvexPolygon], *, margin_m: float = 0.0) -> ConvexPolygon | None:
-    """Returns the rectangle around the bounded polygons; None where there is none."""
+    """Returns the rectangle around the bounded polygons; None if no polygon is bounded."""
     bounds = np.array([polygon.bounds_m for polygon in polygons]).reshape(-1, 4)
     bounds = bounds[(bounds[:, 2:] - bounds[:, :2]).max(axis=1, initial=0.0) < UNBOUNDED_M]
     if len(bounds) == 0:

@@ -106,7 +106,7 @@ def _swept(yaw_rad: float) -> NDArray[np.float64]:
 
 
 def _passable_cells(space: FreeSpace, clearance_m: float) -> tuple[GridFrame, NDArray[np.bool_]]:
-    """Returns a grid and the mask (rows, cols) of its cells in whose every point the disc has this clearance.
+    """Returns a grid and the mask (rows, cols) of the cells in which the disc has this clearance at every point.
 
     A cell passes where its centre has this clearance from obstacles and half a diagonal more. Edges of floors count
     without it, as in the free space: wheels and casters are 3 cm inside of the disc.

@@ -1,7 +1,7 @@
 """The furniture that each kind of room of a generated house must have, and the check of it.
 
-A requirement counts instances by their mpcat40 category. An instance belongs to the room whose site contains the middle
-of its bounding box. The longest side of that box distinguishes a cooker from a toaster and a dresser from a nightstand.
+A requirement counts instances by their mpcat40 category. An instance belongs to a room if the room's site contains the
+middle of its bounding box. The longest side of that box tells a cooker from a toaster and a dresser from a nightstand.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Requirement:
     categories: tuple[str, ...]
     count: int = 1
     longest_m: float = 0.0
-    """Instances whose longest side is smaller do not count."""
+    """Instances do not count if their longest side is smaller."""
     from_m2: float = 0.0
     """Smallest floor area of a room to which the requirement applies."""
 

@@ -59,7 +59,7 @@ class FloorSupport:
         return any(0.0 <= self._distance_m(floor, start) <= 2.0 * self._reach_m for floor in self._floors)
 
     def _distance_m(self, floor: int, start: NDArray[np.float64]) -> float:
-        """Returns the distance straight down to a floor; negative where there is none."""
+        """Returns the distance straight down to a floor; negative if the floor is not below."""
         model, data = self._model, self._data
         if model.geom_type[floor] == _MESH:
             return mujoco.mj_rayMesh(model, data, floor, start, _DOWN)

@@ -87,7 +87,7 @@ class World:
         """Restores the state of the house's file, applies `conditions`, and puts the robot at rest at `start`.
 
         Raises:
-            EpisodeError: the hull would overlap an object there, or there is no floor.
+            EpisodeError: the hull would overlap an object there, or the floor is missing.
         """
         mujoco.mj_resetData(self.model, self.data)
         self.model.geom_friction[self._ground, 0] = self._ground_friction * conditions.floor_friction_scale
@@ -105,8 +105,8 @@ class World:
         """Performs one action in physics, from rest to rest. STOP is a motion of zero.
 
         `fell` of the motion is True when the robot is lower than before by more than a step, or when its centre of mass
-        is no longer above the hull of its supported wheels and casters: it has driven over an edge. A planar base
-        cannot tip, it would stay on the edge with its hull, which no real robot does.
+        has left the hull of its supported wheels and casters: it has driven over an edge. A planar base cannot tip; it
+        would stay on the edge with its hull, which a real robot does not do.
 
         Raises:
             PhysicsError: NaN, an unstable state, or a robot that tipped over without an edge.

@@ -106,5 +106,5 @@ class ClonedAgent:
 
 
 def cloned_agent(*, config: ClonedConfig, segmenter: Segmenter, **parts: Any) -> ClonedAgent:
-    """Returns the cloned policy; it uses none of the other parts."""
+    """Returns the cloned policy; it does not use the other parts."""
     return ClonedAgent(config, segmenter)

@@ -41,7 +41,7 @@ class Steps:
     """Index of the goal category."""
 
     def mirrored(self) -> Steps:
-        """Returns the same episode in a house whose left and right are exchanged."""
+        """Returns the same episode in the house mirrored left to right."""
         return Steps(
             self.depth[:, :, ::-1],
             self.categories[:, :, ::-1],
@@ -52,12 +52,12 @@ class Steps:
 
 
 def mirrored_actions(actions: UInt8[np.ndarray, " n"]) -> UInt8[np.ndarray, " n"]:
-    """Returns the actions in a house whose left and right are exchanged."""
+    """Returns the actions in the house mirrored left to right."""
     return _MIRRORED[actions]
 
 
 def depth_levels(depth_m: Float32[np.ndarray, "*shape"]) -> UInt8[np.ndarray, "*shape"]:
-    """Returns the level of each depth in metres; 0 where there is no depth."""
+    """Returns the level of each depth in metres; 0 where depth is missing."""
     levels = np.ceil(depth_m * (LEVELS / FAR_M))
     return np.clip(levels, 0, LEVELS).astype(np.uint8)
 

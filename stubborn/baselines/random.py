@@ -40,5 +40,5 @@ class RandomAgent:
 
 
 def random_agent(*, config: RandomConfig, **parts: Any) -> RandomAgent:
-    """Returns the random agent; it uses none of the other parts."""
+    """Returns the random agent; it does not use the other parts."""
     return RandomAgent(config)

@@ -82,7 +82,7 @@ def approach_to(
     pose: Pose,
     finder: ViewpointFinder,
 ) -> Approach | None:
-    """Returns the approach to viewpoints; None if there is no route.
+    """Returns the approach to viewpoints; None if no route exists.
 
     `nearest_row` and `nearest_col` are the candidate cell that is nearest to each cell of the view.
     """

@@ -23,12 +23,12 @@ class TargetConfig:
     viewpoint_m: float = 0.85
     """A viewpoint is within this distance of a candidate cell: one metre, less the error of the cells."""
     far_viewpoint_m: float = 0.93
-    """A viewpoint within this distance is used where there is no nearer one."""
+    """A viewpoint within this distance is used where a nearer one is missing."""
     pushing_m: float = 0.98
     """If the robot pushes against something on its path to a viewpoint, a visible candidate within this distance is
     near enough."""
     last_resort_m: float = 1.6
-    """If there is no viewpoint, a candidate is verified from the nearest reachable place within this distance. Late in
+    """Without a viewpoint, a candidate is verified from the nearest reachable place within this distance. Late in
     an episode the agent stops there, which may still succeed."""
     outline_margin_m: float = 0.25
     """With inexact outlines the agent goes nearer than `stop_in_view_m` and `viewpoint_m` by this distance where it
@@ -82,7 +82,7 @@ class StopDistances:
     pushing_m: float
     """Limit for a STOP if the robot pushes against something on its path to a viewpoint."""
     last_resort_m: float
-    """Limit for the nearest reachable place, where there is no viewpoint."""
+    """Limit for the nearest reachable place, used without a viewpoint."""
 
     @classmethod
     def of(cls, config: TargetConfig, success: SuccessRule, segmenter: SegmenterSpec) -> StopDistances:

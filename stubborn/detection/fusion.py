@@ -27,7 +27,7 @@ from sim.core.reading import Number, read_json
 FOLDER = Path(__file__).parent / "fusions"
 """Folder of the shipped parameters."""
 DEFAULT_KIND = "rednet"
-"""The kind whose parameters are used for kinds without parameters of their own."""
+"""Kinds without parameters of their own use those of this kind."""
 SURFACES = ("wall", "floor", "ceiling")
 """Categories of the surfaces behind, below and above every object."""
 IS_SURFACE = np.array([name in SURFACES for name in MPCAT40[1:]])

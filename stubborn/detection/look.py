@@ -1,4 +1,4 @@
-"""Decides whether a track is accepted, rejected or looked at first, and from which place."""
+"""Decides whether a track is accepted, rejected or viewed again first, and from which place."""
 
 from __future__ import annotations
 
@@ -28,32 +28,32 @@ class LookConfig:
     """The robot keeps approaching an accepted track, and stops at it, until its probability is below the bar by this
     share of the bar: views of one object differ, and to leave an object that was reached costs the whole path."""
     visit: float = 0.3
-    """A track below the bar is looked at if it has at least this probability."""
+    """The robot looks at a track below the bar if the track has at least this probability."""
     keep: float = 0.6
     """A look continues until the probability falls below this share of `visit`."""
     straight: float = 0.4
-    """A track with at least this probability is first looked at on the path to it: if it is the goal, nothing is lost.
-    Others are looked at from another direction at once."""
+    """The robot looks at a track with at least this probability on the path to it: if it is the goal, nothing is lost.
+    It looks at others from another direction at once."""
     detour_m: float = 4.0
     """A look is not worth a route that is longer than the straight line by more than this distance: it may lead around
     the house, over ground never seen, to the other side of an object in a corner."""
     switch: float = 0.2
     """A look ends early if the probability of another track, less its distance's cost, is higher by this."""
     most_looks: int = 2
-    """A track is looked at no more than this many times."""
+    """Largest number of looks at one track."""
     look_steps: int = 30
-    """A track is looked at for no more than this many steps, including those on the path."""
+    """Largest number of steps of one look, including those on the path."""
     unseen_steps: float = 120.0
     """The probability that no goal was in view falls with this number of steps, exponentially; see `believed`."""
     missed: float = 0.15
-    """Probability that a goal that was in view is none of the tracks."""
+    """Probability that a goal was in view but did not become a track."""
     look_m: tuple[float, float] = (1.3, 2.2)
     """Distances to look from: the camera sees the floor, and so a whole low object, from 1.43 m on."""
     apart_rad: float = math.radians(45.0)
     """Directions that differ by less than this count as one view."""
     step_back_steps: int = 100
-    """If at least this many steps are left, a track above the bar that is nearer than 1.2 m is looked at first when it
-    was never seen whole from 1.2 to 3 m: from nearer, the image does not show the whole object."""
+    """If at least this many steps are left, the robot first steps back to look at a track above the bar that is nearer
+    than 1.2 m and was never seen whole from 1.2 to 3 m: from nearer, the image does not show the whole object."""
     per_metre: float = 0.03
     """For each metre that a track is farther away, it must be this much more probable to come first."""
     steps_per_metre: float = 6.0
@@ -109,8 +109,8 @@ def believed(
 ) -> Float32[np.ndarray, " numbers"]:
     """Returns the probability of the goal for each track, given that the house has a goal.
 
-    The objects are taken as independent, and so is a goal that is none of them: it was not in view so far, or it was
-    missed. The more was seen without another candidate, the more probable is the one that was seen.
+    The objects are taken as independent, and so is a goal without a track: it was not in view so far, or it was missed.
+    The more of the house was seen without another candidate, the more probable is the one that was seen.
 
     Args:
         probability: probability of the goal for each track, without this knowledge.
@@ -248,7 +248,7 @@ def look_at(
     finder: ViewpointFinder,
     config: LookConfig,
 ) -> Approach | None:
-    """Returns the approach to a place from which to look at a track; None if there is no such place.
+    """Returns the approach to a place from which to look at a track; None if no such place exists.
 
     Args:
         view: a part of the map.

@@ -202,7 +202,7 @@ class TargetSeeker:
         if self._pursued is not None:
             row, col = self._pursued
             accepted[parts.labels[row - whole.rows.start, col - whole.cols.start]] = True
-            accepted[0] = False  # number 0 is no candidate
+            accepted[0] = False  # number 0: not a candidate
         return self._on_whole_map(navmap, accepted[parts.labels]) & ~navmap.set_aside
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
@@ -216,7 +216,7 @@ class TargetSeeker:
         whole = self._known(navmap)
         if step >= self._retry_step:
             navmap.set_aside[whole.index] = False
-        # Usually there is no candidate, and the highest score shows that in a tenth of the time.
+        # Usually no cell is a candidate, and the highest score shows that in a tenth of the time.
         parts = self.parts(navmap) if navmap.score_max[whole.index].max() > self.candidate_score else None
         if parts is None or not (parts.mask & ~navmap.set_aside[whole.index]).any():
             self._far, self._pursued = False, None
@@ -249,7 +249,7 @@ class TargetSeeker:
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
         """Verifies the candidate at a map cell; a rejected one never counts again in this episode.
 
-        Returns False if there is no candidate. A late candidate is accepted without verification, unless it touches a
+        Returns False without a candidate. A late candidate is accepted without verification, unless it touches a
         rejected object.
         """
         whole = self._known(navmap)

@@ -38,13 +38,13 @@ class TrackSeekerConfig:
     """With an imperfect detector, the share of the context's log ratios that counts; 0: none. Of 0, 0.5 and 1, chosen
     on `val`."""
     core_share: float = 0.7
-    """The robot does not drive to cells of a track whose mean score is below this share of the track's highest one."""
+    """The robot does not drive to cells of a track with a mean score below this share of the track's highest one."""
     near_best_m: float = 0.5
     """With an imperfect detector the robot drives to the cells of a track within this distance of its best cell, where
     there is a path: farther cells may belong to a neighbouring object."""
     as_good: float = 0.15
-    """Accepted tracks whose probability is at most this much below the best one's are equally good: the nearest of
-    them is approached."""
+    """Accepted tracks are equally good if their probability is at most this much below the best one's: the robot
+    approaches the nearest of them."""
     part_share: float = 0.6
     """A track next to an accepted one, with at least this share of its probability, is approached as a part of it."""
     part_gap_voxels: int = 1
@@ -105,7 +105,7 @@ class TrackSeeker:
         self.probability: Float32[np.ndarray, " numbers"] = np.zeros(1, np.float32)
         """Probability of the goal for each track, by its number; entry 0 belongs to no track."""
         self.pursued: int | None = None
-        """The doubtful track that is looked at."""
+        """The doubtful track that the robot looks at."""
         self.confidence: float | None = None
         """See `Seeker`: the probability of the track."""
         self.accepted_cell: tuple[int, int] | None = None
@@ -381,7 +381,7 @@ class TrackSeeker:
     def _look(self, navmap: NavMap, window: Window, pose: Pose, track: int) -> Approach | None:
         """Returns the approach to a place with a view of a track; None: the track was decided on or set aside.
 
-        A probable track is first looked at on the path to it, all others from a direction from which it was not seen.
+        The robot looks at a probable track on the path to it first, and at others from a direction that is new.
         """
         look, likely = self.config.look, self.probability[track] >= self.config.look.straight
         tracks, cells = self._of_episode(), self.cells_of(navmap, [track])
@@ -408,7 +408,7 @@ class TrackSeeker:
         if approach is not None and approach.length_m <= longest_m:
             return approach
         if self.probability[track] >= self.verdicts.bar:
-            self.verdicts.looked(track)  # there is no place to step back to: the track is accepted now
+            self.verdicts.looked(track)  # no place to step back to exists: the track is accepted now
         self._set_aside([track])
         return None
 

@@ -63,7 +63,7 @@ class TrackConfig:
     """With an imperfect detector, a track with fewer voxels is not a candidate: 6 voxels are 0.06 m2 of visible
     surface."""
     inside_rad: float = 0.15
-    """A track whose middle is nearer than this angle to the image's left or right edge is not seen whole."""
+    """A track is not seen whole if its middle is nearer than this angle to the image's left or right edge."""
     most_tracks: int = 2048
     """Limit of the number of tracks; objects beyond it are not tracked."""
     evidence: EvidenceConfig = field(default_factory=EvidenceConfig)
@@ -177,7 +177,7 @@ class Tracks:
         return float(x_m), float(y_m)
 
     def near(self, number: int, others: Int[np.ndarray, " n"], gap_voxels: int) -> Int[np.ndarray, " m"]:
-        """Returns those of `others` whose box is at most `gap_voxels` voxels from the box of track `number`."""
+        """Returns those of `others` with their box at most `gap_voxels` voxels from the box of track `number`."""
         apart = np.maximum(self._low[others] - self._high[number] - 1, self._low[number] - self._high[others] - 1)
         return others[apart.max(axis=1, initial=0) <= gap_voxels]
 

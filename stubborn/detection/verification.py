@@ -21,7 +21,7 @@ from stubborn.detection.classifiers import Classifier, Features, NaiveBayes
 FOLDER = Path(__file__).parent / "verifiers"
 """Folder of the shipped parameters."""
 DEFAULT_KIND = "rednet"
-"""The kind whose parameters are used for kinds without parameters of their own, because it is a network."""
+"""Kinds without parameters of their own use those of this kind, because it is a network."""
 NAIVE_BAYES = "naive-bayes"
 """The method of the paper."""
 ACCEPT_ALL = "none"
@@ -113,7 +113,7 @@ class FittedVerifier:
         """Returns the verifier in a file that `stubborn train verifier` wrote.
 
         Raises:
-            ConfigError: there is no such method, or the file is missing or holds something else.
+            ConfigError: the method is unknown, or the file is missing or holds something else.
         """
         if method != NAIVE_BAYES:
             raise ConfigError(f"Unknown verification '{method}'. Available: {NAIVE_BAYES}, {ACCEPT_ALL}.")
@@ -154,7 +154,7 @@ def verifier_for(spec: SegmenterSpec, file: Path | None = None, method: str = NA
         method: `NAIVE_BAYES` or `ACCEPT_ALL`.
 
     Raises:
-        ConfigError: the file holds no parameters, or there is no such method.
+        ConfigError: the file holds no parameters, or the method is unknown.
     """
     if method == ACCEPT_ALL or (file is None and not spec.needs_verification):
         return AcceptAll()

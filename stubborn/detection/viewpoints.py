@@ -79,7 +79,7 @@ class ViewpointFinder:
             yield Viewpoints(free, reach_m <= reach_m.min() + margin_m, near_enough=near_enough)
 
     def look_from(self, view: NavMap, pose: Pose, nearest: NearestCells, between_m: tuple[float, float]) -> Viewpoints:
-        """Returns the cells in sight of a candidate from which it can be looked at, at distances in `between_m`."""
+        """Returns the cells with a view of a candidate from distances in `between_m`."""
         gap_m = nearest.gap_cells * np.float32(view.frame.cell_m)
         free = self.planner.free_space(view, pose, self.layers[0], self.planner.unseen(view))
         seen = self.in_sight(view, gap_m, nearest, between_m[1])

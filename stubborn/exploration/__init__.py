@@ -1,1 +1,1 @@
-"""Explorers choose where to look for the goal while there is no candidate."""
+"""Explorers choose where to look for the goal while no candidate is known."""

@@ -59,7 +59,7 @@ def corner_xy_m(frame: GridFrame, corner: int, inset: float) -> tuple[float, flo
 
 
 class CornerExplorer:
-    """Pursues one corner of the window, and the next one clockwise as soon as there is no path to it.
+    """Pursues one corner of the window, and the next one clockwise as soon as no path leads to it.
 
     The window moves with the robot, so that a corner which is infeasible now may be feasible after the next step. To
     keep the robot from alternating between two such places, a corner that was given up counts as infeasible until new
@@ -88,7 +88,7 @@ class CornerExplorer:
         )
 
     def go_on(self, ground: Ground) -> Search:
-        """Returns the route to the substitute place; None when there is no such place, or it has been reached."""
+        """Returns the route to the substitute place; None if the place does not exist or has been reached."""
         if self.place is None:
             return None
         route = yield from self.place.head_for(ground)

@@ -33,14 +33,14 @@ Exploration = Generator[Goal, Route | None, Route | Action | None]
 
 
 class Explorer(Protocol):
-    """Chooses where to go while there is no candidate."""
+    """Chooses where to go while no candidate is known."""
 
     def reset(self, seed: int) -> None:
         """Forgets the last episode; random choices of this one come from `seed`."""
         ...
 
     def explore(self, ground: Ground) -> Exploration:
-        """Yields goals until it returns a route to follow, a turn on the spot, or None when there is no path at all.
+        """Yields goals until it returns a route to follow, a turn on the spot, or None when no path exists at all.
 
         It is called at each step of exploration. An explorer that pursues one goal over several steps must remember it.
         """

@@ -27,8 +27,8 @@ class FrontierConfig:
     least_length_m: float = 0.40
     """Shorter frontiers come last: the robot would hardly fit through."""
     own_known_m: float = 1.0
-    """Ground within this distance of the trail counts as known: it lies below the image, whose lowest row shows floor
-    from 1.4 m on. With a smaller value the robot explores its own surroundings; with a larger value rooms behind walls
+    """Ground within this distance of the trail counts as known: it lies below the image, which shows the floor from
+    1.4 m on. With a smaller value the robot explores its own surroundings; with a larger value rooms behind walls
     count as known."""
     arrived_m: float = 0.35
     """A frontier counts as reached within this path length."""

@@ -72,7 +72,7 @@ class Frontiers:
     def to_least_visited(self, arrived_m: float) -> Search:
         """Returns the route to the ground farthest from the trail, for use when no unknown ground is left.
 
-        Returns None if there is no such route, or it is not longer than `arrived_m`.
+        Returns None if no such route exists, or it is not longer than `arrived_m`.
         """
         far_cells = np.where(self.free.reachable, distance_to(self.trail), -np.inf)
         route = yield Goal(self.free, far_cells == far_cells.max())

@@ -63,7 +63,7 @@ class Glancer:
         self._aim_rad: float | None = None
 
     def next_turn(self, navmap: NavMap, pose: Pose) -> Action | None:
-        """Returns a turn towards a heading that is worth a look; None when there is no such heading."""
+        """Returns a turn towards a heading that is worth a look; None without such a heading."""
         moved = bool(self._looks) and pose.distance_to(self._looks[-1]) > _SAME_PLACE_M
         self._looks.append(pose)
         if moved or (self._aim_rad is not None and abs(wrap_angle(self._aim_rad - pose.yaw_rad)) <= _SAME_HEADING_RAD):

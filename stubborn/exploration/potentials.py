@@ -35,7 +35,7 @@ class PotentialConfig:
     alpha: float = 0.5
     """Weight of the area potential; the object potential of the goal has the weight 1 - `alpha`."""
     goal: GoalKind = "true"
-    """Category whose object potential counts; `wrong`: another category, sampled for each episode, as a control."""
+    """Category of the object potential; `wrong`: another category, sampled for each episode, as a control."""
     semantics: SemanticsKind = "seen"
     """Goal categories on the map: as seen or, as controls, in a wrong order that is sampled for each episode, or left
     out."""

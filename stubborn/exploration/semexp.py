@@ -28,7 +28,7 @@ SHIPPED = Path(__file__).with_name("weights") / "semexp.safetensors"
 """The shipped weights."""
 
 Policy = Callable[[PolicyInput], tuple[Float[np.ndarray, " 2"], Float[np.ndarray, " 2"]]]
-"""A function that returns means and standard deviations of an action, whose sigmoid is a point of the local map."""
+"""A function that returns means and standard deviations of an action; its sigmoid is a point of the local map."""
 
 
 @dataclass(frozen=True, kw_only=True)

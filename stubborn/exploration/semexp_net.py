@@ -41,7 +41,7 @@ class NetConfig:
         """The category of each semantic channel, None where it has none.
 
         Raises:
-            ConfigError: there is no list of so many categories.
+            ConfigError: `categories` is not the length of a known list of categories.
         """
         lists = {len(GOAL_CATEGORIES): GOAL_CATEGORIES, len(GIBSON): GIBSON}
         if self.categories not in lists:
@@ -104,7 +104,10 @@ class _Gaussian(nn.Module):
 
 
 class SemExpNet(nn.Module):
-    """Means and deviations of an action, whose sigmoid is a point of the local map; and the value of the maps."""
+    """Means and deviations of an action, and the value of the maps.
+
+    The sigmoid of the action is a point of the local map.
+    """
 
     bits: Tensor
 

@@ -53,7 +53,7 @@ class TourConfig:
     potential_power: float = 2.0
     """The exponent of that power. With a larger exponent the best frontier comes earlier."""
     least_length_m: float = 0.40
-    """Shorter frontiers are stops only if there are no longer ones."""
+    """Shorter frontiers are stops only if longer ones are missing."""
     own_known_m: float = 1.0
     """Ground within this distance of the trail counts as known (see `FrontierConfig.own_known_m`)."""
     gain_radius_m: float = 2.0
@@ -119,7 +119,7 @@ class TourConfig:
 
 
 INFORMED_TOUR = TourConfig(potentials=PotentialConfig())
-"""The tour whose stops are weighted by the predicted potentials; `stubborn-plus` explores with it."""
+"""A tour that weights its stops by predicted potentials; `stubborn-plus` explores with it."""
 
 
 @dataclass(frozen=True)
@@ -211,7 +211,7 @@ class TourExplorer:
     def explore(self, ground: Ground) -> Exploration:
         """Returns the route to the pursued stop, else to the first of a new tour, else far from the trail.
 
-        Where nothing is left to see in the free space of the preferred collision layer, a mark may close a passage:
+        If nothing is left to see in the free space of the preferred collision layer, a mark may close a passage:
         the tour is planned on the next layer and finally, for some steps, without collision marks.
         """
         self._note_view(ground)
@@ -369,7 +369,7 @@ class TourExplorer:
 
 
 class InformedTourExplorer(TourExplorer):
-    """A tour whose frontiers are also weighted by predicted potentials."""
+    """A tour that also weights its frontiers by predicted potentials."""
 
     reads_semantics: Literal[True] = True
 

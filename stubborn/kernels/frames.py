@@ -55,8 +55,8 @@ def smooth_surfaces(depth, jump_1_m, every, change, count):
 def shows_no_noise(depth, every, change, count, limit):
     """Returns whether the median of the changes by `smooth_surfaces`, as 1 / depth, is less than `limit` (float32).
 
-    Pixels without neighbours on one surface do not count. If no pixel counts, there is no median and the result is
-    False.
+    Pixels without neighbours on one surface do not count. If no pixel counts, the median is undefined and the result
+    is False.
     """
     total = below = 0
     largest_below, least_above = np.float32(-np.inf), np.float32(np.inf)
@@ -305,7 +305,7 @@ def goal_bits(posteriors, channels, least):
     for row in range(rows):
         for goal in range(channels.size):
             channel, bit = channels[goal], np.uint32(1) << np.uint32(goal)
-            for col in range(cols):  # there is no branch, so that it is vectorised
+            for col in range(cols):  # without a branch, so that it is vectorised
                 bits[row, col] |= bit if posteriors[channel, row, col] > least else np.uint32(0)
     return bits
 

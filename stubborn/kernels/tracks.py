@@ -13,7 +13,7 @@ NO_LABEL = -1
 
 @njit(cache=True)
 def label_pixels(posteriors, is_object, goal, hot):
-    """Returns the most probable class of each pixel, -1 if it is no object; the goal from probability `hot` on.
+    """Returns the most probable class of each pixel, -1 if its class is not an object; the goal from `hot` on.
 
     Args:
         posteriors: (classes, rows, cols) float32.

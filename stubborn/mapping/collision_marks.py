@@ -61,7 +61,7 @@ def pushed_without_moving(before: Pose, now: Pose) -> bool:
 class GpsNoise:
     """Estimates the noise of the gps from turns on the spot, during which the robot does not move.
 
-    The distance between two readings with normal noise has a Rayleigh distribution, whose median is 1.177 standard
+    The distance between two readings with normal noise has a Rayleigh distribution with a median of 1.177 standard
     deviations. The median is robust against single turns in which the robot was pushed aside.
     """
 
@@ -93,7 +93,7 @@ class GpsNoise:
 def square_ahead(
     frame: GridFrame, pose: Pose, edge_m: float, near_edge_m: float
 ) -> tuple[tuple[slice, slice], Bool[np.ndarray, "rows cols"]]:
-    """Returns the cells whose centre lies in a square ahead of the robot, which is rotated with its heading.
+    """Returns the cells with their centre in a square ahead of the robot, which is rotated with its heading.
 
     The result is the index of a small rectangle of `frame` and the mask inside it. Every cell is tested on its own, so
     that no heading leaves a hole.

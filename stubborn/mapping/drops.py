@@ -106,7 +106,7 @@ class Drops:
     ) -> Bool[np.ndarray, "rows cols"]:
         """Returns a mask of the cells from the lowest ray's crossing back to ground that was seen or driven over.
 
-        `missing` is True for the columns whose lowest ray passes through the floor.
+        `missing` is True for a column if its lowest ray passes through the floor.
         """
         if not missing.any():
             return np.zeros(view.frame.shape, np.bool_)

@@ -1,14 +1,14 @@
 """Surfaces that blocked forwards suggest: several stops along one line are a pane; this is not in the paper.
 
-The centre of a round robot that touches a flat surface is one radius away from it, at any heading. Stops whose centres
-lie on a line therefore belong to one straight surface, such as a glass pane. Three conclusions follow, which a mark
-straight ahead of each stop (`stubborn.mapping.collision_marks`) misses:
+The centre of a round robot that touches a flat surface is one radius away from it, at any heading. If the centres of
+several stops lie on a line, the stops belong to one straight surface, such as a glass pane. Three conclusions follow,
+which a mark straight ahead of each stop (`stubborn.mapping.collision_marks`) misses:
 
 1. The contact is where the surface is, not straight ahead.
 2. A robot that stopped beyond the line has its hull in a gap, and touches the gap's edge. The distance beyond the line
    says how far the edge is from its middle, and the known part of the pane on which side.
-3. Between two contacts that are nearer to each other than the robot is wide there is no passage, whereas a wider part
-   of the line between contacts may be one.
+3. Two contacts that are nearer to each other than the robot is wide leave no passage between them. A wider part of the
+   line between contacts may be a passage.
 
 All marks are computed again after each stop, so that a later stop can correct an earlier conclusion. Marks do not count
 where the body has been (`ProvenGround`).

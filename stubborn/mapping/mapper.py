@@ -32,7 +32,7 @@ class MappingConfig:
     score_max_height_m: float = 2.2
     """Object layers take points up to this height: pictures, towels and wall screens are mounted high."""
     eye_level_halfwidth_m: float = 0.06
-    """Surfaces whose height differs from the camera's by at most this can hide an object behind them."""
+    """Surfaces can hide an object behind them if their height differs from the camera's by at most this."""
     obstacle_stride_px: int = 2
     """Step between the depth pixels, in rows and columns, that enter the obstacle layer."""
     score_stride_px: int = 4
@@ -107,7 +107,7 @@ class Mapper:
         """Precomputes the rays of the camera. `layers` keeps the scores, by default of all frames as in the paper."""
         self.layers = layers or ObjectLayersConfig().make(config.candidate_score)
         top_m = robot.height_m if config.obstacle_max_height_m is None else config.obstacle_max_height_m
-        low_m = max(config.obstacle_min_height_m, robot.climb_m)  # what the robot climbs is no obstacle
+        low_m = max(config.obstacle_min_height_m, robot.climb_m)  # surfaces that the robot climbs do not block it
         if low_m >= top_m:
             raise ConfigError(
                 f"The obstacle layer needs a band of heights: obstacle_min_height_m is {low_m} m, its top {top_m} m."

@@ -24,7 +24,7 @@ def distance_to(mask: Bool[np.ndarray, "rows cols"]) -> Float32[np.ndarray, "row
 def farther_than(
     mask: Bool[np.ndarray, "rows cols"], distance_m: float, cell_m: float
 ) -> Bool[np.ndarray, "rows cols"]:
-    """Returns the cells whose centre is farther than a distance from that of any True cell.
+    """Returns the cells with their centre farther than a distance from the centre of every True cell.
 
     Raises:
         ConfigError: the distance is longer than 178 cells.

@@ -1,7 +1,7 @@
 """Enters the scores of one frame into the object layers of the map (paper: Mapping Module, channels 4 to 7).
 
-Of the pixels in a cell, the one with the highest target score counts: a picture shares its cell with the wall above and
-below it, whose scores contain no information about the picture.
+The pixel with the highest target score counts for a cell: a picture shares its cell with the wall above and below it,
+and the scores of the wall contain no information about the picture.
 """
 
 from __future__ import annotations

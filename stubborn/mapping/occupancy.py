@@ -38,7 +38,7 @@ class OccupancyConfig:
     """At least this many of a pixel's eight neighbours must lie on its surface: a thin leg is one pixel wide; 0: no
     test."""
     exact_1_m: float = 0.0005
-    """An image whose 1 / depth differs from the smoothed image by less, at the median, is exact and not smoothed."""
+    """An image is exact and not smoothed if its 1 / depth differs from the smoothed image by less, at the median."""
     hit: int = 2
     """Evidence that a frame adds to a cell with at least two points; a single noisy point adds half."""
     miss: int = 1
@@ -111,7 +111,7 @@ def agreeing(
 ) -> tuple[Bool[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
     """Returns a mask of the pixels that lie on one surface with most of their neighbours, and the smoothed depth.
 
-    `depth` is in metres, 0 where there is no distance; such neighbours do not count.
+    `depth` is in metres, 0 where it is missing; such neighbours do not count.
     """
     surfaces = Surfaces.of(depth, config)
     if surfaces.neighbours is None:
@@ -143,7 +143,7 @@ class SightLines:
         pose: Pose,
         rise_m: float,
     ) -> SightLines:
-        """Returns the lines of sight of an image whose pixels look `up` and `left`.
+        """Returns the lines of sight of an image; its pixels look `up` and `left`.
 
         The band ends `rise_m` above the camera. If `rise_m` is positive, rows that are above its top one metre away
         are left out.

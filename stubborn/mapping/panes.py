@@ -15,7 +15,7 @@ class LineRule:
     """The conditions under which stops lie on one straight surface."""
 
     straight_m: float = 0.01
-    """Stops whose centres are at most this far from a line belong to it."""
+    """Stops belong to a line if their centres are at most this far from it."""
     apart_m: float = 0.10
     """Two stops must be at least this far apart to define a line."""
     link_m: float = 0.90

@@ -65,7 +65,7 @@ class PlanningConfig:
                 raise ConfigError(f"PlanningConfig.{name} must be >= 0, got {getattr(self, name)}.")
 
     def widened(self, by_m: float) -> PlanningConfig:
-        """Returns the configuration of a robot whose radius is larger by `by_m`."""
+        """Returns the configuration of a robot with a radius that is larger by `by_m`."""
         names = ("dilation_m", "clearance_m", "preferred_clearance_m", "own_ground_m")
         return replace(self, **{name: getattr(self, name) + by_m for name in names})
 
@@ -111,7 +111,7 @@ class Route:
     """The goal; its cells are the reachable ones only."""
     distance_m: Float32[np.ndarray, "rows cols"]
     """Distance from each cell to the goal; slow ground counts as longer: a metre at speed 0.4 counts as 2.5 m. It is
-    infinite where there is no path, and where the front did not have to go."""
+    infinite where no path exists, and beyond the part of the field that was computed."""
     length_m: float
     """`distance_m` of the robot's cell."""
 
@@ -144,7 +144,7 @@ class Planner:
         return farther_than(seen, self.config.unseen_gap_m, view.frame.cell_m)
 
     def unknown(self, view: NavMap) -> Bool[np.ndarray, "rows cols"]:
-        """Returns the ground that was never in view, up to the border of the seen ground, whose gaps are closed."""
+        """Returns the ground that was never in view, up to the seen ground after its gaps were closed."""
         return ~farther_than(self.unseen(view), self.config.unseen_gap_m, view.frame.cell_m)
 
     def free_space(

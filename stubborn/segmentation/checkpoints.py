@@ -74,7 +74,7 @@ def load_network(file: Path) -> tuple[Network, dict[str, Any]]:
 
 
 def mean_of(networks: Sequence[Network]) -> Network:
-    """Returns a network whose weights are the mean of those of networks of one configuration.
+    """Returns a network with the mean of the weights of networks of one configuration.
 
     Integers, such as the counts of batches, are those of the last network.
     """

@@ -26,7 +26,7 @@ _STD = tuple(map(np.float32, (0.5, 0.4, 0.7, 0.5, 0.4, 0.4)))
 STATISTICS = (_MEAN, _STD)
 """Mean and standard deviation by which the channels are scaled."""
 BASELINE_DEG = 0.5
-"""Angle between the pixels whose positions give a normal: a smaller angle gives more noise, a larger one rounds more
+"""Angle between the two pixels that give a normal: a smaller angle gives more noise, a larger one rounds more
 edges."""
 
 

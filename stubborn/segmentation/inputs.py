@@ -72,7 +72,7 @@ class DepthInput:
     def zoomed(
         self, channels: Float32[np.ndarray, "h w 1"], width_px: int, height_px: int, enlargement: float
     ) -> Float32[np.ndarray, "rows cols 1"]:
-        """Returns a window whose depth is divided by its enlargement."""
+        """Returns a window with its depth divided by its enlargement."""
         resized = cv2.resize(channels[..., 0], (width_px, height_px), interpolation=cv2.INTER_NEAREST)
         return (resized / np.float32(enlargement))[..., None]
 
@@ -99,7 +99,7 @@ class GeometryInput:
     def zoomed(
         self, channels: Float32[np.ndarray, "h w 6"], width_px: int, height_px: int, enlargement: float
     ) -> Float32[np.ndarray, "rows cols 6"]:
-        """Returns a window whose inverse depth is multiplied by its enlargement."""
+        """Returns a window with its inverse depth multiplied by its enlargement."""
         return geometry.zoomed(channels, width_px, height_px, enlargement)
 
     def normalised(

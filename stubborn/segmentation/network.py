@@ -28,7 +28,7 @@ class _Frame(NamedTuple):
 
 
 class NetworkSegmenter:
-    """A segmenter whose scores are the calibrated softmax of a network's logits.
+    """A segmenter with the calibrated softmax of a network's logits as scores.
 
     Args:
         model: the network, in evaluation mode.
@@ -152,7 +152,7 @@ class NetworkSegmenter:
     def logits(
         self, rgb: UInt8[np.ndarray, "h w 3"], depth_m: Float32[np.ndarray, "h w"]
     ) -> Float[Tensor, "classes rows cols"]:
-        """Returns the logits of one frame; each is for a square whose edge is `block_px` times the network's stride."""
+        """Returns the logits of one frame; each is for a square of `block_px` times the network's stride."""
         small_rgb, small_depth = shrink(rgb, self.block_px), shrink(depth_m, self.block_px)
         channels = self.second.of(small_depth, self.camera)
         images, seconds = [small_rgb], [channels]

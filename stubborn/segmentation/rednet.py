@@ -1,7 +1,7 @@
 """RedNet, an encoder-decoder for RGB-D segmentation (Jiang et al. 2018, arXiv:1806.01054).
 
 The network has two residual encoders, one for colour and one for depth; depth features are added to colour features
-after the stem and after each of the four stages. 1x1 convolutions convert the sums to the width of the decoder, whose
+after the stem and after each of the four stages. 1x1 convolutions convert the sums to the width of the decoder. Its
 residual blocks double the resolution stage by stage and add the sums as skips. Side heads on four decoder stages are
 trained as well (pyramid supervision). Module names are those of the published checkpoints, which load without
 conversion.
@@ -239,7 +239,7 @@ class RedNet(nn.Module):
 
 
 def folded(model: nn.Module) -> nn.Module:
-    """Returns a copy for inference whose batch normalisations are part of the convolutions before them.
+    """Returns a copy for inference; its batch normalisations are part of the convolutions before them.
 
     The copy is faster and cannot be trained. Its outputs differ from the model's by rounding only. It shares the
     tensors that the folding does not change.

@@ -51,7 +51,7 @@ class Kernel:
 
 
 def must_compile() -> bool:
-    """Returns True if numba has compiled no kernel of the simulator, or none of the agent.
+    """Returns True if no kernel of the simulator, or no kernel of the agent, is compiled yet.
 
     Compiling all of them, at their first calls, takes up to a minute.
     """

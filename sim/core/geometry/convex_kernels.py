@@ -13,7 +13,7 @@ BOUNDARY_M = 1e-9
 
 @njit(cache=True)
 def clear_near(free, x_m, y_m, vertices_m, normals, offsets_m, radius_m):
-    """Sets the cells of `free` to False whose centre is nearer to a polygon than `radius_m`.
+    """Sets cells of `free` to False where the centre is nearer to a polygon than `radius_m`.
 
     Args:
         free: (rows, cols) bool, is changed.
@@ -43,7 +43,7 @@ def clear_near(free, x_m, y_m, vertices_m, normals, offsets_m, radius_m):
 
 @njit(cache=True)
 def mark_inside(covered, x_m, y_m, normals, offsets_m):
-    """Sets the cells of `covered` (rows, cols) to True whose centre lies in a polygon; arguments as in `clear_near`."""
+    """Sets cells of `covered` (rows, cols) to True where the centre lies in a polygon; arguments as in `clear_near`."""
     for row in range(len(y_m)):
         for col in range(len(x_m)):
             inside = True

@@ -9,7 +9,7 @@ from sim.core.geometry.compiling import njit
 def descend(field_m, row, col):
     """Returns the cells (n, 2) from one cell to a local minimum, each the smallest neighbour of the one before.
 
-    Of equal neighbours the first in the order of rows and columns is taken.
+    Among equal neighbours, the path takes the first one in the order of rows and columns.
     """
     rows, cols = field_m.shape
     path = np.empty((rows * cols, 2), np.int64)

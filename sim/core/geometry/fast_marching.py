@@ -5,9 +5,9 @@ Both functions solve the eikonal equation, |gradient of time| = 1 / speed, with 
 - `distances` is second order at speed 1 and visits every cell that can be reached. The task's reference distances are
   computed with it, by scikit-fmm, so that the judge and the agent do not share code.
 - `travel_times` is first order with a speed per cell and stops as soon as the caller's question is answered. The agent
-  calls it at every step. It needs no heap: waiting cells lie in buckets of times, and a cell whose time falls later is
-  processed again, so that the result is not an approximation (Yatziv, Bartesaghi, Sapiro 2006, "O(N) implementation of
-  the fast marching algorithm").
+  calls it at every step. It needs no heap: waiting cells lie in buckets of times. A cell is processed again if its time
+  falls later, so that the result is not an approximation (Yatziv, Bartesaghi, Sapiro 2006, "O(N) implementation of the
+  fast marching algorithm").
 
 The first call of `travel_times` after an installation compiles for some seconds; later processes load the result from
 numba's cache.
@@ -35,7 +35,7 @@ def distances(
         cell_m: edge of a cell in metres.
 
     Returns:
-        Metres between cell centres; infinite where there is no path.
+        Metres between cell centres; infinite where no path exists.
 
     Raises:
         ValueError: `cell_m` is not positive.
@@ -71,7 +71,7 @@ def travel_times(
         beyond_m: see `until`.
 
     Returns:
-        Seconds; infinite where there is no path, and where the time was not computed.
+        Seconds; infinite where no path exists, and where the time was not computed.
     """
     rows, cols = goal.shape
     cost, time = np.empty((rows + 2, cols + 2), np.float32), np.empty((rows + 2, cols + 2))

@@ -30,7 +30,7 @@ def frame_problem(
         speed: (rows, cols) metres a second.
         cell_m: edge of a cell.
         cost: (rows + 2, cols + 2) is overwritten, infinite where a cell is not passable.
-        time: (rows + 2, cols + 2) is overwritten, infinite where there is no goal.
+        time: (rows + 2, cols + 2) is overwritten: 0 at the goal, infinite elsewhere.
     """
     cost[:] = np.inf
     time[:] = np.inf
@@ -67,8 +67,8 @@ def advance_first_order(
     """Lowers `time`, which holds 0 at goals and infinity elsewhere, until it is right up to the returned time.
 
     The frame is one cell wide and its cost infinite. Bucket n holds the cells with times from n to n + 1 times
-    `bucket`; the buckets form a ring that is long enough for the slowest cell. Each is a stack of entries. A cell whose
-    time falls gets another entry and leaves its old one behind: an entry counts only while the cell belongs to the
+    `bucket`; the buckets form a ring that is long enough for the slowest cell. Each is a stack of entries. If the time
+    of a cell falls, it gets another entry and leaves its old one behind: an entry counts only while the cell is in the
     bucket, and the uppermost of several entries in one bucket comes first.
     """
     slowest = 0.0

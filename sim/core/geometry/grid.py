@@ -37,7 +37,7 @@ class GridFrame:
 
     @classmethod
     def around_start(cls, size_cells: int, cell_m: float) -> GridFrame:
-        """Returns a square grid whose middle cell has its centre at (0, 0)."""
+        """Returns a square grid; the centre of its middle cell is at (0, 0)."""
         origin_m = -(size_cells // 2 + 0.5) * cell_m
         return cls(origin_xy_m=(origin_m, origin_m), shape=(size_cells, size_cells), cell_m=cell_m)
 
@@ -170,7 +170,7 @@ class Window:
 def cells_near_segment(
     frame: GridFrame, start_xy_m: tuple[float, float], end_xy_m: tuple[float, float], radius_m: float
 ) -> tuple[tuple[slice, slice], Bool[np.ndarray, "rows cols"]]:
-    """Returns the cells whose centre is within `radius_m` of a segment: the area that a disc sweeps along it.
+    """Returns the cells with their centre within `radius_m` of a segment: the area that a disc sweeps along it.
 
     The result is the index of a small rectangle of `frame` and the mask inside it.
     """

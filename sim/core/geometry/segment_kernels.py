@@ -7,7 +7,7 @@ from sim.core.geometry.compiling import njit
 
 @njit(cache=True)
 def mask_near_segment(rows, cols, corner_x_m, corner_y_m, cell_m, start_x_m, start_y_m, end_x_m, end_y_m, radius_m):
-    """Returns the cells (rows, cols) of a grid whose centre is within `radius_m` of a segment."""
+    """Returns a mask (rows, cols) of the cells with their centre within `radius_m` of a segment."""
     inside = np.empty((rows, cols), np.bool_)
     dx, dy = end_x_m - start_x_m, end_y_m - start_y_m
     length_sq = dx * dx + dy * dy

@@ -1,7 +1,7 @@
 """Generates a furnished home from a seed: floor plan, openings, structure, furniture, lights, and their check.
 
 Everything is drawn from one random generator, seeded by the seed, the pool and the number of the try, so that the same
-seed and version give the same bytes of XML. A try whose rooms do not fit, or whose check finds a fault, is rejected;
+seed and version give the same bytes of XML. A try is rejected if its rooms do not fit or its check finds a fault;
 the number of tries is limited and reported.
 """
 

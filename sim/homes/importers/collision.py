@@ -22,7 +22,7 @@ CELL_M = 0.05
 LEAST_SIDE_M = 0.01
 """Thinner boxes are made as thick as this."""
 ALIKE_M = 0.025
-"""Layers of a box whose sides differ by less are one box."""
+"""Layers of a box are one box if their sides differ by less."""
 SHIFTS = 5
 """Places of the grid that are tried along each axis: with the best one, uneven walls stay within one layer of cells."""
 MOST_CELLS = 60_000_000

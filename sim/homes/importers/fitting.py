@@ -1,7 +1,7 @@
-"""Furniture of ours in the size of somebody else's: an item of the same category, stretched, or a labelled solid.
+"""Resizes our furniture to the dimensions of an imported object: an item of its category, or a labelled solid.
 
-Of a few items that are drawn for a use, the one whose proportions are nearest to the wanted size is stretched to it.
-Where none comes near, or where we have no such furniture, the object is a box, a ball or a cylinder of its size.
+A few items are drawn for a use; the one with the proportions nearest to the requested size is stretched to it. If all
+proportions differ too much, or if we have no such furniture, the object is a box, a ball or a cylinder of its size.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ Place = Literal["floor", "top", "wall"]
 """The support of an object: the floor, another object, a wall."""
 PLACES: tuple[Place, ...] = ("floor", "top", "wall")
 SHAPES = ("box", "ball", "can")
-"""Values of `Entry.use` that are no furniture: a box, an ellipsoid, an upright cylinder."""
+"""Values of `Entry.use` for plain solids instead of furniture: a box, an ellipsoid, an upright cylinder."""
 DRAWS = 4
-"""Items of which the best is stretched."""
+"""Number of items that are drawn; the best of them is stretched."""
 MOST_STRETCH = 2.5
 """Largest factor by which a side of an item is stretched or shrunk."""
 HINT_RANGE = (0.6, 1.6)
 """Range of the sizes that are asked of a style, relative to the size that it has by itself."""
 ROUND_RATIO = 1.3
-"""An object whose width and depth differ by a larger factor is no cylinder."""
+"""An object becomes a cylinder only if its width and depth differ by at most this factor."""
 _COUNTER = {"with_sink": False, "with_hob": False}
 _HINTS = {"counter": _COUNTER, "sofa": {"cushions": 0}}
 _MATERIALS = ("plastic", "book", "ceramic", "cardboard", "bright")

@@ -95,7 +95,7 @@ class Storey:
 def level_triangles(corners_m: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Returns (m,), whether triangles (m, 3, 3) are about horizontal and face up.
 
-    Where fewer than a fifth of the level ones face up, the sides of the triangles have no meaning and all count.
+    If fewer than a fifth of the level ones face up, the sides of the triangles have no meaning and all count.
     """
     normal = np.cross(corners_m[:, 1] - corners_m[:, 0], corners_m[:, 2] - corners_m[:, 0])
     level = np.abs(normal[:, 2]) > LEVEL_NORMAL * np.maximum(np.linalg.norm(normal, axis=1), 1e-12)
@@ -110,7 +110,7 @@ def find_levels(floors_m: NDArray[np.float64]) -> list[float]:
         floors_m: triangles (m, 3, 3) of all floors.
 
     Raises:
-        HouseError: there is no floor of some square metres at one height.
+        HouseError: a floor of some square metres at one height is missing.
     """
     level = floors_m[level_triangles(floors_m)] if len(floors_m) else floors_m
     area = 0.5 * np.abs(np.cross(level[:, 1] - level[:, 0], level[:, 2] - level[:, 0])[:, 2])

@@ -48,7 +48,7 @@ def find_sources(path: Path) -> list[Source]:
     """Returns the houses of a path, sorted by name.
 
     Raises:
-        ConfigError: there are none, or a data set is broken.
+        ConfigError: the folder has no scenes, or a data set is broken.
     """
     name = path.name
     if path.is_dir():

@@ -72,7 +72,7 @@ def read_scenes(path: Path) -> dict[str, SceneEpisodes]:
     """Returns the episodes of a file, or of a folder with `content/*.json.gz`, by the name of their scene.
 
     Raises:
-        ConfigError: there is no such file, one has another format, or there are too many.
+        ConfigError: the file does not exist, one has another format, or there are too many.
     """
     files = [path]
     if path.is_dir():

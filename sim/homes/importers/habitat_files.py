@@ -36,7 +36,7 @@ Origin = Literal["asset_local", "com", "unknown", "default", "ASSET_LOCAL", "COM
 
 
 class Attributes(Struct):
-    """What a configuration of an object or a stage says of its mesh."""
+    """The mesh in a configuration of an object or a stage."""
 
     render_asset: Name | None = None
     up: Vector = (0.0, 1.0, 0.0)
@@ -119,7 +119,7 @@ class Template:
 
 @dataclass(frozen=True)
 class SceneDataset:
-    """A data set, whose configurations are read when they are asked for."""
+    """A data set; its configurations are read on demand."""
 
     file: Path
     content: _Dataset
@@ -147,7 +147,7 @@ class SceneDataset:
             where: the scene, for messages.
 
         Raises:
-            HouseError: there is none, it is broken, or its mesh is outside of the data set.
+            HouseError: it is missing or broken, or its mesh is outside of the data set.
         """
         section: _Section = getattr(self.content, kind)
         short = name.rpartition("/")[2].removesuffix(SUFFIXES[kind])
@@ -166,7 +166,7 @@ class SceneDataset:
                 return self._template(short, values, self.folder if renamed else base, where, source)
         file = self.files[kind].get(short)
         if file is None:
-            raise HouseError(f"{where}: there is no configuration '{printable(name)[:80]}' among the {kind}.")
+            raise HouseError(f"{where}: the {kind} have no configuration '{printable(name)[:80]}'.")
         if not file.name.endswith(".json"):
             return self._template(short, values | {"render_asset": file.name}, file.parent, where)
         values |= read_json(file, dict[str, Any], what="Configuration", error=HouseError)
@@ -284,7 +284,7 @@ def dataset_of(scene: Path) -> Path:
     """Returns the data set to which a scene belongs: the nearest one in a folder above.
 
     Raises:
-        ConfigError: there is none, or there are several.
+        ConfigError: it is missing, or there are several.
     """
     for folder in list(scene.resolve().parents)[:LEVELS_UP]:
         configs = sorted(folder.glob(f"*{DATASET}"))

@@ -10,7 +10,7 @@ from sim.houses.proposals import category_of_name
 from sim.houses.taxonomies import entries
 
 UNKNOWN = "misc"
-"""Category of objects that are not annotated, or whose name is in no table."""
+"""Category of objects without an annotation, or with a name that the tables lack."""
 _LABELS = {"unlabeled": UNKNOWN, "void": UNKNOWN, "chest": "chest_of_drawers"}
 _LETTERS: Mapping[str, str] = {
     "a": "bathroom", "b": "bedroom", "c": "closet", "d": "dining_room", "e": "entryway", "f": "family_room",

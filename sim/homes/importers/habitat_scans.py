@@ -34,13 +34,13 @@ MAX_OBJECTS = 100_000
 NEAR_M = 0.2
 """A triangle of the shown mesh that is farther from all annotated ones has no instance."""
 _INNER = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4]]) / np.array([[3], [6], [6], [6]])
-"""Weights of the corners for the points of a triangle whose colours vote on its instance."""
+"""Weights of the corners for four points of a triangle; the colours there vote on its instance."""
 LEAST_TURN_RAD = math.radians(1.0)
 
 
 @dataclass(frozen=True)
 class Annotation:
-    """What a data set says of an instance."""
+    """The annotation of an instance in a data set."""
 
     name: str
     category: str
@@ -165,7 +165,7 @@ def read_house_text(file: Path) -> tuple[dict[int, Annotation], dict[int, str]]:
 
 
 def _instances(surface: Surface, colours: Mapping[int, int]) -> NDArray[np.int64]:
-    """Returns the instance of each triangle (m,) by the colours that it shows, of which several vote; -1: none."""
+    """Returns the instance of each triangle (m,) by a vote of the colours that it shows; -1: no instance."""
     paint, votes = surface.paint, []
     for weights in _INNER:
         if paint.picture is not None and paint.uv is not None:
@@ -190,7 +190,7 @@ def _scan(
     surfaces: Sequence[Surface], labelled: Sequence[Surface], ids: Sequence[NDArray[np.int64]],
     notes: Mapping[int, Annotation], kinds: Mapping[int, str], losses: Losses,
 ) -> Scan:  # fmt: skip
-    """Returns the objects of a mesh whose triangles get the instances of the nearest annotated ones."""
+    """Returns the objects of a mesh; its triangles get the instances of the nearest annotated ones."""
     if surfaces is labelled:
         of_surface = list(ids)
     else:

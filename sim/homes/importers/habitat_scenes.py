@@ -1,9 +1,9 @@
 """Reads scenes of Habitat's scene data sets (HSSD, ReplicaCAD and others): a stage with objects at their places.
 
 Objects of one configuration and size share their shape. The category of an object is its class in the data set
-(`semantic_id`), else its entry in a table, else the words of its name. A stage whose nodes have no names of parts of a
-building is divided by geometry: level triangles at the height of a floor are floor, those that face down above are
-ceiling, all others are wall. An object whose files are missing or broken is left out and reported.
+(`semantic_id`), else its entry in a table, else the words of its name. If the nodes of a stage are not named after
+parts of a building, the stage is divided by geometry: level triangles at the height of a floor are floor, those that
+face down above are ceiling, all others are wall. An object with missing or broken files is left out and reported.
 """
 
 from __future__ import annotations
@@ -182,7 +182,7 @@ def _rotation(rotation: Sequence[float], where: str) -> tuple[NDArray[np.float64
     w, x, y, z = rotation
     length = float(np.linalg.norm(rotation))
     if length < 1e-6:
-        raise HouseError(f"{where}: a rotation of {list(rotation)} is no rotation.")
+        raise HouseError(f"{where}: a rotation must be a quaternion that is not zero, got {list(rotation)}.")
     quaternion = (w / length, x / length, -z / length, y / length)
     turn = np.empty(9)
     mujoco.mju_quat2Mat(turn, np.asarray(quaternion))

@@ -1,4 +1,4 @@
-"""What an import read, changed and lost: counted by kind, for the report."""
+"""Counts by kind, for the report, of everything that an import read, changed and lost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reads a home that is one GLB, glTF, OBJ or PLY file, whose nodes are its objects.
+"""Reads a home from one GLB, glTF, OBJ or PLY file; its nodes are the objects.
 
 The category of a node is that of the first rule of a table that its name matches. Without a table, or for other nodes,
 the words of the node's and its material's name say it, as in `stubborn label`; then its size: large level plates are
@@ -59,7 +59,7 @@ def find_files(path: Path) -> list[Path]:
     """Returns the meshes of a folder, or the one file that is given, sorted.
 
     Raises:
-        ConfigError: there are none, or two of them have one name.
+        ConfigError: the folder has no such files, or two of them have one name.
     """
     if not path.is_dir():
         return [path]
@@ -89,7 +89,7 @@ def import_mesh(file: Path, *, rules: Mapping[str, str], up: Axis, config: MeshC
         config: options of the house.
 
     Raises:
-        HouseError: the file is broken, or is no home; the message names it.
+        HouseError: the file is broken or does not contain a home; the message names it.
     """
     losses = Losses()
     axis: Up = up if up != "auto" else "z" if file.suffix.lower() == ".ply" else "y"

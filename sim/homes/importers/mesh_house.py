@@ -33,7 +33,7 @@ from sim.homes.importers.visual import Skin, make_skins
 
 Collision = Literal["boxes", "convex"]
 STRUCTURE = frozenset(("wall", "floor", "ceiling", "door", "window", "stairs", "railing", "column", "beam", "curtain"))
-"""Categories whose closed outlines are not filled: a room inside of walls is free."""
+"""Closed outlines of these categories are not filled: a room inside of walls is free."""
 FLAT_M = 0.02
 """Objects that are lower than this above the floor are part of it: rugs do not collide."""
 LEAST_VERTICES = 4
@@ -84,7 +84,7 @@ class MeshObject:
     quaternion: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
     """w, x, y, z."""
     mass_kg: float | None = None
-    """Of an object that can be pushed; None: it is fixed."""
+    """Mass of an object that can be pushed; None: it is fixed."""
     is_solid: bool = True
     """Whether it collides."""
 
@@ -132,7 +132,7 @@ def build_house(
         ambient: light from all sides, for pictures that were taken with their light; None: as `load_house` adds it.
 
     Raises:
-        HouseError: there is no floor, or MuJoCo cannot build the house; the message does not name the house.
+        HouseError: the floor is missing, or MuJoCo cannot build the house; the message does not name the house.
     """
     floors = _together([item for item in objects if item.category == "floor"])
     levels = find_levels(floors)
@@ -170,7 +170,7 @@ def _whole_storeys(storeys: Sequence[Storey], top_m: float) -> list[RoomArea]:
 
 @dataclass(frozen=True)
 class _Parts:
-    """What a shape became: names of its visual meshes with their materials, and its collision geoms."""
+    """The parts of a shape in the house: names of its visual meshes with their materials, and its collision geoms."""
 
     skins: tuple[tuple[str, str], ...]
     triangles: int
@@ -263,7 +263,7 @@ class _Builder:
             self._add_object(item, budgets[id(item.shape)])
 
     def _flattened(self, item: MeshObject) -> MeshObject:
-        """Returns a floor in the world whose vertices near the level of a storey are at that level."""
+        """Returns a floor in the world; vertices near the level of a storey are moved to that level."""
         turn = np.empty(9)
         mujoco.mju_quat2Mat(turn, np.asarray(item.quaternion, dtype=np.float64))
         pose = np.eye(4)
@@ -413,7 +413,7 @@ def _bytes(picture: NDArray[np.uint8], most_px: int) -> float:
 
 
 def _resized(picture: NDArray[np.uint8], most_px: int) -> NDArray[np.uint8]:
-    """Returns a picture whose longer side has at most `most_px`."""
+    """Returns a picture with at most `most_px` on its longer side."""
     height, width = picture.shape[:2]
     share = most_px / max(height, width)
     if share >= 1.0:

@@ -57,7 +57,7 @@ def find_houses(path: Path) -> list[Path]:
     """Returns the house files of a folder that have metadata, or the one file that is given, sorted.
 
     Raises:
-        ConfigError: there are none.
+        ConfigError: the folder has no houses.
     """
     if path.suffix == ".xml":
         files = [path]
@@ -86,7 +86,7 @@ def import_scene(file: Path, *, doors: str, root: Path | None = None, texture_px
     Args:
         file: the house file.
         doors: "open": hinged doors are turned to the end of their range, at most to a right angle; "as-is".
-        root: another folder whose files the house may use.
+        root: another folder that the house may use.
         texture_px: longest side of the textures; larger ones are reduced.
 
     Raises:

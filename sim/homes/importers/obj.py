@@ -3,8 +3,8 @@
 Each `o` or `g` begins a node of its own. trimesh is not used here: with `split_objects=True` it keeps the names, but it
 counts negative numbers of a face from the end of the whole file, takes `f 1 2 0` for a triangle, drops faces of two
 corners without a word, loses opacity and the options of pictures, and names no line.
-Materials may have a colour (`Kd`), an opacity (`d`) and a picture (`map_Kd`), in whose place the colour does not count,
-from files of the OBJ file's folder.
+Materials may have a colour (`Kd`), an opacity (`d`) and a picture (`map_Kd`), which replaces the colour, from files of
+the OBJ file's folder.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Corner = tuple[int, int]
 
 @dataclass
 class _Content:
-    """What the lines of a file have said so far."""
+    """The content of the lines that were read so far."""
 
     vertices: list[list[float]] = field(default_factory=list)
     uv: list[list[float]] = field(default_factory=list)
@@ -107,7 +107,7 @@ def _add_face(content: _Content, node: str, material: str, words: list[str]) -> 
 
 
 def _corner(content: _Content, word: str) -> Corner:
-    """Returns a corner of a face, `vertex/texture/normal`, whose negative numbers count from the end."""
+    """Returns a corner of a face, `vertex/texture/normal`; negative numbers count from the end."""
     numbers = [int(part) if part else 0 for part in word.split("/")]
     vertex = numbers[0] - 1 if numbers[0] > 0 else len(content.vertices) + numbers[0]
     if not 0 <= vertex < len(content.vertices) or numbers[0] == 0:

@@ -64,7 +64,7 @@ class ProcthorConfig:
     pool: Pool = "heldout"
     """Styles, colours and textures that may appear."""
     seed: int = 0
-    """Of styles and colours."""
+    """Seed of styles and colours."""
 
 
 def import_house(source: Source, assets: Mapping[str, Asset], config: ProcthorConfig) -> Imported:

@@ -64,7 +64,7 @@ class Room(Struct):
 
 
 class Wall(Struct):
-    """One side of a wall; where `empty` is true there is none."""
+    """One side of a wall; `empty` marks an opening without a wall."""
 
     id: Name
     roomId: Name
@@ -191,7 +191,7 @@ def find_assets(path: Path, chosen: Path | None) -> Path:
     """Returns the asset database: the one that was given, or the one next to the houses.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: it is missing.
     """
     if chosen is not None:
         return chosen
@@ -199,8 +199,8 @@ def find_assets(path: Path, chosen: Path | None) -> Path:
         if (path.parent / name).is_file():
             return path.parent / name
     raise ConfigError(
-        f"There is no asset-database.json next to '{path}', which has the types and sizes of ProcTHOR's assets. It is "
-        "in the folder procthor/databases of ProcTHOR's repository; give its path with --assets."
+        f"asset-database.json, the types and sizes of ProcTHOR's assets, is missing next to '{path}'. It is in the "
+        "folder procthor/databases of ProcTHOR's repository; give its path with --assets."
     )
 
 

@@ -30,16 +30,16 @@ from sim.houses.proposals import category_of_name
 from sim.houses.taxonomies import Entry, entries
 
 ON_WALL_FROM_M = 0.3
-"""Objects whose lower edge is higher above the floor, and that are in no other object, hang on a wall."""
+"""Objects hang on a wall if their lower edge is higher above the floor and they are not in another object."""
 WALL_REACH_M = 0.35
 """Largest distance from the back of such an object to its wall."""
 MOST_INTO_WALL_M = 0.2
-"""What reaches further into a wall is not moved out of it."""
+"""An object that reaches further into a wall is not moved out of it."""
 SURFACE_REACH_M = 0.45
 """Largest difference in height from the place of an object in the source to a top of our furniture."""
 GEOM_COST_M, LEAST_REST = 0.03, 0.5
 """An object may also rest on a part of our furniture, at the place that it has in the source: one that is at least half
-as large in plan. A top that is meant for objects is taken instead if it differs by so much less."""
+as large in plan. A top that is meant for objects is preferred unless it differs by at least `GEOM_COST_M` more."""
 ARM_M = 0.61
 """Depth of the arms of L- and C-shaped counters: two feet, as the names of the assets say."""
 CLOSED = frozenset(("Fridge", "Microwave", "Safe", "Cabinet", "Drawer", "GarbageCan", "Box"))

@@ -177,7 +177,7 @@ def _stretch(hole: Hole, walls: Mapping[str, Wall], grid: _Grid, where: str) -> 
     """Returns where a hole lies: its corners are measured from the first lower corner of its wall `wall0`.
 
     Raises:
-        HouseError: there is no such wall, or it is slanted.
+        HouseError: the wall does not exist, or it is slanted.
     """
     if hole.wall0 not in walls:
         raise HouseError(f"{where}: '{hole.id}' is in the wall '{hole.wall0}', which does not exist.")

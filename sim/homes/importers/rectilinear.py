@@ -66,7 +66,7 @@ def rectangles(polygon: Sequence[Point], keep: Sequence[Stretch] = ()) -> list[R
 
 
 def on_side(rect: Rect, stretch: Stretch) -> Literal["east", "north", "west", "south"] | None:
-    """Returns the side of a rectangle on whose line a stretch lies, or None."""
+    """Returns the side of a rectangle that is on one line with a stretch, or None."""
     for side in SIDES:
         if (side in ("north", "south")) == (stretch.axis == "x") and rect.line(side) == stretch.line_m:
             return side
@@ -74,7 +74,7 @@ def on_side(rect: Rect, stretch: Stretch) -> Literal["east", "north", "west", "s
 
 
 def _is_kept(rects: Sequence[Rect], stretch: Stretch) -> bool:
-    """Returns whether a stretch lies in a side of one of the rectangles, or in none of them at all."""
+    """Returns whether a stretch lies in a side of one of the rectangles, or outside of all of them."""
     touched = False
     for rect in rects:
         side = on_side(rect, stretch)
@@ -119,7 +119,7 @@ def _runs(column: NDArray[np.bool_], vs: Sequence[float]) -> list[tuple[float, f
 def rectangles_of_triangles(triangles_m: NDArray[np.float64]) -> list[Rect]:
     """Returns rectangles that cover a floor of triangles (n, 3, 2), the largest first.
 
-    The floor is divided at the coordinates of its corners; cells whose middle is in a triangle belong to it.
+    The floor is divided at the coordinates of its corners; cells with their middle in a triangle belong to it.
     """
     triangles_m = triangles_m[:MOST_TRIANGLES]
     xs, ys = (sorted(set(snapped(triangles_m[..., axis].ravel().tolist()).values())) for axis in (0, 1))

@@ -47,13 +47,13 @@ PLACED = ("obj", "distr_")
 SPECK_M = 0.011
 """Half sides of the invisible boxes, high above the kitchen, in place of parts that a fixture does not have."""
 ROOM_M2 = 1.0
-"""Smaller floors are no rooms."""
+"""Smaller floors do not count as rooms."""
 NEAR_EDGE_M = 0.5
 """A wall closes the side of a floor if it is at most this far inside of it."""
 CLOSED_SHARE = 0.5
 """Share of a side that its wall covers at least; the room ends at this wall."""
 GAP_M = 0.1
-"""A side whose walls leave more than this open gets a wall."""
+"""A side gets a wall if its walls leave more than this open."""
 ADDED_WALL_M = 0.1
 """Thickness of walls that are added."""
 ADDED = "wall_added_"
@@ -79,7 +79,7 @@ def find_scenes(path: Path) -> list[Path]:
     """Returns the MJCF files of a folder, or the one file that is given, sorted.
 
     Raises:
-        ConfigError: there are none.
+        ConfigError: the folder has no houses.
     """
     files = [path] if path.suffix == ".xml" else sorted(path.glob("*.xml"))[:MAX_HOUSES]
     if not files:
@@ -92,7 +92,7 @@ def import_kitchen(file: Path, *, root: Path | None = None, texture_px: int | No
 
     Args:
         file: the MJCF file.
-        root: another folder whose files it may use.
+        root: another folder that the house may use.
         texture_px: longest side of the textures; larger ones are reduced.
 
     Raises:
@@ -101,7 +101,7 @@ def import_kitchen(file: Path, *, root: Path | None = None, texture_px: int | No
     changes = Counter[str]()
     try:
         if not file.is_file():
-            raise HouseError("there is no such file.")
+            raise HouseError("the file does not exist.")
         spec = read_spec(file, root=root, texture_px=texture_px)
         _remove_robots(spec, changes)
         changes.update(remove_unsupported(spec))
@@ -142,13 +142,13 @@ def category_of_fixture(body: str) -> str | None:
     counts first (`microwave_housing` is a cabinet). Other names count by their words.
     """
     name = _GROUP.sub("", body.lower().removesuffix("_main"))
-    letters = re.sub(r"[^a-z]", "", name)
+    bare = re.sub(r"[^a-z]", "", name)
     table = {re.sub(r"[^a-z]", "", kind): entry.category for kind, entry in entries("robocasa").items()}
-    if letters in table:
-        return table[letters]
+    if bare in table:
+        return table[bare]
     kinds = sorted((kind for kind in table if kind not in _POSITIONS), key=len, reverse=True)
-    ends = next((kind for kind in kinds if letters.endswith(kind)), None)
-    begins = next((kind for kind in kinds if letters.startswith(kind)), None)
+    ends = next((kind for kind in kinds if bare.endswith(kind)), None)
+    begins = next((kind for kind in kinds if bare.startswith(kind)), None)
     kind = ends or begins
     return category_of_name(name) if kind is None else table[kind]
 
@@ -318,7 +318,7 @@ def _outside(floor: Rect, side: str) -> Rect:
 
 
 def _room(floor: Rect, walls: list[Rect]) -> _Room:
-    """Returns a floor, each side of which is moved to the inner face of a wall that covers most of it."""
+    """Returns a floor; each side is moved to the inner face of a wall that covers most of it."""
     x0, y0, x1, y1 = floor.x0, floor.y0, floor.x1, floor.y1
     closed, open_sides = {}, []
     for side, (lo, hi) in {"west": (y0, y1), "east": (y0, y1), "south": (x0, x1), "north": (x0, x1)}.items():

@@ -1,4 +1,4 @@
-"""What importers of MJCF scenes have in common: a scene on its way to a split, its floor, its rooms and its report."""
+"""Common code of importers of MJCF scenes: a scene on its way to a split, its floor, its rooms and its report."""
 
 from __future__ import annotations
 

@@ -121,7 +121,7 @@ def read_surfaces(
     trimesh, kind = library("trimesh", extra="import"), file.suffix.lower().lstrip(".")
     where = f"Mesh '{printable(str(file))}'"
     if kind not in FORMATS:
-        raise HouseError(f"{where}: its format '{printable(kind)}' is none of {', '.join(FORMATS)}.")
+        raise HouseError(f"{where}: unsupported format '{printable(kind)}'; use {', '.join(FORMATS)}.")
     content = read_bytes(file, what="Mesh", error=HouseError, most=MAX_FILE_BYTES)
     if kind in ("glb", "gltf"):
         _require_sane_gltf(content, kind, where, Counter() if losses is None else losses)
@@ -328,7 +328,7 @@ def _resolver(trimesh: Any, folder: Path) -> Any:
             target = (base / name).resolve()
             outside = not target.is_relative_to(base)
         except (OSError, ValueError, RuntimeError):
-            raise HouseError(f"A mesh in '{folder}' uses '{printable(name)[:100]}', which is no file name.") from None
+            raise HouseError(f"A mesh in '{folder}' uses the invalid file name '{printable(name)[:100]}'.") from None
         if outside:
             raise HouseError(f"A mesh in '{folder}' uses '{printable(name)[:100]}', which is outside of its folder.")
         try:

@@ -27,7 +27,7 @@ TEXEL_M = 0.02
 """Side of a pixel of a baked picture on the surface, unless the picture would be too large."""
 LEAST_SQUARE, MOST_SQUARE = 4, 256
 MOST_SAMPLES = 3_000_000
-"""Points of the source by whose colours a picture is baked."""
+"""Number of points of the source that give their colours to a baked picture."""
 CREASE = math.cos(math.radians(40.0))
 """Triangles that meet at a larger angle have an edge between them; others are shaded as one smooth surface."""
 
@@ -107,7 +107,7 @@ def _by_colour(surfaces: Sequence[Surface]) -> list[list[Surface]]:
 
 
 def _baked_all(surfaces: Sequence[Surface], triangles: int, texture_px: int) -> list[Skin]:
-    """Returns one reduced mesh with a baked picture, or an empty list when there is no surface."""
+    """Returns one reduced mesh with a baked picture, or an empty list without surfaces."""
     if not surfaces:
         return []
     vertices, faces = _simplified(*welded(surfaces), triangles)
@@ -250,7 +250,7 @@ def _bake(
     picture: NDArray[np.uint8], chosen: NDArray[np.int64], side: int, corners: NDArray[np.float64],
     squares: _Squares, tree: KDTree, colours: NDArray[np.float64],
 ) -> None:  # fmt: skip
-    """Writes the pixels of some triangles whose squares have one side."""
+    """Writes the pixels of some triangles; their squares have one common side."""
     column, row = np.meshgrid(np.arange(side), np.arange(side))
     first = (column + row + 1 <= side).ravel()
     inner = side - 3.0

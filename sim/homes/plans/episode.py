@@ -138,10 +138,10 @@ def draw_goal_and_start(plan: Plan, rng: np.random.Generator, goal: str | None =
 
 
 def draw_goal(plan: Plan, rng: np.random.Generator, start: Pose) -> str:
-    """Returns a random goal of a plan to which a path leads from a start; none whose path has ended there already.
+    """Returns a random goal of a plan that can be reached from a start and is not reached there already.
 
     Raises:
-        EpisodeError: there is none.
+        EpisodeError: the plan has no such goal.
     """
     row, col = plan.frame.cell(start.x_m, start.y_m)
     around = slice(max(row - 1, 0), max(row + 2, 0)), slice(max(col - 1, 0), max(col + 2, 0))

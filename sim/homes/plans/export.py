@@ -135,7 +135,7 @@ def _success_bits(truth: GroundTruth, floor_z_m: float, frame: GridFrame) -> NDA
 def _floor(
     model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, floor_z_m: float, frame: GridFrame
 ) -> NDArray[np.bool_]:
-    """Returns the cells whose centre is on a floor of the storey."""
+    """Returns the cells with their centre on a floor of the storey."""
     outlines = floor_polygons(model, data, labels, floor_z_m)
     if outlines is None:
         return np.ones(frame.shape, np.bool_)

@@ -44,7 +44,7 @@ def interpolate(field, row, col):
 
 @njit(cache=True, error_model="numpy")
 def mark_swept(layer, row_0, col_0, row_1, col_1, radius):
-    """Sets the cells of a layer whose centre is within `radius` cells of a segment, given as rows and columns."""
+    """Sets the cells of a layer with their centre within `radius` cells of a segment, given as rows and columns."""
     d_row, d_col = row_1 - row_0, col_1 - col_0
     length_sq = d_row * d_row + d_col * d_col
     limit = radius * radius
@@ -63,7 +63,7 @@ def mark_swept(layer, row_0, col_0, row_1, col_1, radius):
 
 @njit(cache=True, error_model="numpy")
 def mark_square(layer, row, col, cos, sin, near, edge):
-    """Sets the cells of a layer whose centre lies in a square ahead of a pose (`square_ahead` of the agent).
+    """Sets the cells of a layer with their centre in a square ahead of a pose (`square_ahead` of the agent).
 
     Args:
         layer: (rows, cols) bool, is changed.

@@ -78,7 +78,7 @@ class Plan:
 
     @property
     def free(self) -> NDArray[np.bool_]:
-        """The cells at whose centre the robot's centre may be."""
+        """The cells where the robot's centre may be at the cell's centre."""
         return self.slack_m > 0.0
 
     def goals(self) -> tuple[str, ...]:
@@ -87,7 +87,7 @@ class Plan:
         return tuple(goal for number, goal in enumerate(GOAL_CATEGORIES) if bits >> number & 1)
 
     def success_cells(self, goal: str) -> NDArray[np.bool_]:
-        """Returns the cells at whose centre a STOP for a goal succeeds."""
+        """Returns the cells where a STOP for a goal succeeds at the cell's centre."""
         return (self.succeeds >> np.uint32(GOAL_CATEGORIES.index(goal)) & np.uint32(1)).astype(np.bool_)
 
     def distance_m(self, goal: str) -> NDArray[np.float32]:
@@ -156,7 +156,7 @@ def read_plan(path: Path) -> Plan:
     """Returns the plan in a file.
 
     Raises:
-        HouseError: there is no such file, or it is not a plan of this format.
+        HouseError: the file does not exist, or it is not a plan of this format.
     """
     what = "house plan (`stubborn houses plans` writes them)"
     arrays = read_npz(path, (*_ARRAYS, "categories", "about"), what=what, most_bytes=MAX_FILE_BYTES, error=HouseError)

@@ -72,7 +72,7 @@ class Look:
     target_cols: NDArray[np.int64]
     """Their columns."""
     touched: tuple[slice, slice] | None
-    """Rectangle of the map that holds all points of the frame; None: there is none."""
+    """Rectangle of the map that holds all points of the frame; None: the frame has no points."""
 
 
 @dataclass(eq=False)
@@ -137,7 +137,7 @@ class PlanCamera:
 
         Args:
             pose: of the robot, in the world; the camera is above its centre.
-            goal: the goal category; None: there is none.
+            goal: the goal category; None: no goal.
             layers: of the map; they are changed.
             map_pose: the same pose in the frame of the map.
             step: number of actions before this frame.

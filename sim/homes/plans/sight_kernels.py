@@ -33,7 +33,7 @@ def _ones(typing_context, word):
 
 @njit(cache=True, error_model="numpy")
 def _bits(first, last):
-    """Returns a word with the bits from `first` to `last` set, both in 0 to 63; 0 when there are none."""
+    """Returns a word with the bits from `first` to `last` set, both in 0 to 63; 0 for an empty range."""
     first, last = max(first, 0), min(last, 63)
     if first > last:
         return np.uint64(0)
@@ -65,7 +65,7 @@ def cast_rays(
         map_pose: camera in the map: row and column with fractions, cosine and sine of the heading.
         map_cell_m: edge of a cell of the map.
         flags: (rows, cols) uint8 of the map; gets the flags of this module. It must be 0 everywhere.
-        touched: (n,) int32, gets the row-major map cells whose flags are not 0.
+        touched: (n,) int32, gets the row-major map cells with flags other than 0.
         seen_floor: (rows, cols) bool of the plan; gets True where the floor is in view.
         goals_seen: (rows, cols) uint32 of the map; gets bit g where goal category g is in view.
         pixels: (goals,) gets the number of pixels of each goal category added.
@@ -207,7 +207,7 @@ def enter_frame(
 
     Args:
         flags: (rows, cols) of `cast_rays`.
-        touched: (n,) the cells whose flags are not 0.
+        touched: (n,) the cells with flags other than 0.
         count: number of them.
         frames_in_view: (rows, cols) layers of `stubborn.mapping.navmap.NavMap`, as the next seven.
         obstacle_evidence: see above.

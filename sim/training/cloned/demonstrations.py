@@ -61,7 +61,7 @@ class _About(msgspec.Struct):
 def demonstrate(
     poses: Sequence[Pose], actions: Sequence[int], world: World, camera: Camera, *, goal: str, house: str, success: bool
 ) -> Demonstration:
-    """Renders what a camera sees at the poses of an episode; nothing moves, and there is no sensor noise.
+    """Renders the camera's views at the poses of an episode; nothing moves, and the sensors have no noise.
 
     Args:
         poses: the robot's pose in the world before each action.
@@ -73,7 +73,7 @@ def demonstrate(
         success: whether the episode succeeded.
 
     Raises:
-        ConfigError: there is no pose, because the episode has no action.
+        ConfigError: `poses` is empty, because the episode has no action.
         EpisodeError: the robot does not fit where the episode starts.
     """
     if not poses:
@@ -121,7 +121,7 @@ def read_demonstration(file: Path) -> Demonstration:
     """Returns the demonstration in a file.
 
     Raises:
-        ConfigError: there is no such file, or it is not a demonstration.
+        ConfigError: the file does not exist, or it is not a demonstration.
     """
     arrays = read_npz(file, (*_ARRAYS, "about"), what="demonstration", most_bytes=MAX_FILE_BYTES)
     try:

@@ -19,7 +19,7 @@ from stubborn.detection.context import OBJECTS, Context
 LEAST_OBJECTS = 10
 """A category with fewer objects is unknown: its ratio is 1."""
 LEAST_SEEN = 0.15
-"""Of the objects around an object, a share between this and 1 is seen."""
+"""A random share of the objects around an object is seen, between this and 1."""
 PRIOR = 3.0
 """Weight of the normal prior of the log-odds, as a number of objects."""
 _NUMBER = np.full(len(MPCAT40), -1)
@@ -35,13 +35,13 @@ def surroundings(
     radius_m: float,
     rng: np.random.Generator,
 ) -> Surroundings:
-    """Returns what is around the objects of one house, of which a random part is seen.
+    """Returns the categories around each object of one house when a random part of the objects is seen.
 
     Args:
         x_m: middle of each object; `y_m` is its other coordinate.
         category: id of each object in mpcat40; other classes than `OBJECTS` are left out.
         radius_m: see `Context.radius_m`.
-        rng: chooses what is seen.
+        rng: chooses the objects that are seen.
     """
     number = _NUMBER[category]
     x_m, y_m, number = (values[number >= 0] for values in (x_m, y_m, number))
@@ -53,7 +53,7 @@ def surroundings(
 
 
 def around(plan: Plan, radius_m: float, rng: np.random.Generator) -> Surroundings:
-    """Returns what is around the objects of one plan."""
+    """Returns the categories around each object of one plan."""
     on_storey = plan.span_low_m < plan.ceiling_m  # spans reach above the ceiling, into the next storey
     instances, number = np.unique(plan.span_instance[on_storey], return_inverse=True)
     low, high = np.full((2, instances.size), np.inf), np.zeros((2, instances.size))

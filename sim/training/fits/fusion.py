@@ -1,4 +1,4 @@
-"""Fits a `Fusion` to tracks whose true category is known, and evaluates it on held-out houses.
+"""Fits a `Fusion` to tracks with a known true category, and evaluates it on held-out houses.
 
 The parameters are those of highest likelihood of the true categories, with a normal prior on the offsets: a network
 makes different errors on different furniture, and an offset that helps only in the houses of the fit does harm in
@@ -37,7 +37,7 @@ _BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.85, 0.95, 1.0)
 
 @dataclass(frozen=True)
 class Sample:
-    """What was known of one track at one step."""
+    """The evidence on one track at one step, with its true category."""
 
     house: str
     category: int
@@ -158,7 +158,7 @@ class _Data:
         return cls(*(torch.from_numpy(array) for array in (objects, behind, weight, category)))
 
     def log_odds(self, free: Mapping[str, Tensor]) -> Tensor:
-        """Returns the values of `Fusion.probabilities` before the softmax, (n, objects + 1); the last is no object."""
+        """Returns the values of `Fusion.probabilities` before the softmax, (n, objects + 1); the last: no object."""
         factor = (free["rings"] - free["rings"][EvidenceConfig.near_ring]).exp()
         total = (self.weight @ factor)[:, None].clamp(min=1e-6)
         averaged = torch.einsum("nrc,r->nc", self.objects, factor) / total

@@ -33,7 +33,7 @@ LOOK_AT_ALL = LookConfig(bar=((0, 1.0),), slack=0.0, visit=0.15)
 SEEKER = TrackSeekerConfig()
 """The configuration of `stubborn-plus`."""
 LEAST_VOXELS = 6
-"""Smaller tracks are no candidates of the agent's and not logged."""
+"""The agent does not consider smaller tracks as candidates, and they are not logged."""
 LEVELS = (0.4, 1.0, 2.0, 3.5, 6.0)
 """A track is logged when the total weight of its views reaches each of these values."""
 MAX_FILE_BYTES = 256 << 20
@@ -68,7 +68,7 @@ class TrackSamples:
         self._parts: dict[str, list[np.ndarray]] = {name: [] for name in _ARRAYS[2:]}
 
     def add(self, tracks: Tracks) -> None:
-        """Adds the tracks in view whose views have reached a further one of `LEVELS`."""
+        """Adds a track in view if the weight of its views has reached a further one of `LEVELS`."""
         numbers = tracks.in_view[tracks.sizes(tracks.in_view) >= LEAST_VOXELS]
         _, weight = tracks.evidence.views(numbers)
         level = np.searchsorted(LEVELS, weight.sum(axis=1), side="right")

@@ -94,7 +94,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
     ## Actions
     With `actions="primitive"`, `Discrete(4)`: those of `stubborn/ObjectNav-v0`. With `actions="goal"`, `Box(2)` in
     [0, 1]: row and column of a goal in the window, 0 at its first edge and 1 at its last; the planner of `stubborn`
-    drives towards it for `goal_steps` primitive actions, to the nearest reachable cell where there is no path. With
+    drives towards it for `goal_steps` primitive actions, or to the nearest reachable cell if no path exists. With
     `arrived_m` it stops earlier when it is there.
 
     ## Observations
@@ -124,7 +124,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
         read: returns the plan in a file. Environments that share a cached one hold each plan in memory once.
 
     Raises:
-        ConfigError: there is no plan.
+        ConfigError: no plan is given.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012 - declared by Gymnasium
@@ -168,7 +168,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
 
     @property
     def episode(self) -> PlanEpisode:
-        """The running episode; raises ResetNeeded where there is none."""
+        """The running episode; raises ResetNeeded before the first reset."""
         return require_reset(self._episode)
 
     @property
@@ -214,7 +214,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
         """Returns the number of the plan, the goal and the start of an episode: those of the options, else random ones.
 
         Raises:
-            ConfigError: there is no such option or plan.
+            ConfigError: an option or the plan is unknown.
             EpisodeError: the plan does not have this goal, or it cannot be reached.
         """
         unknown = sorted(map(str, set(options) - {"plan", "goal", "start"}))
@@ -238,7 +238,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
         """Returns a plan from which a goal can be reached, the first that fits in a cycle over all, and a start.
 
         Raises:
-            EpisodeError: there is no such goal.
+            EpisodeError: the goal is unknown, or it cannot be reached in any plan.
         """
         if goal not in GOAL_CATEGORIES:
             raise EpisodeError(f"Unknown goal '{goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
@@ -251,7 +251,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
         raise EpisodeError(f"None of the {len(self.files)} plans has a '{goal}' that can be reached.")
 
     def _number(self, action: Any) -> int:
-        """Returns the number of a plan; raises ConfigError if there is none."""
+        """Returns the number of a plan; raises ConfigError if the plan does not exist."""
         if not isinstance(action, (int, np.integer)) or not 0 <= action < len(self.files):
             raise ConfigError(f"options['plan'] must be 0 to {len(self.files) - 1}, got {action!r}.")
         return int(action)

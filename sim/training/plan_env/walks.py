@@ -148,7 +148,7 @@ def _only(like: Bool[np.ndarray, "rows cols"], cell: tuple[int, int]) -> Bool[np
 def _times_to(
     plan: Plan, goal: Bool[np.ndarray, "rows cols"], everywhere: Bool[np.ndarray, "rows cols"], pose: Pose
 ) -> NDArray[np.float32]:
-    """Returns the travel times to some cells, as far as the robot's and a little beyond; slower near obstacles."""
+    """Returns the travel times to `goal`, up to the robot's cell and one metre beyond; slower near obstacles."""
     return travel_times(goal, everywhere, _speed(plan), plan.frame.cell_m, until=_at(plan, pose), beyond_m=1.0)
 
 

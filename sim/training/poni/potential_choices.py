@@ -10,7 +10,7 @@ from jaxtyping import Float, Int
 from sim.training.poni.potential_files import Batch
 
 TIE = 0.02
-"""A frontier whose true potential is less than this below the best one is as good."""
+"""A frontier is as good as the best one if its true potential is less than this below."""
 
 
 @dataclass

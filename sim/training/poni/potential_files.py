@@ -139,7 +139,7 @@ class SampleSet:
             config: the configuration that all must have; by default that of the first one.
 
         Raises:
-            ConfigError: a file is broken, is of another configuration, or there is no sample.
+            ConfigError: a file is broken, is of another configuration, or the files have no samples.
         """
         parts = []
         for file in files:
@@ -149,7 +149,7 @@ class SampleSet:
                 raise ConfigError(f"'{file}' was made with other options ({changed}); take another --samples folder.")
             parts += [part] if "masks" in part else []
         if not parts or config is None:
-            raise ConfigError(f"There is no sample in {len(files)} files.")
+            raise ConfigError(f"{len(files)} files have no samples; at least one sample is needed.")
         names = (*_OF_SAMPLES, *_OF_GOAL_CELLS, *_OF_FRONTIERS)
         arrays = {name: np.concatenate([part[name] for part in parts]) for name in names}
         for name in ("goal_start", "start"):
@@ -264,7 +264,7 @@ def _check(arrays: Mapping[str, NDArray], cells: int) -> None:
 
 
 def _size(arrays: Mapping[str, NDArray], name: str) -> int:
-    """Returns the number of entries of an array; raises ValueError if there is no such array."""
+    """Returns the number of entries of an array; raises ValueError if the array is missing."""
     if name not in arrays:
         raise ValueError(f"it has no '{name}'")
     return arrays[name].size

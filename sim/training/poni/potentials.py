@@ -4,7 +4,7 @@ A walk imitates an exploration: the robot follows shortest paths to places that 
 the agent's map. Some of these maps become samples. For each frontier of such a map, the area potential is the
 share of the unexplored free floor in the connected parts that it borders on, and the object potential of a goal
 category falls linearly with the geodesic distance to the nearest place where a STOP for it succeeds (Ramakrishnan et
-al. 2022, arXiv:2201.10029, where a path is masked by squares instead of looked at with a camera).
+al. 2022, arXiv:2201.10029, which masks a path by squares instead of camera views).
 """
 
 from __future__ import annotations

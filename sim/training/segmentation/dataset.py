@@ -100,7 +100,7 @@ class LabelledView:
     annotations: list[dict[str, Any]] | None = None
     """The objects in the format of COCO: boxes and masks; None: the shard has no such member."""
     normals: Float32[np.ndarray, "h w 3"] | None = None
-    """Unit surface normals in the camera's frame (x right, y down, z forward); 0 where there is no normal. None: the
+    """Unit surface normals in the camera's frame (x right, y down, z forward); 0 where a normal is missing. None: the
     shard has no such member."""
 
 
@@ -315,7 +315,7 @@ def _shuffled(views: Iterator[LabelledView], rng: np.random.Generator, buffer: i
 def pixel_counts(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
     """Returns the number of pixels of each mpcat40 category.
 
-    The number is read from the JSON note next to each shard, or counted if there is no note.
+    The number is read from the JSON note next to each shard, or counted if the note is missing.
     """
     counts = np.zeros(len(MPCAT40))
     for shard in shards:

@@ -328,7 +328,7 @@ def _normalised(
 
 
 def _mirrored(part: Tensor, flipped: Bool[Tensor, " n"]) -> Tensor:
-    """Returns images of which the flipped ones are mirrored left to right."""
+    """Returns the images; those with True in `flipped` are mirrored left to right."""
     return torch.where(flipped.view(-1, *[1] * (part.ndim - 1)), part.flip(-1), part)
 
 

@@ -36,7 +36,7 @@ class Iou:
     """The intersection over union of each class on one set of views."""
 
     by_category: dict[str, float]
-    """Values of the categories whose pixels are in the views."""
+    """Values of the categories that appear in the views."""
     goals: float
     """Mean over the goal categories in the views (mIoU)."""
     everything: float

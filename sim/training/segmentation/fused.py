@@ -42,7 +42,7 @@ class FusedViews:
         depth_m: Float32[np.ndarray, "h w"],
         camera: CameraModel,
     ) -> None:
-        """Adds one view. A view whose record has no pose is left out.
+        """Adds one view. A view without a pose in its record is left out.
 
         Args:
             record: the record of the view, with `house` and `pose`.

@@ -41,7 +41,7 @@ class Recipe:
     average: float = 0.9998
     """Decay per step of the exponential average of the weights; less in the first steps."""
     checkpoints: int = 3
-    """Number of evaluations whose averaged weights are averaged once more: the network that is evaluated and saved."""
+    """The averaged weights of this many evaluations are averaged once more: that network is evaluated and saved."""
     checkpoint_share: float = 0.1
     """The evaluations that are averaged are in this last share of the steps so far."""
     object_share: float = 0.8

@@ -24,7 +24,7 @@ IGNORED = -100
 SMALL_SHARE, MOST_WEIGHT = 1 / 16, 4.0
 """Objects with a smaller share of the image weigh more per pixel: area^-0.5, at most this much."""
 SURFACES = np.array([MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling")])
-"""Categories whose pixels weigh 1."""
+"""Pixels of these categories weigh 1."""
 
 Sample = tuple[Float32[Tensor, "3 h w"], Float32[Tensor, "c h w"], Int64[Tensor, "h w"]]
 """Normalised colour, the normalised second input, and class channels or `IGNORED`."""

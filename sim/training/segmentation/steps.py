@@ -45,7 +45,7 @@ def pyramid_loss(
             )
             counted = torch.where(small == IGNORED, 0.0, weights[small.clamp(min=0)])
             loss = (by_pixel * own).sum() / (counted * own).sum()
-        total = total + torch.nan_to_num(loss)  # a scale whose labels are all void gives 0 / 0
+        total = total + torch.nan_to_num(loss)  # a scale with void labels only gives 0 / 0
     return total
 
 
@@ -92,7 +92,7 @@ def set_normalisation(model: nn.Module, batches: Iterable[tuple[Tensor, Tensor]]
     the network is used with: objects are larger, and other surfaces are frequent. Weights do not change.
 
     Raises:
-        ValueError: there is no batch.
+        ValueError: `batches` is empty.
     """
     layers = [layer for layer in model.modules() if isinstance(layer, nn.BatchNorm2d)]
     momenta, mode, count = [layer.momentum for layer in layers], model.training, 0

@@ -70,7 +70,7 @@ def device_of(name: str) -> torch.device:
     """Returns the device of a name; `auto` is CUDA where there is a device.
 
     Raises:
-        ConfigError: `cuda` is asked for and there is none.
+        ConfigError: `cuda` was requested, but CUDA is not available.
     """
     if name == "auto":
         return torch.device("cuda" if torch.cuda.is_available() else "cpu")

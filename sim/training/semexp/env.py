@@ -55,7 +55,7 @@ class SemExpEnv(PlanEnv):
     `Box(2)` in [-10, 10]: its sigmoid is a point of the local map, as shares of its rows and columns.
 
     ## Observations
-    A dict of float32: `geometry` and `goals` (cells, cells), whole numbers whose bits are layers; `heading` (1,) and
+    A dict of float32: `geometry` and `goals` (cells, cells), whole numbers with one layer per bit; `heading` (1,) and
     `goal` (1,), indices. They are those of `stubborn.exploration.semexp_input.PolicyInput`.
 
     ## Reward, end, info
@@ -70,7 +70,7 @@ class SemExpEnv(PlanEnv):
         read: see `PlanEnv`.
 
     Raises:
-        ConfigError: there is no plan.
+        ConfigError: no plan is given.
     """
 
     def __init__(

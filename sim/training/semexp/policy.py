@@ -63,7 +63,7 @@ class SemExpPolicy(ActorCriticPolicy):
 
 def _initialise(net: SemExpNet) -> None:
     """Sets the initial weights: orthogonal, so that the features depend on the maps from the start (PyTorch's own
-    initial weights of six layers nearly do not), and a policy whose mean is near the middle of the local map."""
+    initial weights of six layers nearly do not), and a policy with its mean near the middle of the local map."""
     for layer in net.modules():
         if isinstance(layer, nn.Conv2d | nn.Linear):
             nn.init.orthogonal_(layer.weight, gain=2.0**0.5)

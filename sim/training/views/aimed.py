@@ -23,7 +23,7 @@ RARE: Mapping[str, float] = MappingProxyType(
         "fireplace": 2.0, "seating": 2.0, "gym_equipment": 1.5, "sofa": 1.0, "chest_of_drawers": 1.0, "counter": 1.0,
     }
 )  # fmt: skip
-"""Goal categories of which other views show too few objects, and how often they are drawn relative to each other."""
+"""Goal categories with too few objects in other views, and how often they are drawn relative to each other."""
 AIMS: Mapping[str, Mapping[str, float]] = MappingProxyType({"rare": RARE})
 """The objects at which a camera can be aimed."""
 DISTANCE_M = (1.0, 3.5)

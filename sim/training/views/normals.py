@@ -41,7 +41,7 @@ def surface_normals(depth_m: NDArray[np.float32], geom: NDArray[np.int32], camer
 
 
 def encode_normals(normals: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Returns normals (h, w, 3) as uint8, `round(127.5 * (n + 1))`; (0, 0, 0) where there is none."""
+    """Returns normals (h, w, 3) as uint8, `round(127.5 * (n + 1))`; (0, 0, 0) for pixels without a normal."""
     levels = np.rint(127.5 * (normals + 1.0)).astype(np.uint8)
     return np.where(normals.any(axis=-1, keepdims=True), levels, np.uint8(0))
 
@@ -49,7 +49,7 @@ def encode_normals(normals: NDArray[np.float32]) -> NDArray[np.uint8]:
 def _difference(points: NDArray[np.float32], surface: NDArray[np.int32], axis: int) -> NDArray[np.float32]:
     """Returns the difference of neighbouring points (h, w, 3) along an axis: the mean of those in the same geom.
 
-    Where the surface is curved or has an edge inside the geom, the side with the smaller step in depth counts.
+    If the surface is curved or has an edge inside the geom, the side with the smaller step in depth counts.
     """
     step = np.diff(points, axis=axis)
     same = np.diff(surface, axis=axis) == 0

@@ -92,7 +92,7 @@ def sample_views(
     cells = np.argwhere(space.largest_part())
     name = scene.world.house.name
     if len(cells) == 0:
-        raise HouseError(f"House '{name}': the robot fits nowhere, so there is no view of it.")
+        raise HouseError(f"House '{name}': the robot fits nowhere, so it cannot be viewed.")
     _start_world(scene, space, cells, rng)
     if aim is not None:
         poses = aimed_poses(scene.world, space, cells, rng, AIMS[aim])
@@ -219,4 +219,4 @@ def _start_world(scene: Scene, space: FreeSpace, cells: NDArray[np.intp], rng: n
         except EpisodeError:
             continue
         return
-    raise HouseError(f"House '{scene.world.house.name}': the robot fits at none of {MAX_TRIES} free places.")
+    raise HouseError(f"House '{scene.world.house.name}': the robot did not fit at {MAX_TRIES} free places.")

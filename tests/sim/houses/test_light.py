@@ -36,7 +36,8 @@ def test_a_bare_grey_room_is_bright_at_every_heading(tmp_path: Path) -> None:
     ]
     scene.close()
     assert min(levels) >= 60.0
-    assert house.notes == ("Added light: the scene has none of its own.",)
+    (note,) = house.notes
+    assert note.startswith("Added light")
 
 
 @pytest.mark.parametrize(

@@ -126,7 +126,7 @@ def test_a_label_rule_that_never_ends_is_stopped(tmp_path: Path, monkeypatch: py
 
 @pytest.mark.parametrize(
     ("rule", "message"),
-    [("(" * 900, wording.NOT_A_REGULAR), ("a{1,99999}" * 150, "1500 letters"), ("[", wording.NOT_A_REGULAR)],
+    [("(" * 900, wording.NOT_A_REGULAR), ("a{1,99999}" * 150, "1500 characters"), ("[", wording.NOT_A_REGULAR)],
 )
 def test_an_invalid_or_too_long_label_rule_is_refused(rule: str, message: str, tmp_path: Path) -> None:
     (tmp_path / "house.xml").write_text(house(box()))

@@ -123,7 +123,7 @@ def test_a_control_character_in_the_name_of_an_included_file_is_refused(name: st
     file = write(tmp_path, f'<include file="{name}"/>')
     for harmless in ("a b.xml", "ab.xml"):  # expat reads a line break as a space
         (file.parent / "parts" / harmless).write_text(SOFA)
-    with pytest.raises(HouseError, match=wording.WHOSE_NAME_HOLDS_A_CONTROL_CHARACTER):
+    with pytest.raises(HouseError, match=wording.CONTAINS_A_CONTROL_CHARACTER):
         load_house(file)
 
 

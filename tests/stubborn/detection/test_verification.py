@@ -171,7 +171,7 @@ def test_a_kind_without_parameters_gets_those_of_the_shipped_network():
     assert isinstance(other, FittedVerifier)
     features = Features(12, 9.0, 0.9, 0.2)
     assert ours.probability("chair", features) == other.probability("chair", features)
-    with pytest.raises(ConfigError, match=wording.KIND_IS_A_NAME_OF_LETTERS):
+    with pytest.raises(ConfigError, match=wording.KIND_MUST_CONSIST_OF):
         SegmenterSpec(kind="../rednet")
 
 

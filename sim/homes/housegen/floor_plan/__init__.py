@@ -5,7 +5,7 @@ rooms (living room, kitchen, dining room) may form a block at one end of the mai
 starts in a gap in one of the rows of the main wing. The other kinds are `greatroom` (great_room.py: zones of one room
 behind partial walls), `split` (split_plan.py: public rooms between two wings), `loop` (chain_plan.py and ring_plan.py:
 rooms or corridors lead round a core) and `estate` (ring_plan.py: a ring round a core, with wings). A plan is drawn in a
-frame whose main corridor runs along +x, then mirrored and turned.
+frame with the main corridor along +x, then mirrored and turned.
 """
 
 from __future__ import annotations

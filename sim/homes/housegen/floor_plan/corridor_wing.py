@@ -44,7 +44,7 @@ def add_wing(
     join: JoinKind = "open",
     end_room: bool = False,
 ) -> int:
-    """Adds a wing whose corridor leaves the room `owner`; returns the index of the corridor.
+    """Adds a wing with a corridor that leaves the room `owner`; returns the index of the corridor.
 
     Raises:
         PlanError: no rooms fit its rows.

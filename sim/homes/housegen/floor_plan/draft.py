@@ -62,7 +62,7 @@ def check_draft(draft: Draft, area_m2: float) -> None:
 
 
 def _gap_m(a: Rect, b: Rect) -> float:
-    """Returns the width of the gap between two rectangles whose sides face each other, else 0."""
+    """Returns the width of the gap between two rectangles with sides that face each other, else 0."""
     dx, dy = max(a.x0 - b.x1, b.x0 - a.x1), max(a.y0 - b.y1, b.y0 - a.y1)
     return max(dx, dy) if min(dx, dy) < -0.01 else 0.0
 

@@ -56,7 +56,7 @@ def draw_floor_plan(
 def _draw_new_kind(
     rng: np.random.Generator, kind: PlanKind, area_m2: float, required: Sequence[str], corridor_m: float
 ) -> tuple[Draft, int]:
-    """Returns a draft of a kind whose rooms are not all in rows along corridors, and the room with the front door.
+    """Returns a draft of a kind with rooms outside of the rows along corridors, and the room with the front door.
 
     Raises:
         PlanError: the rooms do not fit, or one that every home needs, or that is wanted, is missing.
@@ -130,7 +130,7 @@ def _add_main_wing(
 def _add_branch(
     rng: np.random.Generator, draft: Draft, hall: int, gap: Rect, rows: TwoRows, corridor_m: float, scale: float
 ) -> None:
-    """Adds a wing whose corridor leaves the main one through `gap` and continues behind the row."""
+    """Adds a wing with a corridor that leaves the main one through `gap` and continues behind the row."""
     left, right = (Row(tuple(row), round(draw_length_m(rng, 3.4, 4.4) * _depth_scale(scale), 1), scale) for row in rows)
     length_m = draw_common_length_m(rng, left, right, corridor_m)
     up = gap.y0 > 0.0

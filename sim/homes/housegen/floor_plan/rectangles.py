@@ -16,7 +16,7 @@ SIDES: tuple[Side, ...] = ("east", "north", "west", "south")
 
 OPPOSITE: dict[Side, Side] = {"east": "west", "west": "east", "north": "south", "south": "north"}
 INWARD_YAW_RAD: dict[Side, float] = {"east": math.pi, "north": -math.pi / 2, "west": 0.0, "south": math.pi / 2}
-"""Heading of an item whose back is at a side and whose front points into the rectangle."""
+"""Heading of an item with its back at a side and its front towards the inside of the rectangle."""
 
 Interval = tuple[float, float]
 EPS_M = 1e-6
@@ -101,7 +101,7 @@ class Rect:
 
 
 def frame_around(outer: Rect, hole: Rect) -> list[Rect]:
-    """Returns the rectangles, none of them empty, that cover `outer` without `hole`; two have its whole depth."""
+    """Returns the non-empty rectangles that cover `outer` without `hole`; two of them are as deep as `outer`."""
     west, east = Rect(outer.x0, outer.y0, hole.x0, outer.y1), Rect(hole.x1, outer.y0, outer.x1, outer.y1)
     south, north = Rect(hole.x0, outer.y0, hole.x1, hole.y0), Rect(hole.x0, hole.y1, hole.x1, outer.y1)
     return [rect for rect in (west, east, south, north) if rect.width_m > EPS_M and rect.depth_m > EPS_M]

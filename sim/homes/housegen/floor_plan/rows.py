@@ -54,7 +54,7 @@ def draw_common_length_m(rng: np.random.Generator, upper: Row, lower: Row, corri
     """Returns a corridor length for which both rows can be filled.
 
     Raises:
-        PlanError: there is none.
+        PlanError: no length fits both rows.
     """
     ranges = [row.widths_m(corridor_m).sum(axis=0) for row in (upper, lower) if row.columns]
     low, high = max(r[0] for r in ranges), min(r[2] for r in ranges)

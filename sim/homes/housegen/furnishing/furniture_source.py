@@ -34,7 +34,7 @@ SETS: Mapping[tuple[str, str | None], int] = MappingProxyType(
 """Category and use of items that belong to a set, and the number of designs in a home: the chairs round a table, the
 stools at a kitchen island, a pair of nightstands, the units of a kitchen, ceiling lamps, curtains and blinds."""
 _ONE_STYLE = frozenset(("counter",))
-"""Categories of which a home has one style only, in any size."""
+"""Categories with only one style in a home, in any size."""
 VARIANT_SIZE = 0.12
 """Share by which one side of an item differs when its size makes it another design."""
 _VARIANT_DRAWS = 8
@@ -48,7 +48,7 @@ REQUIRED = frozenset(
     ("bed", "cabinet", "chest_of_drawers", "shelving", "sink", "toilet", "shower", "bathtub", "appliances", "table",
      "gym_equipment", "sofa", "fireplace")
 )  # fmt: skip
-"""Categories of which a third item of a design is made where no variant was found; rooms go without the others."""
+"""In these categories a third item of a design is made if no variant was found; rooms go without the others."""
 
 Design = tuple[str, str, frozenset[tuple[Look, str]], tuple[float, float, float]]
 """Category, style, looks and size of an item. A look with a palette comes with the name of its mesh, which has the
@@ -144,8 +144,8 @@ class FurnitureSource:
     def _single(self, category: str, use: str | None, fresh: bool, hints: Mapping[str, Any]) -> Item | None:
         """Returns an item of the style that the home has least often.
 
-        It is no third item of one design, unless the category is in `REQUIRED` and no variant was found; None where
-        there is none.
+        A third item of one design is returned only if the category is in `REQUIRED` and no variant was found; None if
+        no item is possible.
         """
         key = repr((category, use, sorted(hints.items())))
         style = self._least_used(category, use, key, fresh)

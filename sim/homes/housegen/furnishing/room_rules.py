@@ -45,7 +45,7 @@ def _bedroom(layout: RoomLayout, source: FurnitureSource) -> None:
 
 
 def _seen_from(bed: Placement | None) -> list[Side] | None:
-    """Returns the walls that are seen from a bed, the opposite one first; None where there is none at a wall."""
+    """Returns the walls that are seen from a bed, the opposite one first; None if the bed is not at a wall."""
     if bed is None or bed.side is None:
         return None
     facing = OPPOSITE[bed.side]

@@ -124,7 +124,7 @@ def tub(w: Workbench) -> None:
 
 
 def channel_chair(w: Workbench) -> None:
-    """Builds a round easy chair whose back is a half ring of upright padded rolls, on a plinth."""
+    """Builds a round easy chair on a plinth; its back is a half ring of upright padded rolls."""
     r, height, seat = 0.5 * w.width(0.70, 0.80), w.length(0.70, 0.80), w.length(0.40, 0.44)
     cloth = w.look("fabric")
     w.cylinder((0.0, 0.0), (0.0, 0.06), r - 0.10, w.look("dark"))

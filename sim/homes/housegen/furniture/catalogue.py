@@ -35,7 +35,7 @@ class Style:
     name: str
     """Unique within the category."""
     pool: Pool
-    """The pool whose houses show the style."""
+    """The style appears in the houses of this pool."""
     build: Callable[[Workbench], None]
     """Puts the geoms of one item on the workbench."""
     uses: tuple[str, ...] = ()

@@ -30,7 +30,7 @@ def _drawer_column(
         first: height at which the lowest drawer begins.
         rows: smallest and largest number of drawers.
         metal: material of the handles.
-        handles: kinds of handles of which one is drawn.
+        handles: kinds of handles to draw one from.
     """
     depth, width, height = size
     look = parts.wood_look(w)

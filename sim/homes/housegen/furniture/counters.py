@@ -194,7 +194,7 @@ def curtained_run(w: Workbench) -> None:
 
 
 def waterfall(w: Workbench) -> None:
-    """Builds an island of stone slabs whose top turns down at both ends, with dark fronts set back between them."""
+    """Builds an island of stone slabs: the top turns down at both ends, with dark fronts set back between them."""
     width, depth, height, stone = w.width(1.40, 2.40), w.depth(0.85, 1.05), w.height(0.90, 0.94), w.look("stone")
     x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.06, height), stone)

@@ -103,4 +103,4 @@ class Item:
     walk_over: bool = False
     """True: flat on the floor and without collisions; other objects may stand on it (a rug, a yoga mat)."""
     collision_geoms: Sequence[Geom] = field(default_factory=tuple)
-    """Geoms that collide and are not rendered, for an item of which no other geom is solid (an imported model)."""
+    """Geoms that collide and are not rendered, for an item without other solid geoms (an imported model)."""

@@ -15,7 +15,7 @@ from sim.homes.housegen.furniture.workbench import Workbench
 
 
 def frame(w: Workbench, width: float, height: float, border: float, thick: float, look: Look) -> None:
-    """Adds four mouldings around a rectangle whose lower edge is at z = 0 on the wall."""
+    """Adds four mouldings around a rectangle on the wall; its lower edge is at z = 0."""
     y = 0.5 * width
     w.box((0.0, thick), (-y, y), (0.0, border), look)
     w.box((0.0, thick), (-y, y), (height - border, height), look)

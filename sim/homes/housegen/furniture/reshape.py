@@ -84,7 +84,7 @@ def fitted(item: Item, size_m: tuple[float, float, float]) -> Item:
 
 
 def _scaled(item: Item, x: float, y: float, z: float) -> Item:
-    """Returns an item whose depth, width and height are multiplied by factors, with its children."""
+    """Returns an item and its children with depth, width and height multiplied by factors."""
     knots = max(item.size_m[2], 1e-3) * np.array([0.0, 0.3, 0.6, 1.0])
     warp = Warp(x, y, knots, z * knots, mirrored=False)
     children = []
@@ -169,7 +169,7 @@ def _geom(geom: Geom, warp: Warp) -> Geom:
 def _frame(
     rotation: NDArray[np.float64], axes: NDArray[np.float64], main: int, mirror: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Returns the rotation nearest to the old one whose axis `main` has the direction of its image."""
+    """Returns the rotation nearest to the old one that turns axis `main` into the direction of its image."""
     old = mirror @ rotation @ mirror
     along = axes[main] / np.linalg.norm(axes[main])
     if along @ old[:, main] < 0.0:

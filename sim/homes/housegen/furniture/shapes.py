@@ -35,7 +35,7 @@ class Ring:
 
 @dataclass(frozen=True)
 class Leaf:
-    """A pointed leaf from base to tip, `width_m` wide, whose middle is raised by `arch_m`."""
+    """A pointed leaf from base to tip, `width_m` wide; its middle is raised by `arch_m`."""
 
     base_m: tuple[float, float, float]
     tip_m: tuple[float, float, float]
@@ -44,7 +44,7 @@ class Leaf:
 
 
 def named_mesh(kind: str, vertices_m: ArrayLike, faces: ArrayLike = ()) -> MeshShape:
-    """Returns a mesh whose name contains a hash of its content.
+    """Returns a mesh; its name contains a hash of its content.
 
     Raises:
         ValueError: more than `MAX_VERTICES` vertices.

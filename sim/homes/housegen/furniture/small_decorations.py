@@ -125,7 +125,7 @@ def frames(w: Workbench) -> None:
 
 
 def key_bowl(w: Workbench) -> None:
-    """Builds a bowl for keys, and letters beside it."""
+    """Builds a bowl for keys with mail next to it."""
     m = PaletteMesh()
     m.cup((0.0, 0.0), (0.0, 0.05), 0.085, w.choice((*ACCENTS, WOOD)), sides=8)
     m.box((-0.03, 0.03), (-0.02, 0.0), (0.008, 0.016), METAL)

@@ -43,7 +43,7 @@ def _toilet(
     w: Workbench, x: tuple[float, float], half: float, seat: float, look: Look, cover: Look, *, profile: Profile,
     open_: bool, seat_x: float, low: float = 0.0, power: float = 2.3,
 ) -> None:  # fmt: skip
-    """Adds a pan with its seat, whose top is at the height `seat`, and its lid, which is up if `open_`.
+    """Adds a pan with its seat and its lid: the top of the seat is at the height `seat`, the lid is up if `open_`.
 
     Args:
         w: the workbench.
@@ -147,7 +147,7 @@ def square_modern(w: Workbench) -> None:
 
 
 def one_piece(w: Workbench) -> None:
-    """Builds a skirted toilet whose tank and pan form one curve."""
+    """Builds a skirted toilet: its tank and pan form one curve."""
     white, half, seat = w.look("ceramic"), 0.5 * w.length(0.37, 0.41), w.length(0.40, 0.43)
     x0 = -0.35
     _toilet(w, (x0 + 0.01, 0.345), half, seat, white, white, profile=SKIRTED, open_=w.chance(0.5), seat_x=x0 + 0.21)

@@ -61,7 +61,7 @@ def _shoe_boxes(w: Workbench, x: float, y: float, z: float, room: float) -> None
 
 
 def _shoes(w: Workbench, x: float, y: float, z: float) -> None:
-    """Adds a pair of shoes whose toes point to the front."""
+    """Adds a pair of shoes with their toes to the front."""
     look = w.new_look(w.choice(("leather", "bright", "dark")))
     for side in BOTH_SIDES:
         w.mesh(frustum((0.26, 0.09), (0.10, 0.07), 0.09, (-0.07, 0.0)), (x, y + 0.055 * side, z), look, solid=False)

@@ -1,6 +1,6 @@
 """The workbench on which a style builds an item: it draws lengths and looks and collects geoms.
 
-A style is a function that adds geoms to a `Workbench`, in any frame whose +x is the front; `finish` moves the origin to
+A style is a function that adds geoms to a `Workbench`, in any frame with +x to the front; `finish` moves the origin to
 the place that `item.py` defines. All lengths are in metres. Boxes are given by their ranges, `(low, high)` along each
 axis.
 """
@@ -211,7 +211,7 @@ class Workbench:
 
 
 def _between(a: Point, b: Point) -> tuple[Point, float, NDArray]:
-    """Returns middle, half length and rotation of a geom whose local z runs from a to b and whose local y is level."""
+    """Returns middle, half length and rotation of a geom: its local z runs from a to b, its local y is level."""
     start, end = np.asarray(a, float), np.asarray(b, float)
     along = end - start
     length = float(np.linalg.norm(along))

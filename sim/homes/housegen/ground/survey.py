@@ -22,7 +22,7 @@ class RoomFloor:
     """The floor of one room."""
 
     body: str
-    """Name of its body, whose frame is the world's, `z_m` higher."""
+    """Name of its body; the body's frame is the world's, `z_m` higher."""
     kind: str
     """Kind of the room, for example `bathroom`."""
     texture: str
@@ -76,7 +76,7 @@ class Fixture:
 
 @dataclass(frozen=True)
 class Survey:
-    """What the ground of a house depends on, in the order of the file."""
+    """The parts of a house that its ground depends on, in the order of the file."""
 
     rooms: tuple[RoomFloor, ...]
     doorways: tuple[Doorway, ...]
@@ -85,7 +85,7 @@ class Survey:
 
 
 def survey(spec: mujoco.MjSpec) -> Survey:
-    """Returns the survey of a house of `sim.homes.housegen.mjcf.builder`, whose ground is still level."""
+    """Returns the survey of a house of `sim.homes.housegen.mjcf.builder` while its ground is still level."""
     bodies = list(spec.worldbody.bodies)
     floors = [body for body in bodies if body.name.startswith("floor_")]
     rooms = _rooms(spec, [body for body in floors if _is_room_floor(body)])

@@ -143,7 +143,7 @@ class FloorMap:
         return self._fields[room.name]
 
     def _random_cell(self, rng: np.random.Generator, room: Room) -> tuple[int, int] | None:
-        """Returns a random cell of a room on the connected floor; None where there is none."""
+        """Returns a random cell of a room on the connected floor; None if the room has no such cell."""
         cells = self._cells_of(room)
         if not len(cells):
             return None

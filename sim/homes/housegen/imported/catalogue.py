@@ -41,7 +41,7 @@ class ImportedFurniture:
         """Returns the shipped catalogue with the models in the houses of a pool.
 
         Models of `train` are added to our own styles. Models of `transfer`, and with `alone` all, replace the styles of
-        the uses that they have, so that a house shows our own design only where there is no model.
+        the uses that they have, so that a house shows our own design only where a model is missing.
 
         Raises:
             ConfigError: the folder is missing or broken.

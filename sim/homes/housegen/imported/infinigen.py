@@ -61,7 +61,7 @@ class Generator:
 
     @property
     def name(self) -> str:
-        """The beginning of the names of its files, of letters only."""
+        """The beginning of the names of its files, A-Z and a-z only."""
         return self.title or self.factory.rpartition(".")[2].removesuffix("Factory")
 
 
@@ -104,8 +104,8 @@ GENERATORS: tuple[Generator, ...] = (
     Generator("lamp.FloorLampFactory", "lighting", ("floor",), two_sided=True),
     Generator("lamp.DeskLampFactory", "lighting", ("table",), "top", two_sided=True),
 )  # fmt: skip
-"""The generators whose assets rooms ask for. Infinigen has none for chests of drawers, showers, seating, fireplaces and
-training machines, and none whose pictures or hanging towels survive the loss of patterns."""
+"""The generators of assets that rooms ask for. Infinigen lacks chests of drawers, showers, seating, fireplaces and
+training machines, and its pictures and hanging towels do not survive the loss of patterns."""
 
 
 @dataclass(frozen=True)
@@ -190,7 +190,7 @@ def _row(generator: Generator, extent_m: tuple[float, float, float], file: str) 
 
 
 def _before(record: Path) -> Asset | None:
-    """Returns the record of an asset that was made before; None where there is none of this version."""
+    """Returns the record of an asset that was made before; None if it was not made by this version."""
     if not record.is_file():
         return None
     asset = read_json(record, Asset, what="Record of an asset")

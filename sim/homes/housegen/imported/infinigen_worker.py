@@ -118,7 +118,7 @@ def reduce_triangles(bpy: Any, whole: Any, most: int) -> None:
 
 
 def turn_outwards(whole: Any) -> None:
-    """Turns the triangles of each connected piece outwards: some generators make tops whose inside is shown."""
+    """Turns the triangles of each connected piece outwards: some generators make tops that show their inside."""
     bmesh = importlib.import_module("bmesh")
     mesh = bmesh.new()
     mesh.from_mesh(whole.data)

@@ -17,7 +17,7 @@ Size = tuple[float, float, float]
 """Depth along x, width along y and height along z, in metres."""
 
 INDOORS = frozenset(("Bathroom", "Bedroom", "Kitchen", "Lights", "Living room", "Miscellaneous", "Office", ""))
-"""Groups of a source whose models a rule may match unless the rule names groups itself."""
+"""A rule may match the models of these groups of a source unless the rule names groups itself."""
 
 
 @dataclass(frozen=True)

@@ -68,7 +68,7 @@ class Shape:
     parts: tuple[Part, ...]
     boxes_m: NDArray[np.float64]  # (n, 6)
     top_m: tuple[float, ...]
-    """Lowest x, y, highest x, y and height of the top; empty where there is none."""
+    """Lowest x, y, highest x, y and height of the top; empty if the model has no top."""
 
 
 def import_model(entry: Entry) -> tuple[Model, Shape]:
@@ -106,7 +106,7 @@ def key_of(ident: str) -> str:
 def with_splits(models: Sequence[Model], listed: Mapping[str, str] | None = None) -> list[Model]:
     """Returns the models with their splits, which depend on names only.
 
-    A model whose source is in the list of the repository is for the transfer test if it is in the list. Others are
+    If the repository lists the source of a model, the model is for the transfer test if it is in that list. Others are
     drawn by a hash of their names, and a category of `MIN_FOR_TRANSFER` models or more has at least one.
     """
     listed = transfer_list() if listed is None else listed
@@ -180,7 +180,7 @@ def _shape_of(arrays: Mapping[str, NDArray[Any]]) -> Shape:
 
 
 def _numbers(arrays: Mapping[str, NDArray[Any]], name: str, columns: int) -> NDArray[Any]:
-    """Returns an array of numbers, (n, columns); raises ValueError where there is none."""
+    """Returns an array of numbers, (n, columns); raises ValueError if it is missing."""
     array = arrays.get(name)
     if array is None:
         raise ValueError(f"it has no '{name}'")
@@ -203,7 +203,7 @@ def read_index(folder: Path) -> list[Model]:
     """Returns the models of a folder that `stubborn import furniture` made.
 
     Raises:
-        ConfigError: there is no such folder, or its `models.json` is broken.
+        ConfigError: the folder does not exist, or its `models.json` is broken.
     """
     file = folder / INDEX
     if not file.is_file():
@@ -223,7 +223,7 @@ def sha256_of_models(folder: Path) -> str:
     """Returns a hash of the models of a folder.
 
     Raises:
-        ConfigError: there is no such folder.
+        ConfigError: the folder does not exist.
     """
     read_index(folder)
     return sha256_of(folder / INDEX, what="Index of models")

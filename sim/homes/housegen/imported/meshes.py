@@ -52,7 +52,7 @@ def read_parts(entry: Entry) -> tuple[Part, ...]:
     trimesh = library("trimesh")
     kind = posixpath.splitext(entry.file)[1].lower().lstrip(".")
     if kind not in _FORMATS:
-        raise Skipped(f"its format '{kind}' is none of {', '.join(_FORMATS)}")
+        raise Skipped(f"unsupported format '{kind}'; use {', '.join(_FORMATS)}")
     content = entry.read(entry.file)
     files = resolver(trimesh, entry.read, posixpath.dirname(entry.file))
     try:
@@ -63,7 +63,7 @@ def read_parts(entry: Entry) -> tuple[Part, ...]:
     if sum(len(part.faces) for part in raw) > MAX_SOURCE_TRIANGLES:
         raise Skipped(f"it has more than {MAX_SOURCE_TRIANGLES} triangles")
     if not raw or not all(np.isfinite(part.vertices_m).all() for part in raw):
-        raise Skipped("its mesh has no triangles, or a vertex that is no number")
+        raise Skipped("its mesh has no triangles, or a vertex that is not finite")
     return _joined(_fitted([part for part in raw if part.rgba[3] > 0.02], entry))
 
 

@@ -64,7 +64,7 @@ def _pieces(part: Part) -> list[Part]:
 def _simplified(piece: Part, faces_wanted: int) -> Part:
     """Returns a piece with about `wanted` triangles, or more where it would lose its extent.
 
-    The library fails on some pieces that are no surface of a body; their vertices are joined on a grid instead.
+    The library fails on some pieces that are not the surface of a body; their vertices are joined on a grid instead.
     """
     simplify = library("fast_simplification").simplify
     if faces_wanted >= len(piece.faces):

@@ -12,7 +12,7 @@ from sim.homes.housegen.imported.meshes import Part
 
 MAX_BOXES = 12
 MIN_SAVED_M3, MIN_SAVED_SHARE = 0.002, 0.015
-"""A box is divided if that saves so much volume, and this share of the volume of the box around the model."""
+"""A box is divided if that saves at least this volume, and this share of the volume of the box around the model."""
 CUTS, AHEAD = 24, 2
 """Cells of the grid along an axis, and every how many of them a division is tried that pays by later ones only."""
 POINTS = 6_000

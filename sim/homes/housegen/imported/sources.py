@@ -61,7 +61,7 @@ class Entry:
     read: Callable[[str], bytes] = field(repr=False)
     """Returns the content of a file by its path in the source; raises Skipped."""
     rotation: NDArray[np.float64] = field(default_factory=lambda: np.eye(3))
-    """Applied to the model's vertices, whose y axis then points up and whose z axis points to the front."""
+    """Applied to the model's vertices; then y points up and z points to the front."""
 
 
 Found = Entry | tuple[str, str]
@@ -75,11 +75,11 @@ def read_source(folder: Path) -> Iterator[Found]:
         ConfigError: the folder has neither, or its table cannot be read.
     """
     if not folder.is_dir():
-        raise ConfigError(f"--source '{folder}' is no folder.")
+        raise ConfigError(f"--source '{folder}' must be an existing folder.")
     catalogues = sorted(folder.glob("*.sh3f"))
     table = next((folder / name for name in TABLES if (folder / name).is_file()), None)
     if not catalogues and table is None:
-        raise ConfigError(f"--source '{folder}' has no .sh3f file and none of: {', '.join(TABLES)}.")
+        raise ConfigError(f"--source '{folder}' must have a .sh3f file or one of: {', '.join(TABLES)}.")
     for catalogue in catalogues:
         yield from _sweet_home(catalogue)
     if table is not None:
@@ -146,7 +146,7 @@ def _read_zip(archive: zipfile.ZipFile, path: str) -> bytes:
 
 
 def _unescaped(text: str) -> str:
-    """Returns a value of a properties file, in which other letters are written as \\uXXXX."""
+    """Returns a value of a properties file, in which characters outside of ASCII are written as \\uXXXX."""
     return re.sub(r"\\u([0-9a-fA-F]{4})", lambda match: chr(int(match[1], 16)), text)
 
 

@@ -24,4 +24,4 @@ TRANSFER_TEST: tuple[Recipe, ...] = tuple(
     Recipe(f"transfer_{n:02d}", FIRST_SEED + n, "heldout", kind, area_m2, rooms, movable=False)
     for n, (kind, area_m2, rooms) in enumerate(_SHAPES)
 )
-"""Recipes of its houses. Where there is no model, they have held-out styles, which training has not seen either."""
+"""Recipes of its houses. Where a model is missing, they have held-out styles, which training has not seen either."""

@@ -24,7 +24,7 @@ def union(a: Box, b: Box) -> Box:
 
 
 def overlap(a: Box, b: Box) -> Box:
-    """Returns the box that two boxes share; one of its sides is 0 where they share none."""
+    """Returns the box that two boxes share; one of its sides is 0 if they do not overlap."""
     x, y, z = max(a[0], b[0]), max(a[1], b[1]), max(a[2], b[2])
     return x, y, z, max(x, min(a[3], b[3])), max(y, min(a[4], b[4])), max(z, min(a[5], b[5]))
 

@@ -117,7 +117,7 @@ class HouseBuilder:
         )  # fmt: skip
 
     def add_room(self, room: RoomBox, height_m: float, z_m: float = 0.0) -> None:
-        """Adds the site that marks a room, whose floor is at `z_m`."""
+        """Adds the site that marks a room with its floor at `z_m`."""
         x, y = room.rect.centre
         self._spec.worldbody.add_site(
             name=room.name, type=mujoco.mjtGeom.mjGEOM_BOX, group=4,

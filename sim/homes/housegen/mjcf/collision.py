@@ -82,7 +82,7 @@ def _cylinder(block: Box, plate: Geom) -> Geom | None:
 
 
 def _best_pair(parts: Sequence[_Part], item: Item, filled: _Filled) -> tuple[int, int] | None:
-    """Returns the two parts whose common box adds the least volume; None where every box would add too much.
+    """Returns the two parts that add the least volume if they share one box; None if every pair adds too much.
 
     `filled` keeps the volumes that were computed before.
     """

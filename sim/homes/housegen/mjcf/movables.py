@@ -42,7 +42,7 @@ GYM_BALL_KG, MEDICINE_BALL_KG, LARGE_BALL_M = 1.2, 3.0, 0.2
 DUMBBELL_KG, ROLLER_KG = 3.0, 0.6
 _ON_FLOOR_M = 0.02
 _SLENDER = 1.8
-"""A cylinder whose half length is at least this many radii is a rod."""
+"""A cylinder is a rod if its half length is at least this many radii."""
 _OCTAGON = 0.96
 """Half width of the octagon that replaces a circle of radius 1: it is as much too wide as too narrow."""
 
@@ -52,7 +52,7 @@ class Movable:
     """A body with a free joint, in the item's frame."""
 
     item: Item
-    """Its appearance: none of its geoms is solid."""
+    """Its appearance; its geoms do not collide."""
     collision_geoms: tuple[Geom, ...]
     """Geoms that collide and are not rendered."""
     mass_kg: float
@@ -153,7 +153,7 @@ def _layers(geom: Geom, mesh: MeshShape) -> list[Geom]:
 
 
 def _octagon(geom: Geom, at: tuple[float, float, float], half: tuple[float, float, float]) -> list[Geom]:
-    """Returns four boxes through the axis whose union is an octagonal prism with half sizes `half`."""
+    """Returns four boxes through the axis; their union is an octagonal prism with half sizes `half`."""
     rx, ry, hz = half
     long, short = _OCTAGON, _OCTAGON * math.tan(math.pi / 8)
     boxes = [
@@ -191,7 +191,7 @@ def _mass_properties(
 ) -> tuple[tuple[float, float, float], tuple[float, float, float, float, float, float]]:
     """Returns centre of mass and inertia of a mass that is spread over the surfaces of the solid geoms.
 
-    Furniture is made of boards, tubes and shells, whose mass depends on their area rather than on their volume. The
+    Furniture is made of boards, tubes and shells: their mass depends on their area rather than on their volume. The
     midpoints of a triangle's edges, each with a third of its mass, have its exact first and second moments.
     """
     points, weights = [], []
@@ -247,7 +247,7 @@ def _light_kg(part: Sequence[Geom]) -> float | None:
 
 
 def _separate(geoms: Sequence[Geom]) -> list[list[Geom]]:
-    """Returns groups of geoms whose boxes touch, in the order of their first geoms."""
+    """Returns groups of geoms with boxes that touch, in the order of their first geoms."""
     boxes = [geom_bounds(geom) for geom in geoms]
     group = list(range(len(geoms)))
     for i, (low, high) in enumerate(boxes):

@@ -29,7 +29,7 @@ def facets(geom: Geom) -> Facets:
     """Returns the surface of a geom.
 
     Raises:
-        ValueError: its shape is none of `item.Shape`.
+        ValueError: its shape is not one of `item.Shape`.
     """
     if geom.mesh is not None:
         return _mesh(geom.mesh.vertices_m, geom.mesh.faces)
@@ -127,4 +127,4 @@ _BOX_FACES = np.array(
     ],
     dtype=np.int32,
 )
-"""Triangles of a box whose corners are in the order of `_SIGNS`."""
+"""Triangles of a box; its corners are in the order of `_SIGNS`."""

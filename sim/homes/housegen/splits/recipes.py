@@ -1,7 +1,7 @@
 """Recipes of the houses of the shipped splits (seed, pool, kind of plan, size), and the version of these splits.
 
-The tables here decide what is generated: `SPLITS` for val, test, large, hazards and the test splits of the last two,
-whose houses use the held-out pool and are shipped as files, and `train_recipe` for train. Train houses are not shipped
+The tables here decide what is generated. `SPLITS` is for val, test, large, hazards and the test splits of the last two:
+their houses use the held-out pool and are shipped as files. `train_recipe` is for train. Train houses are not shipped
 as files: `sim.episodes.house_list` reads and writes their recipes and checksums (`train/houses.json`) and
 generates them on first use. Seeds of splits differ.
 """

@@ -145,7 +145,7 @@ def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening, othe
         return opening
     at_start = opening.span[0] - lo < hi - opening.span[1]
     gap_m = opening.span[0] - lo if at_start else hi - opening.span[1]
-    # A leaf opens at most as far as the wall next to it; without such a wall it may open a little further.
+    # The wall next to a leaf limits its angle; without such a wall the leaf may open a little further.
     widest = 92.0 if gap_m < 0.6 else 110.0
     angle = np.deg2rad(round(float(rng.uniform(78.0, widest))))
     ajar = replace(opening, leaf=Leaf(room, at_start, float(angle)))

@@ -242,7 +242,7 @@ def look(material: str, rng: np.random.Generator, pool: Pool) -> Look:
     """Returns a random look of a material from the pool.
 
     Raises:
-        ConfigError: there is no such material.
+        ConfigError: the material is unknown.
     """
     if material not in MATERIALS:
         raise ConfigError(f"No material '{material}'. Available: {', '.join(sorted(MATERIALS))}.")
@@ -280,7 +280,7 @@ def texture_file(name: str) -> str:
     """Returns the file name of a texture inside assets/mjcf_houses/textures/.
 
     Raises:
-        ConfigError: there is no such texture.
+        ConfigError: the texture is unknown.
     """
     if name not in TEXTURES:
         raise ConfigError(f"No texture '{name}'. Available: {', '.join(sorted(TEXTURES))}.")

@@ -87,7 +87,7 @@ _SMALL_HELDOUT = ("f6efe4", "dfd3da", "1d2128", "b9b1a4", "a9743f", "43302b", "3
 """Hexadecimal RGB of the columns of palettes that differ little: white, cream, dark, metal, wood, brown; leaves, glass,
 cardboard, leather."""
 _UPRIGHT = ("brick", "rubble", "tiles", "paper", "motif", "outside", "reflection")
-"""Names of the functions whose pictures are upright on walls."""
+"""Names of functions; the pictures that they draw are upright on walls."""
 
 
 def _entry(name: str, pool: Pool, tile_m: float, draw: Callable[..., Image], seed: int, **options: object) -> Texture:

@@ -285,7 +285,7 @@ def test_a_row_must_not_name_a_file_outside_of_the_folder(tmp_path: Path) -> Non
 
 
 def test_a_folder_without_models_or_with_a_broken_table_is_one_sentence(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"no .sh3f file"):
+    with pytest.raises(ConfigError, match=r"\.sh3f file"):
         list(read_source(tmp_path))
     (tmp_path / "models.toml").write_text("[[model]\n")
     with pytest.raises(ConfigError, match=wording.CANNOT_BE_READ):

@@ -154,7 +154,7 @@ def test_broken_kitchens_are_one_line_with_their_file(tmp_path: Path) -> None:
             import_kitchen(other, root=tmp_path)
         assert str(caught.value).startswith(f"Kitchen '{other}'")
         assert "\n" not in str(caught.value)
-    with pytest.raises(HouseError, match=wording.THERE_IS_NO_SUCH_FILE):
+    with pytest.raises(HouseError, match=wording.DOES_NOT_EXIST):
         import_kitchen(file.with_name("none.xml"))
 
 

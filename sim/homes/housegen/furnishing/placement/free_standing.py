@@ -1,4 +1,4 @@
-"""Positions away from the walls, for items whose seats must be usable: dining tables, kitchen islands."""
+"""Positions away from the walls, for items with seats that must be usable: dining tables, kitchen islands."""
 
 from __future__ import annotations
 

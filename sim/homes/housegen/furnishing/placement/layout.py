@@ -89,7 +89,7 @@ class RoomLayout:
         return any(rect.overlaps(zone, slack_m) for zone in self._keep_out)
 
     def in_reserved_zone(self, rect: Rect, *, ignore: Rect | None = None) -> bool:
-        """Returns whether a rectangle overlaps a zone reserved by an item whose footprint is not `ignore`."""
+        """Returns whether a rectangle overlaps a reserved zone; zones of the item at `ignore` are skipped."""
         return any(rect.overlaps(zone, 0.01) for owner, zone in self._reserved if owner != ignore)
 
     def is_zone_free(self, zone: Rect) -> bool:

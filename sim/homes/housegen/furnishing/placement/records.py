@@ -41,7 +41,7 @@ def floor_placement(item: Item, x_m: float, y_m: float, yaw_rad: float, side: Si
 
 
 def zone_in_front(rect: Rect, back: Side, length_m: float) -> Rect:
-    """Returns the zone of this length in front of an item whose back is at the side `back` of the room."""
+    """Returns the zone of this length in front of an item with its back at the side `back` of the room."""
     return rect.strip(OPPOSITE[back], rect.span(OPPOSITE[back]), 0.0, length_m)
 
 

@@ -117,7 +117,7 @@ def worktop(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: tuple[
 
 
 def worktop_fittings(w: Workbench, y: Range, z: float) -> tuple[tuple[Range, Range] | None, list[Range]]:
-    """Adds a sink and a hob to a worktop whose upper face is at z; hints `with_sink`, `with_hob`.
+    """Adds a sink and a hob to a worktop with its upper face at z; hints `with_sink`, `with_hob`.
 
     Returns:
         The x and y ranges of the sink's hole, or None, and the y ranges that stay free.

@@ -38,7 +38,7 @@ def tube_frame(w: Workbench, x: Range, y: float, z: Range, thick: float, look: L
 
 
 def curved_board(w: Workbench, x: float, half: float, z: Range, look: Look, thick: float, bow: float) -> None:
-    """Adds a backrest of half width `half` whose rearmost point, its middle, is at x, `bow` behind its ends."""
+    """Adds a backrest of half width `half`; its rearmost point is its middle, at x, `bow` behind its ends."""
     radius = (half * half + bow * bow) / (2 * bow)
     angle = math.asin(min(1.0, half / radius))
     angles = [math.pi + angle * (i / 4 - 1.0) for i in range(9)]

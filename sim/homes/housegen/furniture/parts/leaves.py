@@ -178,7 +178,7 @@ def tube(path: Sequence[Point], radii: Sequence[float], segments: int = 6, *, gr
 
 
 def bush(at: Point, half: Point, rng: np.random.Generator, segments: int = 9) -> Body:
-    """Returns a lump of foliage: an ellipsoid with these half axes whose surface is uneven by a sixth."""
+    """Returns a lump of foliage: an ellipsoid with these half axes and a surface that is uneven by a sixth."""
     vertices = [np.array([0.0, 0.0, -0.8])]
     for level in (-0.45, 0.1, 0.65):
         wide = math.sqrt(1.0 - level * level)

@@ -38,7 +38,7 @@ def throw_cushions(
         face: x of the back on which they lean.
         inner: width between the arms.
         seat: height of the seat.
-        counts: numbers of cushions of which one is drawn without the hint.
+        counts: numbers of cushions to draw one from without the hint.
         margin: distance of the outer cushions' middles from the arms.
         middle: y of the third cushion.
     """

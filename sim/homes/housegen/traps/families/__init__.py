@@ -1,1 +1,1 @@
-"""Families of traps: scenes with a difficulty and a seed, whose parameters are known."""
+"""Families of traps: scenes with a difficulty, a seed and known parameters."""

@@ -14,7 +14,7 @@ VAL_SEEDS, TEST_SEEDS = range(5), range(5, 10)
 
 
 class TrapKey(NamedTuple):
-    """What a trap of a family is drawn from."""
+    """The values from which a trap of a family is drawn."""
 
     family: str
     difficulty: Difficulty

@@ -28,7 +28,7 @@ from sim.world.world import World
 MARGIN_M = 0.01
 """Clearance of the searched route in addition to the robot's radius."""
 DETOUR_M = 0.15
-"""What is hidden makes the path longer by at least this."""
+"""The hidden obstacles make the path longer by at least this."""
 MOST_ACTIONS = 200
 """Largest number of actions of the searched route; an episode has 500."""
 ATTEMPTS = 40
@@ -54,7 +54,7 @@ def draw_trap(family: str, difficulty: Difficulty, seed: int) -> FamilyTrap:
     """Returns a trap; the same arguments give the same one.
 
     Raises:
-        ConfigError: there is no such family or difficulty.
+        ConfigError: the family or the difficulty is unknown.
         HouseError: no draw could be solved.
     """
     if family not in FAMILIES:
@@ -67,7 +67,7 @@ def draw_trap(family: str, difficulty: Difficulty, seed: int) -> FamilyTrap:
         made = solve(parameters, name, difficulty, seed)
         if made is not None:
             return made
-    raise HouseError(f"Trap '{name}': none of {ATTEMPTS} draws can be solved and needs a detour.")
+    raise HouseError(f"Trap '{name}': not one of {ATTEMPTS} draws can be solved and needs a detour.")
 
 
 def solve(parameters: Parameters, name: str, difficulty: Difficulty, seed: int) -> FamilyTrap | None:
@@ -97,7 +97,7 @@ def solve(parameters: Parameters, name: str, difficulty: Difficulty, seed: int) 
 
 
 def _distance_m(spec: mujoco.MjSpec, scene: Scene) -> tuple[Task, float | None]:
-    """Returns the task of a scene, and the length of the shortest path; None where there is none."""
+    """Returns the task of a scene, and the length of the shortest path; None if no path exists."""
     task = Task(World(House(spec.modelname, spec)))
     return task, task.distance_from(scene.goal, scene.start)
 

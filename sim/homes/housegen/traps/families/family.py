@@ -115,7 +115,7 @@ class Parameters(abc.ABC):
 
 
 def gap_away_from(chance: Chance, width_m: float, gap_m: float, line_m: float, away_m: float) -> float:
-    """Returns the lower end of a gap in a wall from 0 to `width_m` whose centre is away from the line of the goal.
+    """Returns the lower end of a gap in a wall from 0 to `width_m`; its centre is away from the line of the goal.
 
     A rest of less than the robot's radius at either end is left out, so that the gap is then at the wall.
     """

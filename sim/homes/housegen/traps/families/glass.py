@@ -91,7 +91,7 @@ class TwoPanes(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class PaneComb(Parameters):
-    """A comb of panes: pockets side by side, of which one has an opening in its back."""
+    """A comb of panes: pockets side by side; one of them has an opening in its back."""
 
     family: ClassVar[str] = "pane_comb"
     summary: ClassVar[str] = "Glass panes form a comb of pockets that open to the start; one pocket leads through."
@@ -138,7 +138,7 @@ class PaneComb(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class DeadEnds(Parameters):
-    """Corridors side by side of which all but one end in an invisible wall."""
+    """Corridors side by side; all but one end in an invisible wall."""
 
     family: ClassVar[str] = "dead_ends"
     summary: ClassVar[str] = "Corridors lead to the goal; invisible walls close all of them but one."
