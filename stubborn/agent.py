@@ -97,7 +97,7 @@ class AgentConfig:
             )
 
     def for_robot(self, robot: RobotModel) -> AgentConfig:
-        """Returns the configuration for a robot: distances to obstacles grow by what it is wider than the default."""
+        """Returns the configuration for a robot: clearances grow by the excess of its radius over the default."""
         wider_m = robot.radius_m - RobotModel().radius_m
         if wider_m <= 0.0:
             return self
@@ -220,7 +220,7 @@ class StubbornAgent:
         self.untrap.observe(self.last_action, failed or (turns and turned_rad < 0.5 * TURN_RAD))
 
     def _feel(self, felt: FeltSurfaces, pose: Pose, failed: bool, observation: Observation) -> None:
-        """Enters a failed move into the felt surfaces; without progress, what was avoided is tried again."""
+        """Enters a failed move into the felt surfaces; without progress, avoided places are tried again."""
         touched_rad = contact_direction(pose.yaw_rad, observation.get(BUMPER)) if failed else None
         news = False
         if touched_rad is not None:  # else the wheels slipped, if there is a bumper

@@ -16,7 +16,7 @@ class ObjectNavError(Exception):
 
 
 class ConfigError(ObjectNavError, ValueError):
-    """A value given by the user is not allowed; the message names the value and what is allowed."""
+    """A value given by the user is not allowed; the message names the value and the allowed ones."""
 
 
 class HouseError(ObjectNavError, ValueError):

@@ -195,7 +195,7 @@ SENSORS: tuple[str, ...] = ("rgb", "depth", "semantic")
 SCAN = "scan"
 """The lidar (`sim.sensors.scan`)."""
 ROBOT_SENSORS: tuple[str, ...] = (SCAN, "bumper", "odometry", "imu")
-"""The lidar and what a robot measures of itself (`sim.sensors.measured`), in the observation only when requested."""
+"""The lidar and the sensors of the robot itself (`sim.sensors.measured`), in the observation only when requested."""
 POSE_SENSORS: tuple[str, ...] = ("gps", "compass", "objectgoal")
 """Always present."""
 CONTEXT_FIELDS: tuple[str, ...] = ("goal", "collided", "odometry", "pose", "start", "motion", "model", "data")
@@ -223,12 +223,12 @@ def reads_truth(sensor: Any) -> bool:
 
 
 def _is_standard(sensor: Any) -> bool:
-    """Returns whether a sensor is one of ours; a user's may have the name of one of them."""
+    """Returns whether a sensor is one of the simulator's own; a user's sensor may have the same name."""
     return type(sensor).__module__.startswith("sim.sensors.")
 
 
 class Scores(NamedTuple):
-    """Per-pixel class probabilities, reduced to what the target maps need; float32 (h, w) in [0, 1].
+    """Per-pixel class probabilities, reduced to those that the target maps need; float32 (h, w) in [0, 1].
 
     The resolution may be any whole fraction of the image's.
     """
@@ -428,7 +428,7 @@ AgentFactory = Callable[..., Agent]
 
 @dataclass(frozen=True, kw_only=True)
 class AgentSpec:
-    """The declaration of an agent: how it is built, and what it needs. `--agent package.module:NAME` takes one."""
+    """The declaration of an agent: its factory and its needs. `--agent package.module:NAME` takes one."""
 
     make: AgentFactory
     description: str = ""

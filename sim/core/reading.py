@@ -262,7 +262,7 @@ class TextLine(NamedTuple):
     """A line of a file."""
 
     number: int
-    """From 1."""
+    """Number of the line, from 1."""
     text: bytes
     share: float
     """Share of the file, as it lies on the disk, that has been read up to here, in (0, 1]."""

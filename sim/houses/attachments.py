@@ -24,7 +24,7 @@ class Attachment:
     """One element `<attach>`."""
 
     number: int
-    """Its number among all files of a house."""
+    """The number of the file among all files of a house."""
     model: str
     """Name of the model in the same file."""
     body: str

@@ -1,4 +1,4 @@
-"""Removes from third-party scenes (`--labels`) what the house format does not allow, and reports it.
+"""Removes elements that the house format does not allow from third-party scenes (`--labels`), and reports them.
 
 A house consists of static and of freely movable objects. Other scenes also contain cameras, actuators, saved states and
 hinged doors. Cameras, actuators, sensors and constraints are removed. Hinge, slide and ball joints are removed too, so

@@ -29,7 +29,7 @@ class House:
     """Label rules of a third-party scene, in the form that `read_labels` takes; None for a native house."""
     path: Path | None = None
     notes: tuple[str, ...] = ()
-    """Sentences on what was removed from a third-party scene (`sim.houses.foreign`)."""
+    """Sentences on the elements that were removed from a third-party scene (`sim.houses.foreign`)."""
 
 
 @dataclass(frozen=True)

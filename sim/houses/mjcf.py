@@ -218,7 +218,7 @@ class _Scan:
         self._attached = 0
 
     def read(self, path: Path) -> tuple[bytes, dict[str, Path], list[Attachment]]:
-        """Returns the text of a file, UTF-8, the files of the models in it, and what it attaches."""
+        """Returns the text of a file, UTF-8, the files of the models in it, and its attachments."""
         self._models, self._attachments = {}, []
         text = self.text_of(path)
         return text, self._models, self._attachments

@@ -41,7 +41,7 @@ class TrapFacts:
     shortest_path_m: float
     """Geodesic distance from the start to the nearest place where a STOP succeeds."""
     open_path_m: float
-    """The same distance without what is hidden."""
+    """The same distance without the hidden obstacles."""
     fewest_actions: int
     """Number of turns and forwards of a route that a breadth-first search over poses found."""
 

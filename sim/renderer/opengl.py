@@ -1,4 +1,4 @@
-"""Creates OpenGL contexts and offscreen frame buffers, and converts what is read from them to images."""
+"""Creates OpenGL contexts and offscreen frame buffers, and converts their content to images."""
 
 from __future__ import annotations
 

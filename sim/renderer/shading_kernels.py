@@ -121,7 +121,7 @@ def _find_places(
 
 @njit(cache=True, error_model="numpy")
 def _lose(share: NDArray, points: NDArray, i: int, work: NDArray, sharp: np.float32, weight: np.float32) -> None:
-    """Subtracts from the share of a row what one sample of each point covers."""
+    """Subtracts the area that one sample of each point covers from the share of a row."""
     zero, one = np.float32(0.0), np.float32(1.0)
     for j in range(share.shape[1]):
         q = work[3, j]

@@ -236,7 +236,7 @@ class RobotConfig:
 
     base: Base = "free"
     climb_m: float = CLIMB_M
-    """Height of the highest edge that the robot climbs; whatever is higher is an obstacle (`sim.world.obstacles`)."""
+    """Height of the highest edge that the robot climbs; any higher geom is an obstacle (`sim.world.obstacles`)."""
     body: BodyConfig = field(default_factory=BodyConfig)
     wheels: WheelConfig = field(default_factory=WheelConfig)
     drive: DriveConfig = field(default_factory=DriveConfig)

@@ -35,7 +35,7 @@ NOT_DIFFERENTIAL: Mapping[str, str] = {
     "robot_soccer_kit": f"has three omnidirectional wheels and {_ROLLS_SIDEWAYS}",
     "stanford_tidybot": f"has powered casters and {_ROLLS_SIDEWAYS}",
 }
-"""Robots with a mobile base that have no differential drive, and what they have."""
+"""Robots with a mobile base but without a differential drive, and the drive that they have."""
 
 
 def is_menagerie(robot: Path | str) -> bool:

@@ -42,7 +42,7 @@ class Velocity:
 
 
 class VelocityDrive:
-    """Drives one robot in one world; it remembers the command and what blocks the robot."""
+    """Drives one robot in one world; it remembers the command and the contacts that block the robot."""
 
     def __init__(
         self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, odometry: Odometry,

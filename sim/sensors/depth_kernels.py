@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 @njit(cache=True, error_model="numpy")
 def cast_shadows(depth_m: NDArray[np.float32], focal_baseline_px_m: np.float32, seen_m: NDArray[np.float32]) -> None:
-    """Copies a depth image and sets what the right imager does not see to 0.
+    """Copies a depth image and sets the pixels that the right imager does not see to 0.
 
     Pixel x of the left image is at x - d in the right one, with the disparity d = focal length * baseline / z. It is
     hidden if a pixel farther right, on a nearer surface, is at the same place or to the left of it, and it is outside

@@ -5,7 +5,7 @@ Sources (facts and formulas only):
   Intel's notes on tuning the D400: error s z^2 / (f b) for a disparity error of s px, focal length f px, baseline b m;
   disparity in steps of 1/32 px; matching sums costs over windows of 7 x 7 px, so that errors of neighbours are alike;
   no depth where the two images do not match: on glass, mirrors, metal.
-- Data sheet of the D400 series: depth exists where both imagers see a surface. The left one is the reference, hence a
+- Data sheet of the D400 series: depth exists where both imagers see a surface. The left one is the reference; hence a
   band of f b / z px at the left border is lost, and a shadow of f b (1 / near - 1 / far) px left of each near object.
   The systematic error is at most 2 % at 2 m.
 - Teichman, Miller, Thrun, "Unsupervised intrinsic calibration of depth sensors via SLAM", RSS 2013: the systematic

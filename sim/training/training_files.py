@@ -88,7 +88,7 @@ def options_of(
 
 
 def _list_of(files: Sequence[Path]) -> str:
-    """Returns the number of files and a hash of their names and sizes, whatever folder they are in."""
+    """Returns the number of files and a hash of their names and sizes, independent of their folder."""
     lines = [f"{file.name} {file.stat().st_size}\n" for file in files]
     digest = hashlib.sha256("".join(lines).encode(errors="surrogateescape")).hexdigest()
     return f"{len(files)} files (hash {digest[:12]})"

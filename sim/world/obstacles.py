@@ -1,4 +1,4 @@
-"""Finds what the robot cannot drive over, in plan: objects higher than it climbs, and edges between floors."""
+"""Finds the obstacles of the robot in plan: objects higher than it climbs, and edges between floors."""
 
 from __future__ import annotations
 

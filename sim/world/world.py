@@ -183,7 +183,7 @@ class World:
         )
 
     def _has_fallen(self, z_before: float) -> bool:
-        """Returns whether the robot is on its way down, or down, from the floor on which it stood at `z_before`."""
+        """Returns whether the robot is falling, or has fallen, from the floor on which it stood at `z_before`."""
         x, y, yaw, _, _ = self._body.state()
         z, physics = self._body.z_m, self.config.physics
         if z_before - z > physics.max_drop_m:

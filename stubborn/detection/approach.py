@@ -22,7 +22,7 @@ class Approach:
     """The route to the nearest viewpoint of the pursued candidates."""
 
     route: Route | None
-    """None when the robot is on a viewpoint."""
+    """The route to a viewpoint; None when the robot is on one."""
     bearing_rad: float
     """World angle from the robot to the candidate cell."""
     cell: tuple[int, int]

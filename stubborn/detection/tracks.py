@@ -24,7 +24,7 @@ from stubborn.kernels.tracks import claim, label_pixels, means_by_track, overlap
 from stubborn.mapping.projection import Rays
 
 _LEAST = 0.02
-"""Context does not change a probability below this: it would stay far below what is worth a look."""
+"""Context does not change a probability below this: it would stay far below the limit for a look."""
 _ALMOST_1 = np.float32(0.999)
 """The largest probability of a track in the context of others."""
 
@@ -142,7 +142,7 @@ class Tracks:
         Args:
             goal: the category.
             least_voxels: tracks with fewer voxels do not count, also not as context.
-            context: changes the probabilities by what is near a track.
+            context: changes the probabilities by the objects near a track.
             share: the share of its log ratios that counts.
         """
         counts = self._size[: self.count + 1] >= least_voxels

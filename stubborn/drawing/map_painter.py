@@ -100,7 +100,7 @@ class AgentMapPainter:
         return canvas.image
 
     def words(self) -> str:
-        """Returns what the agent is doing; "" if its route is not shown."""
+        """Returns the agent's current activity; "" if its route is not shown."""
         return describe_intention(self.agent) if self.show_route else ""
 
     def _grow(self, pose: Pose) -> None:
@@ -128,7 +128,7 @@ def make_painter(agent: Agent) -> AgentMapPainter:
 
 
 def describe_intention(agent: StubbornAgent) -> str:
-    """Returns what the agent did last, in a few words."""
+    """Returns the agent's last decision, in a few words."""
     if agent.last_action is None:
         return "about to start"
     if agent.last_action is Action.STOP:

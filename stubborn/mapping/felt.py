@@ -117,7 +117,7 @@ class FeltSurfaces:
         return self._write(navmap)
 
     def doubt(self, navmap: NavMap) -> bool:
-        """Drops the weakest conclusions, so that what was avoided is tried again; returns True if marks changed.
+        """Drops the weakest conclusions, so that avoided places are tried again; returns True if marks changed.
 
         Marks of single stops are dropped first, since the contact may have been elsewhere on the hull; if there are
         none, all panes are dropped. Later stops count as before.

@@ -38,7 +38,7 @@ class PlanningConfig:
     unseen_gap_m: float = 0.20
     """Ground farther than this from all ground that was in view counts as unseen."""
     own_ground_m: float = 0.12
-    """The ground within this distance of the robot's centre is free, whatever the map shows."""
+    """The ground within this distance of the robot's centre is free, even if the map shows an obstacle."""
     ring_m: float = FORWARD_M
     """Distance of the short-term goal: 5 cells, one forward."""
     turn_cost_m: float = 0.02
@@ -129,7 +129,7 @@ class Planner:
         self.config = config
         self.proven_ground = proven_ground
         self.own_ground_m = config.own_ground_m
-        """As in the configuration, or less while the robot pushes on against the same surface."""
+        """The configured value, or less while the robot pushes on against the same surface."""
 
     def obstacles(self, view: NavMap, layer: CollisionLayer) -> Bool[np.ndarray, "rows cols"]:
         """Returns a new mask of depth obstacles, drops, and those marks of a layer that the body has not refuted."""

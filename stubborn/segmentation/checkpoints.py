@@ -56,7 +56,7 @@ def save_network(file: Path, model: Network, metadata: Mapping[str, Any] | None 
 def load_network(file: Path) -> tuple[Network, dict[str, Any]]:
     """Returns a network in evaluation mode with the weights of a file, and the file's metadata.
 
-    A `.safetensors` file of ours holds the configuration of its network; any other file must hold the published RedNet.
+    Our `.safetensors` files hold the configuration of their network; any other file must hold the published RedNet.
 
     Raises:
         ConfigError: the file does not exist, is broken, or holds another network (the first different name is given).
@@ -113,7 +113,7 @@ def _config(file: Path, metadata: dict[str, Any]) -> Architecture:
         stored = metadata.pop(_CONFIG_KEY.format(family=name), None)
         if stored is None:
             continue
-        where = f"Weights '{file}' describe no network of ours"
+        where = f"Weights '{file}' do not describe a network of this project"
         unknown = (
             sorted(set(stored) - {field.name for field in fields(config_class)}) if isinstance(stored, dict) else ()
         )

@@ -208,7 +208,7 @@ def _draw_storeys(
     """Returns the plan of the ground storey, the openings in its walls, and the stairs to a second storey.
 
     Raises:
-        PlanError: no plan fits, or the stairs fit into none.
+        PlanError: no plan fits, or the stairs do not fit into any of the plans.
     """
     plan, openings = _draw_plan(rng, kind, area_m2, config)
     if config.storeys == 1:
@@ -230,7 +230,7 @@ def _draw_plan(
     """Returns a plan and the openings in its walls; many plans are drawn before one fits.
 
     Raises:
-        PlanError: none fits.
+        PlanError: no plan fits.
     """
     must_match = config.exact and config.area_m2 is not None
     rooms, error = config.wanted_rooms, PlanError("no plan was drawn")
@@ -289,7 +289,7 @@ def _build_within_limit(draft: _Draft, config: HouseConfig) -> HouseBuilder | No
 
 
 def _level_that_saves(draft: _Draft, assembler: Assembler, level: int, excess: int) -> int:
-    """Returns the first index of `BYTES_PER_GEOM` after `level` that saves about so many bytes, else the last one."""
+    """Returns the first index of `BYTES_PER_GEOM` after `level` that saves about these bytes, else the last one."""
     placed = list(_all_items(draft))
     copies = Counter(map(id, placed))
     designs = {id(item): item for item in placed}.values()
@@ -361,7 +361,7 @@ def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int, assembler: A
 
 
 def _draw_size(rng: np.random.Generator, config: HouseConfig) -> tuple[float, PlanKind]:
-    """Returns area and kind of plan; what is not given is drawn to suit the other."""
+    """Returns area and kind of plan; a missing one is drawn to suit the other."""
     kind = config.kind
     if config.area_m2 is not None:
         return config.area_m2, kind or draw_plan_kind(rng, config.area_m2)

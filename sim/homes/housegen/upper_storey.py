@@ -25,7 +25,7 @@ from sim.homes.housegen.surfaces.lighting import draw_lamps
 from sim.homes.housegen.surfaces.structure_looks import draw_structure_looks
 
 STOREY_GAP_M = 0.25
-"""From the lower ceiling to the upper floor."""
+"""Height from the lower ceiling to the upper floor."""
 CEILINGS_M = (2.4, 2.45, 2.5)
 """Heights of ceilings: with more, the flight would be longer than the stair hall."""
 ROOMS, AREA_M2 = (5, 10), 140.0

@@ -21,7 +21,7 @@ Withheld = Literal["without", "only"]
 """without: no withheld style is shown. only: withheld styles replace the others wherever there is one for the use."""
 WITHHELD_PART = 5
 WITHOUT_USES = frozenset(("sofa",))
-"""Categories that rooms never ask for by use: replacing styles replace all others, whatever their uses."""
+"""Categories that rooms never ask for by use: replacing styles replace all others, independent of their uses."""
 
 
 class _OfCategory(Protocol):

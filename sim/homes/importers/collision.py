@@ -208,7 +208,7 @@ def convex_parts(surfaces: Sequence[Surface]) -> list[NDArray[np.float64]]:
             coacd.Mesh(vertices, faces), threshold=CONCAVITY_M, real_metric=True, max_convex_hull=MOST_PARTS,
             preprocess_resolution=40, mcts_iterations=60, mcts_nodes=10, max_ch_vertex=32, seed=0,
         )  # fmt: skip
-    except Exception as error:  # it is compiled code that raises what it likes
+    except Exception as error:  # compiled code, which may raise any class
         raise HouseError(f"CoACD cannot divide an object into convex parts ({type(error).__name__}).") from None
     parts = [np.asarray(points, dtype=np.float64) for points, _ in hulls]
     return [part for part in parts if _has_volume(part)]

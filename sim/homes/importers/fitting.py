@@ -28,7 +28,7 @@ DRAWS = 4
 MOST_STRETCH = 2.5
 """Largest factor by which a side of an item is stretched or shrunk."""
 HINT_RANGE = (0.6, 1.6)
-"""Range of the sizes that are asked of a style, relative to the size that it has by itself."""
+"""Range of the sizes that are requested from a style, relative to its own size."""
 ROUND_RATIO = 1.3
 """An object becomes a cylinder only if its width and depth differ by at most this factor."""
 _COUNTER = {"with_sink": False, "with_hob": False}

@@ -171,7 +171,7 @@ def _between(corners_m: NDArray[np.float64], low_m: float, high_m: float) -> NDA
 
 
 def _near(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Returns the inside of the outline of a mask: what stands outside of the house needs no floor."""
+    """Returns the inside of the outline of a mask: objects outside of the house need no floor."""
     size = round(2.0 / PLAN_CELL_M) | 1
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     padded = np.pad(mask.astype(np.uint8), size)

@@ -27,7 +27,7 @@ MAX_FILES = 200_000
 MAX_OBJECTS = 20_000
 """Objects of a scene."""
 LEVELS_UP = 4
-"""A scene looks for its data set in so many folders above its own."""
+"""Number of folders above a scene's own that are searched for its data set."""
 Coordinate = Annotated[float, Meta(ge=-2000.0, le=2000.0)]
 Factor = Annotated[float, Meta(ge=-1000.0, le=1000.0)]
 Vector = tuple[Coordinate, Coordinate, Coordinate]
@@ -124,7 +124,7 @@ class SceneDataset:
     file: Path
     content: _Dataset
     files: Mapping[str, Mapping[str, Path]]
-    """For `objects` and `stages`: configuration or mesh by name."""
+    """Configurations or meshes by name, for `objects` and `stages`."""
     category_of_id: Mapping[str, str] = field(default_factory=dict)
     """Names of categories of objects, from tables (HSSD)."""
 

@@ -60,7 +60,7 @@ def read_hm3d(file: Path, losses: Losses, texture_px: int) -> Scan:
 
     Args:
         file: `X.semantic.txt`.
-        losses: gets what has no category or no instance.
+        losses: gets the parts without a category or an instance.
         texture_px: larger pictures are reduced to this size.
 
     Raises:

@@ -57,7 +57,7 @@ def read_scene(file: Path, dataset: SceneDataset, losses: Losses, texture_px: in
     Args:
         file: the `.scene_instance.json`.
         dataset: to which it belongs.
-        losses: gets what was left out.
+        losses: gets the objects that were left out.
         texture_px: larger pictures are reduced to this size.
 
     Raises:

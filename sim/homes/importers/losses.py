@@ -13,7 +13,7 @@ class Losses:
     """Counts of one house, which its import fills."""
 
     furniture: Counter[str] = field(default_factory=Counter)
-    """Objects with a category that became a piece of furniture of ours, or kept their own geometry, by type."""
+    """Objects with a category that became a piece of our furniture, or kept their own geometry, by type."""
     boxes: Counter[str] = field(default_factory=Counter)
     """Objects that became a labelled box, ball or cylinder, by type."""
     left_out: Counter[str] = field(default_factory=Counter)

@@ -3,7 +3,7 @@
 The category of a node is that of the first rule of a table that its name matches. Without a table, or for other nodes,
 the words of the node's and its material's name say it, as in `stubborn label`; then its size: large level plates are
 floors, upright ones walls. A node that is the whole home is cut: its level triangles at the lowest level are the floor,
-the others wall. What is left becomes objects. All that was found is returned as a table for the user to edit.
+the others wall. The rest becomes objects. The result is also returned as a table for the user to edit.
 """
 
 from __future__ import annotations

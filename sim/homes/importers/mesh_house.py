@@ -49,7 +49,7 @@ _KIND = re.compile(r"[^a-z]+")
 
 @dataclass(frozen=True, kw_only=True)
 class MeshConfig:
-    """How meshes become a house."""
+    """Options for building a house from meshes."""
 
     collision: Collision = "boxes"
     """`boxes` of a grid of 5 cm, or `convex` parts by CoACD, which take longer."""
@@ -128,7 +128,7 @@ def build_house(
         objects: everything, in our frame.
         rooms: empty: each storey is one room.
         config: options.
-        losses: gets what was changed.
+        losses: gets the changes.
         ambient: light from all sides, for pictures that were taken with their light; None: as `load_house` adds it.
 
     Raises:
@@ -320,7 +320,7 @@ class _Builder:
             geom.mass = (mass or 0.0) / len(made)
 
     def _parts_of(self, item: MeshObject, budget: int) -> _Parts:
-        """Returns what the shape of an object became; computed once for objects of one shape that collide alike."""
+        """Returns the parts of the shape of an object; computed once for objects of one shape that collide alike."""
         collides = item.is_solid and item.category not in ("floor", "ceiling") and not self._is_flat(item)
         key = (id(item.shape), item.category, collides)
         if key not in self._parts:

@@ -51,7 +51,7 @@ def read_obj(file: Path, *, texture_px: int, losses: Counter[str]) -> list[Surfa
     Args:
         file: the file.
         texture_px: larger pictures are reduced to this length of their longer side.
-        losses: gets sentences on what was lost.
+        losses: gets sentences on the losses.
 
     Raises:
         HouseError: the file cannot be read or is broken; the message names file and line.

@@ -1,4 +1,4 @@
-"""Builds a house of ours from a ProcTHOR house: rooms, walls, doors, windows, light and furniture of our generator.
+"""Builds a house from a ProcTHOR house: rooms, walls, doors, windows, light and furniture of our generator.
 
 The meshes of ProcTHOR's assets belong to Unity's engine and are not available. Each object becomes a piece of our
 furniture of the same category in the size of its asset, or a labelled box (`sim.homes.importers.fitting`).
@@ -49,7 +49,7 @@ FLOORS = {
 
 @dataclass(frozen=True)
 class Imported:
-    """A house of ours with the report of its import."""
+    """A house with the report of its import."""
 
     spec: mujoco.MjSpec
     report: Mapping[str, Any]
@@ -57,7 +57,7 @@ class Imported:
 
 @dataclass(frozen=True, kw_only=True)
 class ProcthorConfig:
-    """How a ProcTHOR house is imported."""
+    """Options for the import of a ProcTHOR house."""
 
     doors: Doors = "open"
     """`open`: inner doors are opened to a right angle; `as-is`: to the angle of the source."""
@@ -68,7 +68,7 @@ class ProcthorConfig:
 
 
 def import_house(source: Source, assets: Mapping[str, Asset], config: ProcthorConfig) -> Imported:
-    """Returns a house of ours.
+    """Returns the imported house.
 
     Args:
         source: one house of a file.

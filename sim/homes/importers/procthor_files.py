@@ -1,6 +1,6 @@
 """The files of ProcTHOR (https://github.com/allenai/procthor): houses as JSON, and the database of their assets.
 
-Unity's frame: x right, y up, z forward, left-handed, metres; rotations in degrees. Only what an import needs is read.
+Unity's frame: x right, y up, z forward, left-handed, metres; rotations in degrees. Values without use are not read.
 Every coordinate is limited, so that a broken house cannot ask for a grid of any size.
 """
 

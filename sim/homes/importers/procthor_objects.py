@@ -1,9 +1,10 @@
-"""Places the objects of a ProcTHOR house: furniture of ours in the sizes of its assets, what lies on it on its tops.
+"""Places the objects of a ProcTHOR house: our furniture in the sizes of its assets, with the small objects on its tops.
 
 Assets have their front along Unity's z. A rotation about y is clockwise seen from above, and Unity's z is our y: a
 front at angle t is at the heading 90 degrees - t.
 
-Walls have no thickness in the source and 12 cm here. What reaches into one is moved out of it, at right angles.
+Walls have no thickness in the source and 12 cm here. An object that reaches into a wall is moved out of it, at right
+angles.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ as large in plan. A top that is meant for objects is preferred unless it differs
 ARM_M = 0.61
 """Depth of the arms of L- and C-shaped counters: two feet, as the names of the assets say."""
 CLOSED = frozenset(("Fridge", "Microwave", "Safe", "Cabinet", "Drawer", "GarbageCan", "Box"))
-"""Types that hide what is in them."""
+"""Types that hide their content."""
 MOST_DEPTH = 20
 """Deepest nesting of objects in objects."""
 
@@ -67,7 +68,7 @@ class ObjectPlacer:
         layout: rooms and openings.
         assets: types and sizes of assets.
         fitter: makes the items.
-        losses: counts what could not be shown.
+        losses: counts the objects that could not be shown.
         where: file and line, for messages.
     """
 
@@ -79,7 +80,7 @@ class ObjectPlacer:
     standing: list[Standing] = field(default_factory=list)
 
     def place(self, objects: Sequence[SceneObject]) -> None:
-        """Places objects that stand on the floor or hang on walls, and what is on them.
+        """Places objects that stand on the floor or hang on walls, and the objects on them.
 
         Raises:
             HouseError: objects are nested too deeply.
@@ -173,7 +174,7 @@ class ObjectPlacer:
         return kind, entry, (float(depth), float(width), float(height)), math.pi / 2
 
     def _leave_out(self, objects: Sequence[SceneObject] | None, reason: str) -> None:
-        """Counts objects, and what is on them, as left out."""
+        """Counts objects, and the objects on them, as left out."""
         todo = list(objects or ())
         while todo:
             entity = todo.pop()

@@ -47,7 +47,7 @@ class Layout:
     plan: FloorPlan
     """Its rooms are the rectangles; those of one room of the source share a name but for a number at the end."""
     room_of: tuple[int, ...]
-    """For each rectangle, the index of its room in the source."""
+    """The index of the room in the source, for each rectangle."""
     openings: tuple[Opening, ...]
     """All but the doors."""
     doors: tuple[DoorHole, ...]
@@ -60,7 +60,7 @@ def lay_out(house: SourceHouse, where: str, losses: Losses) -> Layout:
     Args:
         house: the source.
         where: file and line, for messages.
-        losses: gets what is different from the source.
+        losses: gets the differences from the source.
 
     Raises:
         HouseError: a wall is not parallel to an axis, rooms overlap, or a door names a wall that does not exist.

@@ -16,7 +16,7 @@ Point = tuple[float, float]
 TOLERANCE_M = 0.02
 """Coordinates nearer to each other than this become equal."""
 MOST_TRIANGLES, MOST_LINES = 20_000, 200
-"""Only so many triangles of a floor are read, and one of more different coordinates along an axis has no rectangles."""
+"""Limits of a floor: further triangles are not read; with more coordinates along an axis it gets no rectangles."""
 
 
 @dataclass(frozen=True)

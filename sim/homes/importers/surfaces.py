@@ -112,7 +112,7 @@ def read_surfaces(
         file: the file.
         up: its upward axis.
         texture_px: larger pictures are reduced to this size; None: they stay.
-        losses: gets sentences on what was lost.
+        losses: gets sentences on the losses.
 
     Raises:
         HouseError: the file cannot be read, is too large, or has a number that is not allowed; one line.
@@ -275,7 +275,7 @@ def parts_of(file: Path) -> Iterator[Path]:
 
 
 def _require_sane_gltf(content: bytes, kind: str, where: str, losses: Counter[str]) -> None:
-    """Raises HouseError if a glTF file announces too much, its nodes form a loop, or it needs what cannot be read."""
+    """Raises HouseError if a glTF file announces too much, is compressed, or has a loop of nodes."""
     text = content
     if kind == "glb":
         if len(content) < 20 or content[:4] != b"glTF":

@@ -97,7 +97,7 @@ class Plan:
         return self._distance_m[goal]
 
     def occupied(self, low_m: float, high_m: float) -> NDArray[np.bool_]:
-        """Returns the cells with a span that has a part between two heights: what blocks the sight there."""
+        """Returns the cells with a span between two heights, or a part of one: they block the sight there."""
         here = (self.span_low_m <= high_m) & (self.span_high_m >= low_m)
         return np.bincount(self.span_cell[here], minlength=self.floor.size).reshape(self.floor.shape) > 0
 

@@ -1,4 +1,4 @@
-"""The camera in a plan: what one look shows of the floor and of the goal, and what it enters into an agent's map."""
+"""The camera in a plan: the parts of floor and goal that one look shows, and the cells that it enters into a map."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ class PlanCamera:
         self.reset()
 
     def reset(self) -> None:
-        """Forgets what was seen."""
+        """Forgets the cells that were seen."""
         self.seen_floor = np.zeros(self.plan.frame.shape, np.bool_)
         """Floor of the plan that was in view."""
         self._seen_cells = 0

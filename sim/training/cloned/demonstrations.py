@@ -1,4 +1,4 @@
-"""Demonstrations for imitation: what the camera sees at each pose of an episode, small, with the actions.
+"""Demonstrations for imitation: small camera images at each pose of an episode, with the actions.
 
 One npz file holds one episode. No pickle; an action with images of 64 x 48 pixels takes about 0.6 KB.
 """

@@ -25,7 +25,7 @@ PRIOR = 3.0
 _NUMBER = np.full(len(MPCAT40), -1)
 _NUMBER[[MPCAT40_ID[name] for name in OBJECTS]] = np.arange(len(OBJECTS))
 Surroundings = tuple[Float32[np.ndarray, "_ objects"], Int[np.ndarray, " _"]]  # `_`: houses differ in their number
-"""For each object, which categories are nearby (1 or 0), and its own, by their numbers in `OBJECTS`."""
+"""The categories nearby (1 or 0) for each object, and its own category, by their numbers in `OBJECTS`."""
 
 
 def surroundings(
@@ -103,7 +103,7 @@ def fit(houses: Sequence[Surroundings], radius_m: float, *, steps: int = 400) ->
 
 
 def log_losses(context: Context, houses: Sequence[Surroundings]) -> tuple[float, float]:
-    """Returns the mean log loss of known categories of objects: by their frequency alone, and by what is nearby.
+    """Returns the mean log loss of known categories of objects: by their frequency alone, and by the objects nearby.
 
     Raises:
         ConfigError: the houses have no object of a known category.

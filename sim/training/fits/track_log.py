@@ -109,7 +109,7 @@ class TrackSamples:
 
 
 def logged(tracks: Tracks, counts: Int[np.ndarray, "tracks ids"], samples: TrackSamples) -> dict[str, np.ndarray]:
-    """Returns what `samples_of` reads of an episode."""
+    """Returns the arrays of an episode that `samples_of` reads."""
     now = tracks.now()
     merged = np.zeros_like(counts)
     np.add.at(merged, now, counts[: len(now)])
@@ -149,7 +149,7 @@ class TrackRecorder:
             config=replace(PLUS, seeker=replace(SEEKER, look=LOOK_AT_ALL, context_share=0.0)),
         )
         assert isinstance(self._agent.seeker, TrackSeeker)
-        self._agent.seeker.fusion = Fusion()  # what is logged must depend on no fitted parameters, also not on context
+        self._agent.seeker.fusion = Fusion()  # the log must not depend on fitted parameters or on context
 
     def run(self, episode: Episode, seed: int) -> dict[str, np.ndarray] | None:
         """Runs an episode to its last step; returns its tracks as `samples_of` reads them, None if it failed."""

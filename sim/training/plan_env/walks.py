@@ -74,7 +74,7 @@ def search(camera: PlanCamera, goal: str, start: Pose, rng: np.random.Generator)
     goal within `MAX_STEPS` actions has no STOP at its end.
 
     Args:
-        camera: of the plan; it forgets what it has seen.
+        camera: the camera of the plan; it forgets the cells that it has seen.
         goal: a goal of the plan.
         start: in the world, in free space.
         rng: draws the place to go to after the robot was stopped by something.

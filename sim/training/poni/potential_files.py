@@ -47,7 +47,7 @@ class Batch:
     """Some samples as a network sees them."""
 
     channels: UInt8[np.ndarray, "n channels cells cells"]
-    """Those of `MapPatch.channels`."""
+    """The channels of `MapPatch.channels`."""
     sample: Int[np.ndarray, " m"]
     """Number within the batch that each frontier cell belongs to."""
     cell: Int[np.ndarray, " m"]

@@ -37,7 +37,7 @@ TRAINING_BYTES = 4 << 30
 
 
 def room_for(views: Sequence[StoredView], device: torch.device) -> int:
-    """Returns how many views of this size fit in the free memory of a GPU beside a training."""
+    """Returns how many views of this size fit in the free memory of a GPU in addition to a training."""
     pixels = views[0].read().semantic.size
     return max(0, torch.cuda.mem_get_info(device)[0] - TRAINING_BYTES) // (pixels * BYTES_PER_PIXEL)
 
@@ -50,7 +50,7 @@ class DeviceViews(NamedTuple):
     semantic: UInt8[Tensor, "n h w"]
     instances: Int16[Tensor, "n h w"]
     weights: UInt8[Tensor, "n h w"]
-    """In units of `WEIGHT_UNIT`."""
+    """Weights in units of `WEIGHT_UNIT`."""
 
     @classmethod
     def read(cls, views: Sequence[StoredView], device: torch.device, *, workers: int = 0) -> DeviceViews:

@@ -31,7 +31,7 @@ class Phase:
 
 @dataclass(frozen=True, kw_only=True)
 class Recipe:
-    """How a network is trained."""
+    """The hyperparameters of a training."""
 
     phases: tuple[Phase, ...]
     warmup_share: float = 0.01

@@ -313,7 +313,7 @@ class Trainer:
         save_state(self.args.out / "state.pt", self._parts(), progress)
 
     def _resume(self) -> None:
-        """Loads the state of the run, if there is one, and removes what a killed process wrote after it.
+        """Loads the state of the run, if it exists, and removes lines that a killed process wrote after it.
 
         Raises:
             ConfigError: the run is of another size or had other options, or its state is broken.

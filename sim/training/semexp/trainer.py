@@ -68,7 +68,7 @@ class Run:
         self.goals = self.steps = 0
         """Long-term goals and primitive steps so far."""
         self.trained = (0, 0)
-        """Those that the network has been trained on."""
+        """Long-term goals and primitive steps that the network has been trained on."""
         self.spent_s = 0.0
         args.out.mkdir(parents=True, exist_ok=True)
         self.ppo = PPO(

@@ -23,7 +23,7 @@ MAX_TRIES = 40
 def mixed_poses(
     space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator
 ) -> Iterator[tuple[Pose, dict[str, Any]]]:
-    """Yields poses and what a record says about them, without end, along a path and anywhere in turn."""
+    """Yields poses and their entries in a record, without end, along a path and anywhere in turn."""
     while True:
         along = list(path_poses(space, cells, rng))
         picked = np.sort(rng.permutation(len(along))[:VIEWS_PER_PATH])

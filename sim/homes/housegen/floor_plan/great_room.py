@@ -1,4 +1,4 @@
-"""Plans of the kind `greatroom`: several zones of one great room, separated by partial walls, beside a corridor."""
+"""Plans of the kind `greatroom`: several zones of one great room, separated by partial walls, next to a corridor."""
 
 from __future__ import annotations
 

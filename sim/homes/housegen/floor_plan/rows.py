@@ -113,7 +113,7 @@ def add_row(
 
 
 def _join_row(rng: np.random.Generator, draft: Draft, fronts: list[int | None], backs: list[int | None]) -> None:
-    """Connects each back room with the bedroom beside it or the room in front, and neighbouring public rooms."""
+    """Connects each back room with the bedroom next to it or the room in front, and neighbouring public rooms."""
     for i, back in enumerate(backs):
         if back is not None:
             bedroom = fronts[i - 1] if i > 0 else None

@@ -23,7 +23,7 @@ CABINET_BOTTOM_M = 1.45
 LEAST_APPLIANCES = 2
 """Number of cookers, fridges, dishwashers and hobs that every kitchen has."""
 FRIDGE_M = 1.3
-"""Only fridges are higher than this."""
+"""All items except fridges are at most this high."""
 LARGE_M = 0.45
 """Longest side of the smallest of them."""
 

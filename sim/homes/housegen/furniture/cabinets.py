@@ -69,7 +69,7 @@ def armoire(w: Workbench) -> None:
 
 
 def sideboard_legs(w: Workbench) -> None:
-    """Builds a long low cabinet on legs with doors beside drawers."""
+    """Builds a long low cabinet on legs with doors next to drawers."""
     width, depth, height = w.width(1.20, 1.80), w.depth(0.40, 0.47), w.length(0.74, 0.86)
     wood, foot = w.look("wood"), w.length(0.14, 0.20)
     front = w.look("lacquer") if w.chance(0.4) else wood

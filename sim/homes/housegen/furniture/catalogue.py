@@ -126,7 +126,7 @@ class Catalogue:
             rng: source of all random draws.
             pool: "train" or "heldout".
             style: name of a style of that pool; None draws one.
-            reshape: whether the item, and what lies on it, sometimes gets other proportions (`reshape.py`).
+            reshape: whether the item, with the items on it, sometimes gets other proportions (`reshape.py`).
             **hints: see the tables.
 
         ================ =========================================================================================

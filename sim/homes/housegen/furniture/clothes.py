@@ -133,7 +133,7 @@ def valet(w: Workbench) -> None:
 
 
 def folded_pile(w: Workbench) -> None:
-    """Builds folded shirts and trousers with a pair of shoes beside them."""
+    """Builds folded shirts and trousers with a pair of shoes next to them."""
     z = 0.0
     for i in range(w.whole(4, 6)):
         thick = w.choice((0.03, 0.04))

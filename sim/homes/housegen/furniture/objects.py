@@ -111,7 +111,7 @@ def clock(w: Workbench) -> None:
 
 
 def photo_stand(w: Workbench) -> None:
-    """Builds a framed photograph on a stand beside a candle."""
+    """Builds a framed photograph on a stand next to a candle."""
     w.box((-0.01, 0.008), (-0.09, 0.09), (0.005, 0.23), w.look("wood"), tilt=-0.22)
     w.box((0.004, 0.011), (-0.07, 0.07), (0.03, 0.205), w.look("paper"), tilt=-0.22, solid=False)
     page = Page(0.011, (-0.055, 0.055), (0.045, 0.19), -0.22)

@@ -2,7 +2,7 @@
 
 It works on the geoms of any style, so that a style shows in more proportions than its own sizes give. A height is
 mapped by a continuous, piecewise linear function, and depth and width by one factor each: parts that touch still
-touch, and what stands on the floor or hangs on the wall stays there.
+touch, and geoms on the floor or on the wall stay there.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Warp:
     x: float
     y: float
     knots_m: NDArray[np.float64]  # (4,) heights, increasing, the first 0
-    heights_m: NDArray[np.float64]  # (4,) what the heights become
+    heights_m: NDArray[np.float64]  # (4,) the new heights
     mirrored: bool
 
     def points(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -55,7 +55,7 @@ def book_tower(w: Workbench) -> None:
 
 
 def open_book(w: Workbench) -> None:
-    """Builds an open book with a closed one and a pencil beside it."""
+    """Builds an open book with a closed one and a pencil next to it."""
     m, cover = PaletteMesh(), w.choice(ACCENTS)
     m.box((-0.11, 0.11), (-0.15, 0.15), (0.0, 0.006), cover)
     for side in (-1, 1):
@@ -101,7 +101,7 @@ def newspapers(w: Workbench) -> None:
 
 
 def laptop(w: Workbench) -> None:
-    """Builds an open laptop, with a mouse beside it."""
+    """Builds an open laptop, with a mouse next to it."""
     m, body = PaletteMesh(), w.choice((METAL, DARK))
     m.box((-0.12, 0.12), (-0.17, 0.17), (0.0, 0.016), body)
     m.box((-0.09, 0.02), (-0.15, 0.15), (0.015, 0.0175), DARK)

@@ -55,7 +55,7 @@ USE_OPTIONAL: frozenset[str] = frozenset({"sofa"})
 
 
 def fault_of_uses(category: str, uses: tuple[str, ...]) -> str:
-    """Returns what is wrong with the uses of a style, or "".
+    """Returns a sentence on a fault in the uses of a style, or "" if they are valid.
 
     The uses of a category that is not in `USES` are free: no room of the shipped generator asks for it.
     """

@@ -133,7 +133,7 @@ def cafe(w: Workbench) -> None:
 
 
 def venetian(w: Workbench) -> None:
-    """Builds a blind of metal slats, let down part of the way."""
+    """Builds a blind of metal slats, partly let down."""
     width, height = w.width(0.90, 1.60), w.height(1.00, 1.40)
     look = w.look("lacquer")
     w.box((0.0, 0.05), (-0.5 * width, 0.5 * width), (height - 0.04, height), look, solid=False)

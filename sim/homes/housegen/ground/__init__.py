@@ -2,7 +2,7 @@
 
 A house is furnished on a level ground first. `survey` reads its rooms, doorways and rugs from the specification, `draw`
 chooses the ground from a random stream of its own, and `lay` changes the specification. Rooms, furniture and textures
-therefore stay the same whatever the ground is.
+therefore do not depend on the ground.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Reads from the specification of a generated house what its ground depends on: rooms, doorways, rugs and fixtures."""
+"""Reads the parts that the ground depends on from the specification of a house: rooms, doorways, rugs and fixtures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A map of a furnished house for the placement of hazards: free floor, shortest paths, and what must stay connected."""
+"""A map of a furnished house for the placement of hazards: free floor, shortest paths, floor to keep connected."""
 
 from __future__ import annotations
 

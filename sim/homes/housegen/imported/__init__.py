@@ -1,6 +1,6 @@
 """Artist-made furniture that the user has installed: read once by `stubborn import furniture`, then used in houses.
 
-`sources` reads what is installed, `labels` decides which category a model has, `meshes`, `reduction` and `solids` make
+`sources` reads the installed models, `labels` decides their categories, `meshes`, `reduction` and `solids` make
 geometry of it, `library` writes and reads the folder of imported models, and `catalogue` makes styles of furniture of
 them. No model is part of this repository, and houses that are made without such a folder do not change.
 """

@@ -53,7 +53,7 @@ class Generator:
     upright: bool = False
     """True: an asset that lies flat is set on its edge."""
     dimensions_m: tuple[tuple[float, float], ...] | None = None
-    """Ranges of depth, width and height for generators that take them; None: what the generator draws."""
+    """Ranges of depth, width and height for generators that take them; None: the generator draws them."""
     options: Mapping[str, Any] = field(default_factory=dict)
     """Further arguments of the class."""
     title: str = ""

@@ -190,7 +190,7 @@ def _numbers(arrays: Mapping[str, NDArray[Any]], name: str, columns: int) -> NDA
 
 
 def write_index(folder: Path, models: Sequence[Model], left_out: Sequence[tuple[str, str]]) -> None:
-    """Writes `models.json`, with what was left out and why."""
+    """Writes `models.json`, with the models that were left out and the reasons."""
     content = {
         "version": VERSION,
         "models": [asdict(model) for model in models],

@@ -1,4 +1,4 @@
-"""Reads what is installed: catalogues of Sweet Home 3D (`.sh3f`), and folders of models with a table.
+"""Reads installed models: catalogues of Sweet Home 3D (`.sh3f`), and folders of models with a table.
 
 A source gives entries; nothing is unpacked to the disk. A file name that leads out of its zip or its folder is refused.
 """
@@ -27,7 +27,7 @@ from sim.homes.housegen.furniture.uses import fault_of_uses
 from sim.homes.housegen.imported.labels import Label, Size, label_of, label_of_category
 
 MAX_NUMBER = 1000.0
-"""Largest number of an entry besides its size."""
+"""Largest number of an entry, apart from its size."""
 MAX_FILE_BYTES = 200_000_000
 """Larger files in a zip are refused: a small zip can hold a very large file."""
 SIZE_M = (0.02, 6.0)

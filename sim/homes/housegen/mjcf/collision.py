@@ -24,7 +24,7 @@ MAX_FILLED_M3 = 0.012
 MAX_FILLED_M2 = 0.02
 """Largest floor area that it may add."""
 ROBOT_HEIGHT_M = 0.85
-"""A plate below this height stops the robot, whatever is under it."""
+"""A plate below this height stops the robot, even if the space under the plate is empty."""
 ABOVE_SURFACE_M = 0.4
 """Height that stays free above a surface on which objects stand."""
 BLOCKS = frozenset(("sink",))

@@ -53,7 +53,7 @@ def assemble(item: Item, bytes_per_geom: int = BYTES_PER_GEOM) -> Assembly:
 
 
 class Assembler:
-    """Assembles items for several limits on bytes; what does not depend on the limit is computed once for each item."""
+    """Assembles items for several limits on bytes; parts that do not depend on the limit are computed once per item."""
 
     def __init__(self) -> None:
         self._parts: dict[int, _Parts] = {}
@@ -89,7 +89,7 @@ class Assembler:
 
 
 class _Parts:
-    """The geoms of an item in the groups that are assembled, and what was computed about each."""
+    """The geoms of an item in the groups that are assembled, and the values computed for each group."""
 
     def __init__(self, item: Item) -> None:
         self.item = item

@@ -68,7 +68,7 @@ class Movable:
 
 
 def split_movable(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
-    """Splits an item into what stays in place and what can be pushed.
+    """Splits an item into the part that stays in place and the part that can be pushed.
 
     Returns:
         The static rest, None where nothing is left, and the movables; an item that is too heavy, is fixed to
@@ -180,7 +180,7 @@ def _box(geom: Geom, middle: NDArray, half: NDArray, turn: NDArray | None = None
 
 
 def _plant_kg(item: Item) -> float:
-    """Returns the mass of soil that the pot's bounding box could hold, limited to what a nursery pot holds."""
+    """Returns the mass of soil that the pot's bounding box could hold, limited to the soil in a nursery pot."""
     pot = [geom for geom in item.geoms if geom.solid and geom_bounds(geom)[0][2] < _ON_FLOOR_M]
     low, high = bounds(pot)
     return float(np.clip(SOIL_KG_M3 * 0.6 * np.prod(high - low), *PLANT_KG))

@@ -60,7 +60,7 @@ def _width(hole: Opening) -> float:
 
 
 def _window(width_m: float, z0: float, z1: float, view: Look, trim: Look) -> Item:
-    """Returns a window: frame with bars, sill, and a pane that shows what is outside."""
+    """Returns a window: frame with bars, sill, and a pane that shows the outside."""
     lo, hi = -0.5 * width_m, 0.5 * width_m
     bar, out = 0.05, OUTER_WALL_M - 0.02
     bars = [((lo, lo + bar), z0, z1), ((hi - bar, hi), z0, z1), ((lo, hi), z0, z0 + bar), ((lo, hi), z1 - bar, z1)]

@@ -37,7 +37,7 @@ class Flight:
     up: Side
     """Direction in which it rises."""
     steps: tuple[Rect, ...]
-    """From the lowest to the highest; the upper floor is one riser above the last."""
+    """The steps from the lowest to the highest; the upper floor is one riser above the last."""
     riser_m: float
     well: Rect
     """The hole in the upper floor; its edge on the side `up` is open, a railing stands on its other free edges."""

@@ -1,4 +1,4 @@
-"""Functions that draw what is outside a window at a time of day, and what a mirror shows.
+"""Functions that draw the view from a window at a time of day, and the image in a mirror.
 
 Each returns `px` x `px` RGB pixels in [0, 1], the top row first. The horizon is low, because a window begins at the
 height of the robot's eye.
@@ -36,7 +36,7 @@ def outside(rng: np.random.Generator, px: int, *, scene: str, time: str) -> Imag
 
 
 def reflection(rng: np.random.Generator, px: int, *, wall: Colour, floor: Colour) -> Image:
-    """Returns what a mirror shows: a blurred room with a bright window and a door, streaks, and a bevelled edge."""
+    """Returns the image in a mirror: a blurred room with a bright window and a door, streaks, and a bevelled edge."""
     y, x = _grid(px)
     image = np.empty((px, px, 3))
     image[:] = np.array(wall) * (1.04 - 0.22 * x[:, :, None])

@@ -97,7 +97,7 @@ class TrapSite:
 
     @property
     def hidden(self) -> tuple[str, ...]:
-        """Names of the bodies that make the trap: what depth does not show, shows too late, or shows as passable."""
+        """Names of the bodies that make the trap: depth does not show them, or too late, or as passable."""
         return tuple(self._hidden)
 
     def without_hidden(self) -> mujoco.MjSpec:

@@ -37,7 +37,7 @@ def put_against_wall(
     beside_m: float = 0.0,
     gap_m: float = WALL_GAP_M,
 ) -> Placement | None:
-    """Puts an item with its back to a wall; returns None where it fits nowhere.
+    """Puts an item with its back to a wall; returns None if it does not fit.
 
     Args:
         layout: the room.
@@ -105,7 +105,7 @@ def put_partly_under(
 
 
 def find_row_start(layout: RoomLayout, items: Sequence[Item], side: Side, front_m: float, gap_m: float) -> float | None:
-    """Returns where a row of items can begin along a side, preferably in a corner; None where it fits nowhere."""
+    """Returns where a row of items can begin along a side, preferably in a corner; None if it does not fit."""
     length_m = sum(item.size_m[1] + gap_m for item in items)
     for lo, hi in sorted(layout.walls.free_stretches(side), key=lambda s: s[0] - s[1]):
         spare_m = hi - lo - length_m - 0.006

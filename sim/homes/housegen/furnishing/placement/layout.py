@@ -135,7 +135,7 @@ class RoomLayout:
             self._reserved.append((placement.rect, zone_in_front(placement.rect, placement.side, length_m)))
 
     def release_zones(self, placement: Placement) -> None:
-        """Frees the zones of an item for what belongs there: a table in front of a sofa, chairs at a table."""
+        """Frees the zones of an item for the items that belong there: a table in front of a sofa, chairs at a table."""
         self._reserved = [(owner, zone) for owner, zone in self._reserved if owner != placement.rect]
 
     def used_on_surface(self, host: Placement, number: int) -> list[Rect]:

@@ -30,7 +30,7 @@ def hang_on_wall(
     margin_m: float = 0.05,
     over_floor: bool = False,
 ) -> Placement | None:
-    """Hangs an item on a wall; returns None where it fits nowhere.
+    """Hangs an item on a wall; returns None if it does not fit.
 
     Args:
         layout: the room.

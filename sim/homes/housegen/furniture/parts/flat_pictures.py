@@ -1,4 +1,4 @@
-"""Pictures of flat shapes: what televisions and computers show, and photographs."""
+"""Pictures of flat shapes: the screens of televisions and computers, and photographs."""
 
 from __future__ import annotations
 

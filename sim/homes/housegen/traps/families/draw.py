@@ -1,7 +1,7 @@
 """Draws a trap of a family: parameters by difficulty and seed, a scene that can be solved, and its shortest paths.
 
 A draw is refused, and the next one tried, where a breadth-first search over poses (`sim.world.pose_search`) finds no
-route to the goal, or where what is hidden does not make the path longer.
+route to the goal, or where the hidden obstacles do not make the path longer.
 """
 
 from __future__ import annotations

@@ -87,7 +87,7 @@ class Parameters(abc.ABC):
     family: ClassVar[str]
     """Name of the family."""
     summary: ClassVar[str]
-    """One line on what the trap consists of."""
+    """One line on the parts of the trap."""
     held_out: ClassVar[bool] = False
     """True: no agent may be developed or tuned on traps of this family."""
     of_panes: ClassVar[bool] = False

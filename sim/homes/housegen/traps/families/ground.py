@@ -1,4 +1,4 @@
-"""Families of floors: slippery and soft ones before a pane, and a path beside a drop."""
+"""Families of floors: slippery and soft ones before a pane, and a path next to a drop."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class WetFloor(Parameters):
         soft = self.rolling_m > 0.0
         patch = site.floor_slab(span, (0.0, self.width_m), SOFT_M if soft else WET_M, RUG if soft else WET)
         for geom in patch.geoms:
-            geom.priority = 1  # its friction counts, whatever that of the tyres
+            geom.priority = 1  # its friction replaces that of the tyres
             geom.friction = [self.friction, 0.005 if soft else 0.0, self.rolling_m]
             if soft:
                 geom.condim, geom.solref = 6, [SOFT_TIME_S, 1.0]
@@ -74,7 +74,7 @@ class WetFloor(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class Ledge(Parameters):
-    """A path beside a drop; `gap_m` is the width of the path."""
+    """A path next to a drop; `gap_m` is the width of the path."""
 
     family: ClassVar[str] = "ledge"
     summary: ClassVar[str] = "A sunken floor lies before the goal; a path as wide as the gap leads along its side."

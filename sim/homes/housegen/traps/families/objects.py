@@ -35,7 +35,7 @@ class ScanDoors(Parameters):
 
     @classmethod
     def draw(cls, chance: Chance) -> Self:
-        """Draws doorways; a harder trap has more of them, and less width beside the lump of the open one."""
+        """Draws doorways; a harder trap has more of them, and less width next to the lump of the open one."""
         doorways, out, towards = draw_row(chance)
         return cls(
             gap_m=chance.gap_m(), doorways=doorways, doorway_m=chance.between((1.05, 1.15)),
