@@ -2,7 +2,7 @@
 
 The types are those of msgspec: a `msgspec.Struct` names the fields that a file must have and their types, and the
 aliases below bound numbers and names. JSON has no NaN and no infinity here, nesting and size are limited, and a
-message names the file, the line, the field, what was found and what is wanted.
+message names the file, the line, the field, the value and the expected type.
 """
 
 from __future__ import annotations

@@ -173,7 +173,7 @@ def write_files(folder: Path, files: Mapping[str, PackedFile], *, pack: bool) ->
 
 
 def _linked(source: Path, part: Path) -> bool:
-    """Replaces a file by a hard link to another one; returns False where that is not possible."""
+    """Replaces a file by a hard link to another one; returns False if that is not possible."""
     part.unlink()
     try:
         os.link(source.resolve(), part)

@@ -8,7 +8,7 @@ from sim.robot.config import DriveConfig
 
 
 class Blocking:
-    """Compares what the motors were told to do with what the body has done, over the last `DriveConfig.blocked_s`.
+    """Compares the commands of the motors with the motion of the body over the last `DriveConfig.blocked_s`.
 
     It does not matter which part of the robot touches something, how large the force is, or whether the wheels stall or
     slip. Wheel encoders cannot see slip, so that the motion is the true one, which real bases measure with a sensor of

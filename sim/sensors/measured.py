@@ -114,7 +114,7 @@ class ImuNoise:
         require_range(self, 0.0, math.inf, *names)
 
     def model(self, camera: CameraModel) -> NoisyImu | None:
-        """Returns a new noise model; None where all noise is off."""
+        """Returns a new noise model; None if all noise is off."""
         return None if self == ImuNoise() else NoisyImu(self)
 
 

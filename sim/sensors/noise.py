@@ -240,7 +240,7 @@ class SensorNoise:
 
 
 def _model_of(part: Any, camera: CameraModel, sensors: Sequence[Sensor]) -> NoiseModel | None:
-    """Returns the noise model of one part; None where it is off, of the drive, or of a lidar that is not observed."""
+    """Returns the noise model of one part; None if it is off, of the drive, or of a lidar that is not observed."""
     if isinstance(part, ActuationNoise):
         return None
     if isinstance(part, ScanNoise):

@@ -34,11 +34,11 @@ class ScanNoise:
         require_range(self, 0.0, 1.0, "dropout")
 
     def model(self, camera: CameraModel) -> NoisyScan | None:
-        """Returns a new noise model for the default lidar; None where all noise is off."""
+        """Returns a new noise model for the default lidar; None if all noise is off."""
         return self.model_of(ScanConfig())
 
     def model_of(self, scan: ScanConfig) -> NoisyScan | None:
-        """Returns a new noise model for this lidar; None where all noise is off."""
+        """Returns a new noise model for this lidar; None if all noise is off."""
         return None if self == ScanNoise() else NoisyScan(self, scan)
 
 

@@ -106,7 +106,7 @@ class FreeSpace:
         return self.clearance(x_m, y_m, at_most_m=self.radius_m) >= self.radius_m
 
     def _stands_on_floor(self, x_m: float, y_m: float) -> bool:
-        """Returns whether the floors carry the whole disc at exactly this position, but for seams."""
+        """Returns whether the floors carry the whole disc at exactly this position; seams are ignored."""
         if self._floors is None:
             return True
         angles = np.linspace(0.0, 2.0 * np.pi, _RIM_POINTS, endpoint=False)

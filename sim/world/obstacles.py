@@ -16,7 +16,7 @@ from sim.houses.labels import ROBOT_PREFIX, Labels, collidable_geoms, geoms_of
 from sim.world.plan import polygons_between
 
 LEVEL_FLOOR_M = 0.03
-"""Floors at most this far above or below the storey's are part of it, but for edges that are too high to be climbed."""
+"""Floors at most this far above or below the storey's are part of it, except for edges that are too high to climb."""
 TOLERANCE_M = 0.0005
 """Geoms that are higher than `RobotModel.climb_m` by less than this do not count as obstacles."""
 EDGE_CELL_M = 0.025

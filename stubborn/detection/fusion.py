@@ -59,7 +59,10 @@ class Fusion:
         if unknown:
             raise ConfigError(f"Fusion.offsets must name categories of objects, got '{unknown[0]}'.")
         if not (self.sharpness > 0.0 and self.floor > 0.0 and min(self.ring_weights, default=0.0) > 0.0):
-            raise ConfigError("Fusion needs ring_weights, sharpness and floor > 0.")
+            raise ConfigError(
+                "Fusion needs ring_weights, sharpness and floor > 0, "
+                f"got {self.ring_weights}, {self.sharpness} and {self.floor}."
+            )
 
     def probabilities(
         self, mean: Float32[np.ndarray, "n views classes"], weight: Float32[np.ndarray, "n views"]

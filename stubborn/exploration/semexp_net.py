@@ -38,7 +38,7 @@ class NetConfig:
 
     @property
     def channels(self) -> tuple[str | None, ...]:
-        """The category of each semantic channel, None where it has none.
+        """The category of each semantic channel, None for a channel without a category.
 
         Raises:
             ConfigError: `categories` is not the length of a known list of categories.

@@ -41,7 +41,7 @@ class PixelCells:
     rows: Int32[np.ndarray, "h w"]
     """Row of each pixel's cell; -1: the pixel has no distance, or shows a point that is too high."""
     cols: Int32[np.ndarray, "h w"]
-    """Column of it."""
+    """Column of each pixel."""
     span: tuple[slice, slice] | None
     """Rows and columns of the smallest rectangle that holds all points, including those too high; None: no point."""
 

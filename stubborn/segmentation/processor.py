@@ -12,7 +12,7 @@ _PROCESSOR = Path("/proc/cpuinfo")
 
 @functools.cache
 def computes_bf16() -> bool:
-    """Returns whether the processor has instructions for bf16; False where the system does not say so."""
+    """Returns whether the processor has instructions for bf16; False if the system does not say so."""
     try:
         lines = _PROCESSOR.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:

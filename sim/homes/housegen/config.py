@@ -53,10 +53,10 @@ class HouseConfig:
             raise ConfigError(f"HouseConfig.kind must be one of {', '.join(PLAN_KINDS)}, got '{self.kind}'.")
         unknown = [room for room in self.rooms if room not in ROOM_RULES]
         if unknown:
-            raise ConfigError(f"HouseConfig.rooms: no room kind '{unknown[0]}'. Available: {', '.join(ROOM_RULES)}.")
+            raise ConfigError(f"HouseConfig.rooms: unknown kind '{unknown[0]}'. Available: {', '.join(ROOM_RULES)}.")
         unknown = [family for family in self.hazards if family not in FAMILIES]
         if unknown:
-            raise ConfigError(f"HouseConfig.hazards: no hazards '{unknown[0]}'. Available: {', '.join(FAMILIES)}.")
+            raise ConfigError(f"HouseConfig.hazards: unknown hazard '{unknown[0]}'. Available: {', '.join(FAMILIES)}.")
         if self.area_m2 is not None and not AREA_M2[0] <= self.area_m2 <= AREA_M2[1]:
             raise ConfigError(
                 f"HouseConfig.area_m2 must lie in {AREA_M2[0]:.0f}-{AREA_M2[1]:.0f} m2, got {self.area_m2}."

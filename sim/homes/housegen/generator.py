@@ -247,7 +247,7 @@ def _draw_plan(
 
 
 def _require_as_asked(plan: FloorPlan, area_m2: float | None, rooms: tuple[str, ...]) -> None:
-    """Raises PlanError where a plan lacks a room, or its area differs by too much from the one that was asked for."""
+    """Raises PlanError if a plan lacks a room, or its area differs by too much from the one that was asked for."""
     missing = Counter(rooms) - Counter(room.kind for room in plan.rooms)
     if missing:
         raise PlanError(f"no place for {next(iter(missing))}")
@@ -266,7 +266,7 @@ def max_bytes(area_m2: float) -> int:
 def _build_within_limit(draft: _Draft, config: HouseConfig) -> HouseBuilder | None:
     """Returns a drawn home, built, its parts joined as much as the size of the file allows.
 
-    Returns None where the file is too large anyway. Homes with reshaped items are in no split and may have any size.
+    Returns None if the file is too large anyway. Homes with reshaped items are in no split and may have any size.
     """
     assembler = Assembler()
     if config.reshape or config.any_size:

@@ -55,7 +55,7 @@ def is_withheld(style: Style) -> bool:
 
 
 def without_covered(style: Style, replacing: Sequence[_OfCategory]) -> Style | None:
-    """Returns a style with the uses that no replacing style or model has; None where nothing is left of it."""
+    """Returns a style with the uses that no replacing style or model has; None if no use is left."""
     of_category = [other for other in replacing if other.category == style.category]
     if not of_category:
         return style

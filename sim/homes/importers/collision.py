@@ -181,7 +181,7 @@ def _boxes_along(filled: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 def _joined(boxes: NDArray[np.int64], axis: int) -> NDArray[np.int64]:
-    """Returns boxes in which those are joined that are equal but for being successive along an axis."""
+    """Returns boxes; boxes that are adjacent along an axis and equal along the others are joined."""
     others = [n for n in (0, 3, 1, 4, 2, 5) if n % 3 != axis]
     order = np.lexsort([boxes[:, axis], *(boxes[:, n] for n in reversed(others))])
     boxes = boxes[order]

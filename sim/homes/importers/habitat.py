@@ -106,10 +106,10 @@ def import_source(source: Source, config: MeshConfig) -> MeshHouse:
             read = read_hm3d if source.kind == "hm3d" else read_mp3d
             made, ambient = read(source.file, losses, config.texture_px), SCAN_AMBIENT
         if not made.objects:
-            raise HouseError("it has no object.")
+            raise HouseError("it has no objects.")
         return build_house(source.name, str(source.file), made.objects, made.rooms, config, losses, ambient=ambient)
     except HouseError as error:
         text = str(error)
         raise HouseError(text if str(source.file.parent) in text else f"'{source.file}': {text}") from None
     except MemoryError:
-        raise HouseError(f"'{source.file}' needs more memory than there is.") from None
+        raise HouseError(f"'{source.file}' needs more memory than is available.") from None

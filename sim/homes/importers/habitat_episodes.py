@@ -1,4 +1,4 @@
-"""Fits Habitat's own ObjectNav episodes to an imported house, and says which of them do not fit.
+"""Fits Habitat's own ObjectNav episodes to an imported house, and reports those that do not fit.
 
 A start is put on the floor of the nearest storey and, where the robot would overlap something, moved to the nearest
 free place. A goal of the files fits if the house has an instance of its category there. Distances are computed anew.
@@ -32,7 +32,7 @@ from sim.task.objectnav import Task
 MOVED_M = 0.5
 """A start is moved at most this far."""
 SAME_PLACE_M = 0.5
-"""Largest distance in plan of a goal's position from the instance that it is."""
+"""Largest distance in plan of a goal's position from its instance."""
 MAX_EPISODE_FILES = 10_000
 _SUFFIXES = (".basis.glb", ".glb", ".scene_instance.json", ".ply", ".xml")
 
@@ -125,7 +125,7 @@ def fit_episodes(task: Task, scene: SceneEpisodes, lowered_m: float) -> Fitted:
 
 
 def _fitted(task: Task, entry: habitat.EpisodeEntry, lowered_m: float, counts: Counter[str]) -> Episode | None:
-    """Returns an episode in our frame, or None where it does not fit; `counts` gets the reason."""
+    """Returns an episode in our frame, or None if it does not fit; `counts` gets the reason."""
     goal = _goal(entry.object_category)
     if goal is None or goal not in task.truth.goals():
         counts[f"Episode left out: the house has no {entry.object_category[:40]}."] += 1
@@ -158,7 +158,7 @@ def _goal(name: str) -> str | None:
 
 
 def _free_pose(task: Task, pose: Pose) -> Pose | None:
-    """Returns the pose at the nearest free place, or None where none is within `MOVED_M`."""
+    """Returns the pose at the nearest free place, or None if it is farther than `MOVED_M`."""
     space = task.truth.space(pose.floor_z_m)
     if space.is_free(pose.x_m, pose.y_m):
         return pose

@@ -73,7 +73,7 @@ def read_hm3d(file: Path, losses: Losses, texture_px: int) -> Scan:
         None,
     )
     if shown is None:
-        raise HouseError(f"Scan '{file}': there is no '{stem}.glb' and no '{stem}.basis.glb' next to it.")
+        raise HouseError(f"Scan '{file}': '{stem}.glb' or '{stem}.basis.glb' must be next to it.")
     labelled = read_surfaces(file.with_name(f"{stem}.semantic.glb"))
     ids = [_instances(surface, colours) for surface in labelled]
     surfaces = read_surfaces(shown, texture_px=texture_px, losses=losses.changes)
@@ -87,7 +87,7 @@ def read_mp3d(file: Path, losses: Losses, texture_px: int) -> Scan:
     ply, glb = file.with_name(f"{stem}_semantic.ply"), file.with_name(f"{stem}.glb")
     labelled = read_surfaces(ply)
     if any(surface.face_ids is None for surface in labelled):
-        raise HouseError(f"Mesh '{ply}' has no property 'object_id' of its faces.")
+        raise HouseError(f"Mesh '{ply}': its faces must have the property 'object_id'.")
     ids = [surface.face_ids for surface in labelled if surface.face_ids is not None]
     surfaces = labelled
     if glb.is_file():
@@ -104,7 +104,7 @@ def read_hm3d_text(file: Path, losses: Losses) -> tuple[dict[int, Annotation], d
     what = f"Annotations '{file}'"
     lines = read_text(file, what="Annotations", error=HouseError).splitlines()
     if not lines or HM3D_HEADER not in lines[0]:
-        raise HouseError(f"{what}, line 1: it must be '{HM3D_HEADER}'.")
+        raise HouseError(f"{what}, line 1: the line must be '{HM3D_HEADER}'.")
     notes: dict[int, Annotation] = {}
     colours: dict[int, int] = {}
     for number, line in enumerate(lines[1:], start=2):
@@ -143,7 +143,7 @@ def read_house_text(file: Path) -> tuple[dict[int, Annotation], dict[int, str]]:
     what = f"House file '{file}'"
     lines = read_text(file, what="House file", error=HouseError).splitlines()
     if not lines or lines[0].split() != ["ASCII", "1.1"]:
-        raise HouseError(f"{what}, line 1: it must be 'ASCII 1.1'.")
+        raise HouseError(f"{what}, line 1: the line must be 'ASCII 1.1'.")
     categories: dict[int, tuple[str, str]] = {}
     kinds: dict[int, str] = {}
     regions: list[tuple[int, int, int]] = []

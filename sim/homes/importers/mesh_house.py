@@ -42,7 +42,7 @@ LEAST_TRIANGLES = 24
 TEXTURE_BYTES = 192 << 20
 """Pictures of a house are reduced until they fit."""
 ROOM_M = 2.5
-"""Height of rooms when nothing says it."""
+"""Default height of rooms."""
 FLOOR_DEPTH_M = 0.1
 _KIND = re.compile(r"[^a-z]+")
 

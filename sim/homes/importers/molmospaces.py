@@ -2,7 +2,7 @@
 
 A house is `<name>.xml`, with `<name>_metadata.json`, and meshes next to it; `<name>_ceiling.xml`, where it exists, is
 the same house with ceilings and is used in its place. The metadata names the category of each object by its root body,
-`<word>_<hash>_<count>_<body>_<room>`. Geometry is not interpreted but for the floors of the rooms, which become sites.
+`<word>_<hash>_<count>_<body>_<room>`. Of the geometry only the floors of the rooms are interpreted: they become sites.
 """
 
 from __future__ import annotations

@@ -157,7 +157,7 @@ def _share(word: str) -> float:
     """Returns a number as one in [0, 1]; raises ValueError if it is not one."""
     value = float(word)
     if math.isnan(value):
-        raise ValueError("a colour or opacity is a number")
+        raise ValueError("a colour or an opacity must be a number, got NaN")
     return min(max(value, 0.0), 1.0)
 
 

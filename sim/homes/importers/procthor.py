@@ -135,7 +135,7 @@ def _looks(rng: np.random.Generator, house: SourceHouse, layout: Layout, pool: P
 
 
 def _floor_kind(material: Material | str | None) -> str | None:
-    """Returns our kind of floor for a material of the source, or None where its name says none."""
+    """Returns our kind of floor for a material of the source, or None if its name does not tell."""
     name = (material.name if isinstance(material, Material) else material or "").lower()
     return next((kind for kind, words in FLOORS.items() if any(word in name for word in words)), None)
 

@@ -154,7 +154,7 @@ def read_houses(path: Path) -> Iterator[Source]:
     elif name.endswith(".json"):
         yield Source(stem, f"{what} '{path}'", _content(path, what))
     else:
-        raise ConfigError(f"'{path}' does not end in .json, .jsonl, .json.gz or .jsonl.gz.")
+        raise ConfigError(f"'{path}': unsupported suffix; use .json, .jsonl, .json.gz or .jsonl.gz.")
 
 
 def parse_house(source: Source) -> SourceHouse:

@@ -105,7 +105,7 @@ class ObjectPlacer:
         self, entity: SceneObject, kind: str, entry: Entry, size_m: tuple[float, float, float], yaw: float,
         place: Place, bottom_m: float,
     ) -> Iterator[PlacedItem]:  # fmt: skip
-        """Yields the items of an object that is in no other one: one, but for counters with arms."""
+        """Yields the items of an object that is not inside another one: one item, or several for counters with arms."""
         x, y = entity.position.x, entity.position.z
         arms = _arms(entity.assetId, size_m, lambda side: self._wall_gap(x, y, size_m, yaw, side))
         first = self.fitter.fit(entity.assetId, entry, arms[0][0], place)

@@ -45,7 +45,7 @@ class Layout:
     """The rooms of a house and the holes in their walls."""
 
     plan: FloorPlan
-    """Its rooms are the rectangles; those of one room of the source share a name but for a number at the end."""
+    """The plan has one room per rectangle; rectangles of one room of the source differ by a number in their name."""
     room_of: tuple[int, ...]
     """The index of the room in the source, for each rectangle."""
     openings: tuple[Opening, ...]
@@ -158,14 +158,14 @@ def _missing_walls(house: SourceHouse, plan: FloorPlan, room_of: Sequence[int], 
 
 
 def _wide_open(a: int, b: int, side: Side, rect: Rect, span: Interval) -> Iterator[Opening]:
-    """Yields an opening from floor to ceiling, but for the thickness of the walls at its ends."""
+    """Yields an opening from floor to ceiling, except for the thickness of the walls at its ends."""
     lo, hi = span[0] + HALF_WALL_M, span[1] - HALF_WALL_M
     if hi > lo:
         yield Opening("open", a, b, side, rect.line(side), (lo, hi), 0.0, 1e3)
 
 
 def _along(first: Point, second: Point) -> Stretch | None:
-    """Returns the stretch between two points, or None where they are the same or not on one line."""
+    """Returns the stretch between two points, or None if they are the same or not on one line."""
     if first[1] == second[1] and first[0] != second[0]:
         return Stretch("x", first[1], (min(first[0], second[0]), max(first[0], second[0])))
     if first[0] == second[0] and first[1] != second[1]:
@@ -207,7 +207,7 @@ def _opening(
     hole: Hole, stretch: Stretch, is_door: bool, plan: FloorPlan, room_of: Sequence[int], house: SourceHouse,
     ceiling_m: float, losses: Losses,
 ) -> Opening | None:  # fmt: skip
-    """Returns the opening of a hole, or None where it lies in no wall of a room or is too small."""
+    """Returns the opening of a hole, or None if it lies in no wall of a room or is too small."""
     what = "door" if is_door else "window"
     parts = _parts_at(stretch, plan)
     own = [part for part in parts if house.rooms[room_of[part[0]]].id == hole.room0] or parts

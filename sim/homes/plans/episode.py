@@ -33,7 +33,7 @@ class PlanEpisode:
         self.plan: Plan = camera.plan
         require_goal(self.plan, goal)
         if not self.plan.frame.contains(*self.plan.frame.cell(start.x_m, start.y_m)):
-            raise EpisodeError(f"Plan '{self.plan.name}': the start ({start.x_m:g}, {start.y_m:g}) m is off the plan.")
+            raise EpisodeError(f"Plan '{self.plan.name}': the start ({start.x_m:g}, {start.y_m:g}) m is outside of it.")
         self.camera, self.goal, self.start, self.max_steps = camera, goal, start, max_steps
         camera.reset()
         self.robot = PlanRobot(self.plan)
@@ -113,7 +113,7 @@ class PlanEpisode:
 def draw_goal_and_start(plan: Plan, rng: np.random.Generator, goal: str | None = None) -> tuple[str, Pose]:
     """Returns a random goal of a plan, and a start from which it can be reached.
 
-    The starts are those of `sim.episodes.drawing`, but for its upper limit of the distance: they may be farther away.
+    The starts are those of `sim.episodes.drawing` without its upper limit of the distance: they may be farther away.
 
     Args:
         plan: the plan.
@@ -152,7 +152,7 @@ def draw_goal(plan: Plan, rng: np.random.Generator, start: Pose) -> str:
 
 
 def require_goal(plan: Plan, goal: str) -> str:
-    """Returns a goal; raises EpisodeError where no STOP for it succeeds anywhere in the plan."""
+    """Returns a goal; raises EpisodeError if no STOP for it succeeds anywhere in the plan."""
     if goal not in plan.goals():
         raise EpisodeError(f"Plan '{plan.name}' has no goal '{goal}'. It has: {', '.join(plan.goals()) or 'no goal'}.")
     return goal

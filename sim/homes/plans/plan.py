@@ -199,7 +199,7 @@ class _About(msgspec.Struct):
 
 
 def _check(about: _About, arrays: Mapping[str, NDArray]) -> None:
-    """Raises ValueError where arrays do not fit each other: compiled functions index them without a check."""
+    """Raises ValueError if arrays do not fit each other: compiled functions index them without a check."""
     floor, start, spans = arrays["floor"], arrays["span_start"], arrays["span_low_m"].size
     kinds = {"slack_m": "f", "floor": "b", "room": "i", "succeeds": "u", "span_start": "i", "span_low_m": "u",
              "span_high_m": "u", "span_instance": "u", "categories": "u"}  # fmt: skip

@@ -40,7 +40,7 @@ class Draft:
 
 
 def check_draft(draft: Draft, area_m2: float) -> None:
-    """Raises PlanError where rooms overlap, are too small or too long, or the total area is far from `area_m2`."""
+    """Raises PlanError if rooms overlap, are too small or too long, or the total area is far from `area_m2`."""
     for i, (kind, rect) in enumerate(zip(draft.kinds, draft.rects, strict=True)):
         rule = ROOM_RULES[kind]
         if (

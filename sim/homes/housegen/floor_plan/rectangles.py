@@ -108,7 +108,7 @@ def frame_around(outer: Rect, hole: Rect) -> list[Rect]:
 
 
 def shared_side(a: Rect, b: Rect) -> tuple[Side, Interval] | None:
-    """Returns the side of `a` on which `b` lies and the interval that both share; None where they do not touch."""
+    """Returns the side of `a` on which `b` lies and the interval that both share; None if they do not touch."""
     for side in SIDES:
         if abs(a.line(side) - b.line(OPPOSITE[side])) < EPS_M:
             lo, hi = max(a.span(side)[0], b.span(side)[0]), min(a.span(side)[1], b.span(side)[1])

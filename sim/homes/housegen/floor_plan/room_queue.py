@@ -60,7 +60,7 @@ class RoomQueue:
         self._placed: Counter[str] = Counter()
 
     def take(self, fits: Callable[[Group], bool], *, more: bool) -> Group | None:
-        """Removes and returns the first group that fits, with `more` else a further room; None where nothing fits."""
+        """Removes and returns the first group that fits, with `more` else a further room; None if nothing fits."""
         for i, group in enumerate(self._groups):
             if fits(group):
                 return self._count(self._groups.pop(i))

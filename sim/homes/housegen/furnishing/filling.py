@@ -65,7 +65,7 @@ def console(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
 
 
 def middle_rug(layout: RoomLayout, source: FurnitureSource) -> bool:
-    """Lays a large rug in the middle of a room; returns False where another rug lies there."""
+    """Lays a large rug in the middle of a room; returns False if another rug lies there."""
     along = 0.0 if layout.inner.width_m < layout.inner.depth_m else math.pi / 2
     size_m = (1.8, 2.6) if layout.inner.area_m2 > 16 else None
     return lay_rug(layout, source, *layout.inner.centre, along, runner=False, size_m=size_m)

@@ -114,7 +114,7 @@ class FurnitureSource:
         """Returns an item for the first of the uses for which the pool has a style, or for any use when none is given.
 
         `fresh` returns another style than the calls before it if there is one, for a position where those did not fit.
-        Returns None where the pool has no style that fits.
+        Returns None if the pool has no style that fits.
         """
         if category not in self._catalogue.categories:
             return None

@@ -1,6 +1,6 @@
 """Furniture that belongs together: a bed and its nightstands, a table and its chairs, a desk and the items on it.
 
-Each function puts its group into a room and returns its main item, or None where the room has no position for it.
+Each function puts its group into a room and returns its main item, or None if the room has no position for it.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Groups of seats in living rooms: a sofa facing a screen, a reading corner, a circle of armchairs.
 
-Each function puts its group into a room and returns its main item, or None where the room has no position for it.
+Each function puts its group into a room and returns its main item, or None if the room has no position for it.
 """
 
 from __future__ import annotations

@@ -108,7 +108,7 @@ def lay_rug(
 ) -> bool:
     """Lays a rug on the floor: a runner if `runner`, a wide rug if it is False, either one if it is None.
 
-    `size_m` is its depth and width. Returns False where none fits there.
+    `size_m` is its depth and width. Returns False if no item fits there.
     """
     hints: dict[str, Any] = {"depth_m": size_m[0], "width_m": size_m[1]} if size_m else {}
     for n in range(3):
@@ -153,7 +153,7 @@ def top_uses(layout: RoomLayout, source: FurnitureSource, host: Placement) -> tu
 def place_row(
     layout: RoomLayout, source: FurnitureSource, items: Sequence[Item], side: Side, *, front_m: float = AISLE_M
 ) -> list[Placement]:
-    """Places items side by side along a wall, in this order or in reverse; an empty list where not all fit."""
+    """Places items side by side along a wall, in this order or in reverse; an empty list if not all fit."""
     forwards, backwards = list(items), list(reversed(items))
     for order in (forwards, backwards) if source.chance(0.5) else (backwards, forwards):
         at = find_row_start(layout, order, side, front_m, ROW_GAP_M) if order else None

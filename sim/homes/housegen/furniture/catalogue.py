@@ -58,10 +58,10 @@ class Catalogue:
         by_category: dict[str, dict[str, Style]] = {}
         for style in styles:
             if style.category not in MPCAT40_ID:
-                raise ConfigError(f"Style '{style.name}': no category '{style.category}' in mpcat40.")
+                raise ConfigError(f"Style '{style.name}': mpcat40 has no category '{style.category}'.")
             if style.pool not in get_args(Pool):
                 raise ConfigError(
-                    f"Style '{style.name}': no pool '{style.pool}'. Available: {', '.join(get_args(Pool))}."
+                    f"Style '{style.name}': unknown pool '{style.pool}'. Available: {', '.join(get_args(Pool))}."
                 )
             if fault := fault_of_uses(style.category, style.uses):
                 raise ConfigError(f"Style '{style.name}': {fault}")

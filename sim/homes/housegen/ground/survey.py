@@ -108,7 +108,7 @@ def _is_room_floor(body: mujoco.MjsBody) -> bool:
 
 
 def _rooms(spec: mujoco.MjSpec, floors: list[mujoco.MjsBody]) -> tuple[RoomFloor, ...]:
-    """Returns the floors of all rooms; a floor and the site of its room have the same extent but for the walls."""
+    """Returns the floors of all rooms; a floor and the site of its room have the same extent except for the walls."""
     rooms = []
     sites = [site for site in spec.worldbody.sites if site.name.startswith("room_")]
     for body in floors:

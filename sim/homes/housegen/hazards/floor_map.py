@@ -77,7 +77,7 @@ class FloorMap:
         return cv2.distanceTransform((~self._solid).astype(np.uint8), cv2.DIST_L2, 5) * np.float32(CELL_M)
 
     def draw_path(self, rng: np.random.Generator) -> Path | None:
-        """Returns a shortest path between random places of two random rooms; None where one has no free place."""
+        """Returns a shortest path between random places of two random rooms; None if a room has no free place."""
         order = rng.permutation(len(self.rooms))[:2]
         if len(order) < 2:
             return None
@@ -96,7 +96,7 @@ class FloorMap:
         return float(steps[hits[0]]) if hits.size else most_m
 
     def try_add(self, outlines: Sequence[NDArray[np.float64]], apart_m: float) -> bool:
-        """Adds a hazard with these outlines; returns False, and changes nothing, where it does not fit.
+        """Adds a hazard with these outlines; returns False, and changes nothing, if it does not fit.
 
         It fits where it touches nothing, is at least `apart_m` from all other hazards, and disconnects no floor.
         """

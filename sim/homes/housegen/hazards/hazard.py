@@ -135,7 +135,7 @@ class Sketch:
 
 
 Design = Callable[[Sketch, "FloorMap"], bool]
-"""Adds the objects of one kind of hazard to a sketch; returns False where it does not fit there."""
+"""Adds the objects of one kind of hazard to a sketch; returns False if it does not fit there."""
 
 
 class Family(Protocol):

@@ -76,7 +76,7 @@ def draw_hazards(
 def _draw_hazard(
     rng: np.random.Generator, family: str, pool: Pool, looks: Mapping[str, Look], floor: FloorMap
 ) -> PlacedHazard | None:
-    """Returns one hazard of a family on a path; None where no place is found."""
+    """Returns one hazard of a family on a path; None if no place is found."""
     designs = DESIGNS[family]
     design = designs[0]
     for attempt in range(TRIES):

@@ -116,7 +116,7 @@ class Asset:
     seed: int
     seconds: float
     extent_m: tuple[float, float, float] | None = None
-    """Lengths along Infinigen's x, y and z axes; None where it failed."""
+    """Lengths along Infinigen's x, y and z axes; None if it failed."""
     triangles: int = 0
     error: str = ""
     limit_s: float = 0.0

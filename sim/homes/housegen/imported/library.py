@@ -159,11 +159,11 @@ def read_shape(folder: Path, model: Model) -> Shape:
     try:
         return _shape_of(arrays)
     except ValueError as error:
-        raise ConfigError(f"'{file}' is no {what}: {error}.") from None
+        raise ConfigError(f"'{file}' is not an {what}: {error}.") from None
 
 
 def _shape_of(arrays: Mapping[str, NDArray[Any]]) -> Shape:
-    """Returns the geometry in the arrays of a file; raises ValueError where one is missing or has another shape."""
+    """Returns the geometry in the arrays of a file; raises ValueError if one is missing or has another shape."""
     rgba, boxes_m = _numbers(arrays, "rgba", 4), _numbers(arrays, "boxes", 6)
     parts = tuple(
         Part(
@@ -175,7 +175,7 @@ def _shape_of(arrays: Mapping[str, NDArray[Any]]) -> Shape:
     )
     top = arrays.get("top")
     if top is None or top.shape not in ((0,), (5,)) or top.dtype.kind != "f":
-        raise ValueError("it has no 'top' of five numbers or none")
+        raise ValueError("'top' must have five numbers or be empty")
     return Shape(parts, boxes_m, tuple(map(float, top)))
 
 

@@ -56,7 +56,7 @@ def collision_boxes(parts: tuple[Part, ...], category: str) -> NDArray[np.float6
 
 
 def top_of(parts: tuple[Part, ...]) -> tuple[float, float, float, float, float] | None:
-    """Returns lowest x, y, highest x, y and the height of the largest free level rectangle; None where none is large.
+    """Returns lowest x, y, highest x, y and the height of the largest free level rectangle; None if all are small.
 
     It is free if nothing of the model is above it.
     """

@@ -217,7 +217,7 @@ def _read_file(folder: Path, path: str) -> bytes:
 
 
 def _finite(*numbers: float) -> None:
-    """Raises Skipped where a number is NaN or infinite, or a height that no house has."""
+    """Raises Skipped if a number is NaN or infinite, or a height that no house has."""
     if not all(abs(number) <= MAX_NUMBER for number in numbers):
         raise Skipped(f"a number is not finite or larger than {MAX_NUMBER:g}")
 

@@ -135,7 +135,7 @@ def _joinable(item: Item) -> list[Geom]:
 
 
 def _plain(geom: Geom) -> Look | None:
-    """Returns the look of a geom as part of a mesh without texture; None where the texture must stay visible."""
+    """Returns the look of a geom as part of a mesh without texture; None if the texture must stay visible."""
     look = geom.look
     if look.rgba[3] < 1.0:
         return None

@@ -71,7 +71,7 @@ def split_movable(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
     """Splits an item into the part that stays in place and the part that can be pushed.
 
     Returns:
-        The static rest, None where nothing is left, and the movables; an item that is too heavy, is fixed to
+        The static rest, None if nothing is left, and the movables; an item that is too heavy, is fixed to
         something or carries other items is all rest.
     """
     if item.mount != "floor" or item.children or item.walk_over or item.collision_geoms:

@@ -79,7 +79,7 @@ def _ceiling(rect: Rect, ceiling_m: float, look: Look, hole: Rect | None) -> Ite
 
 
 def _plates(rect: Rect, hole: Rect | None, z0_m: float, z1_m: float, look: Look) -> list[Geom]:
-    """Returns visual boxes that cover a rectangle but for a hole."""
+    """Returns visual boxes that cover a rectangle except for a hole."""
     pieces = [rect] if hole is None else frame_around(rect, hole)
     return [oriented_box((r.x0, r.x1, r.y0, r.y1, z0_m, z1_m), look, solid=False) for r in pieces]
 

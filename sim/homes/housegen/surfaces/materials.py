@@ -245,7 +245,7 @@ def look(material: str, rng: np.random.Generator, pool: Pool) -> Look:
         ConfigError: the material is unknown.
     """
     if material not in MATERIALS:
-        raise ConfigError(f"No material '{material}'. Available: {', '.join(sorted(MATERIALS))}.")
+        raise ConfigError(f"Unknown material '{material}'. Available: {', '.join(sorted(MATERIALS))}.")
     return _draw(MATERIALS[material], rng, pool)
 
 
@@ -283,7 +283,7 @@ def texture_file(name: str) -> str:
         ConfigError: the texture is unknown.
     """
     if name not in TEXTURES:
-        raise ConfigError(f"No texture '{name}'. Available: {', '.join(sorted(TEXTURES))}.")
+        raise ConfigError(f"Unknown texture '{name}'. Available: {', '.join(sorted(TEXTURES))}.")
     return f"{name}.png"
 
 

@@ -176,7 +176,7 @@ def test_objects_in_objects_without_end_are_one_line_or_left_out(tmp_path: Path)
 
 
 def test_a_house_file_of_another_ending_and_a_missing_database_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=wording.DOES_NOT_END_IN):
+    with pytest.raises(ConfigError, match=wording.UNSUPPORTED_SUFFIX):
         list(read_houses(tmp_path / "a.txt"))
     with pytest.raises(ConfigError, match="--assets"):
         find_assets(tmp_path / "a.json", None)

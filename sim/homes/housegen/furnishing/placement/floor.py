@@ -81,7 +81,7 @@ def put_near(
 def put_at(
     layout: RoomLayout, item: Item, x_m: float, y_m: float, yaw_rad: float, zones: Sequence[Rect] = ()
 ) -> Placement | None:
-    """Puts an item exactly at this pose; returns None where it does not fit."""
+    """Puts an item exactly at this pose; returns None if it does not fit."""
     placement = floor_placement(item, x_m, y_m, yaw_rad)
     return placement if layout.try_put(placement, zones) else None
 

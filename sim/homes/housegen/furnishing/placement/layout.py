@@ -101,7 +101,7 @@ class RoomLayout:
     # ---- changes -------------------------------------------------------------------------------------------------
 
     def try_put(self, placement: Placement, zones: Sequence[Rect] = (), *, ignore: Rect | None = None) -> bool:
-        """Adds a floor item and reserves its zones; returns False, and changes nothing, where it does not fit.
+        """Adds a floor item and reserves its zones; returns False, and changes nothing, if it does not fit.
 
         It fits where it overlaps nothing but the item of footprint `ignore`, its zones are free, and the robot can
         still reach everything.

@@ -59,7 +59,7 @@ def hang_on_wall(
 def _hang_at(
     layout: RoomLayout, item: Item, side: Side, at: float, bottom_m: float, margin_m: float, over_floor: bool
 ) -> Placement | None:
-    """Hangs an item at one position along a wall; returns None where it does not fit."""
+    """Hangs an item at one position along a wall; returns None if it does not fit."""
     top_m = bottom_m + item.size_m[2]
     span = (at - item.size_m[1] / 2, at + item.size_m[1] / 2)
     rect = layout.inner.strip(side, span, item.size_m[0])
@@ -80,7 +80,7 @@ def _hang_at(
 
 
 def hang_before_window(layout: RoomLayout, item: Item, side: Side, window: Opening) -> bool:
-    """Hangs a curtain or blind in front of a window, its top a little above it; returns False where it does not fit."""
+    """Hangs a curtain or blind in front of a window, its top a little above it; returns False if it does not fit."""
     top_m = min(window.top_m + 0.14, layout.ceiling_m - 0.02)
     bottom_m = top_m - item.size_m[2]
     half = item.size_m[1] / 2
@@ -94,7 +94,7 @@ def hang_before_window(layout: RoomLayout, item: Item, side: Side, window: Openi
 
 
 def hang_from_ceiling(layout: RoomLayout, item: Item, x_m: float, y_m: float) -> bool:
-    """Hangs a lamp from the ceiling; returns False where something is in its place."""
+    """Hangs a lamp from the ceiling; returns False if something is in its place."""
     rect = footprint(x_m, y_m, item.size_m[0], item.size_m[1], 0.0)
     bottom_m = layout.ceiling_m - item.size_m[2]
     if not layout.is_clear(rect, bottom_m, layout.ceiling_m, doorways=False):

@@ -25,7 +25,7 @@ def put_on_surface(
     back: bool = False,
     number: int | None = None,
 ) -> bool:
-    """Puts a small item on one of the tops of `host`; returns False where no room is left.
+    """Puts a small item on one of the tops of `host`; returns False if no room is left.
 
     Args:
         layout: the room.
@@ -65,7 +65,7 @@ def _put_on(
     face: float | None,
     back: bool,
 ) -> bool:
-    """Puts an item at a free place of one surface, given with its number; returns False where none was found."""
+    """Puts an item at a free place of one surface, given with its number; returns False if it has no such place."""
     used = layout.used_on_surface(host, number)
     cx, cy, cz = surface.centre_m
     for n in range(MAX_TRIES):

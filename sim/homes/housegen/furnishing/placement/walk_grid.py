@@ -86,7 +86,7 @@ class WalkGrid:
     def _main_part(self, count: int, parts: NDArray[np.int32]) -> int | None:
         """Returns the number of the connected part that holds all doorways, or the largest part of a room without any.
 
-        Returns None where a doorway is blocked, two doorways lie in different parts, or nothing is free.
+        Returns None if a doorway is blocked, two doorways lie in different parts, or nothing is free.
         """
         if count < 2:
             return None

@@ -58,20 +58,20 @@ def draw_trap(family: str, difficulty: Difficulty, seed: int) -> FamilyTrap:
         HouseError: no draw could be solved.
     """
     if family not in FAMILIES:
-        raise ConfigError(f"No family of traps '{family}'. Available: {', '.join(FAMILIES)}.")
+        raise ConfigError(f"Unknown family of traps '{family}'. Available: {', '.join(FAMILIES)}.")
     if difficulty not in DIFFICULTIES:
-        raise ConfigError(f"No difficulty '{difficulty}'. Available: {', '.join(DIFFICULTIES)}.")
+        raise ConfigError(f"Unknown difficulty '{difficulty}'. Available: {', '.join(DIFFICULTIES)}.")
     name = f"{family}_{difficulty}_{seed:02d}"
     for attempt in range(ATTEMPTS):
         parameters = FAMILIES[family].draw(Chance(family, difficulty, seed, attempt))
         made = solve(parameters, name, difficulty, seed)
         if made is not None:
             return made
-    raise HouseError(f"Trap '{name}': not one of {ATTEMPTS} draws can be solved and needs a detour.")
+    raise HouseError(f"Trap '{name}': {ATTEMPTS} draws gave no trap that can be solved and needs a detour.")
 
 
 def solve(parameters: Parameters, name: str, difficulty: Difficulty, seed: int) -> FamilyTrap | None:
-    """Returns the trap with these parameters; None where it has no route, or needs no detour."""
+    """Returns the trap with these parameters; None if it has no route, or needs no detour."""
     scene = parameters.build(name, seed)
     open_m = _distance_m(scene.site.without_hidden(), scene)[1]
     task, shortest_m = _distance_m(scene.site.spec, scene)
