@@ -64,8 +64,8 @@ EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
 
 
 PLUS = AgentConfig(explorer=INFORMED_TOUR, seeker=TrackSeekerConfig(), feel=FeelConfig())
-"""`stubborn-plus`: the paper's agent with object tracks, which explores by a tour over the unseen areas and feels its
-way along surfaces that depth does not show."""
+"""`stubborn-plus`: the paper's agent with object tracks. It explores by a tour over the unseen areas. It infers from
+collisions the surfaces that depth does not show."""
 
 
 PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(

@@ -152,7 +152,7 @@ def _is_node(value: object) -> TypeGuard[DataclassInstance]:
 
 
 def _put(nested: dict[str, object], names: list[str], value: object, path: str) -> None:
-    """Enter a value into nested dicts, one level for each name of its path."""
+    """Enters a value into nested dicts, one level for each name of its path."""
     for name in names[:-1]:
         inner = nested.setdefault(name, {})
         if not isinstance(inner, dict):

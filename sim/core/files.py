@@ -99,7 +99,7 @@ def write_atomically(path: Path, content: bytes | str, *, sync: bool = False) ->
 
 
 def write_together(files: Mapping[Path, bytes | str], *, sync: bool = False) -> None:
-    """Writes several files, each atomically; none is replaced before all of them are complete.
+    """Writes several files, each atomically; no file is replaced before all of them are complete.
 
     Args:
         files: content by path.

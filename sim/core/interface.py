@@ -1,7 +1,6 @@
 """The contract between world and agent: actions, observations, categories, camera and robot geometry.
 
-NumPy only. This is the one module of `sim` that `stubborn` imports, so it must not depend on physics,
-rendering or files.
+NumPy only: `stubborn` imports this module, so it must not depend on physics, rendering or files.
 
 Frames: the world is z up. The start frame of an episode has its origin at the start pose, x forward and y
 to the left; yaw is counter-clockwise, in radians. Images have row 0 at the top.
@@ -393,7 +392,7 @@ class StatesConfidence(Protocol):
     """An agent that states how sure it is that the object for which it stops is the goal; the report compares it."""
 
     def stop_confidence(self) -> float | None:
-        """Returns a probability or score in [0, 1]; None: it has none. Called after `act` has returned STOP."""
+        """Returns a probability or score in [0, 1]; None: unknown. Called after `act` has returned STOP."""
         ...
 
 

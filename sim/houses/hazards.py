@@ -62,6 +62,6 @@ def nearest_hazard_m(hazards: Sequence[Hazard], path_m: NDArray[np.float64]) -> 
 def steepest_path(field_m: NDArray[np.float32], begin: tuple[int, int]) -> NDArray[np.int64]:
     """Returns the cells (n, 2) of a shortest path from a cell to the source of a field of geodesic distances.
 
-    Each cell is the neighbour of the one before with the smallest distance; the path ends where none is smaller.
+    The path goes from each cell to its neighbour with the smallest distance, and ends where no neighbour is nearer.
     """
     return descend(field_m, *begin)

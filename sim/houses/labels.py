@@ -191,7 +191,7 @@ def opacity(model: mujoco.MjModel) -> NDArray[np.float32]:
 def _first_label(
     names: tuple[str, ...], rules: list[tuple[regex.Pattern[str], str]], until_s: float
 ) -> tuple[str, str]:
-    """Returns the first name that is a label and its category; ("", "void") when none is."""
+    """Returns the first name that is a label and its category; ("", "void") if no name is a label."""
     for name in names:
         if not name:
             continue

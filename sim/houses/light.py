@@ -6,7 +6,7 @@ import numpy as np
 
 from sim.gl import mujoco
 
-LEAST_AMBIENT = 0.3
+MIN_AMBIENT = 0.3
 """A scene without lamps keeps its light if its headlight has at least this ambient part."""
 AMBIENT, HEADLIGHT = 0.5, 0.2
 """Ambient and diffuse part of the headlight that is set."""
@@ -20,7 +20,7 @@ def add_light(spec: mujoco.MjSpec) -> tuple[str, ...]:
     A bare room of medium grey then has a mean grey level of about 80 of 255 in the images of the robot's camera.
     """
     head = spec.visual.headlight
-    if any(light.active for light in spec.lights) or (head.active and np.mean(head.ambient) >= LEAST_AMBIENT):
+    if any(light.active for light in spec.lights) or (head.active and np.mean(head.ambient) >= MIN_AMBIENT):
         return ()
     head.active = 1
     head.ambient, head.diffuse, head.specular = [AMBIENT] * 3, [HEADLIGHT] * 3, [0.0] * 3

@@ -96,7 +96,7 @@ def read_spec(
         path: the file.
         root: a folder that the file may use in addition to its own.
         error: class of the error; only in a house may other models be attached.
-        texture_px: the caller reduces textures with a longer side to this length, so that they count as so large.
+        texture_px: the caller reduces textures with a longer side to this length, so that they count with this size.
 
     Raises:
         ObjectNavError: of class `error`; the file cannot be read, is not MJCF, requires too much memory, uses a file of

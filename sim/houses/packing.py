@@ -64,7 +64,7 @@ def gather_files(spec: mujoco.MjSpec, folder: Path, *, texture_px: int | None = 
     Args:
         spec: it is changed: it names the files by their new names and holds their content.
         folder: that of its file, to which the paths are relative.
-        texture_px: PNG textures with a longer side are reduced to this length; None: none are.
+        texture_px: PNG textures with a longer side are reduced to this length; None: textures keep their size.
 
     Raises:
         HouseError: a file cannot be read, or is an image that cannot be reduced.

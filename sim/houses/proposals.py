@@ -2,8 +2,8 @@
 
 A rule is proposed for each name with a word of `WORDS` in it (`Couch.001`, `wall_left_visual`, `hingecabinet`), unless
 an enclosing body already has that category: a sofa with a named leg stays one instance. Visible geoms without such a
-name are judged by their size: large flat ones at z = 0 are floor, large thin upright ones are wall. What is left
-becomes `void`, with a rule of its own for the user to edit. Names that differ only in their numbers share a rule.
+name are judged by their size: large flat ones at z = 0 are floor, large thin upright ones are wall. The others become
+`void`, with a rule of their own for the user to edit. Names that differ only in their numbers share a rule.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     ),
 }  # fmt: skip
 """For each category, words that name it, in addition to the category's own name."""
-LEAST_ENDING = 4
+MIN_ENDING = 4
 """A word with at least this many characters is also found at the end of a longer one: `hingecabinet`, `backwall`."""
 FLAT_M = 0.3
 """Largest thickness of a wall, a floor or a ceiling that is recognized by its size."""
@@ -146,7 +146,7 @@ def void_objects(model: mujoco.MjModel, labels: Labels) -> dict[str, list[int]]:
 
 
 def category_of_name(name: str) -> str | None:
-    """Returns the category that a name says by its last word of `WORDS` or its last AI2-THOR type, or None."""
+    """Returns the category of a name by its last word of `WORDS` or its last AI2-THOR type, or None."""
     words = words_of(name)
     joined = "_".join(words)
     for category in MPCAT40:
@@ -193,7 +193,7 @@ def geom_box(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> tuple[NDA
 
 
 def _by_name(names: list[str]) -> Iterator[Proposal]:
-    """Yields a proposal for each name that says a category, from outside; a repeated category is the same object."""
+    """Yields a proposal for each name with a category, from outside; a repeated category is the same object."""
     around = None
     for name in reversed(names):
         category = category_of_name(name)
@@ -207,7 +207,7 @@ def _category_of_word(word: str) -> str | None:
         if candidate in _CATEGORY_OF:
             return _CATEGORY_OF[candidate]
     for known in sorted(_CATEGORY_OF, key=len, reverse=True):
-        if len(known) >= LEAST_ENDING and (word.endswith(known) or word.removesuffix("s").endswith(known)):
+        if len(known) >= MIN_ENDING and (word.endswith(known) or word.removesuffix("s").endswith(known)):
             return _CATEGORY_OF[known]
     return None
 

@@ -24,10 +24,10 @@ from sim.houses.mjcf_text import as_utf8
 
 SHARED_TEXTURES = "textures"
 """Name of the folder, next to a split's folder, that all its houses may use."""
-MOST_FILES = 10_000
+MAX_FILES = 10_000
 """Largest number of files of a house for which checksums are computed."""
-_MOST_FOLDERS = 20
-_MOST_BYTES = 64 << 20
+_MAX_FOLDERS = 20
+_MAX_BYTES = 64 << 20
 _VALUE = rb"""\s*=\s*(?P<value>"[^"]*"|'[^']*')"""
 _FILE = re.compile(rb"\bfile\w*" + _VALUE)
 _FOLDER = re.compile(rb"\b(?:mesh|texture|asset)dir" + _VALUE)
@@ -35,7 +35,7 @@ _ASSETS = frozenset((".png", ".jpg", ".jpeg", ".obj", ".stl", ".msh", ".ktx", ".
 """Suffixes of files that name no other files."""
 _ELSEWHERE = re.compile(r":[/\\]|^\\|\.(?:zip|mjz)(?:[/\\]|$)", re.IGNORECASE)
 """Names that are absolute for MuJoCo but not for the operating system, and names of MuJoCo's archives."""
-MOST_LEVELS_UP = 3
+MAX_LEVELS_UP = 3
 """A folder that a refusal proposes for `--root` is at most this many levels above the file."""
 
 
@@ -102,7 +102,7 @@ class Allowed:
             return "Copy all files of a robot into one folder."
         common = Path(os.path.commonpath((target, self.file)))
         levels = len(self.file.parent.relative_to(common).parts)
-        if levels <= MOST_LEVELS_UP and len(common.parts) > 1:
+        if levels <= MAX_LEVELS_UP and len(common.parts) > 1:
             return f"If you trust this file, give it by --house and allow the folder of both: --root '{common}'."
         return "A house may use files of its own folder, and those of the folder given with --root."
 
@@ -169,9 +169,9 @@ def files_of(house_file: Path, root: Path | None = None) -> list[Path]:
             text = _content(file)
             names.update(dict.fromkeys(_values(_FILE, text)))
             folders.update(dict.fromkeys(_values(_FOLDER, text)))
-        for base in list(bases)[:_MOST_FOLDERS]:  # in the folder of the house file, or of the file that names it
-            for folder in list(folders)[:_MOST_FOLDERS]:
-                for name in list(names)[:MOST_FILES]:
+        for base in list(bases)[:_MAX_FOLDERS]:  # in the folder of the house file, or of the file that names it
+            for folder in list(folders)[:_MAX_FOLDERS]:
+                for name in list(names)[:MAX_FILES]:
                     for spelling in {name, name.replace("\\", "/").rpartition("/")[2]}:
                         path = path_as_read(base, folder, spelling)
                         if _is_plain(path) and not path.is_relative_to(shipped) and _is_below(path, allowed):
@@ -186,7 +186,7 @@ def _is_below(path: Path, folders: list[Path]) -> bool:
 
 def _content(file: Path) -> bytes:
     try:
-        return as_utf8(read_bytes(file, what="File", most=_MOST_BYTES))
+        return as_utf8(read_bytes(file, what="File", most=_MAX_BYTES))
     except (ObjectNavError, ValueError):
         return b""  # `read_spec` reports the fault
 

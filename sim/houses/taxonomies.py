@@ -2,7 +2,7 @@
 
 Its column `source` says where a category comes from: `mp3d` is Matterport3D's category_mapping.tsv, `hm3d` is HM3DSem's
 hm3dsem_category_mappings.tsv, and `ours` is a decision of this project, for names that neither table has or for which
-both say `misc`. Its column `use` says what a generated house shows for the object (`sim.homes.importers.fitting`).
+both have `misc`. Its column `use` names the furniture that replaces the object (`sim.homes.importers.fitting`).
 """
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ WHEEL_MASK = (0, 3 | COVER_MASK[0])
 HULL_MASK = (4, 3)
 
 _CASTER_PRIORITY = 1000
-"""The friction of the casters (none) overrides that of every floor."""
+"""The casters have no friction; this priority overrides the friction of every floor."""
 HULL_PRIORITY = 1000
 """The friction and stiffness of the hull override those of the geoms it touches."""
 GRAVITY_M_S2 = 9.81

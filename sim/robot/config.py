@@ -89,7 +89,7 @@ class WheelConfig:
     max_torque_nm: float = 1.4
     """Largest torque of one motor."""
     spring_n_m: float = 2500.0
-    """Stiffness of the spring of each wheel of a free base. The wheels of a planar base have none."""
+    """Stiffness of the spring of each wheel of a free base. The wheels of a planar base have no springs."""
     spring_damping_n_s_m: float = 220.0
     """About critical for the mass that a spring carries: the body does not rock over an edge after an impact."""
     spring_travel_m: float = 0.010
@@ -100,7 +100,7 @@ class WheelConfig:
     caster_offset_m: float = 0.13
     """Distance of each caster from the centre, along the heading."""
     caster_gap_m: float = 0.0005
-    """Gap between casters and floor before the springs give way."""
+    """Gap between casters and floor before the springs are compressed."""
 
     def __post_init__(self) -> None:
         _require_positive(self, *(f.name for f in fields(self) if f.name != "caster_gap_m"))

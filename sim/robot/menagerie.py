@@ -70,7 +70,7 @@ def _refusal(name: str) -> str:
 
 
 def _model_file(name: str) -> Path:
-    """Returns the MJCF file of a robot; raises ConfigError if it cannot be had."""
+    """Returns the MJCF file of a robot; raises ConfigError if it is not available."""
     menagerie = _package()
     try:
         file = menagerie.get(name).xml(ENTRIES[name])

@@ -19,7 +19,7 @@ from sim.gl import mujoco
 from sim.sensors.ranges import require_range
 from sim.sensors.sensor import NoiseSettings, SensorContext
 
-MOST_RAYS = 10_000
+MAX_RAYS = 10_000
 _SEEN_GROUPS = np.array([1, 1, 1, 0, 0, 0], np.uint8)
 """Geom groups that are rendered; the robot is in group 5."""
 
@@ -39,7 +39,7 @@ class ScanConfig:
     """Height of the plane above the floor."""
 
     def __post_init__(self) -> None:
-        require_range(self, 1, MOST_RAYS, "rays")
+        require_range(self, 1, MAX_RAYS, "rays")
         require_range(self, 0.0, math.inf, "min_range_m", "max_range_m", "height_m")
         require_range(self, 0.0, 2.0 * math.pi, "fov_rad")
         if self.rays != int(self.rays):

@@ -134,7 +134,7 @@ class Sensor(Protocol):
 
     @property
     def name(self) -> str:
-        """Its key in the observation."""
+        """The key of the sensor in the observation."""
         ...
 
     @property

@@ -21,7 +21,7 @@ WALL_REACH_M = 0.25
 """Margin around a room's box that still counts as the house: doorways lie inside walls."""
 OPEN_FLOOR_M = 10.0
 """Margin around the obstacles, or around the origin, that is searched on an unbounded floor without walls."""
-LEAST_WALLED_M = 1.5
+MIN_WALLED_M = 1.5
 """Least side of the rectangle around the walls of a house without rooms."""
 BESIDE_M = 0.5
 """A wall stands along a side of the rectangle around all walls if it is at most this far inside of it."""
@@ -115,7 +115,7 @@ def _encloses(walls: list[ConvexPolygon], rectangle: ConvexPolygon) -> bool:
     """Returns whether walls stand along all four sides of the rectangle around them."""
     bounds = np.array([wall.bounds_m for wall in walls])  # (n, 4) smallest x and y, largest x and y
     x0, y0, x1, y1 = rectangle.bounds_m
-    if min(x1 - x0, y1 - y0) < LEAST_WALLED_M:
+    if min(x1 - x0, y1 - y0) < MIN_WALLED_M:
         return False
     for side in range(4):
         along = 1 - side % 2

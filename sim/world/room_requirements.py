@@ -108,7 +108,7 @@ REQUIREMENTS: Mapping[str, tuple[Requirement, ...]] = MappingProxyType(
         ),
     }
 )
-"""Requirements by kind of room; the other kinds have none."""
+"""Requirements by kind of room; the other kinds have no requirements."""
 
 
 def missing_pieces(kind: str, area_m2: float, pieces: Sequence[Piece]) -> list[str]:

@@ -41,7 +41,7 @@ class Context:
     radius_m: float
     """Objects are nearby if their middles are nearer than this in the plan."""
     frequency: Float32[np.ndarray, " objects"]
-    """Share of each category among all objects; 0: not known, its ratio is always 1."""
+    """Share of each category among all objects; 0: unknown category, its ratio is always 1."""
     constant: Float32[np.ndarray, " objects"]
     """Log-odds of each category with nothing nearby, in addition to the logarithm of its frequency."""
     weight: Float32[np.ndarray, "objects objects"]

@@ -10,7 +10,7 @@ from stubborn.mapping.navmap import CollisionLayer
 
 TUNED_FOR_M = 1.0
 """The success distance for which the distances of `TargetConfig` are chosen."""
-_LEAST_M = 0.05
+_MIN_M = 0.05
 """Lower limit of all distances (one cell), however small the success distance is."""
 
 
@@ -89,7 +89,7 @@ class StopDistances:
         """Returns the distances, shifted by the difference of the success distance to 1 m, but never below a cell."""
         shift_m = success.distance_m - TUNED_FOR_M
         in_view_m, usual_m, far_m, pushing_m, last_m = (
-            max(distance_m + shift_m, _LEAST_M)
+            max(distance_m + shift_m, _MIN_M)
             for distance_m in (
                 config.stop_in_view_m,
                 config.viewpoint_m,
@@ -100,8 +100,8 @@ class StopDistances:
         )
         margin_m = 0.0 if segmenter.exact_outlines else config.outline_margin_m
         return cls(
-            in_view_m=max(in_view_m - margin_m, _LEAST_M),
-            nearer_viewpoint_m=max(usual_m - margin_m, _LEAST_M) if margin_m > 0.0 else None,
+            in_view_m=max(in_view_m - margin_m, _MIN_M),
+            nearer_viewpoint_m=max(usual_m - margin_m, _MIN_M) if margin_m > 0.0 else None,
             viewpoints_m=(usual_m, far_m),
             pushing_m=pushing_m,
             last_resort_m=last_m,

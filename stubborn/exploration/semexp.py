@@ -47,7 +47,7 @@ class SemExpConfig:
     """True: goals are sampled from the policy, as its published evaluation does; False: its mean is taken."""
     semantics: SemanticsKind = "seen"
     """The goal categories on the map that the policy gets: all of them, all of them exchanged at random in each episode
-    (the first control), or none."""
+    (the first control), or no category."""
     goal: GoalKind = "true"
     """The goal that the policy gets: the episode's, or another one, sampled in each episode (the second control)."""
 

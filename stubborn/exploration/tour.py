@@ -123,7 +123,7 @@ INFORMED_TOUR = TourConfig(potentials=PotentialConfig())
 
 
 @dataclass(frozen=True)
-class _Left:
+class _Remaining:
     """The areas that are left to see in the known part of the map at one step."""
 
     known: Frontiers
@@ -218,23 +218,23 @@ class TourExplorer:
         turn = self.glancer.next_turn(ground.navmap, ground.pose)
         if turn is not None:
             return turn
-        lefts: dict[CollisionLayer, _Left] = {}
+        by_layer: dict[CollisionLayer, _Remaining] = {}
 
-        def left_on(layer: CollisionLayer) -> _Left:
-            if layer not in lefts:
-                lefts[layer] = self._left(ground, layer)
-            return lefts[layer]
+        def remaining_on(layer: CollisionLayer) -> _Remaining:
+            if layer not in by_layer:
+                by_layer[layer] = self._find_remaining(ground, layer)
+            return by_layer[layer]
 
         if self._goal is not None and self._layer is not None:
-            route = yield from self._go_on(self._goal, left_on(self._layer), ground)
+            route = yield from self._go_on(self._goal, remaining_on(self._layer), ground)
             if route is not None:
                 return route
         for layer in self._layers(ground):
-            route = yield from self._to_first_stop(left_on(layer), ground)
+            route = yield from self._to_first_stop(remaining_on(layer), ground)
             if route is not None:
                 return route
         for layer in ground.layers:
-            route = yield from left_on(layer).known.to_least_visited(self.config.arrived_m)
+            route = yield from remaining_on(layer).known.to_least_visited(self.config.arrived_m)
             if route is not None:
                 return route
         return None
@@ -259,7 +259,7 @@ class TourExplorer:
         closed = self._unmarked_steps > self.config.unmarked_steps or self._pushes >= self.config.most_pushes
         return ground.layers if closed else (*ground.layers, CollisionLayer.NONE)
 
-    def _left(self, ground: Ground, layer: CollisionLayer) -> _Left:
+    def _find_remaining(self, ground: Ground, layer: CollisionLayer) -> _Remaining:
         """Returns the areas that are left to see in the known part of the map and are reachable on a layer."""
         config = self.config
         known = Frontiers.of(ground, own_known_m=config.own_known_m, margin_cells=config.margin_cells, layer=layer)
@@ -267,9 +267,9 @@ class TourExplorer:
         if config.near_m > 0.0:
             far = farther_than(self._inspected[known.window.index], _INSPECTED_GAP_M, known.window.frame.cell_m)
             far &= known.free.reachable & ~known.unknown & known.off_trail
-        return _Left(known, layer, far, self._spent[known.window.index])
+        return _Remaining(known, layer, far, self._spent[known.window.index])
 
-    def _go_on(self, goal: MapCells, left: _Left, ground: Ground) -> Search:
+    def _go_on(self, goal: MapCells, remaining: _Remaining, ground: Ground) -> Search:
         """Returns the route to the rest of the pursued stop; None when it is finished, or a new tour is due."""
         self._age_steps += 1
         if self._layer is CollisionLayer.NONE and self._pushes_on(ground.pose):
@@ -278,9 +278,9 @@ class TourExplorer:
         longest_steps = self.config.replan_steps if news else self.config.keep_steps
         if self._age_steps > longest_steps:
             return None
-        route = yield Goal(left.known.free, goal.within(left.known.window) & left.cells)
+        route = yield Goal(remaining.known.free, goal.within(remaining.known.window) & remaining.cells)
         if route is not None and route.length_m <= self.config.arrived_m:
-            self._spend(left, ground.pose)
+            self._spend(remaining, ground.pose)
             return None
         return route
 
@@ -291,13 +291,13 @@ class TourExplorer:
         self._pushes += before is not None and pushed_without_moving(before, pose)
         return self._pushes >= self.config.most_pushes
 
-    def _to_first_stop(self, left: _Left, ground: Ground) -> Search:
+    def _to_first_stop(self, remaining: _Remaining, ground: Ground) -> Search:
         """Returns the route to the first stop of the best tour; None when no stop can be reached."""
-        known, pose = left.known, ground.pose
+        known, pose = remaining.known, ground.pose
         paths = _Paths(known, self.config.block_cells, self.config.unknown_speed)
         factor = self._factor(ground, known)
         while True:
-            stops = self._stops(left, paths, factor)
+            stops = self._stops(remaining, paths, factor)
             if not stops:
                 self._goal = None
                 return None
@@ -306,22 +306,24 @@ class TourExplorer:
             cells[stop.rows, stop.cols] = True
             route = yield Goal(known.free, cells)
             if route is not None and route.length_m > self.config.arrived_m:
-                self._goal, self._layer, self._age_steps = MapCells.of(cells, known.window), left.layer, 0
+                self._goal, self._layer, self._age_steps = MapCells.of(cells, known.window), remaining.layer, 0
                 self._goal_from_m2 = ground.navmap.seen_area_m2()
                 self._unmarked_pose = pose
                 return route
-            left.spent[cells] |= route is None
+            remaining.spent[cells] |= route is None
             if route is not None:
-                self._spend(left, pose)
-                left.spent[known.free.frame.cell(pose.x_m, pose.y_m)] = True
+                self._spend(remaining, pose)
+                remaining.spent[known.free.frame.cell(pose.x_m, pose.y_m)] = True
 
     def _factor(self, ground: Ground, known: Frontiers) -> Float32[np.ndarray, "rows cols"] | None:
         """Returns the factor of each frontier cell for the weight of its stop; None: all are 1."""
         return None
 
-    def _stops(self, left: _Left, paths: _Paths, factor: Float32[np.ndarray, "rows cols"] | None) -> list[_Stop]:
+    def _stops(
+        self, remaining: _Remaining, paths: _Paths, factor: Float32[np.ndarray, "rows cols"] | None
+    ) -> list[_Stop]:
         """Returns the stops that can be reached."""
-        config, known, cell_m = self.config, left.known, left.known.free.frame.cell_m
+        config, known, cell_m = self.config, remaining.known, remaining.known.free.frame.cell_m
         frontiers = [
             _Stop(
                 rows,
@@ -329,13 +331,13 @@ class TourExplorer:
                 paths.unknown_m2(rows, cols, config.gain_radius_m)
                 * (1.0 if factor is None else float(factor[rows, cols].max())),
             )
-            for rows, cols in _parts(known.cells & ~left.spent, 1.0)
+            for rows, cols in _parts(known.cells & ~remaining.spent, 1.0)
         ]
         long = [stop for stop in frontiers if stop.rows.size * cell_m >= config.least_length_m]
         per_m2 = config.far_weight * (1.0 if factor is None else config.potential_floor**config.potential_power)
         far = [
             _Stop(rows, cols, per_m2 * rows.size * cell_m**2)
-            for rows, cols in _parts(left.far & ~left.spent, config.least_far_m2 / cell_m**2)
+            for rows, cols in _parts(remaining.far & ~remaining.spent, config.least_far_m2 / cell_m**2)
         ]
         return long + far or frontiers
 
@@ -362,9 +364,9 @@ class TourExplorer:
         x_m, y_m = known.free.frame.centres(stop.rows.mean(), stop.cols.mean())
         return abs(wrap_angle(math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m) - pose.yaw_rad)) / TURN_RAD
 
-    def _spend(self, left: _Left, pose: Pose) -> None:
+    def _spend(self, remaining: _Remaining, pose: Pose) -> None:
         """Closes the stops around the robot, because the robot has seen what they show."""
-        spend_around(self._spent, left.known.window, pose, self.config.spent_m)
+        spend_around(self._spent, remaining.known.window, pose, self.config.spent_m)
         self._goal = None
 
 

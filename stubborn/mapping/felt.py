@@ -1,4 +1,4 @@
-"""Surfaces that blocked forwards suggest: several stops along one line are a pane; this is not in the paper.
+"""Infers surfaces from blocked forwards: several stops along one line are a pane; this is not in the paper.
 
 The centre of a round robot that touches a flat surface is one radius away from it, at any heading. If the centres of
 several stops lie on a line, the stops belong to one straight surface, such as a glass pane. Three conclusions follow,

@@ -247,7 +247,7 @@ def _draw_plan(
 
 
 def _require_as_asked(plan: FloorPlan, area_m2: float | None, rooms: tuple[str, ...]) -> None:
-    """Raises PlanError if a plan lacks a room, or its area differs by too much from the one that was asked for."""
+    """Raises PlanError if a plan lacks a room, or its area differs by too much from the requested one."""
     missing = Counter(rooms) - Counter(room.kind for room in plan.rooms)
     if missing:
         raise PlanError(f"no place for {next(iter(missing))}")

@@ -19,18 +19,18 @@ from sim.homes.importers.surfaces import Surface
 from sim.homes.importers.visual import samples, welded
 
 CELL_M = 0.05
-LEAST_SIDE_M = 0.01
+MIN_SIDE_M = 0.01
 """Thinner boxes are made as thick as this."""
 ALIKE_M = 0.025
 """Layers of a box are one box if their sides differ by less."""
 SHIFTS = 5
 """Places of the grid that are tried along each axis: with the best one, uneven walls stay within one layer of cells."""
-MOST_CELLS = 60_000_000
+MAX_CELLS = 60_000_000
 """Cells of the grid of one object; of a larger object the cells are larger."""
 CONCAVITY_M = 0.03
 """Largest depth of a hollow that a convex part fills, metres."""
-MOST_PARTS = 64
-LEAST_VOLUME_M3 = 1e-9
+MAX_PARTS = 64
+MIN_VOLUME_M3 = 1e-9
 
 
 def collision_boxes(
@@ -44,7 +44,7 @@ def collision_boxes(
         is_filled: the inside of closed outlines of each level is filled too, so that no free place remains there.
     """
     points = np.vstack([samples(corners_m, 0.5 * cell_m)[0], _on_edges(corners_m, 0.5 * cell_m)])
-    while np.prod(np.ptp(points, axis=0) / cell_m + 2.0) > MOST_CELLS:
+    while np.prod(np.ptp(points, axis=0) / cell_m + 2.0) > MAX_CELLS:
         cell_m *= 1.5
     origin = _origin(points, cell_m)
     index = np.floor((points - origin) / cell_m).astype(np.int64)
@@ -145,10 +145,10 @@ def _around(points: NDArray[np.float64], group: NDArray[np.int64], count: int) -
 
 
 def _thick_enough(boxes: NDArray[np.float64]) -> NDArray[np.float64]:
-    thin = boxes[:, 3:] - boxes[:, :3] < LEAST_SIDE_M
+    thin = boxes[:, 3:] - boxes[:, :3] < MIN_SIDE_M
     middle = 0.5 * (boxes[:, :3] + boxes[:, 3:])
-    low = np.where(thin, middle - 0.5 * LEAST_SIDE_M, boxes[:, :3])
-    high = np.where(thin, middle + 0.5 * LEAST_SIDE_M, boxes[:, 3:])
+    low = np.where(thin, middle - 0.5 * MIN_SIDE_M, boxes[:, :3])
+    high = np.where(thin, middle + 0.5 * MIN_SIDE_M, boxes[:, 3:])
     return np.asarray(np.round(np.hstack([low, high]), 4), dtype=np.float64)
 
 
@@ -205,7 +205,7 @@ def convex_parts(surfaces: Sequence[Surface]) -> list[NDArray[np.float64]]:
     coacd.set_log_level("error")
     try:
         hulls = coacd.run_coacd(
-            coacd.Mesh(vertices, faces), threshold=CONCAVITY_M, real_metric=True, max_convex_hull=MOST_PARTS,
+            coacd.Mesh(vertices, faces), threshold=CONCAVITY_M, real_metric=True, max_convex_hull=MAX_PARTS,
             preprocess_resolution=40, mcts_iterations=60, mcts_nodes=10, max_ch_vertex=32, seed=0,
         )  # fmt: skip
     except Exception as error:  # compiled code, which may raise any class

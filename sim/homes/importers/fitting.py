@@ -25,7 +25,7 @@ SHAPES = ("box", "ball", "can")
 """Values of `Entry.use` for plain solids instead of furniture: a box, an ellipsoid, an upright cylinder."""
 DRAWS = 4
 """Number of items that are drawn; the best of them is stretched."""
-MOST_STRETCH = 2.5
+MAX_STRETCH = 2.5
 """Largest factor by which a side of an item is stretched or shrunk."""
 HINT_RANGE = (0.6, 1.6)
 """Range of the sizes that are requested from a style, relative to its own size."""
@@ -39,7 +39,7 @@ _OF_CATEGORY = {"appliances": "appliance", "gym_equipment": "iron", "table": "wo
 
 @dataclass(frozen=True)
 class Fitted:
-    """An item of the wanted size."""
+    """An item of the requested size."""
 
     item: Item
     is_furniture: bool
@@ -75,7 +75,7 @@ class Fitter:
         number = PLACES.index(place)
         use = (uses[number] if number < len(uses) else "") or uses[0] or None
         best, stretch = self._best(entry.category, use, size_m)
-        if stretch > MOST_STRETCH or (place == "top" and best.mount == "floor" and best.category in ("chair", "bed")):
+        if stretch > MAX_STRETCH or (place == "top" and best.mount == "floor" and best.category in ("chair", "bed")):
             return Fitted(self._solid(entry.category, "box", size_m), is_furniture=False)
         return Fitted(fitted(best, size_m), is_furniture=True)
 

@@ -20,11 +20,11 @@ from sim.homes.importers.collision import joined_cells
 
 PLAN_CELL_M = 0.05
 """Edge of a cell of a plan."""
-MOST_PLAN_CELLS = 16_000_000
+MAX_PLAN_CELLS = 16_000_000
 LEVEL_M = 0.12
 """Triangles of floors at most this far from the level of a storey belong to it, and are made flat."""
-LEAST_STOREY_M2 = 3.0
-LEAST_SHARE = 0.15
+MIN_STOREY_M2 = 3.0
+MIN_SHARE = 0.15
 """A level is a storey if its floor has this share of the area of the largest one."""
 STOREYS_APART_M = 1.2
 LEVEL_NORMAL = 0.8
@@ -34,7 +34,7 @@ CLOSED_M = 0.4
 LARGEST_HOLE_M2 = 1.0
 """Larger holes of an upper storey stay: a staircase may be in them."""
 COVERED = 0.995
-MOST_RECTANGLES = 60
+MAX_RECTANGLES = 60
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Plan:
     origin_m: tuple[float, float]
     mask: NDArray[np.bool_]
 
-    def rectangles(self, *, covered: float = COVERED, most: int = MOST_RECTANGLES) -> list[Rect]:
+    def rectangles(self, *, covered: float = COVERED, most: int = MAX_RECTANGLES) -> list[Rect]:
         """Returns rectangles without overlap that cover this share of the cells or more, the largest first.
 
         Args:
@@ -124,12 +124,12 @@ def find_levels(floors_m: NDArray[np.float64]) -> list[float]:
         near = left & (np.abs(z - peak) <= LEVEL_M)
         height = _weighted_median(z[near], area[near]) if near.any() else peak
         size_m2 = float(area[near].sum())
-        if size_m2 < LEAST_STOREY_M2 or (intervals and size_m2 < LEAST_SHARE * intervals[0][0]):
+        if size_m2 < MIN_STOREY_M2 or (intervals and size_m2 < MIN_SHARE * intervals[0][0]):
             break
         intervals.append((size_m2, height))
         left &= np.abs(z - height) > STOREYS_APART_M
     if not intervals:
-        raise HouseError(f"it has no level floor of {LEAST_STOREY_M2:g} m2 or more.")
+        raise HouseError(f"it has no level floor of {MIN_STOREY_M2:g} m2 or more.")
     return sorted(height for _, height in intervals)
 
 
@@ -152,7 +152,7 @@ def make_storeys(
     low = np.floor(floors_m.reshape(-1, 3).min(axis=0)[:2] / PLAN_CELL_M) - 4
     high = np.ceil(floors_m.reshape(-1, 3).max(axis=0)[:2] / PLAN_CELL_M) + 4
     shape = (high - low).astype(int)
-    if int(shape[0]) * int(shape[1]) > MOST_PLAN_CELLS:
+    if int(shape[0]) * int(shape[1]) > MAX_PLAN_CELLS:
         raise HouseError(f"its floors extend over {shape[0] * PLAN_CELL_M:.0f} x {shape[1] * PLAN_CELL_M:.0f} m.")
     origin = (float(low[0] * PLAN_CELL_M), float(low[1] * PLAN_CELL_M))
     storeys = []

@@ -4,7 +4,7 @@ HM3D (https://aihabitat.org/datasets/hm3d-semantics/): `X.glb` or `X.basis.glb` 
 for each instance, in pictures or at vertices; `X.semantic.txt` names category and region of each colour.
 Matterport3D in Habitat's form (https://niessner.github.io/Matterport/): `X.glb` is shown, `X_semantic.ply` has colours
 of vertices and `object_id` of triangles, `X.house` has objects, categories and regions. Both are z up; other files are
-recognized by the side to which most of the floor faces. Real scans were not at hand for the tests of this module.
+recognized by the side to which most of the floor faces. The tests of this module do not use real scans.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ NEAR_M = 0.2
 """A triangle of the shown mesh that is farther from all annotated ones has no instance."""
 _INNER = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4]]) / np.array([[3], [6], [6], [6]])
 """Weights of the corners for four points of a triangle; the colours there vote on its instance."""
-LEAST_TURN_RAD = math.radians(1.0)
+MIN_TURN_RAD = math.radians(1.0)
 
 
 @dataclass(frozen=True)
@@ -251,7 +251,7 @@ def _yaw_of_walls(
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, :2]
         total += (np.linalg.norm(normal, axis=1) * np.exp(4j * np.arctan2(normal[:, 1], normal[:, 0]))).sum()
     yaw = float(np.angle(total)) / 4.0
-    return yaw if abs(yaw) > LEAST_TURN_RAD else 0.0
+    return yaw if abs(yaw) > MIN_TURN_RAD else 0.0
 
 
 def _rooms(floors: Mapping[int, Sequence[NDArray[np.float64]]], kinds: Mapping[int, str]) -> list[RoomArea]:

@@ -40,7 +40,7 @@ PUSHED_KG = 15.0
 """Lighter objects that the source moves (`motion_type` dynamic) and that stand on the lowest floor can be pushed."""
 STANDS_M = 0.05
 ROOF_NORMAL = 0.9
-LEAST_CEILING_M = 1.8
+MIN_CEILING_M = 1.8
 
 
 @dataclass(frozen=True)
@@ -268,7 +268,7 @@ def _kinds(corners_m: NDArray[np.float64], levels_m: Sequence[float]) -> NDArray
     z = corners_m[:, :, 2].mean(axis=1)
     floor = (np.abs(upward) > ROOF_NORMAL) & (np.abs(z[:, None] - np.asarray(levels_m)).min(axis=1) <= LEVEL_M)
     below = np.asarray(levels_m)[np.maximum(np.searchsorted(levels_m, z) - 1, 0)]
-    ceiling = (np.abs(upward) > ROOF_NORMAL) & ~floor & (z - below > LEAST_CEILING_M)
+    ceiling = (np.abs(upward) > ROOF_NORMAL) & ~floor & (z - below > MIN_CEILING_M)
     return np.where(floor, 1, np.where(ceiling, 2, 0))
 
 

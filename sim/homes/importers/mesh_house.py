@@ -36,9 +36,9 @@ STRUCTURE = frozenset(("wall", "floor", "ceiling", "door", "window", "stairs", "
 """Closed outlines of these categories are not filled: a room inside of walls is free."""
 FLAT_M = 0.02
 """Objects that are lower than this above the floor are part of it: rugs do not collide."""
-LEAST_VERTICES = 4
+MIN_VERTICES = 4
 """MuJoCo refuses meshes with fewer; a single triangle gets its last corner again."""
-LEAST_TRIANGLES = 24
+MIN_TRIANGLES = 24
 TEXTURE_BYTES = 192 << 20
 """Pictures of a house are reduced until they fit."""
 ROOM_M = 2.5
@@ -294,7 +294,7 @@ class _Builder:
         weights = {key: math.sqrt(counts[key] * max(_area_m2(shape), 1e-6)) for key, shape in shapes.items()}
         share = most / sum(weights[key] * copies[key] for key in shapes)
         self._losses.changes[f"Triangles were reduced to about {most}."] += 1
-        return {key: max(LEAST_TRIANGLES, int(weights[key] * share)) for key in shapes}
+        return {key: max(MIN_TRIANGLES, int(weights[key] * share)) for key in shapes}
 
     def _add_object(self, item: MeshObject, budget: int) -> None:
         parts = self._parts_of(item, budget)
@@ -349,7 +349,7 @@ class _Builder:
         normals = np.zeros((0, 3)) if skin.normals is None else skin.normals
         # MuJoCo's texture coordinates point down; its own reader of OBJ files turns them too.
         uv = np.zeros((0, 2)) if skin.uv is None else np.stack([skin.uv[:, 0], 1.0 - skin.uv[:, 1]], axis=1)
-        more = max(0, LEAST_VERTICES - count)
+        more = max(0, MIN_VERTICES - count)
         rows = [np.concatenate([array, array[-1:].repeat(more, axis=0)]) for array in (skin.vertices_m, normals, uv)]
         content = struct.pack("<4i", *map(len, rows), len(skin.faces))
         content += b"".join(array.astype("<f4").tobytes() for array in rows)

@@ -35,7 +35,7 @@ from sim.homes.importers.procthor_plan import DoorHole, Layout, lay_out
 Doors = Literal["open", "as-is"]
 LAMP_CEILING_M = 2.8
 """Lamps hang as if no ceiling were higher than this."""
-LEAST_LAMP_M2 = 5.0
+MIN_LAMP_M2 = 5.0
 """Smaller rectangles of a room get no lamp of their own."""
 OPEN_RAD = math.pi / 2
 PASSAGE_M = 0.75
@@ -145,7 +145,7 @@ def _lit(layout: Layout) -> FloorPlan:
     seen: set[int] = set()
     rooms = []
     for room, index in zip(layout.plan.rooms, layout.room_of, strict=True):
-        if index not in seen or room.rect.area_m2 >= LEAST_LAMP_M2:
+        if index not in seen or room.rect.area_m2 >= MIN_LAMP_M2:
             rooms.append(room)
         seen.add(index)
     return replace(layout.plan, rooms=tuple(rooms))

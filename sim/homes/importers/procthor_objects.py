@@ -34,18 +34,18 @@ ON_WALL_FROM_M = 0.3
 """Objects hang on a wall if their lower edge is higher above the floor and they are not in another object."""
 WALL_REACH_M = 0.35
 """Largest distance from the back of such an object to its wall."""
-MOST_INTO_WALL_M = 0.2
+MAX_INTO_WALL_M = 0.2
 """An object that reaches further into a wall is not moved out of it."""
 SURFACE_REACH_M = 0.45
 """Largest difference in height from the place of an object in the source to a top of our furniture."""
-GEOM_COST_M, LEAST_REST = 0.03, 0.5
+GEOM_COST_M, MIN_REST = 0.03, 0.5
 """An object may also rest on a part of our furniture, at the place that it has in the source: one that is at least half
 as large in plan. A top that is meant for objects is preferred unless it differs by at least `GEOM_COST_M` more."""
 ARM_M = 0.61
 """Depth of the arms of L- and C-shaped counters: two feet, as the names of the assets say."""
 CLOSED = frozenset(("Fridge", "Microwave", "Safe", "Cabinet", "Drawer", "GarbageCan", "Box"))
 """Types that hide their content."""
-MOST_DEPTH = 20
+MAX_DEPTH = 20
 """Deepest nesting of objects in objects."""
 
 
@@ -128,8 +128,8 @@ class ObjectPlacer:
         self, objects: Sequence[SceneObject] | None, below: str, parents: Sequence[PlacedItem], depth: int
     ) -> None:
         """Places objects on the tops of the items of another object."""
-        if depth > MOST_DEPTH:
-            raise HouseError(f"{self.where}: objects are nested more than {MOST_DEPTH} deep.")
+        if depth > MAX_DEPTH:
+            raise HouseError(f"{self.where}: objects are nested more than {MAX_DEPTH} deep.")
         if below in CLOSED and objects:
             self._leave_out(objects, f"inside {below}")
             return
@@ -216,7 +216,7 @@ class ObjectPlacer:
                 box = _footprint(placed)
                 sign = 1.0 if side in ("east", "north") else -1.0
                 into_m = sign * (box.line(side) - room.rect.line(side)) + HALF_WALL_M
-                if 0.0 < into_m <= MOST_INTO_WALL_M and not self._is_open(number, side, box):
+                if 0.0 < into_m <= MAX_INTO_WALL_M and not self._is_open(number, side, box):
                     dx, dy = (-sign * into_m, 0.0) if side in ("east", "west") else (0.0, -sign * into_m)
                     placed = replace(placed, x_m=placed.x_m + dx, y_m=placed.y_m + dy)
             break
@@ -280,7 +280,7 @@ def _heights_below(parent: PlacedItem, at: PlacedItem) -> Iterator[float]:
     c, s = math.cos(parent.yaw_rad), math.sin(parent.yaw_rad)
     dx, dy = at.x_m - parent.x_m, at.y_m - parent.y_m
     x, y = c * dx + s * dy, -s * dx + c * dy
-    least_m2 = LEAST_REST * at.item.size_m[0] * at.item.size_m[1]
+    least_m2 = MIN_REST * at.item.size_m[0] * at.item.size_m[1]
     for geom in parent.item.geoms:
         (x0, y0, _), (x1, y1, z) = (corner.tolist() for corner in geom_bounds(geom))
         if x0 <= x <= x1 and y0 <= y <= y1 and (x1 - x0) * (y1 - y0) >= least_m2:

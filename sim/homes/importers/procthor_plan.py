@@ -22,9 +22,9 @@ CEILING_M = (2.0, 12.0)
 """Least and largest height of ceilings."""
 LINTEL_M = 0.05
 """Least height of the wall above a hole."""
-LEAST_HOLE_M = 0.15
+MIN_HOLE_M = 0.15
 """Holes that are narrower or lower than this are left out."""
-LEAST_OVERLAP_M = 0.05
+MIN_OVERLAP_M = 0.05
 """Rooms may overlap by less than this."""
 _KIND = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 
@@ -127,7 +127,7 @@ def _rooms(house: SourceHouse, grid: _Grid, holes: Sequence[Stretch], where: str
         name = f"room_{kind}_{counts.get(kind, 0):02d}"
         counts[kind] = counts.get(kind, 0) + 1
         for part, rect in enumerate(rects):
-            other = next((n for n, room in enumerate(rooms) if room.rect.overlaps(rect, LEAST_OVERLAP_M)), None)
+            other = next((n for n, room in enumerate(rooms) if room.rect.overlaps(rect, MIN_OVERLAP_M)), None)
             if other is not None:
                 raise HouseError(f"{where}: rooms '{house.rooms[room_of[other]].id}' and '{source.id}' overlap.")
             rooms.append(Room(f"{name}_{part}" if part else name, kind, rect))
@@ -224,10 +224,10 @@ def _opening(
     # A hole stays out of the corners, where the other walls are.
     lo, hi = plan.rooms[a].rect.span(side)
     span = round(max(span[0], lo + HALF_WALL_M), 3), round(min(span[1], hi - HALF_WALL_M), 3)
-    if span[1] - span[0] < LEAST_HOLE_M or z1 - z0 < LEAST_HOLE_M:
+    if span[1] - span[0] < MIN_HOLE_M or z1 - z0 < MIN_HOLE_M:
         losses.changes[f"A {what} is too small and was left out."] += 1
         return None
-    if span[1] - span[0] < stretch.span[1] - stretch.span[0] - LEAST_HOLE_M:
+    if span[1] - span[0] < stretch.span[1] - stretch.span[0] - MIN_HOLE_M:
         losses.changes[f"A {what} was made narrower: it reaches across two rooms, or into a corner."] += 1
     line_m = plan.rooms[a].rect.line(side)
     if not is_door:

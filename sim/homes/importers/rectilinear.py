@@ -15,7 +15,7 @@ from sim.homes.housegen.floor_plan.rectangles import SIDES, Interval, Rect
 Point = tuple[float, float]
 TOLERANCE_M = 0.02
 """Coordinates nearer to each other than this become equal."""
-MOST_TRIANGLES, MOST_LINES = 20_000, 200
+MAX_TRIANGLES, MAX_LINES = 20_000, 200
 """Limits of a floor: further triangles are not read; with more coordinates along an axis it gets no rectangles."""
 
 
@@ -121,9 +121,9 @@ def rectangles_of_triangles(triangles_m: NDArray[np.float64]) -> list[Rect]:
 
     The floor is divided at the coordinates of its corners; cells with their middle in a triangle belong to it.
     """
-    triangles_m = triangles_m[:MOST_TRIANGLES]
+    triangles_m = triangles_m[:MAX_TRIANGLES]
     xs, ys = (sorted(set(snapped(triangles_m[..., axis].ravel().tolist()).values())) for axis in (0, 1))
-    if len(xs) < 2 or len(ys) < 2 or max(len(xs), len(ys)) > MOST_LINES:
+    if len(xs) < 2 or len(ys) < 2 or max(len(xs), len(ys)) > MAX_LINES:
         return []
     x, y = (0.5 * (np.array(values[:-1]) + np.array(values[1:])) for values in (xs, ys))
     inside = np.zeros((len(x), len(y)), dtype=np.bool_)

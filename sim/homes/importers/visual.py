@@ -25,8 +25,8 @@ WELD_M = 5e-4
 """Vertices nearer to each other than this are one when triangles are reduced."""
 TEXEL_M = 0.02
 """Side of a pixel of a baked picture on the surface, unless the picture would be too large."""
-LEAST_SQUARE, MOST_SQUARE = 4, 256
-MOST_SAMPLES = 3_000_000
+MIN_SQUARE, MAX_SQUARE = 4, 256
+MAX_SAMPLES = 3_000_000
 """Number of points of the source that give their colours to a baked picture."""
 CREASE = math.cos(math.radians(40.0))
 """Triangles that meet at a larger angle have an edge between them; others are shaded as one smooth surface."""
@@ -186,10 +186,10 @@ def _layout(
     )
     texel_m = TEXEL_M
     while True:
-        wanted_px = np.clip(legs_m / texel_m + 3.0, LEAST_SQUARE, min(MOST_SQUARE, texture_px))
+        wanted_px = np.clip(legs_m / texel_m + 3.0, MIN_SQUARE, min(MAX_SQUARE, texture_px))
         side = (2 ** np.ceil(np.log2(wanted_px))).astype(np.int64)
-        units = int(((side // LEAST_SQUARE) ** 2).sum()) // 2 + int(side.max() // LEAST_SQUARE) ** 2
-        if units * LEAST_SQUARE**2 <= texture_px**2 or side.max() == LEAST_SQUARE:
+        units = int(((side // MIN_SQUARE) ** 2).sum()) // 2 + int(side.max() // MIN_SQUARE) ** 2
+        if units * MIN_SQUARE**2 <= texture_px**2 or side.max() == MIN_SQUARE:
             break
         texel_m *= 1.25
     return corners, of_vertex, _packed(side), texel_m
@@ -202,13 +202,13 @@ def _packed(side: NDArray[np.int64]) -> _Squares:
     start, second = np.zeros(len(side), dtype=np.int64), np.zeros(len(side), dtype=np.bool_)
     used, done = 0, 0
     for size, count in zip((-sizes).tolist(), counts.tolist(), strict=True):
-        mine, area = order[done : done + count], (size // LEAST_SQUARE) ** 2
+        mine, area = order[done : done + count], (size // MIN_SQUARE) ** 2
         start[mine] = used + np.arange(count) // 2 * area
         second[mine] = np.arange(count) % 2 == 1
         used, done = used + (count + 1) // 2 * area, done + count
     bits = max(0, math.ceil(math.log2(max(1, used))))
-    width, height = LEAST_SQUARE * 2 ** ((bits + 1) // 2), LEAST_SQUARE * 2 ** (bits // 2)
-    corner = LEAST_SQUARE * np.stack([_every_second_bit(start), _every_second_bit(start >> 1)], axis=1)
+    width, height = MIN_SQUARE * 2 ** ((bits + 1) // 2), MIN_SQUARE * 2 ** (bits // 2)
+    corner = MIN_SQUARE * np.stack([_every_second_bit(start), _every_second_bit(start >> 1)], axis=1)
     edge = side.astype(np.float64)
     near = np.stack([np.full(len(side), 0.5), np.full(len(side), 0.5)], axis=1)
     right, down = near.copy(), near.copy()
@@ -232,7 +232,7 @@ def _picture(
     """Returns the picture (h, w, 3) in which each triangle shows the colours of the nearest points of the source."""
     width, height = squares.size_px
     area_m2 = sum(float(areas(surface.vertices_m, surface.faces).sum()) for surface in surfaces)
-    spacing_m = max(texel_m, math.sqrt(area_m2 / MOST_SAMPLES))
+    spacing_m = max(texel_m, math.sqrt(area_m2 / MAX_SAMPLES))
     sampled = [samples(surface.corners_m, spacing_m) for surface in surfaces]
     colours = np.vstack([
         _colours(surface, face, weights) for surface, (_, face, weights) in zip(surfaces, sampled, strict=True)

@@ -30,7 +30,7 @@ _FAR_M = 0.6
 """Distances to obstacles are computed up to this."""
 _PADDING_M = 1000.0
 """Added to distances, so that 0 means a cell beyond the grid."""
-_LEAST_CEILING_M = 1.5
+_MIN_CEILING_M = 1.5
 """A lower ceiling does not belong to the storey."""
 
 
@@ -166,4 +166,4 @@ def _ceiling_m(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, floor
         float(geom_polytope(model, data, geom, rendered=True).vertices_m[:, 2].min()) - floor_z_m
         for geom in np.flatnonzero(labels.geom_category == MPCAT40_ID["ceiling"]).tolist()
     ]
-    return min([height for height in heights if height > _LEAST_CEILING_M], default=TOP_M)
+    return min([height for height in heights if height > _MIN_CEILING_M], default=TOP_M)

@@ -15,7 +15,7 @@ from sim.core.interface import GOAL_CATEGORIES, CameraModel, ConfigError
 from sim.homes.plans.plan import Plan
 from sim.homes.plans.sight_kernels import cast_rays, enter_frame
 
-_MOST_ROWS = 128  # two words of 64 bits
+_MAX_ROWS = 128  # two words of 64 bits
 _NO_GOAL = -2
 
 
@@ -102,10 +102,10 @@ class PlanCamera:
         stride, focal_px = self.config.stride_px, self.camera.focal_px
         u_px = np.arange(stride // 2, self.camera.width_px, stride)
         v_px = np.arange(stride // 2, self.camera.height_px, stride)
-        if not 2 <= len(v_px) <= _MOST_ROWS:
+        if not 2 <= len(v_px) <= _MAX_ROWS:
             raise ConfigError(
                 f"SightConfig.stride_px of {stride} leaves {len(v_px)} of {self.camera.height_px} rows of the image; "
-                f"there must be 2 to {_MOST_ROWS}."
+                f"there must be 2 to {_MAX_ROWS}."
             )
         self._left = (0.5 * self.camera.width_px - (u_px + 0.5)) / focal_px
         self._up = (0.5 * self.camera.height_px - (v_px + 0.5)) / focal_px

@@ -16,9 +16,9 @@ from sim.core.interface import MPCAT40, MPCAT40_ID, ConfigError
 from sim.homes.plans.plan import Plan
 from stubborn.detection.context import OBJECTS, Context
 
-LEAST_OBJECTS = 10
+MIN_OBJECTS = 10
 """A category with fewer objects is unknown: its ratio is 1."""
-LEAST_SEEN = 0.15
+MIN_SEEN = 0.15
 """A random share of the objects around an object is seen, between this and 1."""
 PRIOR = 3.0
 """Weight of the normal prior of the log-odds, as a number of objects."""
@@ -47,7 +47,7 @@ def surroundings(
     x_m, y_m, number = (values[number >= 0] for values in (x_m, y_m, number))
     near = np.hypot(x_m[:, None] - x_m, y_m[:, None] - y_m) < radius_m
     np.fill_diagonal(near, False)
-    near &= rng.random(near.shape) < rng.uniform(LEAST_SEEN, 1.0, (len(near), 1))
+    near &= rng.random(near.shape) < rng.uniform(MIN_SEEN, 1.0, (len(near), 1))
     is_of = number[:, None] == np.arange(len(OBJECTS))
     return (near.astype(np.float32) @ is_of > 0.0).astype(np.float32), number
 
@@ -80,7 +80,7 @@ def fit(houses: Sequence[Surroundings], radius_m: float, *, steps: int = 400) ->
         raise ConfigError(f"The plans have {count} objects; 100 are needed: give more plans.")
     nearby, category = (np.concatenate(parts) for parts in zip(*houses, strict=True))
     counts = np.bincount(category, minlength=len(OBJECTS)) + 0.5
-    known = counts >= LEAST_OBJECTS
+    known = counts >= MIN_OBJECTS
     nearby, category = nearby[known[category]], category[known[category]]
     frequency = known * counts / max((known * counts).sum(), 1.0)
     prior = torch.from_numpy(np.log(frequency, where=known, out=np.full(len(OBJECTS), -np.inf)).astype(np.float32))

@@ -23,7 +23,7 @@ from stubborn.detection.evidence import EvidenceConfig
 from stubborn.detection.fusion import IS_SURFACE, SURFACES, Fusion
 
 FOLDS = 5
-LEAST_PIXELS = 40
+MIN_PIXELS = 40
 """Tracks with fewer pixels are left out."""
 TRUE_SHARE = 0.25
 """A track has the category of an object if at least this share of its pixels has it; the rest may show the
@@ -69,7 +69,7 @@ def samples_of(log: Sequence[Mapping[str, Any]]) -> list[Sample]:
     for episode in log:
         for number, track in enumerate(episode["track"].tolist()):
             mine, counts = episode["sample"] == number, episode["counts"][track]
-            if counts.sum() < LEAST_PIXELS or not mine.any():
+            if counts.sum() < MIN_PIXELS or not mine.any():
                 continue
             result.append(
                 Sample(

@@ -32,7 +32,7 @@ LOOK_AT_ALL = LookConfig(bar=((0, 1.0),), slack=0.0, visit=0.15)
 """The agent accepts nothing, and looks at everything that may be the goal."""
 SEEKER = TrackSeekerConfig()
 """The configuration of `stubborn-plus`."""
-LEAST_VOXELS = 6
+MIN_VOXELS = 6
 """The agent does not consider smaller tracks as candidates, and they are not logged."""
 LEVELS = (0.4, 1.0, 2.0, 3.5, 6.0)
 """A track is logged when the total weight of its views reaches each of these values."""
@@ -69,7 +69,7 @@ class TrackSamples:
 
     def add(self, tracks: Tracks) -> None:
         """Adds a track in view if the weight of its views has reached a further one of `LEVELS`."""
-        numbers = tracks.in_view[tracks.sizes(tracks.in_view) >= LEAST_VOXELS]
+        numbers = tracks.in_view[tracks.sizes(tracks.in_view) >= MIN_VOXELS]
         _, weight = tracks.evidence.views(numbers)
         level = np.searchsorted(LEVELS, weight.sum(axis=1), side="right")
         grown = [v > self._level.get(n, 0) for n, v in zip(numbers.tolist(), level.tolist(), strict=True)]
@@ -113,7 +113,7 @@ def logged(tracks: Tracks, counts: Int[np.ndarray, "tracks ids"], samples: Track
     now = tracks.now()
     merged = np.zeros_like(counts)
     np.add.at(merged, now, counts[: len(now)])
-    kept = 1 + np.flatnonzero(tracks.sizes(np.arange(1, len(now))) >= LEAST_VOXELS)
+    kept = 1 + np.flatnonzero(tracks.sizes(np.arange(1, len(now))) >= MIN_VOXELS)
     samples.take(tracks, kept)
     return {"counts": merged[kept].astype(np.int32)} | samples.arrays(now, kept)
 

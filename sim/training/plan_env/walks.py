@@ -27,7 +27,7 @@ REACHED_S = 0.4
 BLIND_M = 1.5
 """A search treats floor this near the robot as seen; the camera does not see floor within 1.4 m."""
 SPECK_CELLS = 5
-"""Unseen floor without a square of so many cells on a side is not visited."""
+"""Unseen floor is visited only if it contains a square of this many cells on a side."""
 
 
 class WalkConfig(Protocol):

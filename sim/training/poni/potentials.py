@@ -69,7 +69,7 @@ class SampleConfig:
     own_known_m: float = 1.0
     """See `PoniConfig.own_known_m`."""
     least_length_m: float = 0.40
-    """Shorter frontiers are left out where there is a longer one."""
+    """Shorter frontiers are left out if a longer one exists."""
     margin_cells: int = 20
     """See `PoniConfig.margin_cells`."""
 
@@ -107,7 +107,7 @@ def plan_seed(name: str, seed: int) -> list[int]:
 
 
 def samples_of(plan: Plan, config: SampleConfig, seed: int) -> Iterator[Sample]:
-    """Yields the samples of a plan; none where no goal can be reached."""
+    """Yields the samples of a plan; the iterator is empty if no goal can be reached."""
     rng = np.random.default_rng(plan_seed(plan.name, seed))
     truth, camera = Truth(plan, config), PlanCamera(plan)
     planner = Planner(PlanningConfig(), visited_ground)

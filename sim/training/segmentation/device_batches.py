@@ -22,11 +22,11 @@ from torch.utils.data import DataLoader, Dataset
 from sim.core.interface import CameraModel, ConfigError
 from sim.training.segmentation.balanced import StoredView, ViewIndex
 from sim.training.segmentation.recipe import Recipe
-from sim.training.segmentation.samples import IGNORED, MOST_WEIGHT, Augmentation, Sampler, pixel_weights
+from sim.training.segmentation.samples import IGNORED, MAX_WEIGHT, Augmentation, Sampler, pixel_weights
 from stubborn.segmentation import geometry
 from stubborn.segmentation.preprocess import DEPTH_MEAN, DEPTH_STD, RGB_MEAN, RGB_STD, padding
 
-WEIGHT_UNIT = MOST_WEIGHT / 255
+WEIGHT_UNIT = MAX_WEIGHT / 255
 """Weights of pixels are stored in this unit, as one byte."""
 VIEWS_PER_READ = 32
 """Views that a loading process passes on at a time."""

@@ -21,7 +21,7 @@ from stubborn.segmentation.preprocess import normalise_rgb, pad_edges, padding, 
 IGNORED = -100
 """Label of pixels that do not count: void and padding."""
 
-SMALL_SHARE, MOST_WEIGHT = 1 / 16, 4.0
+SMALL_SHARE, MAX_WEIGHT = 1 / 16, 4.0
 """Objects with a smaller share of the image weigh more per pixel: area^-0.5, at most this much."""
 SURFACES = np.array([MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling")])
 """Pixels of these categories weigh 1."""
@@ -132,7 +132,7 @@ class Samples(Dataset):
 
 
 def pixel_weights(view: LabelledView, block_px: int) -> Float32[np.ndarray, "h w"]:
-    """Returns the weight of each pixel of a shrunk view: area^-0.5 of its object in the view, from 1 to `MOST_WEIGHT`.
+    """Returns the weight of each pixel of a shrunk view: area^-0.5 of its object in the view, from 1 to `MAX_WEIGHT`.
 
     The weight depends on the whole object in the view and not on the part of it in a window. Pixels of surfaces weigh
     1.
@@ -142,7 +142,7 @@ def pixel_weights(view: LabelledView, block_px: int) -> Float32[np.ndarray, "h w
     """
     instances = shrink(_instances(view), block_px)
     area = np.bincount(instances.reshape(-1)) / instances.size
-    weights = np.clip(np.sqrt(SMALL_SHARE / np.maximum(area, 1e-9)), 1.0, MOST_WEIGHT).astype(np.float32)
+    weights = np.clip(np.sqrt(SMALL_SHARE / np.maximum(area, 1e-9)), 1.0, MAX_WEIGHT).astype(np.float32)
     weights[0] = 1.0
     return np.where(np.isin(shrink(view.semantic, block_px), SURFACES), np.float32(1.0), weights[instances])
 

@@ -61,7 +61,7 @@ def _place_small_items(layout: RoomLayout, source: FurnitureSource, mat_host: Pl
 
 
 def _place_basin(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
-    """Places a basin on a cabinet of its own, or one that stands by itself; a narrow one where no other fits."""
+    """Places a basin on a cabinet of its own, or a free-standing one; a narrow one if no other fits."""
     small = layout.inner.area_m2 < SMALL_M2
     uses = ("cabinet", "vanity") if source.chance(0.2 if small else 0.55) else ("sink", "standing")
     return (

@@ -19,9 +19,9 @@ from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.homes.housegen.furnishing.steps import top_uses
 from sim.homes.housegen.furniture.item import Item
 
-PER_TOP, PER_TOP_M2, MOST_ON_TOP = 1.0, 4.0, 7
+PER_TOP, PER_TOP_M2, MAX_ON_TOP = 1.0, 4.0, 7
 """Objects on a top at clutter 1: on any, more by its area in square metres, and the largest number."""
-FLOOR_PER_M2, MOST_ON_FLOOR = 0.3, 6
+FLOOR_PER_M2, MAX_ON_FLOOR = 0.3, 6
 """Small objects on the floor of a room at clutter 1 by its area in square metres, and the largest number."""
 ON_FLOOR: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -53,7 +53,7 @@ def add_clutter(layout: RoomLayout, source: FurnitureSource) -> None:
     uses = ON_FLOOR.get(layout.kind)
     if uses is None:
         return
-    count = source.clutter * min(FLOOR_PER_M2 * layout.inner.area_m2, MOST_ON_FLOOR)
+    count = source.clutter * min(FLOOR_PER_M2 * layout.inner.area_m2, MAX_ON_FLOOR)
     for _ in range(int(count + source.uniform(0.0, 1.0))):
         _put_on_floor(layout, source, source.pick(uses))
 
@@ -64,7 +64,7 @@ def _fill_tops(layout: RoomLayout, source: FurnitureSource, host: Placement) -> 
         if surface.kind != "top":
             continue
         area_m2 = 4.0 * surface.half_size_m[0] * surface.half_size_m[1]
-        count = source.clutter * min(PER_TOP + PER_TOP_M2 * area_m2, MOST_ON_TOP)
+        count = source.clutter * min(PER_TOP + PER_TOP_M2 * area_m2, MAX_ON_TOP)
         for _ in range(int(count + source.uniform(0.0, 1.0))):
             item = source.make("objects", source.pick(top_uses(layout, source, host)))
             if item is not None and item.mount == "top":

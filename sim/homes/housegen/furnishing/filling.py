@@ -162,4 +162,4 @@ FILL_RULES: Mapping[str, FillRule] = MappingProxyType(
         "closet": FillRule(0.30, (_WARDROBE, _RACK, _chest, _BOX, _LINEN, _OTTOMAN), rounds=1),
     }
 )
-"""Rules by kind of room; the other kinds get nothing more."""
+"""Rules by kind of room; the other kinds get no further items."""

@@ -58,7 +58,7 @@ def _pieces(layout: RoomLayout) -> Iterator[Piece]:
 
 
 def _hang_curtains(layout: RoomLayout, source: FurnitureSource) -> None:
-    """Hangs the same curtains or blinds at every window of a room; long curtains where nothing stands below."""
+    """Hangs the same curtains or blinds at every window of a room; long curtains where the floor below is free."""
     style = source.rng.random()
     looks = source.window_looks()
     for side, window in layout.walls.windows():

@@ -1,7 +1,7 @@
 """Selects and makes the furniture of one home, so that no design is seen more than twice unless it belongs to a set.
 
 A design is a style with certain looks and a certain size. The source counts the items in the rooms and chooses the
-style with the fewest items. Where the pool has no style left that the home has fewer than `MOST_ALIKE` times, it makes
+style with the fewest items. Where the pool has no style left that the home has fewer than `MAX_ALIKE` times, it makes
 a variant of one: the same structure in other colours, or in a clearly different size, is a different design.
 """
 
@@ -22,7 +22,7 @@ from sim.homes.housegen.furniture.item import Item, Look, Pool
 from sim.homes.housegen.surfaces import materials
 
 T = TypeVar("T")
-MOST_ALIKE = 2
+MAX_ALIKE = 2
 """Largest number of items of one design in a home, outside the sets."""
 SETS: Mapping[tuple[str, str | None], int] = MappingProxyType(
     {
@@ -41,7 +41,7 @@ _VARIANT_DRAWS = 8
 _MISFIT = 0.3
 """Weight of an item for which no position was found, relative to a placed one, when a style is chosen."""
 
-MOST_SMALL_STYLES = 12
+MAX_SMALL_STYLES = 12
 """Styles of small objects in a home, each one mesh; from then on they are seen in other colours. Meshes take most of
 the bytes of a house file."""
 REQUIRED = frozenset(
@@ -126,10 +126,10 @@ class FurnitureSource:
         return None
 
     def has_unused(self, category: str, *uses: str) -> bool:
-        """Returns whether the pool has a style for one of the uses that the home has fewer than `MOST_ALIKE` times."""
+        """Returns whether the pool has a style for one of the uses that the home has fewer than `MAX_ALIKE` times."""
         placed = self._placed_styles()
         return any(
-            placed[category, style.name] < MOST_ALIKE
+            placed[category, style.name] < MAX_ALIKE
             for use in uses or (None,)
             for style in self._catalogue.styles(category, self.pool, use)
         )
@@ -155,7 +155,7 @@ class FurnitureSource:
             key = category
         known = [item for item in self._designs.setdefault(key, []) if item.style == style]
         for item in known:
-            if self._before[0][id(item)] + now[id(item)] < MOST_ALIKE and category not in ("picture", "floor"):
+            if self._before[0][id(item)] + now[id(item)] < MAX_ALIKE and category not in ("picture", "floor"):
                 return item
         alike = self._made.setdefault((category, style), [])
         made = self._variant(known, alike) or self._new(category, style, use, hints)
@@ -199,7 +199,7 @@ class FurnitureSource:
         if not fresh:
             tried.clear()
         untried = [n for n in names if n not in tried] or [n for n in others if n not in tried] or names
-        if category == "objects" and len(self._small_styles) >= MOST_SMALL_STYLES:
+        if category == "objects" and len(self._small_styles) >= MAX_SMALL_STYLES:
             untried = [name for name in untried if name in self._small_styles] or untried
 
         def weight(name: str) -> float:

@@ -25,7 +25,7 @@ KINDS = (
 )  # fmt: skip
 """Category and use of the furniture of hallways."""
 DECORATION = frozenset(("plant", "lighting"))
-"""Categories that are of no use in a hallway; one that has nothing else gets a mirror."""
+"""Categories without a use in a hallway; a hallway with only such items gets a mirror."""
 
 
 def furnish_hallway(layout: RoomLayout, source: FurnitureSource) -> None:

@@ -20,7 +20,7 @@ from sim.homes.housegen.furniture.item import Item, Look
 LONG_RUN_M = 3.2
 """Longest worktop along a second wall."""
 CABINET_BOTTOM_M = 1.45
-LEAST_APPLIANCES = 2
+MIN_APPLIANCES = 2
 """Number of cookers, fridges, dishwashers and hobs that every kitchen has."""
 FRIDGE_M = 1.3
 """All items except fridges are at most this high."""
@@ -84,7 +84,7 @@ def _complete(layout: RoomLayout, source: FurnitureSource, units: Units) -> None
                 break
     has_fridge = any(p.item.category == "appliances" and p.item.size_m[2] > FRIDGE_M for p in layout.placements)
     for use in ("stove", "dishwasher") if has_fridge else ("fridge", "stove", "dishwasher"):
-        if _large_appliances(layout) >= LEAST_APPLIANCES:
+        if _large_appliances(layout) >= MIN_APPLIANCES:
             return
         place(layout, source, "appliances", use, along="corner", front_m=0.55, tries=3)
 
@@ -118,7 +118,7 @@ def _place_run(layout: RoomLayout, source: FurnitureSource, side: Side, looks: d
 def _run_items(
     source: FurnitureSource, fridge: Item | None, cooker: Item | None, length_m: float, looks: dict[str, Look]
 ) -> list[Item | None]:
-    """Returns the units of a run of this length; none where it is too short."""
+    """Returns the units of a run of this length; an empty list if it is too short."""
 
     def worktop(width_m: float, *, sink: bool, hob: bool) -> Item | None:
         return source.make("counter", "run", width_m=round(width_m, 2), with_sink=sink, with_hob=hob, looks=looks)
@@ -198,7 +198,7 @@ def _place_island(layout: RoomLayout, source: FurnitureSource) -> Placement | No
 
 
 def _place_bar_stools(layout: RoomLayout, source: FurnitureSource, island: Placement) -> None:
-    """Places stools in front of an island, or behind it where none fits in front."""
+    """Places stools in front of an island, or behind it if they do not fit in front."""
     stool = source.make("stool", "bar")
     layout.release_zones(island)
     if stool is None:

@@ -17,13 +17,13 @@ Spot = tuple[float, float]
 """x and y of the middle of bare floor."""
 BARE_M = 1.35
 """Radius of the largest circle of bare floor that a room may keep."""
-MOST_GROUPS = 4
+MAX_GROUPS = 4
 
 
 def fill_middle(layout: RoomLayout, source: FurnitureSource) -> None:
     """Places groups where a circle of bare floor is larger than `BARE_M`, as long as the room stays walkable."""
     additions = list(MIDDLES.get(layout.kind, ()))
-    for _ in range(MOST_GROUPS):
+    for _ in range(MAX_GROUPS):
         radius_m, spot = layout.grid.widest_free()
         if radius_m < BARE_M or not additions:
             return

@@ -1,7 +1,7 @@
 """The uses by which rooms ask for furniture, and the check of the uses that a style declares.
 
-Rooms ask for an item by category and use (`source.make("chair", "dining")`), so a style with another use, or with none
-where rooms ask by use, would be in no house.
+Rooms ask for an item by category and use (`source.make("chair", "dining")`). A style with another use, or without a use
+where rooms ask by use, would not appear in any house.
 """
 
 from __future__ import annotations

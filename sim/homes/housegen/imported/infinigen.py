@@ -32,7 +32,7 @@ VERSION = 1
 """Increased when the same seed gives another file; assets of other versions are made again."""
 TABLE, LOG = "models.csv", "infinigen.log"
 AUTHOR, LICENCE = "made with Infinigen by its user", "generated; Infinigen is BSD-3-Clause"
-MOST_TRIANGLES = 30_000
+MAX_TRIANGLES = 30_000
 """Triangles of a file; the import reduces them further."""
 START_S = 300.0
 """Longest time until the process is ready."""
@@ -120,7 +120,7 @@ class Asset:
     triangles: int = 0
     error: str = ""
     limit_s: float = 0.0
-    """The time limit that it did not keep; 0: another reason, or none."""
+    """The time limit that it exceeded; 0: it failed for another reason, or did not fail."""
     version: int = VERSION
 
 
@@ -203,7 +203,7 @@ def _made(worker: _Worker, out: Path, generator: Generator, seed: int, limit_s: 
     began_s = time.monotonic()
     request = {
         "factory": generator.factory, "seed": seed, "file": str(file.resolve()), "two_sided": generator.two_sided,
-        "upright": generator.upright, "triangles": MOST_TRIANGLES, "options": dict(generator.options),
+        "upright": generator.upright, "triangles": MAX_TRIANGLES, "options": dict(generator.options),
         "dimensions_m": generator.dimensions_m,
     }  # fmt: skip
     answer = worker.ask(request, limit_s)

@@ -31,9 +31,9 @@ ModelSplit = Literal["train", "transfer"]
 INDEX, MESHES = "models.json", "meshes"
 VERSION = 1
 TRANSFER_PART = 4
-"""One model in so many is for the transfer test."""
+"""One model in this many is for the transfer test."""
 MIN_FOR_TRANSFER = 3
-"""Categories with fewer models have none in the transfer test unless their names are drawn."""
+"""Categories with fewer models are not in the transfer test unless the names of their models are drawn."""
 TRANSFER_LIST = "transfer_models.txt"
 """The models of Sweet Home 3D that are for the transfer test: name and hash of the file, among the shipped assets."""
 WITH_TOP = frozenset(("table", "cabinet", "chest_of_drawers", "counter", "shelving"))

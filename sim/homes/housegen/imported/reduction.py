@@ -15,7 +15,7 @@ from sim.homes.housegen.imported.sources import Skipped
 
 MAX_TRIANGLES, MAX_PLANT_TRIANGLES = 1_500, 2_000
 """Triangles of a model after its reduction, exceeded where its shape would be lost; a plant has many leaves."""
-LEAST_TRIANGLES = 12
+MIN_TRIANGLES = 12
 """Triangles that every connected piece may have."""
 MAX_ERROR, ERROR_POINTS, QUERIES = 0.03, 4_000, 600
 """Largest distance of a reduced piece from the piece, relative to its diagonal, and the points that measure it."""
@@ -34,12 +34,12 @@ def reduced(parts: Sequence[Part], most: int = MAX_TRIANGLES) -> tuple[Part, ...
     """
     pieces = [(n, piece) for n, part in enumerate(parts) for piece in _pieces(_clean(part))]
     pieces.sort(key=lambda entry: -float(areas(entry[1].vertices_m, entry[1].faces).sum()))
-    least = np.cumsum([min(LEAST_TRIANGLES, len(piece.faces)) for _, piece in pieces])
+    least = np.cumsum([min(MIN_TRIANGLES, len(piece.faces)) for _, piece in pieces])
     pieces = pieces[: int((least <= most).sum())]
     weights = np.sqrt([len(piece.faces) * areas(piece.vertices_m, piece.faces).sum() for _, piece in pieces])
     made: dict[int, list[Part]] = {}
     for (n, piece), share in zip(pieces, weights / max(1e-9, float(weights.sum())), strict=True):
-        made.setdefault(n, []).append(_simplified(piece, max(LEAST_TRIANGLES, int(share * most))))
+        made.setdefault(n, []).append(_simplified(piece, max(MIN_TRIANGLES, int(share * most))))
     joined = [_clean(merged(of_part, np.array(parts[n].rgba))) for n, of_part in sorted(made.items())]
     joined = [part for part in joined if len(part.faces) >= 2 and len(part.vertices_m) >= 4]
     if not joined:

@@ -122,7 +122,7 @@ class _Cells:
 def _best_cut(points: NDArray) -> tuple[float, int, float]:
     """Returns the volume that the best division of the box around some points saves, its axis and its position.
 
-    A division that saves nothing by itself counts by what the next ones save: under a table top are four legs.
+    A division without a saving of its own counts by the savings of the next ones: under a table top are four legs.
     """
     cells = _Cells.of(points)
     saved, axis, index = _direct_cut(cells.filled, cells.cell_m)
@@ -176,7 +176,7 @@ def _ranges(filled: NDArray[np.bool_], axis: int) -> tuple[NDArray, NDArray]:
 
 
 def _volumes(low: NDArray, high: NDArray, cell_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the volumes of boxes of cells; empty ones have none."""
+    """Returns the volumes of boxes of cells; 0 for empty boxes."""
     return np.prod(np.maximum(high - low + 1, 0) * cell_m, axis=1)
 
 

@@ -86,7 +86,7 @@ def test_a_file_holds_the_tracks_only(split: Path, tmp_path: Path, monkeypatch: 
 def test_an_episode_without_tracks_is_logged_and_adds_no_samples(
     split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr(track_log, "LEAST_VOXELS", 10**9)
+    monkeypatch.setattr(track_log, "MIN_VOXELS", 10**9)
     args = train_tracks.Args(
         split=str(split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
     )

@@ -13,7 +13,7 @@ from sim.homes.housegen.floor_plan import PlanError, draw_floor_plan
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.furnishing import FurnishError, furnish
 from sim.homes.housegen.furnishing.furniture_source import (
-    MOST_ALIKE,
+    MAX_ALIKE,
     REQUIRED,
     SETS,
     FurnitureSource,
@@ -73,7 +73,7 @@ def test_no_design_stands_more_than_twice_in_a_home_outside_the_sets(pool, seed)
             by_style[item.category, item.style].append(design_of(item))
     for style, designs in by_style.items():
         for design in designs:
-            assert sum(is_same_design(design, other) for other in designs) <= MOST_ALIKE, style
+            assert sum(is_same_design(design, other) for other in designs) <= MAX_ALIKE, style
 
 
 @pytest.mark.parametrize("pool", ["train", "heldout"])
@@ -105,7 +105,7 @@ def test_a_small_object_comes_in_the_colours_of_all_palettes_before_a_new_mesh_i
     layout = empty_room()
     source.enter(layout)
     made = []
-    for n in range(MOST_ALIKE * len(palettes("heldout"))):
+    for n in range(MAX_ALIKE * len(palettes("heldout"))):
         item = source.make("objects", "cable")
         assert item is not None
         made.append(item)

@@ -79,7 +79,7 @@ def test_without_augmentation_a_window_is_that_of_the_sampler(
     sampler = replace(batches.sampler, window_px=32)
     expected = [sampler(view.read(), np.random.default_rng(0)) for view in index.views]
     for i, part in enumerate(zip(*expected, strict=True)):
-        tolerance = (0.05, 1e-4, 0.0, samples.MOST_WEIGHT / 255)[i]
+        tolerance = (0.05, 1e-4, 0.0, samples.MAX_WEIGHT / 255)[i]
         assert torch.allclose(computed[i].double(), torch.stack(list(part)).double(), rtol=0.0, atol=tolerance), i
 
 

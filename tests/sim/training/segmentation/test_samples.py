@@ -12,7 +12,7 @@ from sim.core.interface import MPCAT40_ID, CameraModel, ConfigError
 from sim.training.segmentation.dataset import LabelledView
 from sim.training.segmentation.samples import (
     IGNORED,
-    MOST_WEIGHT,
+    MAX_WEIGHT,
     NONE,
     SMALL_SHARE,
     Augmentation,
@@ -172,7 +172,7 @@ def test_pixels_of_small_objects_weigh_more_and_surfaces_do_not() -> None:
     assert (weights[view.semantic == MPCAT40_ID["floor"]] == 1.0).all()
     assert view.instances is not None
     tiny = replace(view, instances=np.where(view.instances == 1, np.arange(96, dtype=np.uint16) + 3, 2).astype("u2"))
-    assert pixel_weights(tiny, 1)[0, 0] == MOST_WEIGHT
+    assert pixel_weights(tiny, 1)[0, 0] == MAX_WEIGHT
     with pytest.raises(ConfigError, match=wording.HAS_NO_INSTANCES):
         pixel_weights(a_view(), 1)
 

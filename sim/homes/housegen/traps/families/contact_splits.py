@@ -37,4 +37,4 @@ CONTACT_SPLITS: Mapping[str, tuple[TrapKey, ...]] = MappingProxyType(
         "contact-heldout": tuple(in_turns(HELD_OUT, DIFFICULTIES, (*VAL_SEEDS, *TEST_SEEDS))),
     }
 )
-"""The traps of each split. `contact-heldout` has the families on which nothing may be developed or tuned."""
+"""The traps of each split. The families of `contact-heldout` must not be used for development or tuning."""

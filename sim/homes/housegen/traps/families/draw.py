@@ -29,7 +29,7 @@ MARGIN_M = 0.01
 """Clearance of the searched route in addition to the robot's radius."""
 DETOUR_M = 0.15
 """The hidden obstacles make the path longer by at least this."""
-MOST_ACTIONS = 200
+MAX_ACTIONS = 200
 """Largest number of actions of the searched route; an episode has 500."""
 ATTEMPTS = 40
 
@@ -80,7 +80,7 @@ def solve(parameters: Parameters, name: str, difficulty: Difficulty, seed: int) 
     target = task.truth.target(scene.goal)
     inner = cv2.erode(target.reached.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(np.bool_)
     route = PoseSearch(task.truth.space(), margin_m=MARGIN_M).route(scene.start, inner)
-    if route is None or len(route.actions) > MOST_ACTIONS:
+    if route is None or len(route.actions) > MAX_ACTIONS:
         return None
     length_m, count = _extent(task, scene.site)
     x0, y0, x1, y1 = (round(value, 3) for value in scene.zone_m)
