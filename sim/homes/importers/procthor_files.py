@@ -199,8 +199,8 @@ def find_assets(path: Path, chosen: Path | None) -> Path:
         if (path.parent / name).is_file():
             return path.parent / name
     raise ConfigError(
-        f"asset-database.json, the types and sizes of ProcTHOR's assets, is missing next to '{path}'. It is in the "
-        "folder procthor/databases of ProcTHOR's repository; give its path with --assets."
+        f"The file asset-database.json (types and sizes of ProcTHOR's assets) is missing next to '{path}'. It is in "
+        "the folder procthor/databases of ProcTHOR's repository; give its path with --assets."
     )
 
 
