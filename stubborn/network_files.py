@@ -185,7 +185,7 @@ def with_weights(file: Path, state: Mapping[str, Tensor], build: Callable[[], Ne
 
     Args:
         file: the file of the tensors, for the message.
-        given: the tensors, of any floating-point type.
+        state: the tensors, of any floating-point type.
         build: returns the network. It is first called without memory for its numbers, so that a size in a header
             cannot ask for more than the file has.
 

@@ -171,7 +171,7 @@ def _without_windows_at(openings: Sequence[Opening], room: int, flight: Flight) 
 
 
 def _rooms_around(plan: FloorPlan, hall: int) -> list[int]:
-    """Returns the stair hall, the hallways near it and the rooms at them, nearest first, as many as are wanted."""
+    """Returns the stair hall, the hallways near it and some of the rooms at them, nearest first."""
     chosen, queue = [hall], [hall]
     while queue:
         at = queue.pop(0)

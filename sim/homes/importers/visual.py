@@ -301,7 +301,7 @@ def samples(
 
 
 def _steps(wanted_px: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Returns whole numbers that are at least those wanted, few different ones."""
+    """Returns lengths rounded up to whole pixels, with few different values."""
     whole = np.maximum(1, np.ceil(wanted_px)).astype(np.int64)
     unit = 2 ** np.maximum(0, np.floor(np.log2(whole)).astype(np.int64) - 2)
     return -(-whole // unit) * unit

@@ -167,7 +167,7 @@ def agreement(
     """Returns how often the most probable actions are those of the demonstrator.
 
     Args:
-        found: (n,) the most probable actions.
+        predicted: (n,) the most probable actions.
         true: (n,) the actions of the demonstrator.
         changes: (n,) whether the demonstrator's action differs from the previous one.
         losses: (n,) cross entropies.

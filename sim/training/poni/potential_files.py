@@ -82,7 +82,7 @@ def write_samples(file: Path, samples: Iterable[Sample], config: SampleConfig, a
     Args:
         file: the npz file.
         samples: of one plan.
-        config: of the samples; a file of another configuration is refused by `read_samples`.
+        config: that of the samples; a file of another configuration is refused by `SampleSet.read`.
         about: JSON values that are written with it.
     """
     rows: dict[str, list[NDArray]] = {name: [] for name in (*_OF_SAMPLES, *_OF_GOAL_CELLS, *_OF_FRONTIERS)}

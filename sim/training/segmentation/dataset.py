@@ -163,7 +163,7 @@ def read_shard(file: Path) -> Iterator[LabelledView]:
 
 
 def _members(file: Path, numbers: Collection[int] | None = None) -> Iterator[tuple[str, dict[str, bytes]]]:
-    """Yields key and members of the views of a shard in their order; {} for views that are not in `wanted`.
+    """Yields key and members of the views of a shard in their order; {} for views that are not in `numbers`.
 
     Raises:
         ConfigError: the file is not a tar file or truncated.

@@ -37,7 +37,7 @@ EXTRA_DOORS = {
 def draw_floor_plan(
     rng: np.random.Generator, kind: PlanKind, area_m2: float, required: Sequence[str] = ()
 ) -> FloorPlan:
-    """Returns a plan of this kind and about this area, with the private rooms `wanted` if they fit.
+    """Returns a plan of this kind and about this area, with the private rooms `required`.
 
     Raises:
         PlanError: the drawn rooms do not fit together, or the area is off by more than a quarter.
@@ -59,7 +59,7 @@ def _draw_new_kind(
     """Returns a draft of a kind with rooms outside of the rows along corridors, and the room with the front door.
 
     Raises:
-        PlanError: the rooms do not fit, or one that every home needs, or that is wanted, is missing.
+        PlanError: the rooms do not fit, or a required room, or one that every home needs, is missing.
     """
     scale = float(np.clip(rng.uniform(0.95, 1.1) + (area_m2 - 150.0) / 1000.0, 0.95, 1.35))
     if kind == "greatroom":

@@ -42,7 +42,7 @@ class RoomQueue:
     """Groups of private rooms in the order in which they are placed."""
 
     def __init__(self, rng: np.random.Generator, area_m2: float, required: Sequence[str], *, large: bool) -> None:
-        """Makes a queue of rooms of about this usual area; the rooms `wanted`, a bathroom and a bedroom come first."""
+        """Makes a queue of rooms with about this usual area; `required` rooms, a bathroom and a bedroom come first."""
         order = _LARGE_HOME if large else _SMALL_HOME
         first = [(Column(kind),) for kind in required] + [_BATHROOM, _BEDROOM]
         rest_m2 = area_m2 - sum(map(_area_m2, first))

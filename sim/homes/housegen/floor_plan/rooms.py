@@ -123,7 +123,7 @@ def draw_plan_kind(rng: np.random.Generator, area_m2: float) -> PlanKind:
 def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float, required: Sequence[str] = ()) -> Program:
     """Returns the rooms of a home of this plan kind and area; larger homes have more of the rarer rooms.
 
-    The private rooms `wanted` are added first, to the extent that the area allows.
+    The private rooms `required` are added first, to the extent that the area allows.
     """
     if kind == "studio":
         extra = "laundry" if rng.random() < 0.4 else "closet"

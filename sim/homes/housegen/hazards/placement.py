@@ -1,4 +1,4 @@
-"""Places hazards of the wanted families where shortest paths between rooms lead."""
+"""Places hazards of some families on shortest paths between rooms."""
 
 from __future__ import annotations
 
@@ -48,10 +48,10 @@ def draw_hazards(
     openings: Sequence[Opening],
     count: int | None = None,
 ) -> tuple[PlacedHazard, ...]:
-    """Returns hazards for a house, the families in turn; fewer than wanted where no place is found.
+    """Returns hazards for a house, the families in turn; fewer than `count` if no further place is found.
 
     Args:
-        rng: decides all.
+        rng: generator of all random choices.
         families: names of `FAMILIES`.
         pool: pool of the looks.
         spec: the house without hazards; it is not changed.

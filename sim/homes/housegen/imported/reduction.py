@@ -62,7 +62,7 @@ def _pieces(part: Part) -> list[Part]:
 
 
 def _simplified(piece: Part, faces_wanted: int) -> Part:
-    """Returns a piece with about `wanted` triangles, or more where it would lose its extent.
+    """Returns a piece with about `faces_wanted` triangles, or more if it would lose its extent.
 
     The library fails on some pieces that are not the surface of a body; their vertices are joined on a grid instead.
     """

@@ -17,7 +17,7 @@ GRID_M = 0.3
 RANDOM_POSES = 12
 
 SeatSpot = tuple[float, float, float]
-"""x, y in the item's frame, and the radius of the free floor wanted there."""
+"""x, y in the item's frame, and the radius of the free floor required there."""
 
 
 def put_in_middle(
@@ -37,7 +37,7 @@ def put_in_middle(
         layout: the room.
         rng: decides between positions.
         item: floor item.
-        seats: free floor wanted around it.
+        seats: free floor required around the item.
         around_m: preferred distance from the walls.
         least: share of the seats that must be usable; two of them must be in any case.
         apart_m: smallest distance from walls and other items.
