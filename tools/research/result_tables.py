@@ -24,7 +24,7 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rich.console import Console
@@ -175,10 +175,14 @@ def table_run(args: Args, key: RunKey, episodes: int, folders: Mapping[RunKey, P
     if split.version != VERSION:
         raise ConfigError(f"'{key.split}' has version {split.version}, the tables {VERSION} (result_archive.py).")
     name = "_".join(filter(None, (file_name(setup.agent), setup.semantics, key.split, setup.variant)))
-    options = setup.run_options(
-        split=key.split, episodes=episodes, workers=args.workers, out=folders.get(key, args.out / name),
+    options = replace(
+        setup.run_options(),
+        split=key.split,
+        episodes=episodes,
+        workers=args.workers,
+        out=folders.get(key, args.out / name),
         keep_results=True,
-    )  # fmt: skip
+    )
     return TableRun(options, split, split.episodes[:episodes])
 
 

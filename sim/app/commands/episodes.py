@@ -29,7 +29,6 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -227,7 +226,8 @@ def balanced_goals(
             f"The sidecars of the houses fix their starts, so that there are {sum(most.values())} different episodes, "
             f"and {count} were asked for; give --episodes {sum(most.values())}."
         )
-    asked, asked_here, of_house = (collections.Counter[Any]() for _ in range(3))
+    asked, of_house = collections.Counter[str](), collections.Counter[str]()
+    asked_here = collections.Counter[tuple[str, str]]()
     order: list[tuple[str, Ask]] = []
     houses = sorted(asks_of)
     for turn in itertools.count():

@@ -16,7 +16,6 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import cv2
 import numpy as np
@@ -158,8 +157,7 @@ def render_at(world: World, pose: Sequence[float] | NDArray[np.floating]) -> dic
 def draw(images: dict[str, NDArray], segmenter: NetworkSegmenter | OwnSegmenter, goal: str) -> tuple[Picture, str]:
     """Returns one row of panels, and a text with the true categories where the segmenter sees the goal."""
     size = (PANEL_PX, PANEL_PX * images["rgb"].shape[0] // images["rgb"].shape[1])
-    observation: Any = images
-    guess, score = segmenter.categories(observation), segmenter.scores(observation, goal).target
+    guess, score = segmenter.categories(images), segmenter.scores(images, goal).target
     guess = np.zeros_like(score, np.uint8) if guess is None else guess  # a segmenter of scores alone
     labels = [
         with_legend(np.asarray(cv2.resize(of, size, interpolation=cv2.INTER_NEAREST), np.uint8))

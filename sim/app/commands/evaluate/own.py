@@ -6,7 +6,6 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from jaxtyping import Float32, Int64
@@ -33,7 +32,7 @@ be compared."""
 class _Settings:
     """The fields that `--config` sets: `detector.FIELD`."""
 
-    detector: Any
+    detector: object
 
 
 @dataclass
@@ -81,7 +80,7 @@ def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Seque
     return measured
 
 
-def segmenter_for(name: str, camera: CameraModel, settings: Mapping[str, Any]) -> OwnSegmenter:
+def segmenter_for(name: str, camera: CameraModel, settings: Mapping[str, object]) -> OwnSegmenter:
     """Returns a user's segmenter for images without an environment.
 
     Args:
@@ -101,9 +100,8 @@ def segmenter_for(name: str, camera: CameraModel, settings: Mapping[str, Any]) -
 
 
 def _add_view(measured: OwnMeasured, segmenter: OwnSegmenter, view: LabelledView, block_px: int) -> None:
-    observation: Any = {"rgb": view.rgb, "depth": view.depth_m}
     began_s = time.perf_counter()
-    channels = _channels(segmenter, observation)
+    channels = _channels(segmenter, {"rgb": view.rgb, "depth": view.depth_m})
     measured.frames_ms.append(1000.0 * (time.perf_counter() - began_s))
     fraction = view.semantic.shape[0] // channels.shape[0]
     whole = channels.repeat(fraction, axis=0).repeat(fraction, axis=1).astype(np.uint8)

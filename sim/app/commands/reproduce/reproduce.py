@@ -27,7 +27,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import tyro
 from msgspec import structs
@@ -174,7 +173,7 @@ def require_same_conditions(runs: Sequence[Run]) -> None:
         raise ConfigError(f"'{one.path}' and '{another.path}' are of two versions of the shipped network.")
 
 
-def _conditions(of: Run, other: Run) -> dict[str, Any]:
+def _conditions(of: Run, other: Run) -> Mapping[str, object]:
     """Returns the entries of a run's config that must be equal in all runs, if the other run has them too."""
     flat = {key: of.config[key] for key in SAME_IN_ALL if key in of.config and key in other.config}
     tree, others = of.config.get("config", {}), other.config.get("config", {})
@@ -285,7 +284,8 @@ def _print(console: Console, parts: Sequence[ResultTable], notes: Sequence[str])
 
 def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
     """Returns the options of `stubborn run` for one setup."""
-    return setup.run_options(
+    return replace(
+        setup.run_options(),
         split=args.split,
         episodes=args.episodes,
         seed=args.seed,
