@@ -158,7 +158,7 @@ def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:
 def _joined(args_type: type, words: Sequence[str]) -> list[str]:
     """Returns the words of a command line in which the values of a repeated option follow its first name.
 
-    This is done for options that take several values, of which only the last ones would count otherwise.
+    Without this, only the last values of an option that takes several would count.
     """
     hints = typing.get_type_hints(args_type)
     several = {f"--{name.replace('_', '-')}" for name, hint in hints.items() if ... in typing.get_args(_bare(hint))}
@@ -276,7 +276,7 @@ def _refused(message: str) -> int:
 
 @contextlib.contextmanager
 def _sigterm_ends() -> Iterator[None]:
-    """Has SIGTERM raise `Terminated`; only the main thread of a process can."""
+    """Makes SIGTERM raise `Terminated`; it has no effect outside of the main thread."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -292,7 +292,7 @@ def _raise_terminated(number: int, frame: types.FrameType | None) -> NoReturn:
 
 
 def _print_any_text() -> None:
-    """Has text that the terminal's encoding does not know printed as escapes, in place of an error."""
+    """Prints characters that the terminal's encoding lacks as escapes; by default they raise an error."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")

@@ -42,7 +42,7 @@ PRINT_EVERY_S = 10.0
 
 
 class Options(msgspec.Struct):
-    """What the demonstrations of a house depend on, apart from its seed and its kind."""
+    """The options on which the demonstrations in a house depend, in addition to its seed and its kind."""
 
     episodes: Count
     size_px: tuple[Count, Count]

@@ -99,27 +99,27 @@ def main(args: Args) -> int:
     args = with_split(args)
     files, recipe = house_names(folder_of(args)), recipe_of(args)
     began_s = time.perf_counter()
-    goals_found = ordered_map(functools.partial(_find_asks, args), list(files), workers=args.workers)
+    drawn = ordered_map(functools.partial(_find_asks, args), list(files), workers=args.workers)
     goals: dict[str, HouseAsks] = {}
-    for house, found in zip(files, goals_found, strict=True):
-        goals[house] = found
-        instances, asked = sum(map(len, found.listed.values())), len({ask.goal for ask in found.asks})
+    for house, asks in zip(files, drawn, strict=True):
+        goals[house] = asks
+        instances, asked = sum(map(len, asks.listed.values())), len({ask.goal for ask in asks.asks})
         print(
-            f"{house}: {display.counted(len(found.listed), 'goal')}, {asked} of them asked for, {instances} instances, "
-            f"{len(found.unreachable)} unreachable",
+            f"{house}: {display.counted(len(asks.listed), 'goal')}, {asked} of them asked for, {instances} instances, "
+            f"{len(asks.unreachable)} unreachable",
             flush=True,
         )
-    most = {house: found.most for house, found in goals.items() if found.most is not None}
+    most = {house: asks.most for house, asks in goals.items() if asks.most is not None}
     per_house = {house: min(recipe.per_house, most.get(house, recipe.per_house)) for house in files}
     count = args.episodes if args.episodes is not None else sum(per_house.values())
-    order = balanced_goals({house: found.asks for house, found in goals.items()}, count, most)
+    order = balanced_goals({house: asks.asks for house, asks in goals.items()}, count, most)
     episodes = draw_episodes(args, order)
     write_split(
         folder_of(args),
         episodes,
-        {house: found.listed for house, found in goals.items()},
+        {house: asks.listed for house, asks in goals.items()},
         version=args.version,
-        unreachable={house: found.unreachable for house, found in goals.items()},
+        unreachable={house: asks.unreachable for house, asks in goals.items()},
     )
     _report(episodes, goals, time.perf_counter() - began_s)
     return 0
@@ -140,7 +140,7 @@ def with_split(args: Args) -> Args:
         HouseError: the house cannot be used.
     """
     if args.house is None:
-        if any(each is not None for each in (args.labels, args.root, args.out)):
+        if any(value is not None for value in (args.labels, args.root, args.out)):
             raise ConfigError("--labels, --root and --out need --house.")
         return args
     if args.split is not None or args.out is None:
@@ -261,10 +261,10 @@ def draw_episodes(args: Args, order: Sequence[tuple[str, Ask]]) -> list[Episode]
     work = [(number, house, of_house) for number, (house, of_house) in enumerate(turns.items())]
     drawn = ordered_map(functools.partial(_draw, args, digits), work, workers=args.workers)
     episodes: dict[int, Episode] = {}
-    for house, (found, relaxed) in zip(turns, drawn, strict=True):
-        episodes |= dict(found)
+    for house, (of_one, relaxed) in zip(turns, drawn, strict=True):
+        episodes |= dict(of_one)
         note = f", {relaxed} of them do not meet the rule of the recipe" if relaxed else ""
-        print(f"{house}: {len(found)} episodes{note}", flush=True)
+        print(f"{house}: {len(of_one)} episodes{note}", flush=True)
     return [episodes[i] for i in range(len(order))]
 
 
@@ -316,6 +316,6 @@ def _report(episodes: Sequence[Episode], goals: Mapping[str, HouseAsks], took_s:
     print(f"geodesic distance: {distances.min():.1f} to {distances.max():.1f} m, median {np.median(distances):.1f} m")
     asked = collections.Counter(episode.goal for episode in episodes)
     print("episodes by goal: " + ", ".join(f"{goal} {number}" for goal, number in sorted(asked.items())))
-    for house, found in goals.items():
-        if found.unreachable:
-            print(f"{house}: cannot be reached and is no goal: {', '.join(found.unreachable)}")
+    for house, asks in goals.items():
+        if asks.unreachable:
+            print(f"{house}: cannot be reached, and thus not asked for: {', '.join(asks.unreachable)}")

@@ -42,7 +42,7 @@ from sim.houses.house import House
 from sim.houses.load import load_house
 
 TILE_PX = (320, 320)
-MOST_COLUMNS = 6
+MAX_COLUMNS = 6
 INK = (50, 50, 50)
 
 
@@ -133,7 +133,7 @@ def draw_sheet(
             write(tile, style.name.replace("_", " "), (8, 22), TILE_PX[0] - 16, 17, INK, BOLD)
             write(tile, f"{wide:.2f} m wide, {deep:.2f} m deep, {high:.2f} m high", (8, 40), TILE_PX[0] - 16, 14, INK)
             tiles.append(tile)
-    return tiled(tiles, min(MOST_COLUMNS, len(tiles)))
+    return tiled(tiles, min(MAX_COLUMNS, len(tiles)))
 
 
 def _portrait(item: Item) -> Picture:

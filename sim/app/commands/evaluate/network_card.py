@@ -75,7 +75,7 @@ class Measured:
 
 
 def write_card(file: Path, network: Evaluated, measured: Measured, trainings: Sequence[Path]) -> None:
-    """Writes the model card and its pictures, `<name>_confusion.png` and, of some trainings, `<name>_curves.png`.
+    """Writes the model card and `<name>_confusion.png`; if `trainings` is not empty, also `<name>_curves.png`.
 
     Raises:
         ConfigError: matplotlib is not installed, or a folder holds no training.

@@ -1,4 +1,4 @@
-"""Checks fresh houses of a pool, the houses of a split, or one house, and prints what it found for each.
+"""Checks fresh houses of a pool, the houses of a split, or one house, and prints the faults of each.
 
     stubborn houses check --pool heldout --seeds 200 --workers 2
     stubborn houses check --pool heldout --seeds 20 --kind estate
@@ -142,12 +142,12 @@ def _check_split(args: Args, split: str) -> Iterator[Checked]:
     """Checks the houses of a split, or those in a folder that has no episodes yet."""
     folder = Path(split)
     if (alone := house_files(folder)) and not has_episodes(folder):
-        found = split_of_files(tuple(alone.values()), labels=labels_of(folder))
+        loaded = split_of_files(tuple(alone.values()), labels=labels_of(folder))
     else:
-        found = load_split(split)
-    generated = args.furnished or _is_generated(found)
-    check = functools.partial(_check_named, found, args.views, generated)
-    return ordered_map(check, found.houses, workers=args.workers)
+        loaded = load_split(split)
+    generated = args.furnished or _is_generated(loaded)
+    check = functools.partial(_check_named, loaded, args.views, generated)
+    return ordered_map(check, loaded.houses, workers=args.workers)
 
 
 def _is_generated(split: Split) -> bool:
@@ -180,9 +180,9 @@ def _check_loaded(house: House, views: int, *, generated: bool) -> Checked:
     if generated:
         faults, notes = _faults(house, views), ()
     else:
-        found, remarks = check_own_house(house)
-        void = _void(house, views) if not found else []
-        faults, notes = tuple(found), (*house.notes, *remarks, *void)
+        wrong, remarks = check_own_house(house)
+        void = _void(house, views) if not wrong else []
+        faults, notes = tuple(wrong), (*house.notes, *remarks, *void)
     return Checked(house.name, faults, notes, seconds=time.process_time() - began_s)
 
 

@@ -66,7 +66,7 @@ class Args:
     pool: Pool = "train"
     """Without a split: styles and textures that may appear."""
     withheld: Withheld | None = None
-    """Without a split: as `stubborn views` leaves out or prefers styles; only: furniture that training left out."""
+    """Without a split: without leaves out the styles that `stubborn views` withholds; only prefers these."""
     kind: PlanKind | None = None
     """Without a split: kind of floor plan; sampled when not given."""
     area_m2: cli.Positive | None = None
@@ -86,7 +86,7 @@ class Args:
     furniture_split: ModelSplit = "train"
     """With --furniture: train adds models to our own styles, transfer replaces our own by the models kept apart."""
     only_imported: bool = False
-    """With --furniture: models of train too replace our own styles."""
+    """With --furniture: the models of train also replace our own styles."""
     transfer_test: bool = False
     """With --furniture: the houses of the transfer test."""
 
@@ -109,15 +109,15 @@ def main(args: Args) -> int:
     """Writes the houses; returns 1 if a requested seed gave no house."""
     if args.split is not None and (args.furniture is not None or args.transfer_test):
         raise ConfigError("A shipped split has no imported furniture: leave out --split, or --furniture.")
-    for option, given in (("--transfer-test", args.transfer_test), ("--only-imported", args.only_imported)):
-        if given and args.furniture is None:
+    for option, is_set in (("--transfer-test", args.transfer_test), ("--only-imported", args.only_imported)):
+        if is_set and args.furniture is None:
             raise ConfigError(f"{option} needs --furniture, a folder that `{command('import', 'furniture')}` made.")
     if args.split is not None or args.transfer_test:
         kept = {"out", "split", "houses", "workers", "furniture", "transfer_test", "furniture_split", "only_imported"}
-        for each in fields(args):
-            if each.name not in kept and getattr(args, each.name) != each.default:
+        for field in fields(args):
+            if field.name not in kept and getattr(args, field.name) != field.default:
                 of = f"--split {args.split}" if args.split else "--transfer-test"
-                raise ConfigError(f"--{each.name.replace('_', '-')} has no effect with {of}, whose recipes say it.")
+                raise ConfigError(f"--{field.name.replace('_', '-')} has no effect with {of}, whose recipes set it.")
     began_s = time.perf_counter()
     if args.split == "train":
         made = list(_write_train(args))
@@ -147,13 +147,13 @@ def _write_split(args: Args, split: str) -> Iterator[Made]:
 
 def _write_train(args: Args) -> Iterator[Made]:
     """Writes the list of train houses; the generated houses are kept in the cache."""
-    wanted, listed = args.houses or TRAIN_HOUSES, []
+    target, listed = args.houses or TRAIN_HOUSES, []
     folder = cache_dir() / SPLIT_VERSION / "train"
     copy_textures(folder.parent / "textures")
     recipes = {recipe.name: recipe for recipe in map(train_recipe, range(MAX_TRAIN_SEEDS))}
     waiting = iter(recipes.values())
-    while len(listed) < wanted:
-        batch = list(itertools.islice(waiting, wanted - len(listed)))
+    while len(listed) < target:
+        batch = list(itertools.islice(waiting, target - len(listed)))
         if not batch:
             raise HouseError(f"Only {len(listed)} of {MAX_TRAIN_SEEDS} train seeds gave a house.")
         for made in ordered_map(_make, batch, workers=args.workers):

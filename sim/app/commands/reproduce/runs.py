@@ -91,7 +91,7 @@ class AgentSetup:
 
 @dataclass(frozen=True, order=True)
 class RunKey:
-    """What a run evaluates: a setup on a version of a split."""
+    """A run is identified by its setup and the version of its split."""
 
     split: str
     setup: AgentSetup

@@ -34,12 +34,12 @@ SMALL = ("camera.width_px=160", "camera.height_px=120")
 def command(*options: object) -> list[str]:
     """Uses ground truth and small images unless the options say otherwise: a network would take most of the time."""
     semantics = () if "--semantics" in options else ("--semantics", "gt")
-    given = list(map(str, (*options, *semantics)))
-    if "--config" in given:
-        given[given.index("--config") + 1 : given.index("--config") + 1] = SMALL
+    words = list(map(str, (*options, *semantics)))
+    if "--config" in words:
+        words[words.index("--config") + 1 : words.index("--config") + 1] = SMALL
     else:
-        given += ["--config", *SMALL]
-    return [sys.executable, "-m", "sim.run", *given]
+        words += ["--config", *SMALL]
+    return [sys.executable, "-m", "sim.run", *words]
 
 
 def run(*options: object) -> subprocess.CompletedProcess[str]:
@@ -70,12 +70,12 @@ def test_another_seed_draws_other_starts(house: Path, tmp_path: Path) -> None:
 def test_a_line_and_the_summary_have_the_fields_of_the_contract(house: Path, tmp_path: Path) -> None:
     run("--agent", "oracle", "--house", house, "--episodes", 2, "--out", tmp_path)
     (line, _), summary = lines_of(tmp_path), json.loads((tmp_path / "summary.json").read_text())
-    wanted = (
+    names = (
         "episode_id house goal agent semantics seed success spl soft_spl distance_to_goal num_steps path_length "
         "shortest_path collisions gt_explored first_seen_step steps_to_first_sight area_seen_m2 area_per_metre trapped "
         "failure end_reason"
     )
-    assert set(wanted.split()) <= set(line)
+    assert set(names.split()) <= set(line)
     assert summary["episodes"] == 2
     for metric in (key for key, metric in METRICS.items() if metric.in_summary):
         low, high = summary[metric]["ci95"]

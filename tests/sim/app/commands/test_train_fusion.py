@@ -74,13 +74,13 @@ def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(split: Pa
 @pytest.mark.costly
 def test_a_file_holds_the_tracks_only(split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """NumPy before 2.2 stores each keyword of `savez_compressed` as an array."""
-    given: list[set[str]] = []
+    stored: list[set[str]] = []
     write = np.savez_compressed
     monkeypatch.setattr(
-        np, "savez_compressed", lambda file, **arrays: given.append(set(arrays)) or write(file, **arrays)
+        np, "savez_compressed", lambda file, **arrays: stored.append(set(arrays)) or write(file, **arrays)
     )
     log_after(split, tmp_path, 1)
-    assert given == [{"counts", "track", "sample", "view", "mean", "weight"}]
+    assert stored == [{"counts", "track", "sample", "view", "mean", "weight"}]
 
 
 def test_an_episode_without_tracks_is_logged_and_adds_no_samples(

@@ -53,8 +53,10 @@ def log_after(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> 
 def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(split: Path, tmp_path: Path):
     first = log_after(split, tmp_path, 2)
     assert [line["steps"] for line in first] == [30, 30]
-    candidates = [each for line in first for each in line["candidates"]]
-    assert any(each[4] == 1.0 for each in candidates)  # it reached the sofa, where a STOP would have succeeded
+    candidates = [candidate for line in first for candidate in line["candidates"]]
+    assert any(
+        candidate[4] == 1.0 for candidate in candidates
+    )  # it reached the sofa, where a STOP would have succeeded
     for *features, truth, x_m, y_m in candidates:
         views, total, highest, other = Features(*features)
         assert truth in (0.0, 1.0)
@@ -171,12 +173,12 @@ def test_a_time_limit_leaves_whole_lines_and_zero_runs_nothing(split: Path, tmp_
     args = train_verifier.Args(
         split=str(split), episodes=3, max_steps=30, minutes=1e-6, log=tmp_path / "log", out=tmp_path / "x.json"
     )
-    there = load_split(str(split))
-    assert len(train_verifier.candidates_of(args, there)) == 1
-    assert len(train_verifier.candidates_of(replace(args, minutes=0.0, seed=9), there)) == 1
-    assert train_verifier.candidates_of(replace(args, minutes=0.0, log=tmp_path / "none"), there) == []
+    loaded = load_split(str(split))
+    assert len(train_verifier.candidates_of(args, loaded)) == 1
+    assert len(train_verifier.candidates_of(replace(args, minutes=0.0, seed=9), loaded)) == 1
+    assert train_verifier.candidates_of(replace(args, minutes=0.0, log=tmp_path / "none"), loaded) == []
     with pytest.raises(ConfigError, match=r"was made with \S+ = .* this command has"):
-        train_verifier.candidates_of(replace(args, minutes=0.0, semantics="rednet"), there)
+        train_verifier.candidates_of(replace(args, minutes=0.0, semantics="rednet"), loaded)
 
 
 def test_val_and_test_are_only_judged():
@@ -197,7 +199,7 @@ def test_a_judgement_has_the_truth_and_the_probability_of_the_verifier():
     near, far = ([12.0, 9.0, 0.95, 0.2, 1.0, 1.0, 1.0], [3.0, 0.8, 0.55, 0.9, 0.0, 4.0, 1.0])
     lines = [{"episode_id": "a", "goal": "bed", "house": "h", "steps": 9, "candidates": [near, far]}]
     verifier = FittedVerifier.read(file, "naive-bayes")
-    p = [verifier.probability("bed", Features(int(each[0]), *each[1:4])) for each in (near, far)]
+    p = [verifier.probability("bed", Features(int(row[0]), *row[1:4])) for row in (near, far)]
     brier = 0.5 * ((1.0 - p[0]) ** 2 + p[1] ** 2)
     rows = train_verifier.judgement(lines, file).splitlines()
     assert f"| naive-bayes | bed | 1 | 1 | {0.5 * sum(p):.2f} | {brier:.2f} | 0.50 | 1.00 | 1.00 | 1.00 |" in rows
