@@ -34,6 +34,7 @@ import numpy as np
 
 from sim.app import cli
 from sim.app.analysis import display
+from sim.app.commands.house_file import HouseFile
 from sim.app.evaluation.parallel import ordered_map
 from sim.app.viewers.episode_map import draw_episode_map
 from sim.core.errors import EpisodeError, HouseError
@@ -61,17 +62,12 @@ Turn = tuple[int, int, Ask]
 
 
 @dataclass(frozen=True)
-class Args:
+class Args(HouseFile):
     """Generate the episodes of a split next to its houses."""
 
     split: Path | None = None
     """Folder of the split; its houses are its .xml files, or those in its houses.json."""
-    house: Path | None = None
-    """One MJCF file in place of a split; needs --out."""
-    labels: Path | None = None
-    """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
-    root: Path | None = None
-    """With --house: a folder whose files the house may use in addition to its own folder."""
+
     out: cli.OutFolder | None = None
     """With --house: folder of the new split."""
     episodes: cli.Count | None = None
@@ -139,9 +135,10 @@ def with_split(args: Args) -> Args:
         ConfigError: the options contradict each other, or --out holds other files.
         HouseError: the house cannot be used.
     """
+    args.check_house()
     if args.house is None:
-        if any(value is not None for value in (args.labels, args.root, args.out)):
-            raise ConfigError("--labels, --root and --out need --house.")
+        if args.out is not None:
+            raise ConfigError("--out needs --house.")
         return args
     if args.split is not None or args.out is None:
         raise ConfigError("--house needs --out FOLDER, and excludes --split.")
@@ -150,7 +147,7 @@ def with_split(args: Args) -> Args:
         raise ConfigError(f"--out '{args.out}' holds the house '{others[0]}' already; give a folder of its own.")
     if args.house.resolve().parent == args.out.resolve():
         raise ConfigError(f"--out '{args.out}' is the folder of '{args.house}', which would be overwritten.")
-    house = load_house(args.house, labels_path=args.labels, root=args.root)
+    house = args.load()
     fixed = house_sidecar(args.house, args.labels)
     for other, is_written in ((LABELS_FILE, args.labels is not None), (f"{house.name}.json", fixed != EMPTY_SIDECAR)):
         if (args.out / other).exists() and not is_written:

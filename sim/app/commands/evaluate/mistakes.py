@@ -112,9 +112,7 @@ def segmenter_of(run: Run) -> NetworkSegmenter | OwnSegmenter:
         of_detector = {name: value for name, value in settings.items() if name.startswith("detector.")}
         return segmenter_for(semantics, CameraModel(), of_detector)
     if semantics != "rednet":
-        raise ConfigError(
-            f"'{run.path}' was run with --semantics {semantics}; choose a run with a network or a segmentation of yours."
-        )
+        raise ConfigError(f"'{run.path}' was run with --semantics {semantics}, without a network.")
     detector = tree.get("detector") or {}
     named = run.config.get("weights") or run.config.get("settings", {}).get("detector.weights")
     file = weights_file(Path(named) if named else None)

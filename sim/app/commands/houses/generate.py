@@ -138,11 +138,7 @@ def _write_split(args: Args, split: str) -> Iterator[Made]:
     textures = args.out.resolve().parent / "textures"
     if not textures.is_dir():
         copy_textures(textures)
-    for made in ordered_map(_make, SPLITS[split][: args.houses], workers=args.workers):
-        _print_house(made)
-        if made.text:
-            write_atomically(args.out / f"{made.name}.xml", made.text.encode("utf-8"))
-        yield made
+    yield from _written(args, ordered_map(_make, SPLITS[split][: args.houses], workers=args.workers))
 
 
 def _write_train(args: Args) -> Iterator[Made]:
@@ -169,15 +165,9 @@ def _write_train(args: Args) -> Iterator[Made]:
 def _write_seeds(args: Args) -> Iterator[Made]:
     """Writes houses of consecutive seeds, and the textures into a folder next to them."""
     config = HouseConfig(
-        pool=args.pool,
-        kind=args.kind,
-        area_m2=args.area_m2,
-        rooms=args.rooms,
-        storeys=args.storeys,
-        hazards=args.hazards,
-        clutter=args.clutter,
-        movable=args.movable,
-    )
+        pool=args.pool, kind=args.kind, area_m2=args.area_m2, rooms=args.rooms, storeys=args.storeys,
+        hazards=args.hazards, clutter=args.clutter, movable=args.movable,
+    )  # fmt: skip
     furniture = None if args.furniture is None else _imported(args)
     if furniture is not None:
         furniture.catalogue(config.pool)  # raises before anything is written
@@ -195,7 +185,8 @@ def _imported(args: Args) -> ImportedFurniture:
 def _write_transfer_test(args: Args) -> Iterator[Made]:
     """Writes the houses of the transfer test, and the textures into a folder next to them."""
     assert args.furniture is not None
-    make = functools.partial(_make_imported, ImportedFurniture(args.furniture, "transfer"))
+    furniture = ImportedFurniture(args.furniture, "transfer")
+    make = functools.partial(_make, textures=SHARED_TEXTURES, furniture=furniture)
     copy_textures(args.out / SHARED_TEXTURES)
     yield from _written(args, ordered_map(make, TRANSFER_TEST[: args.houses], workers=args.workers))
 
@@ -209,19 +200,14 @@ def _written(args: Args, houses: Iterable[Made]) -> Iterator[Made]:
         yield made
 
 
-def _make(recipe: Recipe) -> Made:
+def _make(recipe: Recipe, textures: str | None = None, furniture: ImportedFurniture | None = None) -> Made:
     """Generates the house of a recipe."""
-    return _generate(recipe.name, recipe.seed, recipe.config(), None)
+    return _generate(recipe.name, recipe.seed, recipe.config(), textures, furniture)
 
 
 def _make_seed(config: HouseConfig, furniture: ImportedFurniture | None, withheld: Withheld | None, seed: int) -> Made:
     """Generates the house of a seed."""
     return _generate(f"house_{seed:05d}", seed, config, SHARED_TEXTURES, furniture, withheld)
-
-
-def _make_imported(furniture: ImportedFurniture, recipe: Recipe) -> Made:
-    """Generates the house of a recipe with imported furniture."""
-    return _generate(recipe.name, recipe.seed, recipe.config(), SHARED_TEXTURES, furniture)
 
 
 def _generate(

@@ -32,6 +32,7 @@ import numpy as np
 
 from sim.app import cli
 from sim.app.analysis import display
+from sim.app.commands.house_file import HouseFile
 from sim.app.evaluation.executors import make_executor
 from sim.app.evaluation.parallel import Shard, ordered_map
 from sim.core.errors import HouseError
@@ -64,17 +65,12 @@ POOLS = ("train",)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Args:
+class Args(HouseFile):
     """Generate labelled views of houses."""
 
     split: str = "train"
     """Houses of a shipped split, or of a folder with the same layout."""
-    house: Path | None = None
-    """One MJCF file in place of a split."""
-    labels: Path | None = None
-    """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
-    root: Path | None = None
-    """With --house: a folder whose files the house may use in addition to its own folder."""
+
     pool: str | None = None
     """New houses only, with the styles of this pool: train."""
     reshape: bool = False
@@ -314,8 +310,7 @@ def _check_options(args: Args) -> None:
         raise ConfigError(f"--withheld must be {known}, and needs --pool or --furniture, got '{args.withheld}'.")
     if args.reshape and not (args.pool or args.furniture):
         raise ConfigError("--reshape needs --pool or --furniture: other houses are files.")
-    if args.house is None and (args.labels is not None or args.root is not None):
-        raise ConfigError("--labels and --root need --house.")
+    args.check_house()
     if args.house is not None and (args.pool is not None or args.furniture is not None or args.split != "train"):
         raise ConfigError("--house excludes --split, --pool and --furniture.")
 

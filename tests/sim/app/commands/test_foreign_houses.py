@@ -242,7 +242,7 @@ def test_views_of_a_scene_have_its_labels(scene: tuple[Path, Path], tmp_path: Pa
 @pytest.mark.parametrize(
     ("module", "options", "message"),
     [
-        (make_episodes, ["--labels", "x.json"], "--labels, --root and --out need --house"),
+        (make_episodes, ["--labels", "x.json"], "--labels and --root need --house"),
         (make_episodes, ["--house", "x.xml"], "--house needs --out"),
         (make_episodes, [], "needs --split"),
         (generate_views, ["--labels", "x.json", "--out", "{tmp}"], "--labels and --root need --house"),
