@@ -25,7 +25,7 @@ import types
 import typing
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Annotated, Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Annotated, NoReturn, TypeVar
 
 import tyro
 from msgspec import Meta
@@ -46,11 +46,13 @@ from sim.core.option_types import (  # noqa: F401 - commands take the types of t
 )  # fmt: skip
 from sim.core.reading import first_unprintable, printable, reason_of
 
-ArgsT = TypeVar("ArgsT")
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+ArgsT = TypeVar("ArgsT", bound="DataclassInstance")
 USAGE_ERRORS = (ObjectNavError,)
 """Errors that the user can correct; they are printed in one line, without a traceback."""
 DEBUG_HELP = "Every command also takes --debug, which shows the traceback of an error."
-
 
 OnUnlessNo = Annotated[bool, tyro.conf.arg(help_behavior_hint="")]
 """A switch that is on by default. Its option is `--no-NAME`, and its help text describes that option."""
@@ -69,10 +71,10 @@ def chosen(text: str, names: Iterable[str], *, option: str) -> list[str]:
     Raises:
         ConfigError: a name is unknown or missing.
     """
-    there_are, wanted = list(names), [name.strip() for name in text.split(",") if name.strip()]
-    if not wanted or not set(wanted) <= set(there_are):
-        raise ConfigError(f"{option} must be some of {','.join(there_are)}, got '{text}'.")
-    return [name for name in there_are if name in wanted]
+    known, selected = list(names), [name.strip() for name in text.split(",") if name.strip()]
+    if not selected or not set(selected) <= set(known):
+        raise ConfigError(f"{option} must be some of {','.join(known)}, got '{text}'.")
+    return [name for name in known if name in selected]
 
 
 def run(
@@ -156,7 +158,7 @@ def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:
 def _joined(args_type: type, words: Sequence[str]) -> list[str]:
     """Returns the words of a command line in which the values of a repeated option follow its first name.
 
-    This is done for options that take several values, of which only the last ones would count otherwise.
+    Without this, only the last values of an option that takes several would count.
     """
     hints = typing.get_type_hints(args_type)
     several = {f"--{name.replace('_', '-')}" for name, hint in hints.items() if ... in typing.get_args(_bare(hint))}
@@ -178,7 +180,7 @@ def _joined(args_type: type, words: Sequence[str]) -> list[str]:
     return [word for part in parts for word in part]
 
 
-_POSITIONAL = typing.get_args(tyro.conf.Positional[Any])[1]
+_POSITIONAL = typing.get_args(tyro.conf.Positional[str])[1]
 """The mark of positional arguments, which several commands require."""
 
 
@@ -190,7 +192,7 @@ def _without_empty_defaults(args_type: type[ArgsT]) -> type[ArgsT]:
     hints = typing.get_type_hints(args_type, include_extras=True)
     empty = [
         field.name
-        for field in dataclasses.fields(args_type)  # type: ignore[arg-type]
+        for field in dataclasses.fields(args_type)
         if field.default in (None, ()) or _POSITIONAL in getattr(hints[field.name], "__metadata__", ())
     ]
     silent = {name: Annotated[hints[name], tyro.conf.arg(help_behavior_hint="")] for name in empty}
@@ -198,36 +200,34 @@ def _without_empty_defaults(args_type: type[ArgsT]) -> type[ArgsT]:
     return typing.cast(type[ArgsT], type(args_type.__name__, (args_type,), names))
 
 
-def check(args: Any) -> None:
-    """Checks that options are in the ranges of their types, and that what the command writes can be written.
+def check(args: DataclassInstance) -> None:
+    """Checks that options are in the ranges of their types, and that the command's output can be written.
 
     Raises:
-        ConfigError: an option is not; the message names it, its value and what is allowed.
+        ConfigError: an option fails the check; the message names it, its value and what is allowed.
     """
     hints = typing.get_type_hints(type(args), include_extras=True)
     for field in dataclasses.fields(args):
         _check_value(f"--{field.name.replace('_', '-')}", getattr(args, field.name), hints[field.name])
 
 
-def _check_value(name: str, value: Any, hint: Any) -> None:
+def _check_value(name: str, value: object, hint: object) -> None:
     """Raises ConfigError if a value is not in the range of its type."""
-    if value is None:
-        return
     if dataclasses.is_dataclass(value):
         for field in dataclasses.fields(value):
-            _check_value(f"{name}.{field.name.replace('_', '-')}", getattr(value, field.name), Any)
+            _check_value(f"{name}.{field.name.replace('_', '-')}", getattr(value, field.name), object)
         return
     if isinstance(value, tuple):
-        inner = next(iter(typing.get_args(_bare(hint))), Any)
-        for each in value:
-            _check_value(name, each, inner)
+        inner = next(iter(typing.get_args(_bare(hint))), object)
+        for item in value:
+            _check_value(name, item, inner)
         return
     if isinstance(value, float) and not math.isfinite(value):
         raise ConfigError(f"{name} must be a finite number, got {value}.")
     for mark in _marks(hint):
         if isinstance(mark, Written) and isinstance(value, Path):
             require_writable(value, name=name, folder=mark.folder)
-        elif isinstance(mark, Meta) and not isinstance(value, Path):
+        elif isinstance(mark, Meta) and isinstance(value, int | float):
             _require_range(name, value, mark)
 
 
@@ -244,25 +244,26 @@ def _require_range(name: str, value: float, mark: Meta) -> None:
             raise ConfigError(f"{name} must be {words} {bound:g}, got {value}.")
 
 
-def _bare(hint: Any) -> Any:
+def _bare(hint: object) -> object:
     """Returns a type without `Annotated` and `| None`."""
     while True:
         if typing.get_origin(hint) is Annotated:
-            hint = hint.__origin__
+            hint = typing.get_args(hint)[0]
         elif typing.get_origin(hint) in (typing.Union, types.UnionType):
-            hint = next(each for each in typing.get_args(hint) if each is not type(None))
+            hint = next(member for member in typing.get_args(hint) if member is not type(None))
         else:
             return hint
 
 
-def _marks(hint: Any) -> Iterator[Any]:
+def _marks(hint: object) -> Iterator[object]:
     """Yields the marks of a type, also of one inside `| None`."""
     if typing.get_origin(hint) is Annotated:
-        yield from hint.__metadata__
-        yield from _marks(hint.__origin__)
+        inner, *marks = typing.get_args(hint)
+        yield from marks
+        yield from _marks(inner)
     elif typing.get_origin(hint) in (typing.Union, types.UnionType):
-        for each in typing.get_args(hint):
-            yield from _marks(each)
+        for member in typing.get_args(hint):
+            yield from _marks(member)
 
 
 def _refused(message: str) -> int:
@@ -275,7 +276,7 @@ def _refused(message: str) -> int:
 
 @contextlib.contextmanager
 def _sigterm_ends() -> Iterator[None]:
-    """Has SIGTERM raise `Terminated`; only the main thread of a process can."""
+    """Makes SIGTERM raise `Terminated`; it has no effect outside of the main thread."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -291,7 +292,7 @@ def _raise_terminated(number: int, frame: types.FrameType | None) -> NoReturn:
 
 
 def _print_any_text() -> None:
-    """Has text that the terminal's encoding does not know printed as escapes, in place of an error."""
+    """Prints characters that the terminal's encoding lacks as escapes; by default they raise an error."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")

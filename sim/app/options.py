@@ -62,7 +62,7 @@ class RunOptions:
     episodes: Annotated[cli.Count, _MORE_EPISODES] = 5
     """The first N episodes of the split; with --house, N episodes are sampled."""
     replicates: Annotated[cli.Count, _EPISODES] = 1
-    """Runs of each episode: the first from its start, the others from starts 1 cm away, to see what chance does."""
+    """Runs of each episode: the first from its start, the others 1 cm away from it, to measure the effect of chance."""
     only: Annotated[tuple[str, ...], _MORE_EPISODES] = ()
     """IDs of the episodes of the split to run, in place of the first N: for example a failure that you want to film."""
     seed: Annotated[cli.Seed, _PRESET] = 0

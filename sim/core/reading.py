@@ -32,6 +32,8 @@ from numpy.typing import NDArray
 from sim.core.errors import ConfigError, ObjectNavError
 
 T = TypeVar("T")
+Json = dict[str, "Json"] | list["Json"] | str | int | float | bool | None
+"""Any value of JSON."""
 MAX_BYTES = 64 << 20
 """Largest JSON file that is read, also after decompression; the largest that ships has 0.3 MB."""
 MAX_LINES_BYTES = 512 << 20

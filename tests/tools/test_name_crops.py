@@ -61,7 +61,7 @@ def test_answers_that_do_not_fit_are_refused(args: Args, tmp_path: Path, text: s
 def test_an_object_that_the_networks_grid_does_not_show_is_void_to_it(args: Args, tmp_path: Path) -> None:
     network, _ = load_network(tmp_path / "sofa.safetensors")
     save_network(tmp_path / "coarse.safetensors", network, {"block_px": 2})  # of each two columns, it gets the second
-    crop = choose(list_shards(args.views), each=1, seed=0)[0]
+    crop = choose(list_shards(args.views), 1, seed=0)[0]
     thin = np.zeros_like(crop.inside)
     thin[:, 0] = True
     coarse = replace(args, weights=tmp_path / "coarse.safetensors")

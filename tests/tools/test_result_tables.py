@@ -72,7 +72,7 @@ def test_the_shipped_csv_files_are_those_of_the_archive(runs: Mapping[RunKey, Ar
     made = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
     assert read_csv(TABLES / RESULTS) == made
     pairs = list(comparisons())
-    assert read_csv(TABLES / COMPARISONS) == with_families(pairs, [comparison_record(each, runs) for each in pairs])
+    assert read_csv(TABLES / COMPARISONS) == with_families(pairs, [comparison_record(pair, runs) for pair in pairs])
 
 
 def test_the_page_of_the_paper_is_that_of_the_archive(tmp_path: Path) -> None:
@@ -112,7 +112,7 @@ def test_check_reports_a_page_and_a_csv_file_that_differ(
     monkeypatch.setattr(result_tables, "read_archive", lambda *_: runs)
     monkeypatch.setattr(result_tables, "paper_page", lambda _: "The tables.\n")
     monkeypatch.setattr(result_tables, "row_keys", lambda _: few)
-    monkeypatch.setattr(result_tables, "comparisons", lambda: [each for each in comparisons() if each.primary][:1])
+    monkeypatch.setattr(result_tables, "comparisons", lambda: [pair for pair in comparisons() if pair.primary][:1])
     page = tmp_path / "results.md"
     page.write_text(re.sub(QUOTED, "", PAGE.read_text(encoding="utf-8")), encoding="utf-8")
     args = Args(tables=tmp_path, page=page)

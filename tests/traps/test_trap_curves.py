@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.app.commands.traps.curves import MOST_BINS, QUANTITIES, bin_edges, curve
+from sim.app.commands.traps.curves import MAX_BINS, QUANTITIES, bin_edges, curve
 from sim.app.commands.traps.family_report import as_csv, draw_curves, draw_families, family_grid
 from sim.app.commands.traps.report import Args, main
 from sim.app.commands.traps.trial import TrapResult
@@ -43,7 +43,7 @@ def test_every_value_is_in_one_bin_and_no_bin_is_empty(count: int):
     counts = np.histogram(values, np.minimum(edges, 2.0))[0]
     assert counts.sum() == count
     assert counts.min() > 0
-    assert len(counts) <= MOST_BINS
+    assert len(counts) <= MAX_BINS
 
 
 def test_equal_values_are_in_one_bin():

@@ -138,7 +138,7 @@ def test_each_mark_has_a_contact_within_reach(short_env, trap, heading):
     for i in failed_forwards(trial):
         gaps_m = mark_gaps(trial, i, short_env.split.episode(trial.episode_id).start, marks_m)
         assert gaps_m, f"step {i}: the map has a mark where nothing was touched"
-        bearing_rad, gap_m = min(gaps_m, key=lambda found: found[1])
+        bearing_rad, gap_m = min(gaps_m, key=lambda pair: pair[1])
         reach_m = MARK_REACH_M if bearing_rad <= AHEAD_RAD else FLANK_REACH_M
         assert gap_m <= reach_m, f"step {i}: {gap_m:.3f} m from mark to contact at {math.degrees(bearing_rad):.0f} deg"
 
@@ -169,13 +169,13 @@ def failed_forwards(trial: Trial) -> list[int]:
 def mark_gaps(trial: Trial, step: int, start: Pose, marks_m: NDArray[np.float64]) -> list[tuple[float, float]]:
     """Returns for each contact of a step its bearing in radians and its distance from the nearest mark in metres."""
     robot = Pose(*trial.positions_m[step + 1], trial.yaws_rad[step + 1])
-    found = []
+    gaps = []
     for contact in trial.motions[step].contacts:
         place = Pose(*contact.position_m[:2], 0.0)
         seen, mapped = place.relative_to(robot), place.relative_to(start)
         gap_m = float(np.hypot(*(marks_m - (mapped.x_m, mapped.y_m)).T).min())
-        found.append((abs(math.atan2(seen.y_m, seen.x_m)), gap_m))
-    return found
+        gaps.append((abs(math.atan2(seen.y_m, seen.x_m)), gap_m))
+    return gaps
 
 
 def marked_places(navmap: NavMap) -> NDArray[np.float64]:

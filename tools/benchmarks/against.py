@@ -45,7 +45,7 @@ class Args:
 
 
 def main(args: Args) -> int:
-    """Measures and prints a line for each part; returns 0, since a slower version is no error."""
+    """Measures and prints a line for each part; returns 0, also if the version is slower."""
     parts = cli.chosen(args.parts, PARTS, option="--parts")
     commit = _git("rev-parse", "--verify", "--quiet", "--end-of-options", f"{args.against}^{{commit}}")
     if commit.returncode:

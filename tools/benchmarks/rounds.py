@@ -15,7 +15,10 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from itertools import cycle
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sim import ObjectNavEnv
 
 STEPS = 20
 """Number of steps or images in a round."""
@@ -76,7 +79,7 @@ PARTS: dict[str, Callable[[], Iterator[float]]] = {
 }  # fmt: skip
 
 
-def _env(*sensors: str) -> Any:
+def _env(*sensors: str) -> ObjectNavEnv:
     from sim import ObjectNavEnv
 
     return ObjectNavEnv(split="val", sensors=sensors)

@@ -1,7 +1,7 @@
 """Writes type stubs of the installed MuJoCo: `python -m tools.maintenance.mujoco_stubs`, which `make types` runs.
 
-MuJoCo's bindings are compiled and ship no types. pybind11-stubgen reads them, and what their docstrings state wrongly
-or not at all is corrected here. The stubs go to `build/typings`, where pyright looks, once for each version of MuJoCo.
+MuJoCo's bindings are compiled and ship no types. pybind11-stubgen reads them; this tool corrects the types that their
+docstrings lack or state wrongly. The stubs go to `build/typings`, where pyright looks, once for each version of MuJoCo.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ REPLACED: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     (r"(def meshes\(self\)) -> list:", r"\1 -> list[MjsMesh]:"),
     (r"(def (geom|site|joint|light|camera|frame|texture|material)s\(self\)) -> list:", _list_of_elements),
 )
-"""Patterns in generated stubs, and what replaces them. Functions take whatever NumPy converts to an array."""
+"""Patterns in generated stubs, and what replaces them. Functions accept all values that NumPy converts to an array."""
 HEAD = '''"""MuJoCo {version}, generated from the installed bindings by `tools.maintenance.mujoco_stubs`."""
 
 import numpy

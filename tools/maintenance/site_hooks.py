@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import logging
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
 
 _LOG = logging.getLogger("mkdocs.hooks.site")
 _TAG = re.compile(r"<(script|link|img|iframe|source|video|audio|object|embed)\b[^>]*>", re.IGNORECASE)
@@ -24,18 +23,18 @@ def fetched_from_elsewhere(page: str) -> Iterator[str]:
     """Yields the addresses on other hosts that a browser would fetch by itself for this text of HTML or CSS."""
     for tag in _TAG.finditer(page):
         if 'rel="canonical"' not in tag[0]:
-            yield from (found[1] for found in _ADDRESS.finditer(tag[0]))
-    yield from (found[1] for found in _IN_STYLE.finditer(page))
+            yield from (match[1] for match in _ADDRESS.finditer(tag[0]))
+    yield from (match[1] for match in _IN_STYLE.finditer(page))
     if _MERMAID.search(page):
         yield "https://unpkg.com/mermaid (the theme's script draws class mermaid with it: use an SVG file)"
 
 
-def on_page_markdown(markdown: str, **_: Any) -> str:
+def on_page_markdown(markdown: str, **_: object) -> str:
     """Returns the text of a page in which links to files outside `docs/` are replaced by the paths of these files."""
     return _OUTSIDE.sub(r"\1 (`\2`)", markdown)
 
 
-def on_post_build(config: Any) -> None:
+def on_post_build(config: Mapping[str, str]) -> None:
     """Logs a warning for every page that would load something from another host."""
     site = Path(config["site_dir"])
     for file in sorted([*site.rglob("*.html"), *site.rglob("*.css")]):

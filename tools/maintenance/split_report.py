@@ -111,7 +111,7 @@ def _measure(split_name: str, work: tuple[str, tuple[Episode, ...]]) -> HouseDif
         area_m2=sum(room.area_m2 for room in task.world.rooms),
         rooms=len(task.world.rooms),
         storeys=len(storeys_of(task)),
-        distances_m=tuple(each.shortest_path_m for each in episodes if each.shortest_path_m is not None),
+        distances_m=tuple(episode.shortest_path_m for episode in episodes if episode.shortest_path_m is not None),
         instances=tuple(instances),
         seen=tuple(seen),
         quarters=tuple(quarters),

@@ -119,10 +119,10 @@ def top_speed_m_s(world: World) -> float:
 def errors(world: World) -> Row:
     """Returns the mean absolute errors of forwards and turns, and their durations."""
     world.reset(Pose(0.0, 0.0, 0.0))
-    found: dict[str, list[float]] = {}
+    absolute: dict[str, list[float]] = {}
 
     def add(name: str, value: float) -> None:
-        found.setdefault(name, []).append(abs(value))
+        absolute.setdefault(name, []).append(abs(value))
 
     for action in (Action.MOVE_FORWARD, Action.TURN_LEFT, Action.MOVE_FORWARD, Action.TURN_RIGHT) * 6:
         before = world.pose
@@ -135,7 +135,7 @@ def errors(world: World) -> Row:
         else:
             add("turn_deg", math.degrees(abs(moved.yaw_rad) - TURN_RAD))
             add("turn_s", motion.duration_s)
-    return {name: float(np.mean(values)) for name, values in found.items()}
+    return {name: float(np.mean(values)) for name, values in absolute.items()}
 
 
 def bump(config: RobotConfig, angle_rad: float) -> tuple[float, float]:

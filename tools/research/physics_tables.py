@@ -18,7 +18,6 @@ import math
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +36,7 @@ from sim.robot.config import Base, DriveConfig, PhysicsConfig, RobotConfig
 from sim.sensors.noise import NOISE_PRESETS
 from sim.world.world import World
 
-Row = dict[str, Any]
+Row = dict[str, str | float]
 LOCOBOT = {"forward_mm": 14.0, "sideways_mm": 9.0, "turn_deg": math.degrees(0.023)}
 """Mean errors of a forward and a turn that PyRobot publishes for a LoCoBot with the controller ILQR."""
 EPISODES = 30
@@ -61,12 +60,12 @@ class Args:
 
 def main(args: Args) -> int:
     """Measures and prints the tables; returns the exit status."""
-    found = {}
+    rows_of = {}
     for name in cli.chosen(args.tables, TABLES, option="--tables"):
-        found[name] = list(TABLES[name]())
-        show(name, found[name])
+        rows_of[name] = list(TABLES[name]())
+        show(name, rows_of[name])
     if args.out is not None:
-        write_atomically(args.out, json.dumps(found, indent=2) + "\n")
+        write_atomically(args.out, json.dumps(rows_of, indent=2) + "\n")
     return 0
 
 
@@ -104,8 +103,8 @@ def motions() -> Iterator[Row]:
                     errors["sideways_mm"].append(1000.0 * abs(moved.y_m))
                 else:
                     errors["turn_deg"].append(math.degrees(abs(abs(moved.yaw_rad) - TURN_RAD)))
-        yield {"preset": name} | {key: float(np.mean(values)) for key, values in errors.items()}
-    yield {"preset": "LoCoBot, published"} | LOCOBOT
+        yield {"preset": name, **{key: float(np.mean(values)) for key, values in errors.items()}}
+    yield {"preset": "LoCoBot, published", **LOCOBOT}
 
 
 def edges(

@@ -24,7 +24,7 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rich.console import Console
@@ -75,7 +75,7 @@ ABOUT_PAPER = f"""\
 
 Columns that begin with *paper* are of Luo et al. (2022), from MP3D houses in Habitat; all others are measured here, in
 generated houses with contacts. Compare orders and differences of agents, not the figures. `gt` is ground-truth
-segmentation, `rednet` the network that ships. `cloned`, a small end-to-end agent, stands beside the paper's EEAux
+segmentation, `rednet` the network that ships. `cloned`, a small end-to-end agent, corresponds to the paper's EEAux
 and is not that agent.
 
 `stubborn reproduce all --episodes 200 --workers 2` runs all of it again, and resumes; each table states its hours. This
@@ -121,10 +121,10 @@ def main(args: Args) -> int:
         runs = read_archive(args.archive, Path(folder))
         results = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
         pairs = list(comparisons())
-        compared = with_families(pairs, [comparison_record(each, runs) for each in pairs])
+        compared = with_families(pairs, [comparison_record(pair, runs) for pair in pairs])
         paper = paper_page(Path(folder))
     page = fill_page(read_text(args.page, what="--page"), results)
-    wanted = {
+    contents = {
         args.tables / RESULTS: to_csv(results),
         args.tables / COMPARISONS: to_csv(compared),
         args.tables / PAPER: paper,
@@ -133,12 +133,12 @@ def main(args: Args) -> int:
     unknown = unknown_quantities(page, results, compared)
     for text in unknown:
         say(f"'{args.page}' quotes {text}, which is in no row of {RESULTS} or {COMPARISONS}.")
-    differing = [file for file, text in wanted.items() if not file.is_file() or _text(file) != text]
+    differing = [file for file, text in contents.items() if not file.is_file() or _text(file) != text]
     if args.check:
         for file in differing:
             say(f"'{file}' differs from the archive; `python -m tools.research.result_tables` writes it.")
         return int(bool(differing or unknown))
-    write_together(dict(wanted))
+    write_together(dict(contents))
     say(f"{len(results)} rows in {args.tables / RESULTS}, {len(compared)} in {args.tables / COMPARISONS}.")
     return int(bool(unknown))
 
@@ -175,10 +175,14 @@ def table_run(args: Args, key: RunKey, episodes: int, folders: Mapping[RunKey, P
     if split.version != VERSION:
         raise ConfigError(f"'{key.split}' has version {split.version}, the tables {VERSION} (result_archive.py).")
     name = "_".join(filter(None, (file_name(setup.agent), setup.semantics, key.split, setup.variant)))
-    options = setup.run_options(
-        split=key.split, episodes=episodes, workers=args.workers, out=folders.get(key, args.out / name),
+    options = replace(
+        setup.run_options(),
+        split=key.split,
+        episodes=episodes,
+        workers=args.workers,
+        out=folders.get(key, args.out / name),
         keep_results=True,
-    )  # fmt: skip
+    )
     return TableRun(options, split, split.episodes[:episodes])
 
 
@@ -248,10 +252,13 @@ def comparison_record(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> R
     }
     record = {"table": pair.table, **_identity(pair.first.run), **minus, **_counts(first)}
     for metric in COMPARED:
-        found = difference_cell(metric, second, first).estimate
-        record |= _estimate_columns(metric, found) | {f"{metric.key}_significant": _yes(found.significant)}
+        value = difference_cell(metric, second, first).estimate
+        record |= _estimate_columns(metric, value) | {f"{metric.key}_significant": _yes(value.significant)}
         if metric in PRIMARY_METRICS:
-            record |= {f"{metric.key}_p": f"{1.0 if found.p is None else found.p:.6f}", f"{metric.key}_p_holm": ""}
+            record |= {
+                f"{metric.key}_p": f"{1.0 if value.p is None else value.p:.6f}",
+                f"{metric.key}_p_holm": "",
+            }
     outcomes = [(bool(a.success), bool(b.success)) for a, b in zip(first, second, strict=True)]
     return record | {
         "only_first_succeeds": str(outcomes.count((True, False))),
@@ -277,17 +284,17 @@ def paired_lines(
 
 def with_families(pairs: Sequence[Comparison], records: Sequence[Record]) -> list[Record]:
     """Returns rows of comparisons.csv with their family, and the corrected p-values of primary ones."""
-    found = [
+    classified = [
         {"table": record["table"], "family": "primary" if pair.primary else "exploratory", **record}
         for pair, record in zip(pairs, records, strict=True)
     ]
     columns = [f"{metric.key}_p" for metric in PRIMARY_METRICS]
     for table in {pair.table for pair in pairs}:
-        family = [record for record in found if record["table"] == table and record["family"] == "primary"]
+        family = [record for record in classified if record["table"] == table and record["family"] == "primary"]
         corrected = iter(holm([float(record[column]) for record in family for column in columns]))
         for record in family:
             record |= {f"{column}_holm": f"{next(corrected):.6f}" for column in columns}
-    return found
+    return classified
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
@@ -378,8 +385,8 @@ def _counts(lines: Sequence[EpisodeResult]) -> Record:
     return {"episodes": str(len(set(episodes_of(lines)))), "houses": str(len(set(houses_of(lines))))}
 
 
-def _estimate_columns(metric: Metric, found: Estimate) -> Record:
-    numbers = {"": found.mean, "_low": found.low, "_high": found.high}
+def _estimate_columns(metric: Metric, estimated: Estimate) -> Record:
+    numbers = {"": estimated.mean, "_low": estimated.low, "_high": estimated.high}
     return {f"{metric.key}{end}": "" if value is None else f"{value:.6f}" for end, value in numbers.items()}
 
 

@@ -56,7 +56,7 @@ class Args:
     val_count: cli.Amount = 600
     """Number of views of an evaluation."""
     evaluate_every: cli.Count = 500
-    """Steps between evaluations, whose time counts; the one at the end does not."""
+    """Steps between evaluations; their time counts, except for that of the last one."""
     threads: cli.Count | None = None
     """Number of threads of PyTorch; None does not change it."""
 
@@ -117,7 +117,7 @@ class Evaluation(msgspec.Struct):
 
 
 def last_row(folder: Path) -> Evaluation | None:
-    """Returns the last evaluation of a run; None if there is none."""
+    """Returns the last evaluation of a run; None before the first one."""
     file = folder / "val.csv"
     if not file.is_file():
         return None

@@ -3,8 +3,8 @@
     python -m tools.training.name_crops --views runs/views_val --out runs/crops
     python -m tools.training.name_crops --views runs/views_val --out runs/crops --answers runs/crops/answers.txt
 
-The first command writes sheets of numbered crops, `sheet_0.png` and on, with as many objects of each goal category, and
-says nothing of what they are. The answers are a text file of one goal category for each crop, in the order of their
+The first command writes sheets of numbered crops, `sheet_0.png` and on, with the same number of objects of each goal
+category, without their names. The answers are a text file of one goal category for each crop, in the order of their
 numbers. The second command reads them, and counts an answer of the network as right if its most frequent category in
 the object's pixels is the true one.
 """
@@ -34,13 +34,13 @@ from stubborn.segmentation.preprocess import padding, shrink
 
 CROP_PX, COLUMNS, ON_SHEET = 250, 6, 24
 FRAME, NUMBER = (255, 0, 200), (255, 255, 0)
-LEAST_PX = 32
+MIN_PX = 32
 """Smallest object: the square root of its area in pixels of the 640 x 480 image."""
 MARGIN = 1.6
 """Side of a crop relative to the longer side of the object."""
-LEAST_SHARE = 1 / 6
-"""Side of a crop relative to the width of the image, at least."""
-MOST_BYTES = 1 << 20
+MIN_SHARE = 1 / 6
+"""Smallest side of a crop relative to the width of the image."""
+MAX_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,20 +86,20 @@ def main(args: Args) -> int:
     for number, (crop, answer, predicted) in enumerate(zip(crops, answers, of_network, strict=True)):
         if not crop.category == answer == predicted:
             print(f"{number}: {crop.category}, answer {answer}, network {predicted}")
-    for name, given in (("answers", answers), ("network", of_network)):
-        right = sum(crop.category == each for crop, each in zip(crops, given, strict=True))
+    for name, names in (("answers", answers), ("network", of_network)):
+        right = sum(crop.category == answered for crop, answered in zip(crops, names, strict=True))
         print(f"{name}: {right} of {len(crops)} right ({100 * right / len(crops):.0f} %)")
     return 0
 
 
-def choose(shards: Sequence[Path], each: int, seed: int) -> list[Crop]:
-    """Returns as many objects of each goal category, drawn at random, in a random order.
+def choose(shards: Sequence[Path], per_category: int, seed: int) -> list[Crop]:
+    """Returns the same number of objects of each goal category, drawn at random, in a random order.
 
     Raises:
         ConfigError: no view shows an object of a goal category that is large enough.
     """
     rng, block_px = np.random.default_rng(seed), stored_block_px(shards)
-    found: dict[str, list[tuple[float, Crop]]] = {name: [] for name in GOAL_CATEGORIES}
+    of_category: dict[str, list[tuple[float, Crop]]] = {name: [] for name in GOAL_CATEGORIES}
     for shard in shards:
         for view in read_shard(shard):
             for name, category in zip(GOAL_CATEGORIES, GOAL_IDS, strict=True):
@@ -107,10 +107,10 @@ def choose(shards: Sequence[Path], each: int, seed: int) -> list[Crop]:
                     (view.semantic == category).astype(np.uint8)
                 )
                 for number in range(1, count):
-                    if block_px * stats[number, cv2.CC_STAT_AREA] ** 0.5 >= LEAST_PX:
+                    if block_px * stats[number, cv2.CC_STAT_AREA] ** 0.5 >= MIN_PX:
                         drawn = float(rng.random()), Crop(name, view, regions == number)
-                        found[name] = sorted([*found[name], drawn], key=lambda pair: pair[0])[:each]
-    crops = [crop for name in GOAL_CATEGORIES for _, crop in found[name]]
+                        of_category[name] = sorted([*of_category[name], drawn], key=lambda pair: pair[0])[:per_category]
+    crops = [crop for name in GOAL_CATEGORIES for _, crop in of_category[name]]
     if not crops:
         raise ConfigError("No view shows an object of a goal category that is large enough.")
     return [crops[i] for i in rng.permutation(len(crops)).tolist()]
@@ -123,7 +123,7 @@ def draw(crop: Crop, number: int) -> UInt8[np.ndarray, "h w 3"]:
     scale = image.shape[1] / crop.inside.shape[1]
     box = np.array([left, top, left + width, top + height]) * scale
     middle, longer = 0.5 * (box[:2] + box[2:]), float(np.max(box[2:] - box[:2]))
-    side = min(max(round(MARGIN * longer), round(LEAST_SHARE * image.shape[1])), image.shape[0])
+    side = min(max(round(MARGIN * longer), round(MIN_SHARE * image.shape[1])), image.shape[0])
     x, y = (int(np.clip(m - side / 2, 0, most - side)) for m, most in zip(middle, image.shape[1::-1], strict=True))
     picture = cv2.resize(image[y : y + side, x : x + side], (CROP_PX, CROP_PX), interpolation=cv2.INTER_CUBIC)
     x0, y0, x1, y1 = np.rint((box - [x, y, x, y]) * CROP_PX / side).astype(int).tolist()
@@ -136,14 +136,14 @@ def read_answers(file: Path, count: int) -> list[str]:
     """Returns the words of a text file.
 
     Raises:
-        ConfigError: there are more or fewer words than crops, or one is no goal category.
+        ConfigError: there are more or fewer words than crops, or a word does not name a goal category.
     """
-    words = read_bytes(file, what="Answers", most=MOST_BYTES).decode(errors="replace").split()
+    words = read_bytes(file, what="Answers", most=MAX_BYTES).decode(errors="replace").split()
     if len(words) != count:
         raise ConfigError(f"'{file}' has {len(words)} answers for {count} crops.")
     for word in words:
         if word not in GOAL_CATEGORIES:
-            raise ConfigError(f"'{file}': '{word}' is no goal category.")
+            raise ConfigError(f"'{file}': '{word}' is not a goal category.")
     return words
 
 

@@ -15,8 +15,7 @@ import functools
 import json
 import sys
 import time
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import msgspec
 import numpy as np
@@ -42,10 +41,18 @@ from sim.world.world import World
 PRINT_EVERY_S = 10.0
 
 
+class Options(msgspec.Struct):
+    """The options on which the demonstrations in a house depend, in addition to its seed and its kind."""
+
+    episodes: Count
+    size_px: tuple[Count, Count]
+    generator: Count
+
+
 class Note(msgspec.Struct):
     """Record of the finished work in one house: the JSON file next to its demonstrations."""
 
-    options: dict[str, Any]
+    options: Options
     episodes: Count
     failed: Count
     frames: Count
@@ -104,15 +111,15 @@ def render_seed(args: Args, seed: int) -> Rendered:
     """Runs and renders the episodes of one house; none if it has no plan."""
     config = HouseConfig(pool=args.pool, kind=args.kind)
     note = inside(args.out, f"{name_of(config, seed)}.json", what="A house")
-    options = {"episodes": args.episodes, "size_px": [args.width_px, args.height_px], "generator": GENERATOR_VERSION}
+    options = Options(args.episodes, (args.width_px, args.height_px), GENERATOR_VERSION)
     if note.is_file():
         known = read_json(note, Note, what="The note of a house")
         if known.options != options:
             raise ConfigError(f"'{args.out}' holds demonstrations with {known.options}; take another folder.")
         return Rendered(known.episodes, known.failed, known.frames)
     rendered = _render(args, config, seed)
-    content = {"options": options, **asdict(rendered)}
-    write_atomically(note, json.dumps(content) + "\n")
+    content = Note(options, rendered.episodes, rendered.failed, rendered.frames)
+    write_atomically(note, json.dumps(msgspec.to_builtins(content)) + "\n")
     return rendered
 
 

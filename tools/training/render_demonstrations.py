@@ -48,7 +48,7 @@ class Args:
     height_px: cli.Count = 48
     """Height of the images."""
     failed: bool = False
-    """Also those that did not succeed, but none without an action."""
+    """Also render episodes without success; those without an action are always left out."""
     workers: cli.Count = 1
     """Number of processes."""
 
@@ -73,8 +73,8 @@ def main(args: Args) -> int:
         raise ConfigError(f"Two runs are named '{twice}': their demonstrations would have the same files.")
     if not args.runs:
         raise ConfigError("Name at least one run that was made with --record.")
-    work = [each for path in args.runs for each in _work_of(read_run(path), args)]
-    todo = sum(len(each.episodes) for each in work)
+    work = [item for path in args.runs for item in _work_of(read_run(path), args)]
+    todo = sum(len(item.episodes) for item in work)
     print(f"{todo} episodes to render", flush=True)
     episodes = frames = 0
     started_s = printed_s = time.monotonic()
@@ -127,8 +127,8 @@ def _work_of(run: Run, args: Args) -> Iterator[HouseWork]:
     split_of(run)  # refuses another version now, not in a worker
     camera = CameraModel(width_px=args.width_px, height_px=args.height_px)
     results = sorted(run.results.values(), key=lambda result: (result.house, result.episode_id))
-    wanted = [result for result in results if result.success or args.failed]
-    recorded = [result for result in wanted if trajectory_file(run.path, result.episode_id).is_file()]
+    usable = [result for result in results if result.success or args.failed]
+    recorded = [result for result in usable if trajectory_file(run.path, result.episode_id).is_file()]
     if not recorded:
         raise ConfigError(f"'{run.path}' has no trajectory of an episode that succeeded: run it with --record.")
     files = {result.episode_id: _file_of(run.path, result.episode_id, args.out) for result in recorded}

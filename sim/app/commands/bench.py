@@ -1,4 +1,4 @@
-"""Measures the five figures of docs/performance.md in one run, beside `mujoco.Renderer` in the same houses.
+"""Measures the five figures of docs/performance.md in one run, and `mujoco.Renderer` in the same houses.
 
     stubborn bench
     stubborn bench --quick                     # tests that everything runs; its figures have no meaning
@@ -67,7 +67,7 @@ class Figure:
 
     @property
     def times_faster(self) -> float | None:
-        """How many times faster than `mujoco.Renderer`; None without a comparison."""
+        """Ratio to the speed of `mujoco.Renderer`; None without a comparison."""
         if self.plain is None:
             return None
         return self.value / self.plain if self.unit == "/s" else self.plain / self.value
@@ -96,7 +96,7 @@ def main(args: Args) -> int:
     console.print(_table(figures))
     console.print(f"{processor()}, {describe_gl()}, mujoco {mujoco.__version__}", highlight=False, soft_wrap=True)
     if args.out is not None:
-        write_atomically(args.out, msgspec.json.format(msgspec.json.encode([asdict(each) for each in figures])))
+        write_atomically(args.out, msgspec.json.format(msgspec.json.encode([asdict(figure) for figure in figures])))
     return 0
 
 

@@ -71,7 +71,9 @@ def compare(first: Run, second: Run) -> ResultTable:
     ]
     errors = [sum(result.is_error for result in results) for results in (a, b)]
     if any(errors):
-        notes.append(f"Ended with an error: {errors[0]} of A, {errors[1]} of B; failures, in no other metric's means.")
+        notes.append(
+            f"Ended with an error: {errors[0]} of A, {errors[1]} of B; they count in success only, as failures."
+        )
     if note := difference_note(a, b):
         notes.append(note)
     broken = [x.is_error or y.is_error for x, y in zip(a, b, strict=True)]

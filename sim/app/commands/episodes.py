@@ -29,12 +29,12 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from sim.app import cli
 from sim.app.analysis import display
+from sim.app.commands.house_file import HouseFile
 from sim.app.evaluation.parallel import ordered_map
 from sim.app.viewers.episode_map import draw_episode_map
 from sim.core.errors import EpisodeError, HouseError
@@ -62,17 +62,12 @@ Turn = tuple[int, int, Ask]
 
 
 @dataclass(frozen=True)
-class Args:
+class Args(HouseFile):
     """Generate the episodes of a split next to its houses."""
 
     split: Path | None = None
     """Folder of the split; its houses are its .xml files, or those in its houses.json."""
-    house: Path | None = None
-    """One MJCF file in place of a split; needs --out."""
-    labels: Path | None = None
-    """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
-    root: Path | None = None
-    """With --house: a folder whose files the house may use in addition to its own folder."""
+
     out: cli.OutFolder | None = None
     """With --house: folder of the new split."""
     episodes: cli.Count | None = None
@@ -100,27 +95,27 @@ def main(args: Args) -> int:
     args = with_split(args)
     files, recipe = house_names(folder_of(args)), recipe_of(args)
     began_s = time.perf_counter()
-    goals_found = ordered_map(functools.partial(_find_asks, args), list(files), workers=args.workers)
+    drawn = ordered_map(functools.partial(_find_asks, args), list(files), workers=args.workers)
     goals: dict[str, HouseAsks] = {}
-    for house, found in zip(files, goals_found, strict=True):
-        goals[house] = found
-        instances, asked = sum(map(len, found.listed.values())), len({ask.goal for ask in found.asks})
+    for house, asks in zip(files, drawn, strict=True):
+        goals[house] = asks
+        instances, asked = sum(map(len, asks.listed.values())), len({ask.goal for ask in asks.asks})
         print(
-            f"{house}: {display.counted(len(found.listed), 'goal')}, {asked} of them asked for, {instances} instances, "
-            f"{len(found.unreachable)} unreachable",
+            f"{house}: {display.counted(len(asks.listed), 'goal')}, {asked} of them asked for, {instances} instances, "
+            f"{len(asks.unreachable)} unreachable",
             flush=True,
         )
-    most = {house: found.most for house, found in goals.items() if found.most is not None}
+    most = {house: asks.most for house, asks in goals.items() if asks.most is not None}
     per_house = {house: min(recipe.per_house, most.get(house, recipe.per_house)) for house in files}
     count = args.episodes if args.episodes is not None else sum(per_house.values())
-    order = balanced_goals({house: found.asks for house, found in goals.items()}, count, most)
+    order = balanced_goals({house: asks.asks for house, asks in goals.items()}, count, most)
     episodes = draw_episodes(args, order)
     write_split(
         folder_of(args),
         episodes,
-        {house: found.listed for house, found in goals.items()},
+        {house: asks.listed for house, asks in goals.items()},
         version=args.version,
-        unreachable={house: found.unreachable for house, found in goals.items()},
+        unreachable={house: asks.unreachable for house, asks in goals.items()},
     )
     _report(episodes, goals, time.perf_counter() - began_s)
     return 0
@@ -140,9 +135,10 @@ def with_split(args: Args) -> Args:
         ConfigError: the options contradict each other, or --out holds other files.
         HouseError: the house cannot be used.
     """
+    args.check_house()
     if args.house is None:
-        if any(each is not None for each in (args.labels, args.root, args.out)):
-            raise ConfigError("--labels, --root and --out need --house.")
+        if args.out is not None:
+            raise ConfigError("--out needs --house.")
         return args
     if args.split is not None or args.out is None:
         raise ConfigError("--house needs --out FOLDER, and excludes --split.")
@@ -151,7 +147,7 @@ def with_split(args: Args) -> Args:
         raise ConfigError(f"--out '{args.out}' holds the house '{others[0]}' already; give a folder of its own.")
     if args.house.resolve().parent == args.out.resolve():
         raise ConfigError(f"--out '{args.out}' is the folder of '{args.house}', which would be overwritten.")
-    house = load_house(args.house, labels_path=args.labels, root=args.root)
+    house = args.load()
     fixed = house_sidecar(args.house, args.labels)
     for other, is_written in ((LABELS_FILE, args.labels is not None), (f"{house.name}.json", fixed != EMPTY_SIDECAR)):
         if (args.out / other).exists() and not is_written:
@@ -227,7 +223,8 @@ def balanced_goals(
             f"The sidecars of the houses fix their starts, so that there are {sum(most.values())} different episodes, "
             f"and {count} were asked for; give --episodes {sum(most.values())}."
         )
-    asked, asked_here, of_house = (collections.Counter[Any]() for _ in range(3))
+    asked, of_house = collections.Counter[str](), collections.Counter[str]()
+    asked_here = collections.Counter[tuple[str, str]]()
     order: list[tuple[str, Ask]] = []
     houses = sorted(asks_of)
     for turn in itertools.count():
@@ -261,10 +258,10 @@ def draw_episodes(args: Args, order: Sequence[tuple[str, Ask]]) -> list[Episode]
     work = [(number, house, of_house) for number, (house, of_house) in enumerate(turns.items())]
     drawn = ordered_map(functools.partial(_draw, args, digits), work, workers=args.workers)
     episodes: dict[int, Episode] = {}
-    for house, (found, relaxed) in zip(turns, drawn, strict=True):
-        episodes |= dict(found)
+    for house, (of_one, relaxed) in zip(turns, drawn, strict=True):
+        episodes |= dict(of_one)
         note = f", {relaxed} of them do not meet the rule of the recipe" if relaxed else ""
-        print(f"{house}: {len(found)} episodes{note}", flush=True)
+        print(f"{house}: {len(of_one)} episodes{note}", flush=True)
     return [episodes[i] for i in range(len(order))]
 
 
@@ -316,6 +313,6 @@ def _report(episodes: Sequence[Episode], goals: Mapping[str, HouseAsks], took_s:
     print(f"geodesic distance: {distances.min():.1f} to {distances.max():.1f} m, median {np.median(distances):.1f} m")
     asked = collections.Counter(episode.goal for episode in episodes)
     print("episodes by goal: " + ", ".join(f"{goal} {number}" for goal, number in sorted(asked.items())))
-    for house, found in goals.items():
-        if found.unreachable:
-            print(f"{house}: cannot be reached and is no goal: {', '.join(found.unreachable)}")
+    for house, asks in goals.items():
+        if asks.unreachable:
+            print(f"{house}: cannot be reached, and thus not asked for: {', '.join(asks.unreachable)}")

@@ -17,6 +17,7 @@ import numpy as np
 
 from sim.app import cli
 from sim.app.analysis import display
+from sim.app.commands.house_file import HouseFile
 from sim.app.viewers.house_pictures import (
     Picture,
     add_backdrop,
@@ -42,24 +43,19 @@ from sim.houses.house import House
 from sim.houses.load import load_house
 
 TILE_PX = (320, 320)
-MOST_COLUMNS = 6
+MAX_COLUMNS = 6
 INK = (50, 50, 50)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Args:
+class Args(HouseFile):
     """Render pictures of houses, or sheets of furniture styles."""
 
     out: cli.OutFolder
     """Folder for the PNG files; created if missing."""
     houses: tuple[Path, ...] = ()
     """House files; each gives a top view of each storey and a sheet of room views."""
-    house: Path | None = None
-    """One house file with --labels or --root."""
-    labels: Path | None = None
-    """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
-    root: Path | None = None
-    """With --house: a folder whose files the house may use in addition to its own folder."""
+
     sheet: bool = False
     """Render every furniture style, one sheet per category."""
     categories: tuple[str, ...] = ()
@@ -78,8 +74,7 @@ def main(args: Args) -> int:
         raise ConfigError(f"'{assets_dir() / 'textures'}' is missing; install the package again.")
     if not args.houses and args.house is None and not args.sheet:
         raise ConfigError("gallery needs --houses FILE ..., --house FILE or --sheet.")
-    if args.house is None and (args.labels is not None or args.root is not None):
-        raise ConfigError("--labels and --root need --house.")
+    args.check_house()
     twice = [name for name, count in Counter(path.stem for path in args.houses).items() if count > 1]
     if twice:
         raise ConfigError(f"Two of --houses are called '{twice[0]}', so that their pictures would have one name.")
@@ -88,7 +83,7 @@ def main(args: Args) -> int:
     for path in args.houses:
         _draw_house(args.out, load_house(path))
     if args.house is not None:
-        _draw_house(args.out, load_house(args.house, labels_path=args.labels, root=args.root))
+        _draw_house(args.out, args.load())
     if args.sheet:
         for category, styles in sheets.items():
             of_pool = [style for style in styles if style.pool == args.pool]
@@ -133,7 +128,7 @@ def draw_sheet(
             write(tile, style.name.replace("_", " "), (8, 22), TILE_PX[0] - 16, 17, INK, BOLD)
             write(tile, f"{wide:.2f} m wide, {deep:.2f} m deep, {high:.2f} m high", (8, 40), TILE_PX[0] - 16, 14, INK)
             tiles.append(tile)
-    return tiled(tiles, min(MOST_COLUMNS, len(tiles)))
+    return tiled(tiles, min(MAX_COLUMNS, len(tiles)))
 
 
 def _portrait(item: Item) -> Picture:

@@ -59,8 +59,8 @@ def main(args: Args) -> int:
         raise ConfigError("--split and --house exclude each other.")
     if stand_in.install():
         print(stand_in.NOTE, file=sys.stderr)
-    given = {name: value for name, value in vars(args).items() if name != "script" and value is not None}
-    with env.default_options(**given):
+    options = {name: value for name, value in vars(args).items() if name != "script" and value is not None}
+    with env.default_options(**options):
         return _run(words)
 
 

@@ -98,7 +98,7 @@ def main(args: Args) -> int:
 
 def rows_of(model: mujoco.MjModel, labels: Labels) -> list[Row]:
     """Returns the instances in the order of the categories, then the visible geoms without a label by their name."""
-    rows = [Row(each.name, each.category, each.geom_ids) for each in labels.instances]
+    rows = [Row(instance.name, instance.category, instance.geom_ids) for instance in labels.instances]
     rows.sort(key=lambda row: (MPCAT40.index(row.category), row.name))
     return rows + [Row(name, VOID, tuple(geoms)) for name, geoms in void_objects(model, labels).items()]
 
@@ -123,11 +123,11 @@ def table_of(model: mujoco.MjModel, rows: Sequence[Row]) -> Table:
 def summary(labels: Labels) -> list[str]:
     """Returns sentences on the goals of a scene and on what has no label."""
     goals = [name for name in labels.categories() if name in GOAL_CATEGORIES]
-    found = (
+    sentence = (
         f"Goals: {', '.join(goals)}." if goals else "There is no goal: label one of " + ", ".join(GOAL_CATEGORIES) + "."
     )
     void = "1 visible geom has" if labels.void_geoms == 1 else f"{labels.void_geoms} visible geoms have"
-    return [found, *([f"{void} no category (void)."] if labels.void_geoms else [])]
+    return [sentence, *([f"{void} no category (void)."] if labels.void_geoms else [])]
 
 
 def rules_text(rules: Mapping[str, str]) -> str:

@@ -30,7 +30,7 @@ from sim.core.reading import printable, sha256_of
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Verify the submissions in a folder and write the table of those that hold."""
+    """Verify the submissions in a folder and write the table of those that pass."""
 
     folder: Annotated[tyro.conf.Positional[cli.OutFolder], tyro.conf.arg(metavar="FOLDER")] = Path("leaderboard")
     """Folder with submissions/, to which reports/, table.md and table.csv are written."""
@@ -54,11 +54,11 @@ def main(args: Args) -> int:
         if row.refusal:
             left_out.append(f"{file.name}: {row.refusal}.")
         rows.append(row)
-    found = tables(rows)
-    if not found:
+    shown = tables(rows)
+    if not shown:
         raise ConfigError(f"No submission in '{args.folder}' can be shown. {' '.join(left_out)}")
-    write_together({args.folder / "table.md": to_markdown(found), args.folder / "table.csv": csv_of(rows)})
-    print(printable(to_markdown(found)))
+    write_together({args.folder / "table.md": to_markdown(shown), args.folder / "table.csv": csv_of(rows)})
+    print(printable(to_markdown(shown)))
     for reason in left_out:
         print(printable(f"Left out: {reason}"))
     return int(bool(left_out))
@@ -72,7 +72,7 @@ def _report(args: Args, file: Path) -> Report:
         if is_current(report, sha256_of(file, what="Submission")):
             return report
     name = read_submission(file).manifest.split.name
-    folder = next((each for each in args.splits if each.resolve().name == name), None)
+    folder = next((split for split in args.splits if split.resolve().name == name), None)
     print(f"Verifying {file.name}.")
     choices = Choices(split=folder, draw_seed=secrets.randbits(32), workers=args.workers)
     write_atomically(kept, json.dumps(verify(file, choices), indent=2) + "\n")

@@ -132,11 +132,11 @@ def _groups() -> set[str]:
 
 def _text_of_list(group: str | None = None) -> str:
     """Returns the list of all sub-commands, or of those of a group."""
-    listed = {name: each for name, each in COMMANDS.items() if group is None or name.split()[0] == group}
+    listed = {name: command for name, command in COMMANDS.items() if group is None or name.split()[0] == group}
     width = max(map(len, listed))
     start = command()
     head = f"usage: {start} {group or 'COMMAND'} ..."
-    rows = [f"  {name:<{width}}  {each.summary}." for name, each in listed.items()]
+    rows = [f"  {name:<{width}}  {command.summary}." for name, command in listed.items()]
     example = f"{start} {next(iter(listed))}"
     return "\n".join([head, "", *rows, "", f"`{example} --help` lists the options of a command."])
 

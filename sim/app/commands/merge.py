@@ -14,7 +14,6 @@ import urllib.parse
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import tyro
 
@@ -125,7 +124,7 @@ def merged_results(runs: Sequence[Run]) -> dict[str, EpisodeResult]:
     return dict(sorted(merged.items()))
 
 
-def merged_config(runs: Sequence[Run]) -> dict[str, Any]:
+def merged_config(runs: Sequence[Run]) -> dict[str, object]:
     """Returns the config of the merged run: without a shard, with the hashes of all code that ran episodes.
 
     If all runs name their episodes (`--only`), the config names all of these.
@@ -134,11 +133,11 @@ def merged_config(runs: Sequence[Run]) -> dict[str, Any]:
     codes = [
         code for run, of in zip(runs, versions, strict=True) for code in run.config.get("codes") or [of.get("code")]
     ]
-    of_each = [set(run.config.get("only") or ()) for run in runs]
-    only = sorted(set.union(*of_each)) if all(of_each) else []
+    named = [set(run.config.get("only") or ()) for run in runs]
+    only = sorted(set.union(*named)) if all(named) else []
     episodes = len(only) or max(run.recorded("episodes") for run in runs)
-    config = {**runs[0].config, "shard": None, "episodes": episodes, "codes": list(dict.fromkeys(codes))}
-    return config | ({"only": only} if any(of_each) else {})
+    changes = {"shard": None, "episodes": episodes, "codes": list(dict.fromkeys(codes))}
+    return {**runs[0].config, **changes, **({"only": only} if any(named) else {})}
 
 
 def copy_files(run: Run, results: Mapping[str, EpisodeResult], added: Set[str], out: Path) -> None:

@@ -3,8 +3,8 @@
     stubborn run --agent process:"python my_agent.py" --split val --episodes 200 --record --out runs/mine
     stubborn submit runs/mine --name "My agent" --authors "A. Author" --out my_agent.json.gz
 
-The file holds the configuration and the versions of the run, the result line and the actions of each episode, and what
-the options say. It holds no code, no weights and no images.
+The file holds the configuration and the versions of the run, the result line and the actions of each episode, and the
+values of the options. It holds no code, no weights and no images.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Args:
     authors: tuple[str, ...]
     """Names of the authors."""
     description: str = ""
-    """How the agent works, and what it was trained on, in one line of at most 2,000 letters."""
+    """Describes the method of the agent and its training data, in one line of at most 2,000 characters."""
     links: tuple[str, ...] = ()
     """Addresses (https://...) of a paper or of code."""
     out: cli.OutFile | None = None

@@ -1,4 +1,4 @@
-"""Replays the actions of a submission in physics, without its agent, and says for each episode whether it holds.
+"""Replays the actions of a submission in physics, without its agent, and judges the result of each episode.
 
     stubborn verify my_agent.json.gz --workers 4
 
@@ -10,7 +10,7 @@ drawn at random, the true frames are rendered too, for the first sight of the go
   differently and contacts amplify it;
 - different: the result does not come from these actions in this house with this robot.
 
-A replay proves what the actions achieve. It does not prove how the agent chose them: what it observed is declared.
+A replay proves what the actions achieve. It does not prove how the agent chose them: its observations are declared.
 Exit status: 0 if no episode is different, 1 if one is, 2 if the file is refused.
 """
 
@@ -22,7 +22,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import tyro
 
@@ -74,24 +74,23 @@ def main(args: Args) -> int:
     report = verify(args.file, choices)
     if args.report is not None:
         write_atomically(args.report, json.dumps(report, indent=2) + "\n")
-    return int(report["different"] > 0)
+    return int(report["different"] != 0)
 
 
-def verify(file: Path, choices: Choices) -> dict[str, Any]:
-    """Verifies a submission, prints the outcome, and returns it (`sim.app.submissions.report`)."""
+def verify(file: Path, choices: Choices) -> Mapping[str, object]:
+    """Verifies a submission, prints the outcome, and returns it as JSON (`sim.app.submissions.report`)."""
     checked = check(file, choices, truth_of_agents())
     for line in _head(checked):
         print(printable(line), flush=True)
-    found: list[Verdict] = []
+    outcome: list[Verdict] = []
     seconds, total = 0.0, len(checked.submission.episodes)
     for verdict, took_s in verdicts(checked, choices):
-        found.append(verdict)
-        print(printable(f"[{len(found)}/{total}] {_line(verdict)}"), flush=True)
+        outcome.append(verdict)
+        print(printable(f"[{len(outcome)}/{total}] {_line(verdict)}"), flush=True)
         seconds += took_s
-    report = report_of(checked, choices, found, seconds)
-    for line in _summary(checked, choices, found, seconds):
+    for line in _summary(checked, choices, outcome, seconds):
         print(printable(line))
-    return report
+    return report_of(checked, choices, outcome, seconds)
 
 
 def truth_of_agents() -> Mapping[str, bool]:
@@ -103,7 +102,7 @@ def _head(checked: Checked) -> Iterator[str]:
     manifest = checked.submission.manifest
     split = manifest.split
     yield (
-        f"'{manifest.name}' by {', '.join(manifest.authors) or 'nobody named'}: {checked.covers} of {split.name} "
+        f"'{manifest.name}' by {', '.join(manifest.authors) or 'authors not named'}: {checked.covers} of {split.name} "
         f"{split.version} ({split.sha256[:12]}), seed {manifest.seed}, physics {manifest.physics}."
     )
     here = {"processor": processor(), **{name: version(name) for name in ("mujoco", "numpy")}}
@@ -119,16 +118,16 @@ def _line(verdict: Verdict) -> str:
     return f"{verdict.episode_id}: {verdict.judgement}{frames}{': ' + verdict.text if verdict.text else ''}."
 
 
-def _summary(checked: Checked, choices: Choices, found: list[Verdict], seconds: float) -> Iterator[str]:
+def _summary(checked: Checked, choices: Choices, outcome: list[Verdict], seconds: float) -> Iterator[str]:
     """Yields the lines after the episodes."""
-    count, inputs = counts(found), checked.submission.manifest.inputs
-    framed = sum(verdict.framed for verdict in found)
-    each = ", ".join(
+    count, inputs = counts(outcome), checked.submission.manifest.inputs
+    framed = sum(verdict.framed for verdict in outcome)
+    by_judgement = ", ".join(
         f"{count[name]} {name}" for name in ("equal", "within tolerance", "different", "error") if count[name]
     )
     yield (
-        f"{len(found)} episodes: {each}. Frames of {framed} were rendered (--draw-seed {choices.draw_seed}). "
-        f"{_speed(len(found) - count['error'], seconds)}"
+        f"{len(outcome)} episodes: {by_judgement}. Frames of {framed} were rendered (--draw-seed {choices.draw_seed}). "
+        f"{_speed(len(outcome) - count['error'], seconds)}"
     )
     results = results_of(checked.submission)
     yield f"Success {mean_cell(SUCCESS, results).text()} %, SPL {mean_cell(SPL, results).text()} (95 % intervals)."
@@ -137,13 +136,13 @@ def _summary(checked: Checked, choices: Choices, found: list[Verdict], seconds: 
             f"NOT VERIFIED: {count['different']} episodes are different. A tolerance repairs neither success nor "
             "collisions; ask the authors to run these episodes again."
         )
-    elif count["error"] == len(found):
+    elif count["error"] == len(outcome):
         yield "Nothing was verified: all episodes ended with an error."
     else:
         rest = f" {count['error']} episodes ended with an error and have no actions." if count["error"] else ""
         yield f"Verified: these actions lead to these results.{rest}"
     yield (
-        f"Declared, and proved by no replay: agent '{inputs.agent}'"
+        f"Declared by the authors; a replay cannot prove it: agent '{inputs.agent}'"
         f"{' in a process of its own' if inputs.isolated else ', not in a process of its own'}; ground truth "
         f"{truth_of(inputs)}; sensors {', '.join(inputs.sensors) or 'none'}."
     )

@@ -12,7 +12,7 @@ import pytest
 import tyro
 
 from sim.app import cli
-from sim.core.errors import HouseError, PhysicsError, debug
+from sim.core.errors import PhysicsError, debug
 from sim.core.interface import ConfigError
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -85,15 +85,6 @@ def test_a_command_line_that_cannot_be_read_is_one_line(
     assert "│" not in message
 
 
-@pytest.mark.parametrize("error", [ConfigError("no\nway"), HouseError("no\nway")])
-def test_a_usage_error_is_one_line(error: Exception, capsys: pytest.CaptureFixture[str]) -> None:
-    def main(args: Args) -> int:
-        raise error
-
-    assert cli.run(Args, main, []) == 2
-    assert capsys.readouterr().err == "error: no way\n"
-
-
 @dataclass(frozen=True)
 class Ranges:
     """Arguments with ranges."""
@@ -148,6 +139,7 @@ def test_an_option_out_of_its_range_is_named_before_the_command_begins(
         (OSError(28, "No space left on device", "a.mp4"), "'a.mp4' cannot be read or written: No space"),
         (IsADirectoryError(21, "Is a directory", "a", None, "b"), "'a' and 'b' cannot be read or written"),
         (MemoryError(), "not enough memory"),
+        (ConfigError("no\nway"), "error: no way\n"),
         (PhysicsError("it\x1b[31m flew"), "it\\x1b[31m flew"),
     ],
 )

@@ -16,7 +16,6 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import cv2
 import numpy as np
@@ -78,7 +77,7 @@ def main(args: Args) -> int:
     if not picked:
         print(f"No recorded episode of '{args.run}' failed by {args.cause}.{_others(recorded, args.cause)}")
         return 1
-    found, picked = len(picked), picked[: args.count]
+    available, picked = len(picked), picked[: args.count]
     rows: list[Picture] = []
     for result in sorted(picked, key=lambda result: result.house):
         trajectory = read_trajectory(trajectory_file(run.path, result.episode_id))
@@ -89,7 +88,7 @@ def main(args: Args) -> int:
         print(about)
         rows.append(_captioned(row, about))
     write_picture(args.out, np.vstack([_headings(rows[0].shape[1]), tile(rows, columns=1)], dtype=np.uint8))
-    of = f" of {found} (--count {found} draws all)" if found > len(rows) else ""
+    of = f" of {available} (--count {available} draws all)" if available > len(rows) else ""
     drawn = f"{counted(len(rows), 'episode')}{of} that failed by {args.cause}, in {args.out}."
     print(f"{drawn}{_others(recorded, args.cause)}")
     return 0
@@ -113,7 +112,7 @@ def segmenter_of(run: Run) -> NetworkSegmenter | OwnSegmenter:
         of_detector = {name: value for name, value in settings.items() if name.startswith("detector.")}
         return segmenter_for(semantics, CameraModel(), of_detector)
     if semantics != "rednet":
-        raise ConfigError(f"'{run.path}' was run with --semantics {semantics}, which is no network.")
+        raise ConfigError(f"'{run.path}' was run with --semantics {semantics}, without a network.")
     detector = tree.get("detector") or {}
     named = run.config.get("weights") or run.config.get("settings", {}).get("detector.weights")
     file = weights_file(Path(named) if named else None)
@@ -158,8 +157,7 @@ def render_at(world: World, pose: Sequence[float] | NDArray[np.floating]) -> dic
 def draw(images: dict[str, NDArray], segmenter: NetworkSegmenter | OwnSegmenter, goal: str) -> tuple[Picture, str]:
     """Returns one row of panels, and a text with the true categories where the segmenter sees the goal."""
     size = (PANEL_PX, PANEL_PX * images["rgb"].shape[0] // images["rgb"].shape[1])
-    observation: Any = images
-    guess, score = segmenter.categories(observation), segmenter.scores(observation, goal).target
+    guess, score = segmenter.categories(images), segmenter.scores(images, goal).target
     guess = np.zeros_like(score, np.uint8) if guess is None else guess  # a segmenter of scores alone
     labels = [
         with_legend(np.asarray(cv2.resize(of, size, interpolation=cv2.INTER_NEAREST), np.uint8))
@@ -186,8 +184,8 @@ def _headings(width: int) -> Picture:
     """Returns a strip with the titles of the panels."""
     strip = np.full((CAPTION_PX, width, 3), 255, np.uint8)
     for place, words in enumerate(HEADINGS):
-        left = place * width // len(HEADINGS) + 6
-        cv2.putText(strip, words, (left, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (0, 0, 0), 1, cv2.LINE_AA)
+        left_px = place * width // len(HEADINGS) + 6
+        cv2.putText(strip, words, (left_px, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (0, 0, 0), 1, cv2.LINE_AA)
     return strip
 
 

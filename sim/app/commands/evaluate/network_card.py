@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
 
+import msgspec
 import numpy as np
 from jaxtyping import Int64
 
 from sim.app.commands.evaluate.network_pictures import draw_confusion, draw_curves
 from sim.core.files import write_atomically
 from sim.core.interface import GOAL_CATEGORIES
+from sim.core.reading import convert
 from sim.training.segmentation.breakdown import Breakdown
 from sim.training.segmentation.evaluation import Iou, Reliability
 from sim.training.segmentation.fused import VOXEL_M
@@ -32,8 +33,21 @@ class Evaluated:
 
     file: Path
     model: Network
-    metadata: dict[str, Any]
+    metadata: Mapping[str, object]
     threads: int
+
+
+class Training(msgspec.Struct):
+    """The metadata of one training, as it is stored with the weights; foreign weights have none."""
+
+    block_px: int = 1
+    step: object = "?"
+    hours: object = "?"
+    code: str | None = None
+    averaged: bool = False
+    """True: the weights were averaged by hand."""
+    options: dict[str, object] = {}
+    started_from: Training | None = None
 
 
 @dataclass(frozen=True)
@@ -61,7 +75,7 @@ class Measured:
 
 
 def write_card(file: Path, network: Evaluated, measured: Measured, trainings: Sequence[Path]) -> None:
-    """Writes the model card and its pictures, `<name>_confusion.png` and, of some trainings, `<name>_curves.png`.
+    """Writes the model card and `<name>_confusion.png`; if `trainings` is not empty, also `<name>_curves.png`.
 
     Raises:
         ConfigError: matplotlib is not installed, or a folder holds no training.
@@ -78,10 +92,10 @@ def write_card(file: Path, network: Evaluated, measured: Measured, trainings: Se
 def card_text(network: Evaluated, measured: Measured) -> str:
     """Returns the text of the model card, Markdown."""
     absent = [name for name in GOAL_CATEGORIES if name not in measured.iou.by_category]
-    stages = list(training_stages(network.metadata))
+    stages = training_stages(network.metadata)
     return "\n".join(
         [
-            *_about(network),
+            *_about(network, stages[-1].block_px),
             *_summary(network, measured, stages),
             *training_commands(stages),
             *_categories(measured),
@@ -92,20 +106,19 @@ def card_text(network: Evaluated, measured: Measured) -> str:
     )
 
 
-def _about(network: Evaluated) -> Iterable[str]:
-    px = int(network.metadata.get("block_px", 1))
+def _about(network: Evaluated, block_px: int) -> Iterable[str]:
     yield f"# {network.file.name}\n"
     yield ABOUT.format(
         kind="U-Net" if isinstance(network.model, UNet) else "RedNet",
         parameters=sum(tensor.numel() for tensor in network.model.parameters()),
         size_mb=network.file.stat().st_size / 1e6,
-        width=640 // px,
-        height=480 // px,
+        width=640 // block_px,
+        height=480 // block_px,
     )
     yield ""
 
 
-def _summary(network: Evaluated, measured: Measured, stages: Sequence[dict[str, Any]]) -> Iterable[str]:
+def _summary(network: Evaluated, measured: Measured, stages: Sequence[Training]) -> Iterable[str]:
     iou, own = measured.calibrated, measured.iou
     yield "| | |\n|---|---|"
     yield f"| mIoU, goal categories present, calibrated as agents use it | {iou.goals:.3f} |"
@@ -126,21 +139,20 @@ def _summary(network: Evaluated, measured: Measured, stages: Sequence[dict[str, 
     yield ""
 
 
-def training_text(stage: dict[str, Any]) -> str:
-    """Returns length, code and end of a training; `averaged` is written where its weights were averaged by hand."""
-    phrases = [f"{stage.get('step', '?')} steps", f"{stage.get('hours', '?')} h"]
-    phrases += [str(stage["code"])] if "code" in stage else []
-    phrases += ["then averaged with the weights before it"] if stage.get("averaged") else []
+def training_text(stage: Training) -> str:
+    """Returns the length of a training, its code, and whether its weights were averaged."""
+    phrases = [f"{stage.step} steps", f"{stage.hours} h", *([] if stage.code is None else [stage.code])]
+    phrases += ["then averaged with the weights before it"] if stage.averaged else []
     return ", ".join(phrases)
 
 
 def _categories(measured: Measured) -> Iterable[str]:
-    found = measured.breakdown.found_by_category()
+    recall = measured.breakdown.found_by_category()
     yield "An object is a connected region of a category in a view; it is found if half of its pixels are right.\n"
     yield "| category | IoU | IoU without calibration | objects | found |\n|---|--:|--:|--:|--:|"
     for name in GOAL_CATEGORIES:
         if name in measured.iou.by_category:
-            count, share = found.get(name, (0, float("nan")))
+            count, share = recall.get(name, (0, float("nan")))
             calibrated, own = (iou.by_category[name] for iou in (measured.calibrated, measured.iou))
             yield f"| {name} | {calibrated:.3f} | {own:.3f} | {count} | {100 * share:.0f} % |"
     yield ""
@@ -166,27 +178,32 @@ def _reliability(measured: Measured) -> Iterable[str]:
     yield ""
 
 
-def training_stages(metadata: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yields the metadata of each training that led to a network, the first one first."""
-    if "started_from" in metadata:
-        yield from training_stages(metadata["started_from"])
-    yield metadata
+def training_stages(metadata: Mapping[str, object]) -> list[Training]:
+    """Returns the trainings that led to a network, the first one first.
+
+    Raises:
+        ConfigError: a field of the metadata has another type.
+    """
+    stages = [convert(metadata, Training, where="The metadata of the weights")]
+    while (earlier := stages[0].started_from) is not None:
+        stages.insert(0, earlier)
+    return stages
 
 
-def training_commands(stages: Sequence[dict[str, Any]]) -> Iterator[str]:
-    """Yields the block with the command of each training, and a sentence if the command has options no more."""
+def training_commands(stages: Sequence[Training]) -> Iterator[str]:
+    """Yields the block with the command of each training, and a sentence if an option no longer exists."""
     yield "```sh"
     yield from map(_command, stages)
     yield "```\n"
-    if {key for stage in stages for key in stage.get("options", {})} - {each.name for each in fields(Args)}:
+    if {key for stage in stages for key in stage.options} - {option.name for option in fields(Args)}:
         yield "Options that `stubborn train segmentation --help` does not list are those of earlier versions.\n"
 
 
-def _command(stage: dict[str, Any]) -> str:
+def _command(stage: Training) -> str:
     """Returns the command of one training."""
     options = (
         f"--{key.replace('_', '-')} {' '.join(value) if isinstance(value, list) else value}"
-        for key, value in stage.get("options", {}).items()
+        for key, value in stage.options.items()
         if value
     )
     return " ".join(["stubborn train segmentation", *options])

@@ -88,7 +88,7 @@ def main(args: Args) -> int:
 
 
 def missed_objects(shards: Sequence[Path], model: Network, block_px: int, calibration: Calibration) -> Iterator[Missed]:
-    """Yields the objects of goal categories of which a network, calibrated as agents use it, misses pixels.
+    """Yields the objects of goal categories that a network, calibrated as agents use it, misses in part.
 
     Raises:
         ConfigError: the views are stored at a lower resolution than the network needs.

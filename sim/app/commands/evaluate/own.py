@@ -6,7 +6,6 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from jaxtyping import Float32, Int64
@@ -33,7 +32,7 @@ be compared."""
 class _Settings:
     """The fields that `--config` sets: `detector.FIELD`."""
 
-    detector: Any
+    detector: object
 
 
 @dataclass
@@ -81,7 +80,7 @@ def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Seque
     return measured
 
 
-def segmenter_for(name: str, camera: CameraModel, settings: Mapping[str, Any]) -> OwnSegmenter:
+def segmenter_for(name: str, camera: CameraModel, settings: Mapping[str, object]) -> OwnSegmenter:
     """Returns a user's segmenter for images without an environment.
 
     Args:
@@ -93,17 +92,16 @@ def segmenter_for(name: str, camera: CameraModel, settings: Mapping[str, Any]) -
         ConfigError: it reads other sensors than rgb and depth, cannot be built, or has no such field.
     """
     own = load_specification(name)
-    sensors = [each if isinstance(each, str) else each.name for each in own.spec.sensors]
-    missing = [*own.spec.truth, *(each for each in sensors if each not in ("rgb", "depth"))]
+    sensors = [sensor if isinstance(sensor, str) else sensor.name for sensor in own.spec.sensors]
+    missing = [*own.spec.truth, *(sensor for sensor in sensors if sensor not in ("rgb", "depth"))]
     if missing:
         raise ConfigError(f"--semantics '{name}' reads '{missing[0]}', and stored views have rgb and depth only.")
     return built(name, own, camera=camera, config=with_fields(_Settings(own.config), settings).detector)
 
 
 def _add_view(measured: OwnMeasured, segmenter: OwnSegmenter, view: LabelledView, block_px: int) -> None:
-    observation: Any = {"rgb": view.rgb, "depth": view.depth_m}
     began_s = time.perf_counter()
-    channels = _channels(segmenter, observation)
+    channels = _channels(segmenter, {"rgb": view.rgb, "depth": view.depth_m})
     measured.frames_ms.append(1000.0 * (time.perf_counter() - began_s))
     fraction = view.semantic.shape[0] // channels.shape[0]
     whole = channels.repeat(fraction, axis=0).repeat(fraction, axis=1).astype(np.uint8)
@@ -135,7 +133,7 @@ def own_text(measured: OwnMeasured) -> str:
 
 
 def _lines(measured: OwnMeasured) -> Iterator[str]:
-    iou, found = Iou.of(measured.matrix), measured.breakdown.found_by_category()
+    iou, recall = Iou.of(measured.matrix), measured.breakdown.found_by_category()
     yield f"# {measured.name}\n\n| | |\n|---|---|"
     yield f"| mIoU, goal categories present | {iou.goals:.3f} |"
     yield from (f"| mIoU, views `{name}` | {value:.3f} |" for name, value in measured.by_folder.items())
@@ -145,7 +143,7 @@ def _lines(measured: OwnMeasured) -> Iterator[str]:
     yield "| category | IoU | objects | found |\n|---|--:|--:|--:|"
     for name in GOAL_CATEGORIES:
         if name in iou.by_category:
-            count, share = found.get(name, (0, float("nan")))
+            count, share = recall.get(name, (0, float("nan")))
             yield f"| {name} | {iou.by_category[name]:.3f} | {count} | {100 * share:.0f} % |"
     yield ""
     yield from distances_and_sizes(measured.breakdown)

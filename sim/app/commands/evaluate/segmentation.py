@@ -15,10 +15,9 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import torch
@@ -27,7 +26,7 @@ from torch import Tensor
 from torch.utils.data import DataLoader
 
 from sim.app import cli
-from sim.app.commands.evaluate.network_card import Evaluated, Measured, card_text, write_card
+from sim.app.commands.evaluate.network_card import Evaluated, Measured, card_text, training_stages, write_card
 from sim.app.commands.evaluate.own import measure_own, own_text
 from sim.app.composition.segmenters import weights_file
 from sim.core.files import write_atomically
@@ -150,13 +149,13 @@ def _evaluate_own(args: Args, semantics: str) -> int:
     return 0
 
 
-def measure(args: Args, model: Network, metadata: dict[str, Any]) -> Measured:
+def measure(args: Args, model: Network, metadata: Mapping[str, object]) -> Measured:
     """Returns the results of a network on the views of some folders.
 
     Raises:
         ConfigError: all views are of one house, or they are stored at a lower resolution than the network needs.
     """
-    block_px = int(metadata.get("block_px", 1))
+    block_px = training_stages(metadata)[-1].block_px
     calibration = Calibration.from_metadata(metadata)
     seen = predict(args, model, block_px, calibration)
     houses = sorted(seen.samples)
@@ -287,6 +286,6 @@ def frame_ms(model: Network, block_px: int, *, mirrored: bool = False) -> float:
     for _ in range(TIMED_FRAMES):
         frame = {name: image.copy() for name, image in frame.items()}  # the result of the same arrays is kept
         start_s = time.perf_counter()
-        segmenter.scores(frame, "chair")  # pyright: ignore[reportArgumentType] - the two images that it reads
+        segmenter.scores(frame, "chair")
         times_s.append(time.perf_counter() - start_s)
     return 1000.0 * float(np.median(times_s))

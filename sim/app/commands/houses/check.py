@@ -1,4 +1,4 @@
-"""Checks fresh houses of a pool, the houses of a split, or one house, and prints what it found for each.
+"""Checks fresh houses of a pool, the houses of a split, or one house, and prints the faults of each.
 
     stubborn houses check --pool heldout --seeds 200 --workers 2
     stubborn houses check --pool heldout --seeds 20 --kind estate
@@ -26,6 +26,7 @@ import numpy as np
 
 from sim.app import cli
 from sim.app.analysis import display
+from sim.app.commands.house_file import HouseFile
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import ConfigError, HouseError
 from sim.core.geometry.pose import Pose
@@ -39,7 +40,6 @@ from sim.homes.housegen.furniture.item import Pool
 from sim.homes.housegen.generator import HouseConfig, generate_house
 from sim.homes.housegen.splits.recipes import SPLITS
 from sim.houses.house import House
-from sim.houses.load import load_house
 from sim.houses.writing import house_text
 from sim.robot.config import RobotConfig
 from sim.world.check import check_house, check_own_house
@@ -48,7 +48,7 @@ CAMERA = CameraModel(width_px=160, height_px=120)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Args:
+class Args(HouseFile):
     """Check new houses of a pool, or the houses of a split, for faults."""
 
     pool: Pool = "heldout"
@@ -65,12 +65,7 @@ class Args:
     """Whether light furniture can be pushed."""
     split: str | None = None
     """Name of a split, or a folder of houses with or without episodes, which are checked instead of fresh ones."""
-    house: Path | None = None
-    """One MJCF file, which is checked instead of fresh houses."""
-    labels: Path | None = None
-    """With --house: a JSON file of label rules for a house that has other names."""
-    root: Path | None = None
-    """With --house: a folder whose files the house may use in addition to its own folder."""
+
     furnished: bool = False
     """Apply all rules of generated houses to a split or house of your own; they always apply to the shipped splits."""
     views: cli.Amount = 12
@@ -100,8 +95,7 @@ def main(args: Args) -> int:
     results = []
     if args.split is not None and args.house is not None:
         raise ConfigError("--split and --house exclude each other.")
-    if args.house is None and (args.labels is not None or args.root is not None):
-        raise ConfigError("--labels and --root need --house.")
+    args.check_house()
     fresh = args.split is None and args.house is None
     for checked in _checked(args):
         results.append(checked)
@@ -126,7 +120,7 @@ def main(args: Args) -> int:
 def _checked(args: Args) -> Iterator[Checked]:
     """Yields the results of the houses that the options name."""
     if args.house is not None:
-        house = load_house(args.house, labels_path=args.labels, root=args.root)
+        house = args.load()
         return iter([_check_loaded(house, args.views, generated=args.furnished)])
     return _check_split(args, args.split) if args.split is not None else _check_seeds(args)
 
@@ -142,12 +136,12 @@ def _check_split(args: Args, split: str) -> Iterator[Checked]:
     """Checks the houses of a split, or those in a folder that has no episodes yet."""
     folder = Path(split)
     if (alone := house_files(folder)) and not has_episodes(folder):
-        found = split_of_files(tuple(alone.values()), labels=labels_of(folder))
+        loaded = split_of_files(tuple(alone.values()), labels=labels_of(folder))
     else:
-        found = load_split(split)
-    generated = args.furnished or _is_generated(found)
-    check = functools.partial(_check_named, found, args.views, generated)
-    return ordered_map(check, found.houses, workers=args.workers)
+        loaded = load_split(split)
+    generated = args.furnished or _is_generated(loaded)
+    check = functools.partial(_check_named, loaded, args.views, generated)
+    return ordered_map(check, loaded.houses, workers=args.workers)
 
 
 def _is_generated(split: Split) -> bool:
@@ -180,9 +174,9 @@ def _check_loaded(house: House, views: int, *, generated: bool) -> Checked:
     if generated:
         faults, notes = _faults(house, views), ()
     else:
-        found, remarks = check_own_house(house)
-        void = _void(house, views) if not found else []
-        faults, notes = tuple(found), (*house.notes, *remarks, *void)
+        wrong, remarks = check_own_house(house)
+        void = _void(house, views) if not wrong else []
+        faults, notes = tuple(wrong), (*house.notes, *remarks, *void)
     return Checked(house.name, faults, notes, seconds=time.process_time() - began_s)
 
 

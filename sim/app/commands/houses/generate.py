@@ -66,7 +66,7 @@ class Args:
     pool: Pool = "train"
     """Without a split: styles and textures that may appear."""
     withheld: Withheld | None = None
-    """Without a split: as `stubborn views` leaves out or prefers styles; only: furniture that training left out."""
+    """Without a split: without leaves out the styles that `stubborn views` withholds; only prefers these."""
     kind: PlanKind | None = None
     """Without a split: kind of floor plan; sampled when not given."""
     area_m2: cli.Positive | None = None
@@ -86,7 +86,7 @@ class Args:
     furniture_split: ModelSplit = "train"
     """With --furniture: train adds models to our own styles, transfer replaces our own by the models kept apart."""
     only_imported: bool = False
-    """With --furniture: models of train too replace our own styles."""
+    """With --furniture: the models of train also replace our own styles."""
     transfer_test: bool = False
     """With --furniture: the houses of the transfer test."""
 
@@ -109,15 +109,15 @@ def main(args: Args) -> int:
     """Writes the houses; returns 1 if a requested seed gave no house."""
     if args.split is not None and (args.furniture is not None or args.transfer_test):
         raise ConfigError("A shipped split has no imported furniture: leave out --split, or --furniture.")
-    for option, given in (("--transfer-test", args.transfer_test), ("--only-imported", args.only_imported)):
-        if given and args.furniture is None:
+    for option, is_set in (("--transfer-test", args.transfer_test), ("--only-imported", args.only_imported)):
+        if is_set and args.furniture is None:
             raise ConfigError(f"{option} needs --furniture, a folder that `{command('import', 'furniture')}` made.")
     if args.split is not None or args.transfer_test:
         kept = {"out", "split", "houses", "workers", "furniture", "transfer_test", "furniture_split", "only_imported"}
-        for each in fields(args):
-            if each.name not in kept and getattr(args, each.name) != each.default:
+        for field in fields(args):
+            if field.name not in kept and getattr(args, field.name) != field.default:
                 of = f"--split {args.split}" if args.split else "--transfer-test"
-                raise ConfigError(f"--{each.name.replace('_', '-')} has no effect with {of}, whose recipes say it.")
+                raise ConfigError(f"--{field.name.replace('_', '-')} has no effect with {of}, whose recipes set it.")
     began_s = time.perf_counter()
     if args.split == "train":
         made = list(_write_train(args))
@@ -138,22 +138,18 @@ def _write_split(args: Args, split: str) -> Iterator[Made]:
     textures = args.out.resolve().parent / "textures"
     if not textures.is_dir():
         copy_textures(textures)
-    for made in ordered_map(_make, SPLITS[split][: args.houses], workers=args.workers):
-        _print_house(made)
-        if made.text:
-            write_atomically(args.out / f"{made.name}.xml", made.text.encode("utf-8"))
-        yield made
+    yield from _written(args, ordered_map(_make, SPLITS[split][: args.houses], workers=args.workers))
 
 
 def _write_train(args: Args) -> Iterator[Made]:
     """Writes the list of train houses; the generated houses are kept in the cache."""
-    wanted, listed = args.houses or TRAIN_HOUSES, []
+    target, listed = args.houses or TRAIN_HOUSES, []
     folder = cache_dir() / SPLIT_VERSION / "train"
     copy_textures(folder.parent / "textures")
     recipes = {recipe.name: recipe for recipe in map(train_recipe, range(MAX_TRAIN_SEEDS))}
     waiting = iter(recipes.values())
-    while len(listed) < wanted:
-        batch = list(itertools.islice(waiting, wanted - len(listed)))
+    while len(listed) < target:
+        batch = list(itertools.islice(waiting, target - len(listed)))
         if not batch:
             raise HouseError(f"Only {len(listed)} of {MAX_TRAIN_SEEDS} train seeds gave a house.")
         for made in ordered_map(_make, batch, workers=args.workers):
@@ -169,15 +165,9 @@ def _write_train(args: Args) -> Iterator[Made]:
 def _write_seeds(args: Args) -> Iterator[Made]:
     """Writes houses of consecutive seeds, and the textures into a folder next to them."""
     config = HouseConfig(
-        pool=args.pool,
-        kind=args.kind,
-        area_m2=args.area_m2,
-        rooms=args.rooms,
-        storeys=args.storeys,
-        hazards=args.hazards,
-        clutter=args.clutter,
-        movable=args.movable,
-    )
+        pool=args.pool, kind=args.kind, area_m2=args.area_m2, rooms=args.rooms, storeys=args.storeys,
+        hazards=args.hazards, clutter=args.clutter, movable=args.movable,
+    )  # fmt: skip
     furniture = None if args.furniture is None else _imported(args)
     if furniture is not None:
         furniture.catalogue(config.pool)  # raises before anything is written
@@ -195,7 +185,8 @@ def _imported(args: Args) -> ImportedFurniture:
 def _write_transfer_test(args: Args) -> Iterator[Made]:
     """Writes the houses of the transfer test, and the textures into a folder next to them."""
     assert args.furniture is not None
-    make = functools.partial(_make_imported, ImportedFurniture(args.furniture, "transfer"))
+    furniture = ImportedFurniture(args.furniture, "transfer")
+    make = functools.partial(_make, textures=SHARED_TEXTURES, furniture=furniture)
     copy_textures(args.out / SHARED_TEXTURES)
     yield from _written(args, ordered_map(make, TRANSFER_TEST[: args.houses], workers=args.workers))
 
@@ -209,19 +200,14 @@ def _written(args: Args, houses: Iterable[Made]) -> Iterator[Made]:
         yield made
 
 
-def _make(recipe: Recipe) -> Made:
+def _make(recipe: Recipe, textures: str | None = None, furniture: ImportedFurniture | None = None) -> Made:
     """Generates the house of a recipe."""
-    return _generate(recipe.name, recipe.seed, recipe.config(), None)
+    return _generate(recipe.name, recipe.seed, recipe.config(), textures, furniture)
 
 
 def _make_seed(config: HouseConfig, furniture: ImportedFurniture | None, withheld: Withheld | None, seed: int) -> Made:
     """Generates the house of a seed."""
     return _generate(f"house_{seed:05d}", seed, config, SHARED_TEXTURES, furniture, withheld)
-
-
-def _make_imported(furniture: ImportedFurniture, recipe: Recipe) -> Made:
-    """Generates the house of a recipe with imported furniture."""
-    return _generate(recipe.name, recipe.seed, recipe.config(), SHARED_TEXTURES, furniture)
 
 
 def _generate(

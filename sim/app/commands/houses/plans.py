@@ -5,8 +5,8 @@
     stubborn houses plans --pool train --kind large --area-m2 280 --houses 50 --out runs/plans/large
 
 Houses of a split are read, houses of a pool are generated from consecutive seeds; those of pool `train` use styles and
-textures that no house of val, test, large or hazards has. A plan that exists is kept, so that a killed run is resumed
-by the same command; a plan that was made with other options or by another generator is refused.
+textures that no house of val, test, large or hazards has. Existing plans are kept, so that the same command resumes a
+killed run; a plan that was made with other options or by another generator is refused.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from __future__ import annotations
 import functools
 import statistics
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from sim.app import cli
 from sim.app.evaluation.parallel import Shard, ordered_map
 from sim.core.errors import ConfigError, HouseError
 from sim.core.paths import assets_dir
+from sim.core.reading import Json
 from sim.episodes.splits import load_split
 from sim.gl import mujoco
 from sim.homes.housegen.floor_plan.rooms import PlanKind
@@ -96,23 +96,21 @@ def _exported(args: Args) -> Iterator[Exported]:
     if args.split is not None:
         split = load_split(args.split)
         names: Sequence[str] = list(split.houses)[: args.houses]
-        source = {"split": args.split, "version": split.version}
-        return ordered_map(
-            functools.partial(_export_named, args.out, source), shard.select(names), workers=args.workers
-        )
+        export = functools.partial(_export_named, args.out, args.split, split.version)
+        return ordered_map(export, shard.select(names), workers=args.workers)
     config = HouseConfig(pool=args.pool, kind=args.kind, area_m2=args.area_m2)
     seeds = range(args.first_seed, args.first_seed + (args.houses or 1))
     return ordered_map(functools.partial(_export_seed, args.out, config), shard.select(seeds), workers=args.workers)
 
 
-def _export_named(out: Path, source: dict[str, Any], name: str) -> Exported:
+def _export_named(out: Path, split: str, version: str, name: str) -> Exported:
     """Exports one house of a split."""
-    return _export(out, name, source, lambda: load_split(source["split"]).load_house(name))
+    return _export(out, name, {"split": split, "version": version}, lambda: load_split(split).load_house(name))
 
 
 def _export_seed(out: Path, config: HouseConfig, seed: int) -> Exported:
     """Generates the house of a seed and exports it."""
-    source = {"pool": config.pool, "kind": config.kind, "area_m2": config.area_m2, "seed": seed}
+    source: dict[str, Json] = {"pool": config.pool, "kind": config.kind, "area_m2": config.area_m2, "seed": seed}
     source |= {"generator": GENERATOR_VERSION, "exact": config.exact}
     return _export(out, name_of(config, seed), source, lambda: house_of(config, seed))
 
@@ -132,17 +130,17 @@ def house_of(config: HouseConfig, seed: int) -> House:
     return House(name_of(config, seed), mujoco.MjSpec.from_string(text))
 
 
-def _export(out: Path, name: str, source: dict[str, Any], make: Any) -> Exported:
+def _export(out: Path, name: str, source: dict[str, Json], make: Callable[[], House]) -> Exported:
     """Writes the plans of the house that `make` returns; the lowest storey's is last and marks that all are written.
 
     Raises:
         ConfigError: there is a plan of that name from another source.
     """
-    there = out / f"{name}.npz"
-    if there.is_file():
-        known = read_plan(there).source
+    file = out / f"{name}.npz"
+    if file.is_file():
+        known = read_plan(file).source
         if known != {key: source.get(key) for key in known}:  # older plans do not name their generator
-            raise ConfigError(f"'{there}' was made with other options ({known}, not {source}); take another --out.")
+            raise ConfigError(f"'{file}' was made with other options ({known}, not {source}); take another --out.")
         return Exported(name, "exists")
     began_s = time.process_time()
     try:

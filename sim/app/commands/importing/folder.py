@@ -11,8 +11,9 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Generic, TypeVar
+from typing import Annotated, Generic, TypeVar
 
+import msgspec
 import numpy as np
 from msgspec import Meta
 from rich.console import Console
@@ -22,7 +23,7 @@ from sim.app.evaluation.parallel import ordered_map
 from sim.app.viewers.house_pictures import draw_top, draw_views, titled
 from sim.core.errors import ConfigError, ObjectNavError
 from sim.core.files import inside, write_atomically, write_picture
-from sim.core.reading import printable, read_json, sha256_of
+from sim.core.reading import convert, printable, read_json, sha256_of
 from sim.episodes.splits import LABELS_FILE, labels_of
 from sim.homes.importers.losses import added
 from sim.homes.importers.mesh_house import Collision, MeshConfig
@@ -37,9 +38,9 @@ CHUNK = 64
 PROGRESS_S = 5.0
 """A line on the progress is printed about this often."""
 VIEWS = 8
-"""Least number of views of a house."""
-MOST_TYPES = 12
-"""Most types that a line of the result lists."""
+"""Smallest number of views of a house."""
+MAX_TYPES = 12
+"""Largest number of types in a line of the result."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,7 +74,7 @@ class MeshArgs(ImportArgs):
     """The options of commands that make houses of triangles."""
 
     collision: Collision = "boxes"
-    """What collides: boxes of a grid, or convex parts by CoACD, which take much longer."""
+    """Collision geoms: boxes of a grid, or convex parts by CoACD, which take much longer."""
     triangles: cli.Count = 100_000
     """About the largest number of visual triangles of a house."""
     texture_px: cli.Count = 1024
@@ -91,17 +92,37 @@ class Work(Generic[SourceT]):
 
     name: str
     content: bytes
-    """What its result depends on, in addition to the options."""
+    """The bytes on which the house depends, in addition to the options."""
     source: SourceT
     share: float = 0.0
     """Share of the input that has been read up to this house; 0: unknown."""
+
+
+class HouseReport(msgspec.Struct):
+    """The entries of a house's report that commands read."""
+
+    rooms: int
+    area_m2: float
+    lowered_m: float = 0.0
+    key: str = ""
+    """Identifies the source and the options."""
+    rules: dict[str, str] = {}
+
+    @classmethod
+    def of(cls, report: Mapping[str, object]) -> HouseReport:
+        """Returns the entries of a report.
+
+        Raises:
+            ConfigError: one of them is missing or has another type.
+        """
+        return convert(report, cls, where=f"Report of the house '{report.get('house')}'")
 
 
 @dataclass(frozen=True)
 class Made:
     """An imported house."""
 
-    report: Mapping[str, Any]
+    report: Mapping[str, object]
     rules: Mapping[str, str] = field(default_factory=dict)
     """Label rules that it needs."""
 
@@ -121,22 +142,22 @@ def import_all(
     pictures: int,
     workers: int,
 ) -> int:
-    """Imports houses and prints what happened; returns 1 if one could not be imported.
+    """Imports houses and prints the outcome; returns 1 if a house could not be imported.
 
     Args:
         works: the houses.
         make: writes a house into the folder; picklable.
         out: the folder.
-        total: largest number of houses, for the time left; None: `Work.share` says it.
-        options: all that the result depends on, in addition to the houses.
+        total: largest number of houses, for the time left; None: the time left follows from `Work.share`.
+        options: text of all options on which the houses depend.
         pictures: number of houses that are drawn.
         workers: number of processes.
 
     Raises:
         ConfigError: the folder has a report that another program wrote, or there is no house.
     """
-    before = _before(out)
-    reports: dict[str, dict[str, Any]] = {}
+    before = read_reports(out)
+    reports: dict[str, dict[str, object]] = {}
     rules: dict[str, str] = {}
     failed = 0
     began_s = said_s = time.monotonic()
@@ -163,22 +184,22 @@ def import_all(
 
 
 def _run(
-    works: Iterable[Work[SourceT]], make: Callable[[SourceT], Made], out: Path, before: Mapping[str, Any], options: str,
-    workers: int,
+    works: Iterable[Work[SourceT]], make: Callable[[SourceT], Made], out: Path,
+    before: Mapping[str, Mapping[str, object]], options: str, workers: int,
 ) -> Iterator[tuple[Work[SourceT], str, Made | _Failed]]:  # fmt: skip
-    """Yields each house with its key and its result; houses that are there already are not made again."""
+    """Yields each house with its key and its result; complete houses of an earlier import are not made again."""
     todo = iter(works)
     while chunk := list(itertools.islice(todo, CHUNK)):
         keys = [
             hashlib.sha256(f"{VERSION} {options} {work.name} ".encode() + work.content).hexdigest() for work in chunk
         ]
-        there = [
+        complete = [
             before.get(work.name, {}).get("key") == key and (out / f"{work.name}.xml").is_file()
             for work, key in zip(chunk, keys, strict=True)
         ]
-        new = [work.source for work, done in zip(chunk, there, strict=True) if not done]
+        new = [work.source for work, done in zip(chunk, complete, strict=True) if not done]
         results = ordered_map(functools.partial(_tried, make), new, workers=workers) if new else iter(())
-        for work, key, done in zip(chunk, keys, there, strict=True):
+        for work, key, done in zip(chunk, keys, complete, strict=True):
             yield work, key, _again(before[work.name]) if done else next(results)
 
 
@@ -186,7 +207,7 @@ def file_works(files: Iterable[Path], used_by: Callable[[Path], Iterable[Path]])
     """Yields the houses of files, each of which depends on its file and on those that `used_by` returns."""
     for file in files:
         used = [file, *used_by(file)] if file.is_file() else []
-        sums = [sha256_of(each, what="File") for each in used if each.is_file()]
+        sums = [sha256_of(part, what="File") for part in used if part.is_file()]
         yield Work(file.stem, " ".join(sums).encode(), file)
 
 
@@ -197,23 +218,35 @@ def _tried(make: Callable[[SourceT], Made], source: SourceT) -> Made | _Failed:
         return _Failed(str(error))
 
 
-def _again(report: Mapping[str, Any]) -> Made:
+def _again(report: Mapping[str, object]) -> Made:
     """Returns the result of a house that was imported before."""
-    return Made({name: value for name, value in report.items() if name not in ("key", "rules")}, report["rules"])
+    content = {name: value for name, value in report.items() if name not in ("key", "rules")}
+    return Made(content, HouseReport.of(report).rules)
 
 
-def _before(out: Path) -> dict[str, dict[str, Any]]:
-    """Returns the reports of houses that are in the folder, by name."""
+def read_reports(out: Path) -> dict[str, dict[str, object]]:
+    """Returns the reports of the houses in a folder by name; none if there is no report.
+
+    Raises:
+        ConfigError: another program wrote the report.
+    """
     file = out / REPORT_FILE
-    return read_json(file, dict[str, dict[str, Any]], what="Report of an import") if file.is_file() else {}
+    return read_json(file, dict[str, dict[str, object]], what="Report of an import") if file.is_file() else {}
+
+
+def write_reports(out: Path, reports: Mapping[str, Mapping[str, object]]) -> None:
+    """Writes the reports of the houses in a folder."""
+    write_atomically(out / REPORT_FILE, json.dumps(reports, indent=1, ensure_ascii=False) + "\n")
 
 
 def _write(
-    out: Path, before: Mapping[str, Any], reports: Mapping[str, Mapping[str, Any]], rules: Mapping[str, str]
+    out: Path,
+    before: Mapping[str, Mapping[str, object]],
+    reports: Mapping[str, Mapping[str, object]],
+    rules: Mapping[str, str],
 ) -> None:
     """Writes the report, with the houses of earlier imports, and the label rules."""
-    known = {**before, **reports}
-    write_atomically(out / REPORT_FILE, json.dumps(known, indent=1, ensure_ascii=False) + "\n")
+    write_reports(out, {**before, **reports})
     if rules:
         file = labels_of(out)
         old = read_json(file, dict[str, str], what="Label rules") if file is not None else {}
@@ -222,15 +255,15 @@ def _write(
         write_atomically(out / LABELS_FILE, json.dumps(both, indent=1, ensure_ascii=False) + "\n")
 
 
-def _print_result(console: Console, reports: Sequence[Mapping[str, Any]], failed: int, out: Path) -> None:
-    """Prints what was read and what was lost."""
-    total = added(reports)
-    rooms, area_m2 = (sum(report[name] for report in reports) for name in ("rooms", "area_m2"))
+def _print_result(console: Console, reports: Sequence[Mapping[str, object]], failed: int, out: Path) -> None:
+    """Prints the sizes of the houses, and how they differ from their sources."""
+    total, read = added(reports), [HouseReport.of(report) for report in reports]
+    rooms, area_m2 = sum(report.rooms for report in read), sum(report.area_m2 for report in read)
     lines = [f"{len(reports)} houses with {rooms} rooms, {area_m2:.0f} m2, in {out}; {failed} could not be imported."]
-    found = "furniture" if total.boxes else "objects with a category"
-    for title, counts in ((found, total.furniture), ("labelled boxes", total.boxes), ("left out", total.left_out)):
-        most = ", ".join(f"{name} {count}" for name, count in counts.most_common(MOST_TYPES))
-        more = f" and {len(counts) - MOST_TYPES} more" if len(counts) > MOST_TYPES else ""
+    kept = "furniture" if total.boxes else "objects with a category"
+    for title, counts in ((kept, total.furniture), ("labelled boxes", total.boxes), ("left out", total.left_out)):
+        most = ", ".join(f"{name} {count}" for name, count in counts.most_common(MAX_TYPES))
+        more = f" and {len(counts) - MAX_TYPES} more" if len(counts) > MAX_TYPES else ""
         if counts:
             lines.append(f"{title}: {sum(counts.values())} objects ({most}{more})")
     lines += [f"{sentence} ({count} x)" for sentence, count in total.changes.most_common()]

@@ -43,9 +43,9 @@ def main(args: Args) -> int:
     check_installed()
     if args.out.exists() and not args.out.is_dir():
         raise ConfigError(f"--out '{args.out}' is a file, not a folder.")
-    found = [entry for source in args.source for entry in read_source(source)]
-    by_ident = {entry.ident: entry for entry in found if isinstance(entry, Entry)}
-    left_out = [entry for entry in found if not isinstance(entry, Entry)]
+    entries = [entry for source in args.source for entry in read_source(source)]
+    by_ident = {entry.ident: entry for entry in entries if isinstance(entry, Entry)}
+    left_out = [entry for entry in entries if not isinstance(entry, Entry)]
     models: list[Model] = []
     for n, made in enumerate(import_entries(list(by_ident.values()), args.out), start=1):
         if isinstance(made, Model):

@@ -4,30 +4,29 @@
     stubborn import habitat hm3d/val --out runs/hm3d
     stubborn episodes --split runs/hm3d
 
-Meshes are divided by instance and reduced to --triangles; floors are made flat; what collides are boxes of a grid of
+Meshes are divided by instance and reduced to --triangles; floors are made flat; collision geoms are boxes of a grid of
 5 cm, or convex parts. Rooms become sites, and the names of bodies are labels. With --episodes, Habitat's own ObjectNav
-episodes of these houses become the episodes of the split, and import.json says which of them do not fit.
+episodes of these houses become the episodes of the split, and import.json lists those that do not fit.
 
-This command needs the extra `import`. The formats were tested with files that follow their rules; real scans of HM3D
-and Matterport3D were not at hand.
+This command needs the extra `import`. It was tested with files in the formats of HM3D and Matterport3D, but not with
+real scans.
 """
 
 from __future__ import annotations
 
 import functools
-import json
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import tyro
 
-from sim.app.commands.importing.folder import REPORT_FILE, Made, MeshArgs, Work, import_all
+from sim.app.commands.importing.folder import HouseReport, Made, MeshArgs, Work, import_all, read_reports, write_reports
 from sim.core.errors import EpisodeError
-from sim.core.files import inside, write_atomically, write_together
-from sim.core.reading import read_json, sha256_of
+from sim.core.files import inside, write_together
+from sim.core.reading import sha256_of
 from sim.episodes.splits import write_split
 from sim.homes.importers.habitat import Source, find_sources, import_source
 from sim.homes.importers.habitat_episodes import Fitted, SceneEpisodes, fit_episodes, read_scenes
@@ -66,29 +65,28 @@ def main(args: Args) -> int:
 
 
 def _write_episodes(out: Path, names: list[str], scenes: Mapping[str, SceneEpisodes]) -> None:
-    """Writes the episodes of the houses as those of the split; prints and reports what does not fit."""
-    reports = read_json(out / REPORT_FILE, dict[str, dict[str, Any]], what="Report of an import")
+    """Writes the episodes of the houses as those of the split; prints and reports those that do not fit."""
+    reports = read_reports(out)
     fitted: dict[str, Fitted] = {}
-    for name in (each for each in names if each in reports and each in scenes):
-        fitted[name] = fit_episodes(
-            Task(World(load_house(out / f"{name}.xml"))), scenes[name], reports[name]["lowered_m"]
-        )
+    for name in (source for source in names if source in reports and source in scenes):
+        task, lowered_m = Task(World(load_house(out / f"{name}.xml"))), HouseReport.of(reports[name]).lowered_m
+        fitted[name] = fit_episodes(task, scenes[name], lowered_m)
         reports[name]["episodes"] = dict(fitted[name].report)
     total = Counter[str]()
-    for each in fitted.values():
-        total.update(each.report)
+    for house in fitted.values():
+        total.update(house.report)
     other = set(scenes) - set(fitted)
     for sentence, count in sorted(total.items()):
         print(f"{sentence} ({count} x)")
     if other:
         print(f"Episodes of {len(other)} scenes that are not here were left out.")
-    write_atomically(out / REPORT_FILE, json.dumps(reports, indent=1, ensure_ascii=False) + "\n")
-    episodes = [episode for each in fitted.values() for episode in each.episodes]
+    write_reports(out, reports)
+    episodes = [episode for house in fitted.values() for episode in house.episodes]
     if not episodes:
         raise EpisodeError("No episode of the files fits a house that was imported.")
     write_split(
-        out, episodes, {name: each.asks.listed for name, each in fitted.items()}, version=VERSION,
-        unreachable={name: each.asks.unreachable for name, each in fitted.items()},
+        out, episodes, {name: house.asks.listed for name, house in fitted.items()}, version=VERSION,
+        unreachable={name: house.asks.unreachable for name, house in fitted.items()},
     )  # fmt: skip
 
 

@@ -4,7 +4,7 @@ stubborn import furniture infinigen --python ~/infinigen/bin/python --out runs/i
 stubborn import furniture --source runs/infinigen /usr/share/sweethome3d/furniture --out runs/models
 
 The Python is one of version 3.11 with `infinigen` (BSD-3-Clause, parts GPL) and `bpy` (GPL-3.0), which are not part of
-this repository; `--help` says how they are installed.
+this repository; `--help` shows how to install them.
 
 Assets have a plain colour for each material. An asset that fails or takes too long is left out and reported. The same
 command resumes; a larger `--count` adds assets.

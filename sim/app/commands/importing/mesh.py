@@ -59,7 +59,7 @@ def main(args: Args) -> int:
 def _make(args: Args, rules: dict[str, str], file: Path) -> Made:
     """Writes one house and its table; returns its report."""
     scene = import_mesh(file, rules=rules, up=args.up, config=args.config)
-    files = {inside(args.out, name, what="name of a file"): each for name, each in scene.house.files.items()}
+    files = {inside(args.out, name, what="name of a file"): content for name, content in scene.house.files.items()}
     table = inside(args.out / TABLES, f"{file.stem}.json", what="name of a house")
     write_together({**files, table: json.dumps(dict(scene.table), indent=1, ensure_ascii=False) + "\n"})
     written = args.out / f"{file.stem}.xml"

@@ -1,7 +1,7 @@
-"""The figures that Luo et al. (2022) report, to stand beside ours.
+"""The figures that Luo et al. (2022) report, for comparison with ours.
 
-They are of MP3D houses in Habitat (tables 1, 3, 4, 5: validation; 6: the test split of the challenge of 2021), so that
-orders and differences of agents can be compared, not the figures themselves.
+They are of MP3D houses in Habitat (tables 1, 3, 4, 5: validation; 6: the test split of the challenge of 2021): only
+the order of agents and their differences can be compared with ours.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def _causes(figures: str) -> dict[str, str]:
     """Returns a column of shares of the failures, with half of the width of their interval, and of the success."""
     causes = [cause for cause in CAUSES if cause != "stopped_short"]
     *shares, success = figures.split()
-    texts = (each.replace("+-", " ± ") for each in shares)
+    texts = (share.replace("+-", " ± ") for share in shares)
     return {**dict(zip(causes, texts, strict=True)), "success %": success}
 
 
@@ -90,7 +90,7 @@ FIGURES: Mapping[str, Columns] = {
 """The columns of each table of `paper_tables` that the paper has too."""
 OTHERS = (
     "The last rows are agents with checkpoints that cannot be had here. For all but TreasureHunt, "
-    "docs/tables/published_agents.csv has the commands that run their code, or says why there are none."
+    "docs/tables/published_agents.csv has the commands that run their code, or states why it cannot run."
 )
 
 
@@ -100,14 +100,14 @@ def beside_paper(name: str, table: ResultTable) -> ResultTable:
     if columns is None:
         return table
     rows: list[tuple[str, list[Cell | str]]] = []
-    left = {row: None for column in columns.values() for row in column}  # in order
+    remaining = {row: None for column in columns.values() for row in column}  # in order
     for label, cells in table.rows:
-        row = next((row for row in left if _names(label, row)), None)
+        row = next((row for row in remaining if _names(label, row)), None)
         rows.append((label, [*cells, *(column.get(row or "", "") for column in columns.values())]))
-        left.pop(row or "", None)
+        remaining.pop(row or "", None)
     if name == "overall":
         without: list[Cell | str] = [""] * (len(table.header) - 1)
-        rows += [(row, [*without, *(column.get(row, "") for column in columns.values())]) for row in left]
+        rows += [(row, [*without, *(column.get(row, "") for column in columns.values())]) for row in remaining]
     header = (*table.header, *(f"paper: {title}" for title in columns))
     return replace(table, header=header, rows=rows, notes=(*table.notes, *((OTHERS,) if name == "overall" else ())))
 

@@ -265,7 +265,7 @@ def _differences(
     """Returns a table with one row per pair: the first minus the second, in each metric."""
     rows = [
         (
-            " - ".join(names[each.agent] if _has_own_name(each, names) else each.label for each in (a, b)),
+            " - ".join(names[setup.agent] if _has_own_name(setup, names) else setup.label for setup in (a, b)),
             [difference_cell(metric, lines[b], lines[a]) for metric in metrics],
         )
         for a, b in pairs
@@ -304,15 +304,15 @@ def _count_of_failures(lines: Sequence[EpisodeResult]) -> str:
 def _share_of_failures(cause: str, lines: Sequence[EpisodeResult]) -> Cell:
     """Returns the share of the failed episodes that failed by this cause."""
     failed = [result for result in lines if not result.success]
-    found = [result.failure == cause for result in failed]
-    return Cell(estimate(found, houses_of(failed), episodes=episodes_of(failed), most=1.0), percent=True)
+    matches = [result.failure == cause for result in failed]
+    return Cell(estimate(matches, houses_of(failed), episodes=episodes_of(failed), most=1.0), percent=True)
 
 
 def _failed_by(cause: str, first: Sequence[EpisodeResult], second: Sequence[EpisodeResult]) -> Cell:
     """Returns the difference, second minus first, of the share of all episodes that failed by this cause."""
     a, b = ([result.failure == cause for result in lines] for lines in (first, second))
-    found = paired_difference(a, b, houses_of(first), episodes=episodes_of(first), most=1.0)
-    return Cell(found, percent=True, difference=True)
+    difference = paired_difference(a, b, houses_of(first), episodes=episodes_of(first), most=1.0)
+    return Cell(difference, percent=True, difference=True)
 
 
 def _by_goal(lines: Lines) -> list[tuple[str, Lines]]:

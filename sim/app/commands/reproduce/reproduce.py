@@ -6,7 +6,7 @@
     stubborn reproduce splits --splits val large hazards --episodes 200 --workers 2
 
 The tables of the paper are failures, ablation, exploration, categories and overall, and `controls` is its figure of
-SemExp; `all` makes these six, and one page of all of them. The paper's figures stand beside ours. The table
+SemExp; `all` makes these six, and one page of all of them. Columns with the paper's figures follow ours. The table
 `verification` compares the methods of verification. `splits` compares the rows of the ablation and two explorers on
 each of several splits. `explorers` compares all explorers, also by the median time to first sight, and the learned ones
 with their controls.
@@ -27,7 +27,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import tyro
 from msgspec import structs
@@ -105,7 +104,7 @@ def main(args: Args) -> int:
     names = _table_names(args)
     needed = {name: table_named(name).setups(args.agents, args.semantics) for name in names}
     setups = list(dict.fromkeys(setup for of_table in needed.values() for setup in of_table))
-    splits = [part_of(each) for each in _each_split(args)]
+    splits = [part_of(of_split) for of_split in _each_split(args)]
     if args.minutes != 0.0:
         runs = [_table_run(part, setup) for part in splits for setup in setups]
         run_in_turns(runs, args.chunk or (60 if len(args.splits) > 1 else 20), args.minutes, console)
@@ -119,7 +118,7 @@ def main(args: Args) -> int:
         if len(names) > 1:
             _write_all(of_split.args, [page for page in made.values() if page is not None], console)
     if len(splits) > 1:
-        _write_pages(args, [each.args for each in splits], pages, console)
+        _write_pages(args, [split.args for split in splits], pages, console)
     return status
 
 
@@ -174,7 +173,7 @@ def require_same_conditions(runs: Sequence[Run]) -> None:
         raise ConfigError(f"'{one.path}' and '{another.path}' are of two versions of the shipped network.")
 
 
-def _conditions(of: Run, other: Run) -> dict[str, Any]:
+def _conditions(of: Run, other: Run) -> Mapping[str, object]:
     """Returns the entries of a run's config that must be equal in all runs, if the other run has them too."""
     flat = {key: of.config[key] for key in SAME_IN_ALL if key in of.config and key in other.config}
     tree, others = of.config.get("config", {}), other.config.get("config", {})
@@ -285,7 +284,8 @@ def _print(console: Console, parts: Sequence[ResultTable], notes: Sequence[str])
 
 def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
     """Returns the options of `stubborn run` for one setup."""
-    return setup.run_options(
+    return replace(
+        setup.run_options(),
         split=args.split,
         episodes=args.episodes,
         seed=args.seed,
@@ -365,6 +365,6 @@ def _check(args: Args) -> None:
     if args.minutes == 0.0:
         return
     setups = {s for name in _table_names(args) for s in table_named(name).setups(args.agents, args.semantics)}
-    for each in _each_split(args):
+    for of_split in _each_split(args):
         for setup in setups:
-            resolve(_run_args(each, setup))
+            resolve(_run_args(of_split, setup))

@@ -1,4 +1,4 @@
-"""The runs that tables are made of: an agent with its options on a split; they take turns until all are complete."""
+"""The runs of the paper's tables: each evaluates an agent on a split, and they take turns until all are complete."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ import json
 import shlex
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import msgspec
 from rich.console import Console
@@ -85,15 +84,14 @@ class AgentSetup:
         words = " ".join(shlex.split(self.options)).removeprefix("--").split(" --")
         return "_".join(file_name(part).replace(" ", "-") for part in words)
 
-    def run_options(self, **fields: Any) -> RunOptions:
-        """Returns the options of `stubborn run`, with further fields."""
-        words = ["--agent", self.agent, "--semantics", self.semantics, *shlex.split(self.options)]
-        return replace(cli.parse(RunOptions, words), **fields)
+    def run_options(self) -> RunOptions:
+        """Returns the options of `stubborn run`."""
+        return cli.parse(RunOptions, ["--agent", self.agent, "--semantics", self.semantics, *shlex.split(self.options)])
 
 
 @dataclass(frozen=True, order=True)
 class RunKey:
-    """What a run evaluates: a setup on a version of a split."""
+    """A run is identified by its setup and the version of its split."""
 
     split: str
     setup: AgentSetup
@@ -145,14 +143,14 @@ def run_in_turns(runs: Sequence[TableRun], chunk: int, minutes: float | None, co
 
 
 class _Recorded(msgspec.Struct):
-    """The parts of `config.json` that say which options a run had."""
+    """The parts of `config.json` with the options of a run."""
 
     explorer: str | None = None
     verification: str | None = None
     noise: str | None = None
     seed: int | None = None
     replicates: int | None = None
-    settings: dict[str, Any] = msgspec.field(default_factory=dict)
+    settings: dict[str, object] = msgspec.field(default_factory=dict)
 
 
 def key_of(run: Run) -> RunKey:
@@ -188,7 +186,7 @@ def file_name(text: str) -> str:
     return text.replace(":", "_").replace("/", "_")
 
 
-def _options_text(values: Mapping[str, object], settings: Mapping[str, Any]) -> str:
+def _options_text(values: Mapping[str, object], settings: Mapping[str, object]) -> str:
     """Returns the options that are not the default in a fixed order."""
     defaults, words = RunOptions(), list[str]()
     for name in NAMES:

@@ -12,7 +12,7 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from sim.app import cli
 from sim.app.composition.segmenters import KINDS, detector_config, detector_record, find_segmentation
@@ -157,15 +157,15 @@ def lines_of(
         finally:
             run.discard_if_empty()
             run.close()
-    wanted = {episode.episode_id for episode in split.episodes[: args.episodes]}
-    return sorted((line for line in lines if line.episode_id in wanted), key=lambda line: line.episode_id)
+    ids = {episode.episode_id for episode in split.episodes[: args.episodes]}
+    return sorted((line for line in lines if line.episode_id in ids), key=lambda line: line.episode_id)
 
 
-def _require_log_of(log: Path, wanted: Mapping[str, Any]) -> None:
+def _require_log_of(log: Path, config: Mapping[str, object]) -> None:
     """Raises ConfigError if a log is not of this split and segmentation."""
     file = log / "config.json"
-    there = read_json(file, dict[str, Any], what="Config of a log") if file.is_file() else {}
-    for path, actual, asked in differing_fields(there, {key: wanted[key] for key in there if key in wanted}):
+    of_log = read_json(file, dict[str, object], what="Config of a log") if file.is_file() else {}
+    for path, actual, asked in differing_fields(of_log, {key: config[key] for key in of_log if key in config}):
         if path.partition(".")[0] in COMPARED and path != "detector.weights":  # the checksum of the weights counts
             raise ConfigError(
                 f"Log '{log}' was made with {path} = {field_text(actual)}, this command has {field_text(asked)}; "
@@ -173,8 +173,8 @@ def _require_log_of(log: Path, wanted: Mapping[str, Any]) -> None:
             )
 
 
-def log_config(args: LogOptions, split: Split) -> dict[str, Any]:
-    """Returns the values that all lines of a log have in common; `RunDirectory` refuses to continue with others.
+def log_config(args: LogOptions, split: Split) -> Mapping[str, object]:
+    """Returns the values that all lines of a log have in common; `RunDirectory` does not continue a log with others.
 
     The hash of the code is that of the modules without fitted parameters, since the episodes do not use them.
     """

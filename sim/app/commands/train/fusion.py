@@ -3,9 +3,9 @@
     stubborn train fusion --split runs/unseen --episodes 100 --out runs/fusion.json
     stubborn train fusion --split val --episodes 15 --judge
 
-The agent explores without stopping and looks at whatever may be the goal. All tracks are logged, those of all
-categories: an episode gives about a hundred. A track is logged when its views reach certain weights, and at the end of
-the episode, with the mean posteriors of its views; and once with the number of its pixels of each true category.
+The agent explores without stopping and looks at all candidates. Tracks of all categories are logged: an episode gives
+about a hundred. A track is logged with the mean posteriors of its views when these reach certain weights and at the
+end of the episode, and once with the number of its pixels of each true category.
 
 The log has one line and one file (tracks/<episode>.npz) per episode. The same command continues it, and more episodes
 extend it, as long as split, code and detector are the same. --minutes 0 runs no episode and fits the existing log. Then
@@ -21,9 +21,9 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import msgspec
+import numpy as np
 
 from sim.app.commands.train.episode_logs import (
     LogOptions,
@@ -36,6 +36,7 @@ from sim.app.composition.segmenters import find_segmentation, make_segmenter
 from sim.app.evaluation.workers import RunnerSpec
 from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
+from sim.core.reading import convert
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.seeds import episode_seeds
@@ -55,11 +56,11 @@ def main(args: Args) -> int:
     split = checked_split(args)
     file = parameters_file(args, FOLDER)
     episodes = tracks_of(args, split)
-    samples = samples_of(episodes)
+    samples = samples_of([{"house": line.house, **tracks} for line, tracks in episodes])
     if not samples:
         raise ConfigError("The log has no tracks: run episodes, with --minutes above 0 or without this option.")
-    about = {"episodes": len(episodes), "houses": len({str(each["house"]) for each in episodes})}
-    about["tracks"] = sum(len(each["counts"]) for each in episodes)
+    about = {"episodes": len(episodes), "houses": len({line.house for line, _ in episodes})}
+    about["tracks"] = sum(len(tracks["counts"]) for _, tracks in episodes)
     print(", ".join(f"{value} {name}" for name, value in about.items()))
     if args.judge:
         _print(judge(probabilities(read_fusion(file), samples), samples))
@@ -81,12 +82,12 @@ def main(args: Args) -> int:
     return 0
 
 
-def tracks_of(args: Args, split: Split) -> list[dict[str, Any]]:
-    """Returns the tracks of the first `args.episodes` episodes; those that are not in the log yet are run now."""
+def tracks_of(args: Args, split: Split) -> list[tuple[TrackLine, dict[str, np.ndarray]]]:
+    """Returns line and tracks of the first `args.episodes` episodes; those that are not in the log yet are run now."""
     log = args.log or default_log("tracks", args, split)
     runner = RunnerSpec(f"{__name__}:{TrackRunner.__name__}", (args, log))
     lines = lines_of(args, split, log, TrackLine, runner)
-    return [{"house": line.house, **read_tracks(file_of(log, line.episode_id))} for line in lines if line.steps]
+    return [(line, read_tracks(file_of(log, line.episode_id))) for line in lines if line.steps]
 
 
 class TrackRunner:
@@ -117,7 +118,7 @@ class TrackRunner:
         self._env.close()
 
 
-def _print(quality: Mapping[str, Any]) -> None:
+def _print(quality: Mapping[str, object]) -> None:
     print("  " + ", ".join(f"{name} {value}" for name, value in quality.items() if name != "calibration"))
-    for row in quality["calibration"]:
+    for row in convert(quality["calibration"], list[dict[str, int | float]], where="The calibration"):
         print("  " + ", ".join(f"{name} {value}" for name, value in row.items()))

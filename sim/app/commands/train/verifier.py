@@ -23,7 +23,8 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+
+import msgspec
 
 from sim.app import cli
 from sim.app.commands.train.episode_logs import (
@@ -37,6 +38,7 @@ from sim.app.composition.segmenters import find_segmentation, make_segmenter
 from sim.app.evaluation.workers import RunnerSpec
 from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
+from sim.core.reading import convert
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.seeds import episode_seeds
@@ -75,15 +77,14 @@ def main(args: Args) -> int:
         return 0
     about = {"name": split.name, "version": split.version}
     command = args.command("verifier", len(lines), "--least-of-either", str(args.least_of_either))
-    given = {"semantics": args.semantics, "command": command, "split": about}
-    content = given | fit(lines, args.least_of_either)
+    content = {"semantics": args.semantics, "command": command, "split": about, **fit(lines, args.least_of_either)}
     write_atomically(file, json.dumps(content, indent=1, allow_nan=False) + "\n")
     report(content)
     print(f"written: {file}")
     return 0
 
 
-def candidates_of(args: Args, split: Split) -> list[dict[str, Any]]:
+def candidates_of(args: Args, split: Split) -> Sequence[Mapping[str, object]]:
     """Returns the lines of the first `args.episodes` episodes; those that are not in the log yet are run now."""
     log = args.log or default_log("verifier", args, split)
     runner = RunnerSpec(f"{__name__}:{CandidateRunner.__name__}", args)  # a script is `__main__` in its workers too
@@ -112,22 +113,40 @@ class CandidateRunner:
         self._env.close()
 
 
-def report(content: Mapping[str, Any]) -> None:
+class _Method(msgspec.Struct):
+    """A fitted method."""
+
+    left_out: dict[str, int | float | list[dict[str, int | float]] | None]
+    """Its quality on houses left out; `by_probability` has a list."""
+    categories: dict[str, object]
+    """Parameters of the categories with a classifier of their own."""
+
+
+class _Fit(msgspec.Struct):
+    """The part of the parameters that is printed."""
+
+    episodes: int
+    candidates: dict[str, dict[str, int]]
+    methods: dict[str, _Method]
+
+
+def report(content: Mapping[str, object]) -> None:
     """Prints the counts, and the quality of each method on houses left out."""
-    print(f"{content['episodes']} episodes")
-    own = content["methods"]["naive-bayes"]["categories"]
-    for goal, pair in content["candidates"].items():
+    fitted = convert(content, _Fit, where="The parameters")
+    print(f"{fitted.episodes} episodes")
+    own = fitted.methods[NAIVE_BAYES].categories
+    for goal, pair in fitted.candidates.items():
         pooled = "" if goal in own else "  (pooled)"
         print(f"  {goal:18s} {pair['true']:5d} true {pair['false']:5d} false{pooled}")
-    for method, fitted in content["methods"].items():
-        left_out = dict(fitted["left_out"])
-        rows = left_out.pop("by_probability")
-        print(f"{method}, on houses left out: " + ", ".join(f"{key} {value}" for key, value in left_out.items()))
-        for row in rows:
-            print("  " + ", ".join(f"{key} {value}" for key, value in row.items()))
+    for name, method in fitted.methods.items():
+        shares = {key: value for key, value in method.left_out.items() if not isinstance(value, list)}
+        print(f"{name}, on houses left out: " + ", ".join(f"{key} {value}" for key, value in shares.items()))
+        for rows in method.left_out.values():
+            for row in rows if isinstance(rows, list) else ():
+                print("  " + ", ".join(f"{key} {value}" for key, value in row.items()))
 
 
-def judgement(lines: Sequence[Mapping[str, Any]], file: Path) -> str:
+def judgement(lines: Sequence[Mapping[str, object]], file: Path) -> str:
     """Returns Markdown tables: the candidates of each category, before and after verification, and the calibration."""
     from sim.training.fits.verifier import judge_by_category
 
@@ -137,14 +156,14 @@ def judgement(lines: Sequence[Mapping[str, Any]], file: Path) -> str:
     )  # fmt: skip
     rows = _table_head(header)
     bins = _table_head(("method", "P from", "to", "candidates", "mean P", "true"))
-    for goal, found in judge_by_category(lines, FittedVerifier.read(file)).items():
-        true = round(found["precision_before"] * found["candidates"])
-        mean = sum(each["candidates"] * each["mean_probability"] for each in found["by_probability"])
+    for goal, quality in judge_by_category(lines, FittedVerifier.read(file)).items():
+        true = round(quality["precision_before"] * quality["candidates"])
+        mean = sum(row["candidates"] * row["mean_probability"] for row in quality["by_probability"])
         keys = ("brier", "precision_before", "precision", "true_accepted", "false_rejected")
-        shares = (mean / found["candidates"], *(found[key] for key in keys))
+        shares = (mean / quality["candidates"], *(quality[key] for key in keys))
         cells = " | ".join("-" if share is None else f"{share:.2f}" for share in shares)
-        rows.append(f"| {NAIVE_BAYES} | {goal} | {true} | {found['candidates'] - true} | {cells} |")
-        bins += [_bin_row(NAIVE_BAYES, each) for each in found["by_probability"] if goal == "all"]
+        rows.append(f"| {NAIVE_BAYES} | {goal} | {true} | {quality['candidates'] - true} | {cells} |")
+        bins += [_bin_row(row) for row in quality["by_probability"] if goal == "all"]
     return "\n".join([*rows, "", *bins])
 
 
@@ -152,8 +171,8 @@ def _table_head(titles: Sequence[str]) -> list[str]:
     return [f"| {' | '.join(titles)} |", "|---" * len(titles) + "|"]
 
 
-def _bin_row(method: str, one: Mapping[str, Any]) -> str:
+def _bin_row(row: Mapping[str, float]) -> str:
     return (
-        f"| {method} | {one['from']} | {one['to']} | {one['candidates']} | {one['mean_probability']:.2f} | "
-        f"{one['true_share']:.2f} |"
+        f"| {NAIVE_BAYES} | {row['from']} | {row['to']} | {row['candidates']} | {row['mean_probability']:.2f} | "
+        f"{row['true_share']:.2f} |"
     )

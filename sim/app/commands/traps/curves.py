@@ -15,7 +15,7 @@ from sim.app.evaluation.intervals import estimate
 from sim.homes.housegen.traps.families.catalogue import FAMILIES
 from sim.houses.sidecar import TrapFacts
 
-MOST_BINS = 5
+MAX_BINS = 5
 Rows = Sequence[TrapResult]
 """Rows of `sim.app.commands.traps.report`."""
 
@@ -90,8 +90,8 @@ def curve(rows: Rows, facts: Mapping[str, TrapFacts], quantity: Quantity) -> lis
 
 
 def bin_edges(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the edges of at most `MOST_BINS` bins [low, high) with about as many values each; none is empty."""
-    quantiles = np.quantile(values, np.linspace(0.0, 1.0, MOST_BINS + 1)[:-1], method="higher")
+    """Returns the edges of at most `MAX_BINS` bins [low, high) with about as many values each; none is empty."""
+    quantiles = np.quantile(values, np.linspace(0.0, 1.0, MAX_BINS + 1)[:-1], method="higher")
     return np.append(np.unique(quantiles), np.inf)
 
 

@@ -1,6 +1,6 @@
 """The part of the trap report for traps of families: a table, curves with intervals, and a picture of each family.
 
-Written are `families.md` (successes and collisions by family and difficulty), `curves.csv` and `curves.png` (over the
+It writes `families.md` (successes and collisions by family and difficulty), `curves.csv` and `curves.png` (over the
 width of the gap, the length of panes and the number of hidden objects), `families.png` (by family) and
 `families/<family>.png`.
 """
@@ -40,12 +40,12 @@ COUNTS = (1, 3, 10, 30)
 
 def facts_of(split: Split) -> dict[str, TrapFacts]:
     """Returns the facts of those traps of a split that belong to a family, by name."""
-    found = {house: split.sidecar(house).trap for house in split.houses}
-    return {house: facts for house, facts in found.items() if facts is not None}
+    traps = {house: split.sidecar(house).trap for house in split.houses}
+    return {house: facts for house, facts in traps.items() if facts is not None}
 
 
 def require_matplotlib() -> None:
-    """Raises ConfigError where matplotlib, which draws the curves, is not installed."""
+    """Raises ConfigError if matplotlib, which draws the curves, is not installed."""
     empty_figure(1.0, 1.0, what="The curves of traps")
 
 
@@ -143,7 +143,7 @@ def draw_family_pictures(folder: Path, name: str, facts: Mapping[str, TrapFacts]
     env = ObjectNavEnv(split=name, sensors=("rgb",))
     split = env.split
     try:
-        for family in dict.fromkeys(each.family for each in facts.values()):
+        for family in dict.fromkeys(trap.family for trap in facts.values()):
             of = [episode for episode in split.episodes if episode.house in facts]
             of = [episode for episode in of if facts[episode.house].family == family]
             first = {facts[episode.house].difficulty: episode for episode in reversed(of)}
@@ -156,8 +156,8 @@ def draw_family_pictures(folder: Path, name: str, facts: Mapping[str, TrapFacts]
 
 def _families_of(rows: Rows, facts: Mapping[str, TrapFacts]) -> list[str]:
     """Returns the families of some rows in the order of the catalogue, then those that it lacks."""
-    found = {facts[row.trap].family for row in rows}
-    return [*(name for name in FAMILIES if name in found), *sorted(found - set(FAMILIES))]
+    families = {facts[row.trap].family for row in rows}
+    return [*(name for name in FAMILIES if name in families), *sorted(families - set(FAMILIES))]
 
 
 def _of(
@@ -190,8 +190,8 @@ def _family_point(rows: Rows, agent: str, family: str) -> Point | None:
         return None
     traps = [row.trap for row in rows]
     share = proportion([row.escaped for row in rows], traps)
-    found = estimate([float(row.collisions) for row in rows], traps)
-    numbers = [found.mean or 0.0, *found.ends]
+    collisions = estimate([float(row.collisions) for row in rows], traps)
+    numbers = [collisions.mean or 0.0, *collisions.ends]
     return Point(agent, family, 0.0, 0.0, 0.0, len(rows), share.mean, *share.interval, *numbers)
 
 

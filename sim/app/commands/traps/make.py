@@ -50,9 +50,9 @@ class Args:
     out: cli.OutFolder
     """Folder for the scenes; its name is the name of the split."""
     family: str | None = None
-    """Family of the traps, for example pane_gap, jam or ledge ..."""
+    """Family of the traps, for example pane_gap, jam or ledge; give this or --split."""
     split: Literal["contact-val", "contact-test", "contact-heldout"] | None = None
-    """... or the shipped split whose traps are made again."""
+    """Shipped split whose traps are made again; give this or --family."""
     difficulty: Difficulty | None = None
     """With --family: the difficulty; all three when not given."""
     seed: cli.Seed = 10

@@ -69,11 +69,11 @@ def _framed(picture: Picture, title: str) -> Picture:
     wide = picture.shape[1]
     head, foot = (np.full((high, wide, 3), PAPER, np.uint8) for high in (HEAD_PX, FOOT_PX))
     write(head, title, (10, 22), wide - 20, 18, INK, BOLD)
-    left = 10
+    x_px = 10
     for words, colour in LEGEND:
-        cv2.circle(foot, (left + 6, FOOT_PX // 2), 6, colour, -1, cv2.LINE_AA)
-        write(foot, words, (left + 18, 18), wide - left, 14, INK)
-        left += 38 + text_width(words, 14)
+        cv2.circle(foot, (x_px + 6, FOOT_PX // 2), 6, colour, -1, cv2.LINE_AA)
+        write(foot, words, (x_px + 18, 18), wide - x_px, 14, INK)
+        x_px += 38 + text_width(words, 14)
     return np.vstack([head, picture, foot])
 
 
@@ -109,8 +109,8 @@ class TopView:
             outline = cv2.convexHull(np.array(points, np.int32))
             cv2.fillConvexPoly(surfaces, outline, 1)
             outlines.append(outline)
-        there = surfaces > 0
-        self.image[there] = ((1.0 - _TINT) * self.image[there] + _TINT * np.array(INVISIBLE)).astype(np.uint8)
+        covered = surfaces > 0
+        self.image[covered] = ((1.0 - _TINT) * self.image[covered] + _TINT * np.array(INVISIBLE)).astype(np.uint8)
         cv2.polylines(self.image, outlines, True, INVISIBLE, 2, cv2.LINE_AA)
 
     def _pixel(self, place_m: tuple[float, float]) -> tuple[int, int]:

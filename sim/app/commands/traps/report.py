@@ -17,7 +17,6 @@ import os
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from msgspec.structs import asdict
 
@@ -34,7 +33,7 @@ from sim.app.options import RunOptions
 from sim.core.files import csv_text, open_to_grow, write_atomically, write_together
 from sim.core.files import write_picture as save_picture
 from sim.core.interface import Agent, ConfigError
-from sim.core.reading import read_json, read_lines
+from sim.core.reading import convert, read_json, read_lines
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.splits import Split, load_split
@@ -73,19 +72,19 @@ def main(args: Args) -> int:
     """Runs the missing episodes, then writes the table."""
     console = display.make_console()
     split = load_split(args.split)
-    episodes, facts = wanted(split, args), facts_of(split)
+    episodes, facts = selected_episodes(split, args), facts_of(split)
     if facts:
         require_matplotlib()
     for name in args.agents:
         find_agent(name)  # a wrong name is refused before anything is written
     write_or_compare_config(args, split)
     results = args.out / "results.jsonl"
-    found = read_lines(results, TrapResult, what="Results")
-    if found.torn:
-        console.print(found.torn, markup=False)
-        os.truncate(results, found.whole_bytes)
+    lines = read_lines(results, TrapResult, what="Results")
+    if lines.torn:
+        console.print(lines.torn, markup=False)
+        os.truncate(results, lines.whole_bytes)
     ids = {episode.episode_id for episode in episodes}
-    rows = [row for row in found.values if row.episode_id in ids]
+    rows = [row for row in lines.values if row.episode_id in ids]
     for name in args.agents:
         done = {row.episode_id for row in rows if row.agent == name}
         for trial in run_trials(args, name, episodes, done):
@@ -112,23 +111,19 @@ def write_or_compare_config(args: Args, split: Split) -> None:
     """
     file = args.out / "config.json"
     own = {name: code_of(RunOptions(agent=name)).partition("+")[2] for name in args.agents}
-    config: dict[str, Any] = {
-        "split_identity": split.identity,
-        "physics": PHYSICS_VERSION,
-        "max_steps": args.max_steps,
-        "own_code": {name: code for name, code in own.items() if code},
-    }
+    own_code = {name: code for name, code in own.items() if code}
+    same = {"split_identity": split.identity, "physics": PHYSICS_VERSION, "max_steps": args.max_steps}
     if (args.out / "results.jsonl").exists():
-        before = read_json(file, dict[str, Any], what="Config") if file.exists() else {}
-        known = before.get("own_code", {})
-        of_known = {name: config["own_code"].get(name, code) for name, code in known.items()}
-        for path, was, now in differing_fields(before | {"own_code": known}, config | {"own_code": of_known}):
+        before = read_json(file, dict[str, object], what="Config") if file.exists() else {}
+        known = convert(before.get("own_code", {}), dict[str, str], where=f"Config '{file}', field 'own_code'")
+        of_known = {name: own_code.get(name, code) for name, code in known.items()}
+        for path, was, now in differing_fields({**before, "own_code": known}, {**same, "own_code": of_known}):
             raise ConfigError(
                 f"--out '{args.out}' holds results with {path} = {field_text(was)}, this command has "
                 f"{field_text(now)}; choose another folder."
             )
-        config["own_code"] = known | config["own_code"]
-    write_atomically(file, json.dumps(config, indent=2) + "\n")
+        own_code = known | own_code
+    write_atomically(file, json.dumps({**same, "own_code": own_code}, indent=2) + "\n")
 
 
 def run_trials(args: Args, name: str, episodes: Sequence[Episode], done: Set[str]) -> Iterator[Trial]:
@@ -139,14 +134,16 @@ def run_trials(args: Args, name: str, episodes: Sequence[Episode], done: Set[str
     env = ObjectNavEnv(split=args.split, sensors=sensors, max_steps=args.max_steps)
     try:
         agent = make_agent(name, env)
-        others = {
-            each.house: each.episode_id for each in reversed(episodes) if env.split.sidecar(each.house).trap is None
+        first_of_others = {
+            episode.house: episode.episode_id
+            for episode in reversed(episodes)
+            if env.split.sidecar(episode.house).trap is None
         }
         for episode in episodes:
             if episode.episode_id in done:
                 continue
             trial = run_trial(env, agent, name, episode)
-            if args.pictures and (others.get(episode.house) == episode.episode_id or not trial.escaped):
+            if args.pictures and (first_of_others.get(episode.house) == episode.episode_id or not trial.escaped):
                 write_picture(args.out / "pictures", env, agent, trial)
             yield trial
     finally:
@@ -171,7 +168,7 @@ def make_agent(name: str, env: ObjectNavEnv) -> Agent:
     return build_agent(name, spec, env, segmenter=GroundTruthSegmenter(), verifier=AcceptAll(), config=spec.config)
 
 
-def wanted(split: Split, args: Args) -> list[Episode]:
+def selected_episodes(split: Split, args: Args) -> list[Episode]:
     """Returns the episodes to run, trap by trap.
 
     Raises:

@@ -22,16 +22,17 @@ import functools
 import shlex
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import cast, get_args
 
 import numpy as np
 
 from sim.app import cli
 from sim.app.analysis import display
+from sim.app.commands.house_file import HouseFile
 from sim.app.evaluation.executors import make_executor
 from sim.app.evaluation.parallel import Shard, ordered_map
 from sim.core.errors import HouseError
@@ -55,26 +56,21 @@ from sim.training.views.views import EXTRAS, sample_views
 FRESH_SEEDS_FROM = 1_000_000
 """Smallest seed of new houses; the seeds of the shipped splits are lower."""
 
-MOST_PER_SHARD = 250
-"""Views in a shard, if there are enough of them for `FEWEST_HOUSES` shards."""
-FEWEST_HOUSES = 20
+MAX_PER_SHARD = 250
+"""Views in a shard, if there are enough of them for `MIN_HOUSES` shards."""
+MIN_HOUSES = 20
 
 POOLS = ("train",)
 """Furniture of new houses: the styles of the split train."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Args:
+class Args(HouseFile):
     """Generate labelled views of houses."""
 
     split: str = "train"
     """Houses of a shipped split, or of a folder with the same layout."""
-    house: Path | None = None
-    """One MJCF file in place of a split."""
-    labels: Path | None = None
-    """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
-    root: Path | None = None
-    """With --house: a folder whose files the house may use in addition to its own folder."""
+
     pool: str | None = None
     """New houses only, with the styles of this pool: train."""
     reshape: bool = False
@@ -150,8 +146,8 @@ def main(args: Args) -> int:
     # Other machines may have finished shards in the meantime.
     complete = [note for task in tasks if (note := notes[task.number] or _kept(args, task, config)) is not None]
     command = "stubborn views " + _command(args)
-    index = write_index(args.out, complete, command=command, config=config)
-    print(_summary(index))
+    write_index(args.out, complete, command=command, config=config)
+    print(_summary(complete))
     return 0
 
 
@@ -177,12 +173,12 @@ def views_per_shard(args: Args) -> int:
     """Returns the number of views in a shard, whole sequences where there are sequences."""
     if args.views_per_shard is not None:
         return args.views_per_shard
-    houses = FEWEST_HOUSES if args.house is None else 1
-    count, unit = min(MOST_PER_SHARD, -(-args.views // houses)), args.sequence or 1
+    houses = MIN_HOUSES if args.house is None else 1
+    count, unit = min(MAX_PER_SHARD, -(-args.views // houses)), args.sequence or 1
     return -(-count // unit) * unit
 
 
-def make_shard(args: Args, config: dict[str, Any], task: ShardTask) -> ShardNote:
+def make_shard(args: Args, config: Mapping[str, object], task: ShardTask) -> ShardNote:
     """Generates one shard, in any process.
 
     A new house that cannot be generated, or shows too little, is replaced by that of another fixed seed.
@@ -199,7 +195,7 @@ def make_shard(args: Args, config: dict[str, Any], task: ShardTask) -> ShardNote
         return _shard_of(args, config, task, task.fresh_seed + FRESH_SEEDS_FROM // 2)
 
 
-def _shard_of(args: Args, config: dict[str, Any], task: ShardTask, fresh_seed: int | None) -> ShardNote:
+def _shard_of(args: Args, config: Mapping[str, object], task: ShardTask, fresh_seed: int | None) -> ShardNote:
     """Generates the shard of the house of a seed; None: of a house of the split."""
     began = time.perf_counter()
     house, styles = _house(args, task, fresh_seed)
@@ -249,7 +245,7 @@ def _recipe(args: Args, seed: int) -> Recipe:
     return replace(recipe, name=f"{'models' if args.furniture is not None else 'reshaped'}_{seed}")
 
 
-def _kept(args: Args, task: ShardTask, config: dict[str, Any]) -> ShardNote | None:
+def _kept(args: Args, task: ShardTask, config: Mapping[str, object]) -> ShardNote | None:
     """Returns the note of a complete shard; None if it is missing or broken.
 
     Raises:
@@ -267,7 +263,7 @@ def _kept(args: Args, task: ShardTask, config: dict[str, Any]) -> ShardNote | No
     return note if (note.house, note.views) == (task.house, task.views) else None
 
 
-def _config(args: Args, split: Split) -> dict[str, Any]:
+def _config(args: Args, split: Split) -> dict[str, object]:
     """Returns the options and versions that the bytes of a shard depend on, apart from its number."""
     packages = ("stubborn-objectnav", "mujoco", "numpy", "opencv-python-headless")
     return {
@@ -314,8 +310,7 @@ def _check_options(args: Args) -> None:
         raise ConfigError(f"--withheld must be {known}, and needs --pool or --furniture, got '{args.withheld}'.")
     if args.reshape and not (args.pool or args.furniture):
         raise ConfigError("--reshape needs --pool or --furniture: other houses are files.")
-    if args.house is None and (args.labels is not None or args.root is not None):
-        raise ConfigError("--labels and --root need --house.")
+    args.check_house()
     if args.house is not None and (args.pool is not None or args.furniture is not None or args.split != "train"):
         raise ConfigError("--house excludes --split, --pool and --furniture.")
 
@@ -328,17 +323,20 @@ def _command(args: Args) -> str:
         "rgb", "sequence", "aim",
     )  # fmt: skip
     values = {key: getattr(args, key) for key in keys}
-    given = [(key, [] if value is True else [value]) for key, value in values.items() if value not in (None, False)]
-    given += [("extras", args.extras)] if args.extras else []
-    words = [word for key, shown in given for word in (f"--{key.replace('_', '-')}", *map(str, shown))]
+    options = [(key, [] if value is True else [value]) for key, value in values.items() if value not in (None, False)]
+    options += [("extras", args.extras)] if args.extras else []
+    words = [word for key, shown in options for word in (f"--{key.replace('_', '-')}", *map(str, shown))]
     return shlex.join([*words, "--out", "DIR"])
 
 
-def _summary(index: dict[str, Any]) -> str:
-    seconds = index["seconds"]
+def _summary(notes: Sequence[ShardNote]) -> str:
+    parts = dict.fromkeys(part for note in notes for part in note.seconds)
+    seconds = {part: sum(note.seconds.get(part, 0.0) for note in notes) for part in parts}
     total = sum(seconds.values()) or 1.0
     share = ", ".join(f"{part} {100 * value / total:.0f} %" for part, value in seconds.items())
+    views, size_bytes = sum(note.views for note in notes), sum(note.size_bytes for note in notes)
+    houses = len({note.house for note in notes})
     return (
-        f"{index['views']} views of {index['houses']} houses in {len(index['shards'])} shards, "
-        f"{index['bytes'] >> 20} MB; of the processes' time: {share}."
+        f"{views} views of {houses} houses in {len(notes)} shards, {size_bytes >> 20} MB; of the processes' time: "
+        f"{share}."
     )

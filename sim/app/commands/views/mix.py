@@ -11,7 +11,7 @@ stubborn train segmentation --views runs/views/{reshaped,models,train,aimed} --v
 | models | 40 % | the same with imported models; without --furniture these views are of `reshaped` as well |
 | train | 5 % | new houses with the styles of the split train |
 | aimed | 15 % | as `models`, cameras aimed at rare goals from 1 to 3.5 m |
-| selection | | `--selection` views of houses that prefer the withheld styles and models, which no other part shows |
+| selection | | `--selection` views of houses that prefer the withheld styles and models; no other part shows these |
 
 Parts grow in turns, so that a stopped run has views in these proportions and training can begin. The same command
 continues: complete shards are kept, and a shard has the same bytes in every run.
@@ -20,9 +20,8 @@ continues: complete shards are kept, and a shard has the same bytes in every run
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from sim.app import cli
 from sim.app.commands.views import generate
@@ -78,31 +77,30 @@ def parts(args: Args, turns: int) -> Iterator[generate.Args]:
     houses = dict(SHARES)
     if args.furniture is None:
         houses["reshaped"] += houses.pop("models")
-    reshaped: dict[str, Any] = {"pool": "train", "reshape": True}
-    models = {**reshaped, "furniture": args.furniture}
-    changes: dict[str, dict[str, Any]] = {
-        "reshaped": reshaped, "models": models, "train": {"pool": "train"}, "aimed": {**models, "aim": "rare"}
-    }  # fmt: skip
     for name, count in houses.items():
-        views = VIEWS_PER_HOUSE * count * turns
-        yield _options(args, name, views=views, per_house=VIEWS_PER_HOUSE, withheld="without", **changes[name])
+        train = _options(args, name, views=VIEWS_PER_HOUSE * count * turns, per_house=VIEWS_PER_HOUSE)
+        yield replace(
+            train,
+            withheld="without",
+            reshape=name != "train",
+            furniture=args.furniture if name in ("models", "aimed") else None,
+            aim="rare" if name == "aimed" else None,
+        )
 
 
 def selection(args: Args) -> generate.Args:
     """Returns the options of the views for selecting a network."""
     views = SELECTION_PER_HOUSE * -(-args.selection // SELECTION_PER_HOUSE)
-    return _options(
-        args, SELECTION, views=views, per_house=SELECTION_PER_HOUSE, withheld="only", pool="train",
-        reshape=True, furniture=args.furniture,
-    )  # fmt: skip
+    options = _options(args, SELECTION, views=views, per_house=SELECTION_PER_HOUSE)
+    return replace(options, withheld="only", reshape=True, furniture=args.furniture)
 
 
-def _options(args: Args, name: str, *, views: int, per_house: int, **changes: Any) -> generate.Args:
+def _options(args: Args, name: str, *, views: int, per_house: int) -> generate.Args:
     """Returns the options of one part: rendered as agents see, reduced to 320 x 240; the seeds of parts differ."""
     number = [*SHARES, SELECTION].index(name)
     return generate.Args(
-        out=args.out / name, views=views, views_per_shard=per_house, workers=args.workers,
-        seed=(len(SHARES) + 1) * args.seed + number, profile="fast", shrink=2, extras=("instances",), **changes,
+        out=args.out / name, views=views, views_per_shard=per_house, workers=args.workers, pool="train",
+        seed=(len(SHARES) + 1) * args.seed + number, profile="fast", shrink=2, extras=("instances",),
     )  # fmt: skip
 
 

@@ -80,14 +80,14 @@ def draw(view: LabelledView) -> NDArray[np.uint8]:
 def _objects(view: LabelledView, colour: NDArray) -> NDArray[np.uint8]:
     """Returns the colour image (h, w, 3) with the masks and boxes of the view's objects; large ones are named."""
     scale, picture = colour.shape[1] / view.rgb.shape[1], colour.copy()
-    for number, each in enumerate(sorted(view.annotations or [], key=lambda each: -each["area"])):
+    for number, annotation in enumerate(sorted(view.annotations or [], key=lambda annotation: -annotation["area"])):
         tint = np.rint(255.0 * np.array(colorsys.hsv_to_rgb(0.618 * number % 1.0, 0.8, 1.0)))
-        mask = decode_mask(each["segmentation"]).astype(np.uint8)
+        mask = decode_mask(annotation["segmentation"]).astype(np.uint8)
         inside = cv2.resize(mask, colour.shape[1::-1], interpolation=cv2.INTER_NEAREST) > 0
         picture[inside] = (0.5 * picture[inside] + 0.5 * tint).astype(np.uint8)
-        left, top, width, height = (round(scale * value) for value in each["bbox"])
+        left, top, width, height = (round(scale * value) for value in annotation["bbox"])
         cv2.rectangle(picture, (left, top), (left + width - 1, top + height - 1), tint.tolist(), 1)
         if width >= 30:
             base = (left + 2, max(top + NAME_PX, NAME_PX))
-            write(picture, each["name"], base, width_px=width, size_px=NAME_PX, colour=(255, 255, 255))
+            write(picture, annotation["name"], base, width_px=width, size_px=NAME_PX, colour=(255, 255, 255))
     return np.asarray(picture, np.uint8)

@@ -3,7 +3,7 @@
 stubborn views unpack --views runs/views --out runs/views_png
 
 Writes `rgb/<key>.png`, `depth/<key>.png` (uint16 millimetres), `semantic/<key>.png` (uint8 mpcat40 id; 0 is void) and
-`record/<key>.json`; of views that hold them also `instances/<key>.png` (uint16), `normals/<key>.png` and one file
+`record/<key>.json`; if the views have them also `instances/<key>.png` (uint16), `normals/<key>.png` and one file
 `coco.json` with the boxes and masks of all views. Existing views are kept, so that the same command continues a
 stopped run.
 """
@@ -13,7 +13,6 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import cv2
 import numpy as np
@@ -39,8 +38,8 @@ class Args:
 def main(args: Args) -> int:
     """Unpacks every shard and prints the number of views."""
     count = 0
-    images: list[dict[str, Any]] = []
-    objects: list[dict[str, Any]] = []
+    images: list[dict[str, object]] = []
+    objects: list[dict[str, object]] = []
     for shard in list_shards(args.views):
         for view in read_shard(shard):
             _unpack(args.out, view)
@@ -48,8 +47,8 @@ def main(args: Args) -> int:
             if view.annotations is not None:
                 images.append(_coco_image(view, count))
                 objects += [
-                    {**each, "id": len(objects) + i, "image_id": count, "instance_id": each.get("id")}
-                    for i, each in enumerate(view.annotations, start=1)
+                    {**annotation, "id": len(objects) + i, "image_id": count, "instance_id": annotation.get("id")}
+                    for i, annotation in enumerate(view.annotations, start=1)
                 ]
     if images:
         coco = {"images": images, "annotations": objects, "categories": CATEGORIES}
@@ -59,7 +58,7 @@ def main(args: Args) -> int:
     return 0
 
 
-def _coco_image(view: LabelledView, number: int) -> dict[str, Any]:
+def _coco_image(view: LabelledView, number: int) -> dict[str, object]:
     height, width = view.semantic.shape
     return {"id": number, "file_name": f"rgb/{view.key}.png", "width": width, "height": height}
 

@@ -27,7 +27,7 @@ def commands() -> dict[str, ModuleType]:
     """Returns all modules that have options and a main function."""
     tools = [".".join(file.relative_to(ROOT).with_suffix("").parts) for file in (ROOT / "tools").glob("*/*.py")]
     names = [
-        *(each.module for each in COMMANDS_OF_USERS.values()),
+        *(command.module for command in COMMANDS_OF_USERS.values()),
         *(name for name in tools if "def main(" in source(name)),
     ]
     modules = {name: importlib.import_module(name) for name in sorted(names)}
@@ -208,6 +208,6 @@ def test_options_that_name_nothing_are_one_line_and_leave_no_file(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "file").write_bytes(b"\x00\xffno file of ours\n")
-    given = [{"OUT": "out/page.png", "FILE": "file"}.get(word, word) for word in words.split()]
-    assert re.search(message, refusal(name, given, capsys))
+    arguments = [{"OUT": "out/page.png", "FILE": "file"}.get(word, word) for word in words.split()]
+    assert re.search(message, refusal(name, arguments, capsys))
     assert [path.name for path in tmp_path.iterdir()] == ["file"]

@@ -71,10 +71,10 @@ def test_the_tool_lists_train_houses_that_pass_and_leaves_their_files_in_the_cac
 
 def test_every_documented_command_has_a_trial_and_every_trial_a_command() -> None:
     """`tests/helpers/documented.py` states for every documented command how it is tried."""
-    found = {command: where for command, where in documented.commands().items() if "--help" not in command}
-    untried = [f"{where}: {command}" for command, where in found.items() if command not in TRIALS]
+    commands = {command: where for command, where in documented.commands().items() if "--help" not in command}
+    untried = [f"{where}: {command}" for command, where in commands.items() if command not in TRIALS]
     assert not untried, "no trial in tests/helpers/documented.py for\n" + "\n".join(untried)
-    stale = [command for command in TRIALS if command not in found]
+    stale = [command for command in TRIALS if command not in commands]
     assert not stale, "in tests/helpers/documented.py but in no page:\n" + "\n".join(stale)
 
 
@@ -138,8 +138,8 @@ def test_files_that_documented_commands_read_exist_or_are_written_by_another_com
     for command, args in parsed.items():
         for name, path in _paths(args):
             whole = {str(path), *(str(parent) for parent in path.parents)}
-            there = (documented.ROOT / path).exists() or bool(whole & made) or str(path) in documented.STAND_INS
-            assert name in OUTPUTS or there, f"{command}: no command of the docs makes '{path}'"
+            exists = (documented.ROOT / path).exists() or bool(whole & made) or str(path) in documented.STAND_INS
+            assert name in OUTPUTS or exists, f"{command}: no command of the docs makes '{path}'"
 
 
 @pytest.mark.costly
@@ -219,10 +219,10 @@ def _parse_options(name: str, argv: list[str]) -> Any:
 
 def _paths(args: Any) -> list[tuple[str, Path]]:
     """Returns the fields of an `Args` that hold paths, including houses and splits that are given as a path."""
-    found = []
+    paths = []
     for field in dataclasses.fields(args) if args is not None else ():
         value = getattr(args, field.name)
-        for each in value if isinstance(value, tuple) else (value,):
-            if isinstance(each, Path) or (field.name == "split" and "/" in str(each)):
-                found.append((field.name, Path(each)))
-    return found
+        for item in value if isinstance(value, tuple) else (value,):
+            if isinstance(item, Path) or (field.name == "split" and "/" in str(item)):
+                paths.append((field.name, Path(item)))
+    return paths

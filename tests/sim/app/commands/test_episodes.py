@@ -167,7 +167,7 @@ def test_a_sidecar_fixes_start_and_goal_of_the_episodes(tmp_path: Path, capsys: 
     assert (episode.goal, episode.start) == ("sofa", Pose(1.0, 2.5, 0.0))
     assert (house.parent / "pictures" / "pane.png").is_file()
     main(Args(split=house.parent, recipe="traps", pictures=False))
-    assert [each.start.yaw_rad for each in load_split(house.parent).episodes] == list(START_TURNS_RAD)
+    assert [episode.start.yaw_rad for episode in load_split(house.parent).episodes] == list(START_TURNS_RAD)
     with pytest.raises(EpisodeError, match="there are 1 different episodes, and 4 were asked for"):
         main(Args(split=house.parent, episodes=4))
     house.with_suffix(".json").write_text(json.dumps(TRAP | {"goal": "bed"}))

@@ -144,9 +144,9 @@ def test_mirror_images_slivers_and_the_calibration_change_what_is_measured(tmp_p
 
 
 def test_the_calibration_of_the_shipped_weights_is_replaced_only_when_the_options_say_so(tmp_path: Path) -> None:
-    for given in (None, SHIPPED_REDNET):
+    for file in (None, SHIPPED_REDNET):
         with pytest.raises(ConfigError, match="Give --weights FILE, a copy of them for example, or --shipped"):
-            evaluate_rednet.main(Args(views=(tmp_path,), weights=given, calibrate=True))
+            evaluate_rednet.main(Args(views=(tmp_path,), weights=file, calibrate=True))
 
 
 OWN = "tests.helpers.segmentations"

@@ -33,9 +33,9 @@ def always_wall() -> RedNet:
 
 def test_every_pixel_of_a_missed_sofa_is_counted_and_named(tmp_path: Path, always_wall: RedNet) -> None:
     write_views(tmp_path / "views", 3)
-    found = list(missed_objects(list_shards(tmp_path / "views"), always_wall, 1, Calibration.of_temperature(1.0)))
-    assert [(missed.category, missed.taken_for) for missed in found] == [("sofa", "wall")] * 3
-    for missed in found:
+    missed_all = list(missed_objects(list_shards(tmp_path / "views"), always_wall, 1, Calibration.of_temperature(1.0)))
+    assert [(missed.category, missed.taken_for) for missed in missed_all] == [("sofa", "wall")] * 3
+    for missed in missed_all:
         left, top, width, height = missed.box
         assert (top, height, left + width) == (0, 48, 64)
         assert missed.missed_px == 48 * width == np.count_nonzero(missed.truth == MPCAT40_ID["sofa"])
@@ -46,8 +46,8 @@ def test_objects_are_predicted_with_the_calibration_of_the_weights(tmp_path: Pat
     calibration = Calibration.of_temperature(1.0)
     calibration.offset[MPCAT40_ID["wall"] - 1] = -10.0
     calibration.offset[MPCAT40_ID["floor"] - 1] = 10.0
-    found = list(missed_objects(list_shards(tmp_path / "views"), always_wall, 1, calibration))
-    assert [missed.taken_for for missed in found] == ["floor"] * 2
+    missed_all = list(missed_objects(list_shards(tmp_path / "views"), always_wall, 1, calibration))
+    assert [missed.taken_for for missed in missed_all] == ["floor"] * 2
 
 
 def test_the_sheet_has_the_worst_object_of_each_house(

@@ -133,9 +133,9 @@ def test_the_label_picture_names_void_objects_and_has_unlit_colours_that_differ(
     colours = house_pictures.distinct_colours(labels.categories())
     picture = house_pictures.draw_top(house, colours=colours)
     assert {"Gadget: void", "Widget: void", "Couch.001: sofa"} <= set(texts)
-    found = {tuple(colour) for colour in picture.reshape(-1, 3).tolist()}
+    colours_seen = {tuple(colour) for colour in picture.reshape(-1, 3).tolist()}
     for category in ("sofa", "wall", "floor", "void"):
-        assert tuple(colours[MPCAT40_ID[category]].tolist()) in found, category
+        assert tuple(colours[MPCAT40_ID[category]].tolist()) in colours_seen, category
 
 
 def test_label_colours_are_far_from_each_other_and_from_structure() -> None:
@@ -215,7 +215,7 @@ def test_episodes_of_a_scene_make_a_split_that_needs_nothing_else(scene: tuple[P
     first, second = load_house(scene[0], labels_path=scene[1]), split.load_house("flat")
     labels = [read_labels(house.spec.copy().compile(), rules=house.rules) for house in (first, second)]
     np.testing.assert_array_equal(labels[0].geom_category, labels[1].geom_category)
-    assert [each.name for each in labels[0].instances] == [each.name for each in labels[1].instances]
+    assert [instance.name for instance in labels[0].instances] == [instance.name for instance in labels[1].instances]
     assert {file.name.split("_", 1)[1] for file in (moved / "files").iterdir()} == {
         "cube.obj", "arch.obj", "wood.png",
     }  # fmt: skip
@@ -242,7 +242,7 @@ def test_views_of_a_scene_have_its_labels(scene: tuple[Path, Path], tmp_path: Pa
 @pytest.mark.parametrize(
     ("module", "options", "message"),
     [
-        (make_episodes, ["--labels", "x.json"], "--labels, --root and --out need --house"),
+        (make_episodes, ["--labels", "x.json"], "--labels and --root need --house"),
         (make_episodes, ["--house", "x.xml"], "--house needs --out"),
         (make_episodes, [], "needs --split"),
         (generate_views, ["--labels", "x.json", "--out", "{tmp}"], "--labels and --root need --house"),
@@ -273,7 +273,7 @@ def test_storeys_of_a_scene_whose_bodies_have_no_names_are_cut() -> None:
     for storey, height_m in ((0, 0.5), (1, 3.5)):
         body = house.spec.worldbody.add_body(pos=[0.5, 0.5, height_m])
         body.add_geom(name=f"misc_{storey:02d}", type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.1, 0.1, 0.1])
-    kept = [{geom.name for geom in each.spec.geoms if geom.name.startswith("misc")} for each in storeys(house)]
+    kept = [{geom.name for geom in storey.spec.geoms if geom.name.startswith("misc")} for storey in storeys(house)]
     assert kept == [{"misc_00"}, {"misc_01"}]
     single = with_box(room(3, 3), "misc_00", centre_m=(0, 0, 0.5), half_m=(0.1, 0.1, 0.1))
     single.spec.worldbody.add_body()

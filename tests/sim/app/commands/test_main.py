@@ -29,7 +29,7 @@ def top_names(module: ast.Module) -> Iterator[str]:
     """Yields the names that a module defines, and those that it passes on (`from ... import X as X`)."""
     for node in module.body:
         if isinstance(node, ast.ImportFrom):
-            yield from (each.asname for each in node.names if each.asname is not None)
+            yield from (alias.asname for alias in node.names if alias.asname is not None)
         elif isinstance(node, ast.Assign):
             yield from (target.id for target in node.targets if isinstance(target, ast.Name))
         elif isinstance(node, (ast.ClassDef, ast.FunctionDef)):
@@ -37,12 +37,14 @@ def top_names(module: ast.Module) -> Iterator[str]:
 
 
 def test_every_module_with_options_is_in_the_table() -> None:
-    found = {
+    modules = {
         ".".join(file.relative_to(ROOT).with_suffix("").parts)
         for file in (ROOT / "sim" / "app" / "commands").rglob("*.py")
         if {"Args", "main"} <= set(top_names(ast.parse(file.read_text())))
     }
-    assert found == {each.module for each in COMMANDS.values() if each.module.startswith("sim.app.commands.")}
+    assert modules == {
+        command.module for command in COMMANDS.values() if command.module.startswith("sim.app.commands.")
+    }
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -74,8 +76,8 @@ def test_help_of_a_command_has_its_name_and_says_what_it_does(name: str, capsys:
 def test_the_list_has_one_line_for_each_command(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert entry(words) == 0
     lines = capsys.readouterr().out.splitlines()
-    for name, each in COMMANDS.items():
-        assert [line for line in lines if line.split("  ")[1:2] == [name] and line.endswith(f"  {each.summary}.")]
+    for name, command in COMMANDS.items():
+        assert [line for line in lines if line.split("  ")[1:2] == [name] and line.endswith(f"  {command.summary}.")]
     assert max(map(len, lines)) <= 90
 
 
@@ -141,10 +143,10 @@ def test_commands_import_nothing_from_tools_tests_or_examples(file: Path) -> Non
 
 def test_no_file_changes_where_modules_are_looked_for() -> None:
     folders = ("sim", "stubborn", "tools", "examples", "tests")
-    found = [
+    files = [
         str(file.relative_to(ROOT))
         for folder in folders
         for file in (ROOT / folder).rglob("*.py")
         if "sys.path." + "insert" in file.read_text(encoding="utf-8")
     ]
-    assert found == ["sim/app/composition/imports.py"]  # the current folder, where `--agent package.module:NAME` looks
+    assert files == ["sim/app/composition/imports.py"]  # the current folder, where `--agent package.module:NAME` looks

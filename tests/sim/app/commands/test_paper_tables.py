@@ -34,9 +34,9 @@ def lines_of(setups: tuple[AgentSetup, ...], *, failed: tuple[int, ...]) -> dict
 
 def cell(table: ResultTable, row: str, column: str) -> Cell:
     cells = dict(table.rows)[row]
-    found = cells[table.header.index(column) - 1]
-    assert isinstance(found, Cell)
-    return found
+    cell = cells[table.header.index(column) - 1]
+    assert isinstance(cell, Cell)
+    return cell
 
 
 def test_causes_are_shares_of_the_failed_episodes_and_their_differences_of_all() -> None:

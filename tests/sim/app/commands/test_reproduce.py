@@ -326,13 +326,13 @@ def test_the_papers_figures_stand_beside_the_rows_of_the_same_name(name: str, li
     shown = {label: dict(zip(beside.header[1:], cells, strict=True)) for label, cells in beside.rows}
     for title, column in columns.items():
         for row, text in column.items():
-            found = [
+            matching = [
                 cells
                 for label, cells in shown.items()
                 if re.fullmatch(rf"{re.escape(row)}( \(.*\)| stubborn.*)?", label)
             ]
             expected = 0 if name in ("categories", "exploration") and row not in ("sofa", "bed", "all") else 1
-            assert [cells[f"paper: {title}"] for cells in found] == [text] * expected, (title, row)
+            assert [cells[f"paper: {title}"] for cells in matching] == [text] * expected, (title, row)
 
 
 def test_all_tables_of_the_paper_get_a_page(
@@ -362,7 +362,7 @@ def test_an_agent_of_a_table_can_have_a_segmentation_of_its_own() -> None:
     setup = AgentSetup.named("cloned --semantics gt", "rednet")
     assert (setup.semantics, setup.label) == ("gt", "cloned (gt)")
     assert AgentSetup.named("cloned", "rednet").label == "cloned (rednet)"
-    assert [each.semantics for each in table_named("failures").setups()] == ["rednet"] * 3 + ["gt"]
+    assert [setup.semantics for setup in table_named("failures").setups()] == ["rednet"] * 3 + ["gt"]
 
 
 def test_all_tables_are_those_of_the_paper(tmp_path: Path) -> None:

@@ -34,12 +34,12 @@ SMALL = ("camera.width_px=160", "camera.height_px=120")
 def command(*options: object) -> list[str]:
     """Uses ground truth and small images unless the options say otherwise: a network would take most of the time."""
     semantics = () if "--semantics" in options else ("--semantics", "gt")
-    given = list(map(str, (*options, *semantics)))
-    if "--config" in given:
-        given[given.index("--config") + 1 : given.index("--config") + 1] = SMALL
+    words = list(map(str, (*options, *semantics)))
+    if "--config" in words:
+        words[words.index("--config") + 1 : words.index("--config") + 1] = SMALL
     else:
-        given += ["--config", *SMALL]
-    return [sys.executable, "-m", "sim.run", *given]
+        words += ["--config", *SMALL]
+    return [sys.executable, "-m", "sim.run", *words]
 
 
 def run(*options: object) -> subprocess.CompletedProcess[str]:
@@ -70,12 +70,12 @@ def test_another_seed_draws_other_starts(house: Path, tmp_path: Path) -> None:
 def test_a_line_and_the_summary_have_the_fields_of_the_contract(house: Path, tmp_path: Path) -> None:
     run("--agent", "oracle", "--house", house, "--episodes", 2, "--out", tmp_path)
     (line, _), summary = lines_of(tmp_path), json.loads((tmp_path / "summary.json").read_text())
-    wanted = (
+    names = (
         "episode_id house goal agent semantics seed success spl soft_spl distance_to_goal num_steps path_length "
         "shortest_path collisions gt_explored first_seen_step steps_to_first_sight area_seen_m2 area_per_metre trapped "
         "failure end_reason"
     )
-    assert set(wanted.split()) <= set(line)
+    assert set(names.split()) <= set(line)
     assert summary["episodes"] == 2
     for metric in (key for key, metric in METRICS.items() if metric.in_summary):
         low, high = summary[metric]["ci95"]
@@ -152,8 +152,6 @@ def test_an_episode_whose_goal_is_upstairs_runs_and_fails_by_stairs(tmp_path: Pa
 def test_the_shipped_network_is_used_unless_another_segmentation_is_requested(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from sim.app.commands.run import entry
-
     assert entry(["--goal", "bed", "--episodes", "1", "--out", str(tmp_path)]) == 0
     assert "stubborn with segmentation by rednet" in capsys.readouterr().out
     (line,) = lines_of(tmp_path)
@@ -174,7 +172,7 @@ def test_agents_are_listed() -> None:
 
 
 BROKEN_HOUSES = {
-    "not_xml.xml": "this is no house",
+    "not_xml.xml": "not a house",
     "no_floor.xml": '<mujoco><worldbody><geom name="wall_00" type="box" size="1 1 1"/></worldbody></mujoco>',
     "unlabelled.xml": (
         '<mujoco><worldbody><geom name="floor_00" type="plane" size="3 3 1"/>'
@@ -200,9 +198,6 @@ BROKEN_HOUSES = {
         (("--house", "not_xml.xml"), "not_xml.xml"),
         (("--house", "no_floor.xml"), "floor"),
         (("--house", "unlabelled.xml"), "thing"),
-        (("--episodes", "0"), "--episodes"),
-        (("--workers", "-1"), "--workers"),
-        (("--episodes", "five"), "five"),
         (("--house", "HOUSE", "--out", "/proc/nowhere"), "--out"),
     ],
 )
@@ -214,8 +209,6 @@ def test_a_wrong_option_is_one_line_and_status_2(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    from sim.app.commands.run import entry
-
     for name, content in BROKEN_HOUSES.items():
         (tmp_path / name).write_text(content)
     monkeypatch.chdir(tmp_path)
@@ -229,8 +222,6 @@ def test_a_wrong_option_is_one_line_and_status_2(
 def test_a_run_resumed_by_other_code_says_so_and_names_both(
     house: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from sim.app.commands.run import entry
-
     def run_quitter(episodes: int) -> tuple[str, list[str]]:
         options = ["--agent", "tests.helpers.runners:make_quitter", "--house", str(house), "--out", str(tmp_path)]
         options += ["--step-timeout", "0"]

@@ -33,7 +33,7 @@ def plan() -> Plan:
 
 def test_objects_of_a_plan_are_near_others_within_the_radius(plan: Plan):
     seen = [around(plan, 2.5, np.random.default_rng(seed)) for seed in range(40)]
-    nearby, category = np.max([each for each, _ in seen], axis=0), seen[0][1]
+    nearby, category = np.max([scores for scores, _ in seen], axis=0), seen[0][1]
     assert sorted(category.tolist()) == sorted((SINK, TOWEL, BED, CLOTHES))
     for one, other in ((SINK, TOWEL), (TOWEL, SINK), (BED, CLOTHES), (CLOTHES, BED)):
         assert np.flatnonzero(nearby[category == one][0]).tolist() == [other]
@@ -59,10 +59,10 @@ def test_it_writes_what_the_agent_reads_and_judges_plans_that_it_held_back(
     assert content["objects"] == 4 * len(fitted)
     assert content["log_loss"] < content["log_loss_of_frequency"] - 0.2
     assert content["command"].endswith(f"--plans {tmp_path / 'plans'} --radius-m 2.5 --seed 0")
-    found = read_context(out)
+    context = read_context(out)
     by_sink = np.zeros((1, len(OBJECTS)), np.float32)
     by_sink[0, SINK] = 1.0
-    assert found.log_ratios(by_sink)[0, TOWEL] > found.log_ratios(by_sink)[0, CLOTHES] + 1.0
+    assert context.log_ratios(by_sink)[0, TOWEL] > context.log_ratios(by_sink)[0, CLOTHES] + 1.0
     assert f"written: {out}" in capsys.readouterr().out
 
 

@@ -10,25 +10,10 @@ import numpy as np
 import pytest
 
 from sim.app.commands.train import fusion as train_tracks
-from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40, ConfigError
-from sim.episodes.episode import Episode
-from sim.episodes.splits import write_split
 from sim.training.fits import track_log
 from stubborn.detection.fusion import Fusion
 from stubborn.detection.track_seeker import TrackSeeker
-from tests.helpers.worlds import room, with_box
-
-
-@pytest.fixture(scope="module")
-def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("splits") / "tiny"
-    folder.mkdir()
-    furnished = with_box(room(7, 5), "sofa_00", centre_m=(3.0, 0.5, 0.4), half_m=(0.4, 0.8, 0.4))
-    (folder / "seats.xml").write_text(furnished.spec.to_xml())
-    episodes = [Episode(f"tiny_{i}", "seats", "sofa", Pose(-2.0, 0.4 * i, 0.3 * i), 3.5) for i in range(3)]
-    write_split(folder, episodes, {"seats": {"sofa": []}}, version="0.0.1")
-    return folder
 
 
 def log_after(split: Path, log: Path, episodes: int) -> list[dict]:
@@ -41,8 +26,8 @@ def log_after(split: Path, log: Path, episodes: int) -> list[dict]:
     return [json.loads(line) for line in (log / "results.jsonl").read_text().splitlines()]
 
 
-def test_the_agent_of_the_log_uses_no_fitted_parameters(split: Path, tmp_path: Path):
-    args = train_tracks.Args(split=str(split), semantics="noisy", log=tmp_path, out=tmp_path / "x.json")
+def test_the_agent_of_the_log_uses_no_fitted_parameters(seats_split: Path, tmp_path: Path):
+    args = train_tracks.Args(split=str(seats_split), semantics="noisy", log=tmp_path, out=tmp_path / "x.json")
     runner = train_tracks.TrackRunner((args, tmp_path))
     seeker = runner._recorder._agent.seeker
     assert isinstance(seeker, TrackSeeker)
@@ -51,8 +36,8 @@ def test_the_agent_of_the_log_uses_no_fitted_parameters(split: Path, tmp_path: P
 
 
 @pytest.mark.costly
-def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(split: Path, tmp_path: Path):
-    first = log_after(split, tmp_path, 2)
+def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(seats_split: Path, tmp_path: Path):
+    first = log_after(seats_split, tmp_path, 2)
     assert [line["steps"] for line in first] == [30, 30]
     for line in first:
         content = train_tracks.read_tracks(tmp_path / "tracks" / f"{line['episode_id']}.npz")
@@ -66,29 +51,29 @@ def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(split: Pa
         sofa = int(content["counts"][:, MPCAT40.index("sofa")].argmax())
         seen_as = content["mean"][content["track"][content["sample"]] == sofa].mean(axis=0)
         assert seen_as[MPCAT40.index("sofa") - 1] > 0.2
-    more = log_after(split, tmp_path, 3)
+    more = log_after(seats_split, tmp_path, 3)
     assert more[:2] == first
     assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
 
 
 @pytest.mark.costly
-def test_a_file_holds_the_tracks_only(split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_file_holds_the_tracks_only(seats_split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """NumPy before 2.2 stores each keyword of `savez_compressed` as an array."""
-    given: list[set[str]] = []
+    stored: list[set[str]] = []
     write = np.savez_compressed
     monkeypatch.setattr(
-        np, "savez_compressed", lambda file, **arrays: given.append(set(arrays)) or write(file, **arrays)
+        np, "savez_compressed", lambda file, **arrays: stored.append(set(arrays)) or write(file, **arrays)
     )
-    log_after(split, tmp_path, 1)
-    assert given == [{"counts", "track", "sample", "view", "mean", "weight"}]
+    log_after(seats_split, tmp_path, 1)
+    assert stored == [{"counts", "track", "sample", "view", "mean", "weight"}]
 
 
 def test_an_episode_without_tracks_is_logged_and_adds_no_samples(
-    split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    seats_split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setattr(track_log, "MIN_VOXELS", 10**9)
     args = train_tracks.Args(
-        split=str(split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
+        split=str(seats_split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
     )
     with pytest.raises(ConfigError, match="The log has no tracks: run episodes"):
         train_tracks.main(args)
@@ -102,9 +87,9 @@ def test_an_episode_without_tracks_is_logged_and_adds_no_samples(
     }  # fmt: skip
 
 
-def test_a_log_of_another_seed_and_a_broken_file_are_refused(split: Path, tmp_path: Path):
+def test_a_log_of_another_seed_and_a_broken_file_are_refused(seats_split: Path, tmp_path: Path):
     args = train_tracks.Args(
-        split=str(split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
+        split=str(seats_split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
     )
     with pytest.raises(ConfigError, match=r"are needed.*run more episodes"):  # more samples, or another house
         train_tracks.main(args)

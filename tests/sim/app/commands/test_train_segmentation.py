@@ -12,7 +12,7 @@ import pytest
 import torch
 from torch.utils.data import Subset
 
-from sim.app.commands.evaluate.network_card import training_commands, training_stages, training_text
+from sim.app.commands.evaluate.network_card import Training, training_commands, training_stages, training_text
 from sim.app.commands.train.segmentation import Args, Trainer, main
 from sim.core.interface import MPCAT40_ID, ConfigError
 from sim.core.paths import code_hash
@@ -177,10 +177,10 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
         main(options(tmp_path, out=tmp_path / "finest", **slow | {"init": tmp_path / "finer/rednet.safetensors"})) == 0
     )
     _, last = load_network(tmp_path / "finest/rednet.safetensors")
-    stages = list(training_stages({**last, "averaged": True}))
+    stages = training_stages({**last, "averaged": True})
     text = training_text(stages[-1])
     assert text == f"1 steps, {last['hours']} h, code {code_hash()}, then averaged with the weights before it"
-    folders = [stage["options"]["out"] for stage in stages]
+    folders = [stage.options["out"] for stage in stages]
     assert folders == [str(tmp_path / name) for name in ("out", "finer", "finest")]
     with pytest.raises(ConfigError, match="is not of size 'lite0'"):
         main(options(tmp_path, out=tmp_path / "other", init=first, size="lite0"))
@@ -264,6 +264,6 @@ def test_too_few_views_are_refused_before_anything_is_written(tmp_path: Path) ->
     ("options", "told"), [({"rate": "0.001"}, False), ({"rate": "0.001", "window_px": "160"}, True)]
 )
 def test_a_card_says_which_options_of_a_training_are_of_earlier_versions(options: dict[str, str], told: bool) -> None:
-    text = "\n".join(training_commands([{"options": {"seed": "1"}}, {"options": options}]))
+    text = "\n".join(training_commands([Training(options={"seed": "1"}), Training(options={**options})]))
     assert "--seed 1\nstubborn train segmentation --rate 0.001" in text
     assert ("earlier versions" in text) == told

@@ -28,17 +28,6 @@ from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.worlds import room, with_box
 
 
-@pytest.fixture(scope="module")
-def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("splits") / "tiny"
-    folder.mkdir()
-    furnished = with_box(room(7, 5), "sofa_00", centre_m=(3.0, 0.5, 0.4), half_m=(0.4, 0.8, 0.4))
-    (folder / "seats.xml").write_text(furnished.spec.to_xml())
-    episodes = [Episode(f"tiny_{i}", "seats", "sofa", Pose(-2.0, 0.4 * i, 0.3 * i), 3.5) for i in range(3)]
-    write_split(folder, episodes, {"seats": {"sofa": []}}, version="0.0.1")
-    return folder
-
-
 def log_after(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> list[dict]:
     """Returns the log after this number of episodes; it holds too few candidates for a fit."""
     args = train_verifier.Args(
@@ -50,11 +39,13 @@ def log_after(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> 
 
 
 @pytest.mark.costly
-def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(split: Path, tmp_path: Path):
-    first = log_after(split, tmp_path, 2)
+def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(seats_split: Path, tmp_path: Path):
+    first = log_after(seats_split, tmp_path, 2)
     assert [line["steps"] for line in first] == [30, 30]
-    candidates = [each for line in first for each in line["candidates"]]
-    assert any(each[4] == 1.0 for each in candidates)  # it reached the sofa, where a STOP would have succeeded
+    candidates = [candidate for line in first for candidate in line["candidates"]]
+    assert any(
+        candidate[4] == 1.0 for candidate in candidates
+    )  # it reached the sofa, where a STOP would have succeeded
     for *features, truth, x_m, y_m in candidates:
         views, total, highest, other = Features(*features)
         assert truth in (0.0, 1.0)
@@ -64,12 +55,12 @@ def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(split
         assert 0.5 < highest <= 1.0
         assert highest <= total + 1e-3 <= views + 2e-3
         assert 0.0 <= other <= 1.0
-    more = log_after(split, tmp_path, 3)
+    more = log_after(seats_split, tmp_path, 3)
     assert more[:2] == first
     assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
 
 
-def test_an_episode_ends_when_the_robot_has_fallen(split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_an_episode_ends_when_the_robot_has_fallen(seats_split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     step = ObjectNavEnv.step
 
     def fallen_after_5(env: ObjectNavEnv, action: int) -> tuple[Any, ...]:
@@ -77,7 +68,7 @@ def test_an_episode_ends_when_the_robot_has_fallen(split: Path, tmp_path: Path, 
         return observation, reward, env.scene.task.num_steps >= 5, truncated, info
 
     monkeypatch.setattr(ObjectNavEnv, "step", fallen_after_5)
-    (line,) = log_after(split, tmp_path, 1)
+    (line,) = log_after(seats_split, tmp_path, 1)
     assert line["steps"] == 5
 
 
@@ -91,17 +82,22 @@ def test_the_recorded_command_names_all_options_that_change_the_fit_and_the_epis
 
 @pytest.mark.parametrize("change", ["split_identity", "detector.flicker_rate", "code", "seed", "max_steps"])
 def test_a_log_of_another_split_code_or_detector_is_refused_with_the_difference(
-    split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: str
+    seats_split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: str
 ):
     args = train_verifier.Args(
-        split=str(split), episodes=1, max_steps=3, least_of_either=500, log=tmp_path / "log", out=tmp_path / "x.json"
+        split=str(seats_split),
+        episodes=1,
+        max_steps=3,
+        least_of_either=500,
+        log=tmp_path / "log",
+        out=tmp_path / "x.json",
     )
     with pytest.raises(ConfigError, match="500 of each are needed"):
         train_verifier.main(args)
     if change == "split_identity":  # the same name and version, another house
-        other = tmp_path / split.name
-        shutil.copytree(split, other)
-        (other / "seats.xml").write_text((split / "seats.xml").read_text() + "\n")
+        other = tmp_path / seats_split.name
+        shutil.copytree(seats_split, other)
+        (other / "seats.xml").write_text((seats_split / "seats.xml").read_text() + "\n")
         args = replace(args, split=str(other))
     elif change == "detector.flicker_rate":
         monkeypatch.setattr(episode_logs, "detector_config", lambda *_: NoisyConfig(flicker_rate=0.5))
@@ -150,10 +146,10 @@ def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
 
 
 @pytest.mark.slow
-def test_two_workers_log_the_same_as_one(split: Path, tmp_path: Path):
-    one = log_after(split, tmp_path / "one", 3)
+def test_two_workers_log_the_same_as_one(seats_split: Path, tmp_path: Path):
+    one = log_after(seats_split, tmp_path / "one", 3)
     args = train_verifier.Args(
-        split=str(split),
+        split=str(seats_split),
         episodes=3,
         max_steps=30,
         least_of_either=500,
@@ -167,16 +163,16 @@ def test_two_workers_log_the_same_as_one(split: Path, tmp_path: Path):
     assert sorted(two, key=lambda line: line["episode_id"]) == one
 
 
-def test_a_time_limit_leaves_whole_lines_and_zero_runs_nothing(split: Path, tmp_path: Path):
+def test_a_time_limit_leaves_whole_lines_and_zero_runs_nothing(seats_split: Path, tmp_path: Path):
     args = train_verifier.Args(
-        split=str(split), episodes=3, max_steps=30, minutes=1e-6, log=tmp_path / "log", out=tmp_path / "x.json"
+        split=str(seats_split), episodes=3, max_steps=30, minutes=1e-6, log=tmp_path / "log", out=tmp_path / "x.json"
     )
-    there = load_split(str(split))
-    assert len(train_verifier.candidates_of(args, there)) == 1
-    assert len(train_verifier.candidates_of(replace(args, minutes=0.0, seed=9), there)) == 1
-    assert train_verifier.candidates_of(replace(args, minutes=0.0, log=tmp_path / "none"), there) == []
+    loaded = load_split(str(seats_split))
+    assert len(train_verifier.candidates_of(args, loaded)) == 1
+    assert len(train_verifier.candidates_of(replace(args, minutes=0.0, seed=9), loaded)) == 1
+    assert train_verifier.candidates_of(replace(args, minutes=0.0, log=tmp_path / "none"), loaded) == []
     with pytest.raises(ConfigError, match=r"was made with \S+ = .* this command has"):
-        train_verifier.candidates_of(replace(args, minutes=0.0, semantics="rednet"), there)
+        train_verifier.candidates_of(replace(args, minutes=0.0, semantics="rednet"), loaded)
 
 
 def test_val_and_test_are_only_judged():
@@ -197,7 +193,7 @@ def test_a_judgement_has_the_truth_and_the_probability_of_the_verifier():
     near, far = ([12.0, 9.0, 0.95, 0.2, 1.0, 1.0, 1.0], [3.0, 0.8, 0.55, 0.9, 0.0, 4.0, 1.0])
     lines = [{"episode_id": "a", "goal": "bed", "house": "h", "steps": 9, "candidates": [near, far]}]
     verifier = FittedVerifier.read(file, "naive-bayes")
-    p = [verifier.probability("bed", Features(int(each[0]), *each[1:4])) for each in (near, far)]
+    p = [verifier.probability("bed", Features(int(row[0]), *row[1:4])) for row in (near, far)]
     brier = 0.5 * ((1.0 - p[0]) ** 2 + p[1] ** 2)
     rows = train_verifier.judgement(lines, file).splitlines()
     assert f"| naive-bayes | bed | 1 | 1 | {0.5 * sum(p):.2f} | {brier:.2f} | 0.50 | 1.00 | 1.00 | 1.00 |" in rows

@@ -13,7 +13,7 @@ from sim.training.training_files import append_row, cut_rows, options_of, read_c
 
 
 @pytest.mark.parametrize(
-    ("left", "kept"),
+    ("stored", "kept"),
     [
         ("", ""),
         ("step,lo", ""),
@@ -26,9 +26,9 @@ from sim.training.training_files import append_row, cut_rows, options_of, read_c
         ("step,loss\r\n1,0.5\r\n2,0.23,0.2\r\n3,\r\n4,nan\r\n", "step,loss\n1,0.5\n3,\n"),
     ],
 )
-def test_a_curve_keeps_its_whole_rows_up_to_the_state(tmp_path: Path, left: str, kept: str) -> None:
+def test_a_curve_keeps_its_whole_rows_up_to_the_state(tmp_path: Path, stored: str, kept: str) -> None:
     file = tmp_path / "train.csv"
-    file.write_bytes(left.encode())
+    file.write_bytes(stored.encode())
     cut_rows(file, "step", 3)
     assert file.read_bytes() == kept.encode()
     append_row(file, {"step": 9, "loss": 0.125})

@@ -39,7 +39,7 @@ def test_the_exit_status_says_whether_the_results_hold(
         "Frames of 1",
         "an hour a core",
         "Verified: ",
-        "proved by no replay",
+        "a replay cannot prove it",
     ):
         assert part in printed
     assert json.loads(report.read_text())["equal"] == 3
