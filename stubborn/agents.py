@@ -182,7 +182,7 @@ def make(
     )
 
 
-def _known(name: str, table: Mapping[str, Any], kind: str) -> str:
+def _known(name: str, table: Mapping[str, object], kind: str) -> str:
     """Returns the name when it is in the table."""
     if name not in table:
         raise ConfigError(f"No {kind} {name!r}.{did_you_mean(name, table)} Available: {', '.join(table)}.")

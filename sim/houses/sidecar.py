@@ -9,7 +9,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import msgspec
 
@@ -52,7 +52,7 @@ class Sidecar:
 
     start: Pose | None = None
     goal: str | None = None
-    noise: Mapping[str, Any] = field(default_factory=dict)
+    noise: Mapping[str, object] = field(default_factory=dict)
     """Sensor noise of every episode in this scene, in the form that `sim.sensors.noise` reads."""
     reason: str = ""
     """Purpose of the scene, in one line."""
@@ -92,7 +92,7 @@ class _Content(msgspec.Struct, forbid_unknown_fields=True):
     goal: Literal[GOAL_CATEGORIES] | None = None  # pyright: ignore[reportInvalidTypeForm] - the values of a tuple
     start: _Start | None = None
     zone_m: tuple[Metres, Metres, Metres, Metres] | None = None
-    noise: dict[str, Any] | None = None
+    noise: dict[str, object] | None = None
     trap: _Trap | None = None
 
 
@@ -124,7 +124,7 @@ def read_sidecar(house_file: Path) -> Sidecar:
 
 def write_sidecar(house_file: Path, sidecar: Sidecar) -> None:
     """Writes the sidecar of a house file; the same content gives the same bytes."""
-    content: dict[str, Any] = {"reason": sidecar.reason, "goal": sidecar.goal}
+    content: dict[str, object] = {"reason": sidecar.reason, "goal": sidecar.goal}
     if sidecar.start is not None:
         start = sidecar.start
         content["start"] = {"x_m": start.x_m, "y_m": start.y_m, "yaw_rad": start.yaw_rad}

@@ -143,7 +143,7 @@ def get_noise(name: str) -> NoiseConfig:
     return NOISE_PRESETS[name]
 
 
-def noise_from_dict(settings: Mapping[str, Any] | str) -> NoiseConfig:
+def noise_from_dict(settings: Mapping[str, object] | str) -> NoiseConfig:
     """Returns the noise that a file declares: a preset's name, or `{"preset": "realsense", "depth": {...}, ...}`.
 
     `preset` is `none` by default; the other keys are the fields of `NoiseConfig`, each with the fields that differ

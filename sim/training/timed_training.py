@@ -100,11 +100,11 @@ class TimedTraining(ABC):
         """Returns the loss of the next step, with its gradient, and the parts of it for `train.csv`."""
 
     @abstractmethod
-    def evaluate(self, model: nn.Module) -> tuple[float, dict[str, Any], str]:
+    def evaluate(self, model: nn.Module) -> tuple[float, dict[str, object], str]:
         """Returns the loss of the averaged network, a row for `val.csv`, and the words to print."""
 
     @abstractmethod
-    def about(self) -> dict[str, Any]:
+    def about(self) -> dict[str, object]:
         """Returns the description of the data in the file of weights."""
 
     def run(self) -> None:
@@ -196,7 +196,7 @@ class TimedTraining(ABC):
         for name in ("train.csv", "val.csv"):  # also of a run that was killed before it wrote a state
             cut_rows(self.out / name, "step", self.progress.step)
 
-    def _parts(self) -> dict[str, Any]:
+    def _parts(self) -> dict[str, object]:
         """Returns the content of `state.pt` apart from the progress."""
         return {"model": self.model, "average": self.average, "optimiser": self.optimiser}
 

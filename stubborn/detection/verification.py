@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Protocol, runtime_checkable
+from typing import Annotated, Protocol, runtime_checkable
 
 import msgspec
 
@@ -55,7 +55,7 @@ class _Method(msgspec.Struct):
 class _File(msgspec.Struct):
     """A file of parameters."""
 
-    methods: dict[str, Any]
+    methods: dict[str, object]
 
 
 class Verifier(Protocol):

@@ -94,16 +94,16 @@ class Semantics(Struct):
 
 
 class _Section(Struct):
-    default_attributes: dict[str, Any] = {}
+    default_attributes: dict[str, object] = {}
     paths: dict[str, list[str]] = {}
-    configs: list[dict[str, Any]] = []
+    configs: list[dict[str, object]] = []
 
 
 class _Dataset(Struct):
     stages: _Section = msgspec.field(default_factory=_Section)
     objects: _Section = msgspec.field(default_factory=_Section)
     scene_instances: _Section = msgspec.field(default_factory=_Section)
-    semantic_scene_descriptor_instances: dict[str, Any] = {}
+    semantic_scene_descriptor_instances: dict[str, object] = {}
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ class SceneDataset:
         """
         section: _Section = getattr(self.content, kind)
         short = name.rpartition("/")[2].removesuffix(SUFFIXES[kind])
-        values: dict[str, Any] = dict(section.default_attributes)
+        values: dict[str, object] = dict(section.default_attributes)
         for config in section.configs:
             if config.get("template_handle") == short:
                 original = config.get("original_file")
@@ -159,7 +159,7 @@ class SceneDataset:
                 if isinstance(original, str):
                     source = self.inside(self.folder / original, where)
                     base = source.parent
-                    values |= read_json(source, dict[str, Any], what="Configuration", error=HouseError)
+                    values |= read_json(source, dict[str, object], what="Configuration", error=HouseError)
                 own = config.get("attributes", {})
                 values |= own if isinstance(own, dict) else {}
                 renamed = isinstance(own, dict) and "render_asset" in own
@@ -169,11 +169,11 @@ class SceneDataset:
             raise HouseError(f"{where}: the {kind} have no configuration '{printable(name)[:80]}'.")
         if not file.name.endswith(".json"):
             return self._template(short, values | {"render_asset": file.name}, file.parent, where)
-        values |= read_json(file, dict[str, Any], what="Configuration", error=HouseError)
+        values |= read_json(file, dict[str, object], what="Configuration", error=HouseError)
         return self._template(short, values, file.parent, where, file)
 
     def _template(
-        self, name: str, values: dict[str, Any], base: Path, where: str, file: Path | None = None
+        self, name: str, values: dict[str, object], base: Path, where: str, file: Path | None = None
     ) -> Template:
         what = f"Configuration '{printable(name)}' of {self.file.name}"
         attributes = convert(values, Attributes, where=what, error=HouseError)

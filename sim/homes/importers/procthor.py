@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -52,7 +52,7 @@ class Imported:
     """A house with the report of its import."""
 
     spec: mujoco.MjSpec
-    report: Mapping[str, Any]
+    report: Mapping[str, object]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +102,7 @@ def import_house(source: Source, assets: Mapping[str, Asset], config: ProcthorCo
     return Imported(builder.spec, _report(source, house, layout, losses))
 
 
-def _report(source: Source, house: SourceHouse, layout: Layout, losses: Losses) -> dict[str, Any]:
+def _report(source: Source, house: SourceHouse, layout: Layout, losses: Losses) -> dict[str, object]:
     inner = [door.opening for door in layout.doors if door.opening.b is not None]
     return {
         "house": source.name,

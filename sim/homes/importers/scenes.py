@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -31,7 +30,7 @@ class Scene:
     files: Mapping[str, PackedFile]
     rules: Mapping[str, str]
     """Label rules."""
-    report: Mapping[str, Any]
+    report: Mapping[str, object]
 
 
 def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:

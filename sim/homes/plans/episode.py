@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -91,7 +90,7 @@ class PlanEpisode:
             self.success = bool(self.plan.success_cells(self.goal)[row, col])
         return motion
 
-    def metrics(self) -> Mapping[str, Any]:
+    def metrics(self) -> Mapping[str, object]:
         """Returns the metrics so far, under the names of `docs/task.md`."""
         shortest_m = self.shortest_path_m if math.isfinite(self.shortest_path_m) else None
         area_m2 = self.camera.area_seen_m2

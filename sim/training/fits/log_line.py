@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Self
+from typing import Self
 
 import msgspec
 
@@ -30,6 +30,6 @@ class LogLine(msgspec.Struct, frozen=True, kw_only=True):
         """False: the line of a failed episode stays."""
         return False
 
-    def as_json(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, object]:
         """Returns the JSON values of the line."""
         return msgspec.to_builtins(self)

@@ -6,7 +6,6 @@ import io
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from jaxtyping import Int
@@ -46,7 +45,7 @@ class TrackLine(LogLine, frozen=True, kw_only=True):
     tracks: ReadCount = 0
 
 
-def compared(samples: Sequence[Sample]) -> dict[str, Any]:
+def compared(samples: Sequence[Sample]) -> dict[str, object]:
     """Returns the quality on houses left out, and that of plain averages on the same pairs."""
     fitted, plain = left_out(samples), probabilities(Fusion(), samples)
     goals = np.array([MPCAT40.index(name) - 1 for name in GOAL_CATEGORIES])

@@ -6,7 +6,6 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import torch
@@ -134,7 +133,7 @@ class Trainer(TimedTraining):
         area, objects = loss_of(self._logits(self.model, batch), *_targets(batch))
         return area + OBJECT_WEIGHT * objects, {"area": area, "objects": objects}
 
-    def evaluate(self, model: torch.nn.Module) -> tuple[float, dict[str, Any], str]:
+    def evaluate(self, model: torch.nn.Module) -> tuple[float, dict[str, object], str]:
         """See `TimedTraining.evaluate`."""
         numbers = range(len(self.val))[:: stride(len(self.val), self.args.val_count)]
         area, objects, losses = Choices(), Choices(), []
@@ -144,7 +143,7 @@ class Trainer(TimedTraining):
             losses.append([float(loss) for loss in loss_of(logits, *_targets(batch))])
             add_choices(batch, torch.sigmoid(logits).numpy(), area, objects)
         mean = np.mean(losses, axis=0)
-        row: dict[str, Any] = {"samples": len(numbers), "area": float(mean[0]), "objects": float(mean[1])}
+        row: dict[str, object] = {"samples": len(numbers), "area": float(mean[0]), "objects": float(mean[1])}
         for name, choices in (("area", area), ("objects", objects)):
             row |= {f"{name}_choices": choices.count}
             row |= {f"{name}_{key}": value for key, value in choices.shares().items()}
@@ -155,7 +154,7 @@ class Trainer(TimedTraining):
         )
         return float(mean[0] + OBJECT_WEIGHT * mean[1]), row, message
 
-    def about(self) -> dict[str, Any]:
+    def about(self) -> dict[str, object]:
         """See `TimedTraining.about`."""
         return {"plans": self.plans}
 

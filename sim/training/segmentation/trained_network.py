@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import torch
 
@@ -22,7 +21,7 @@ OF_TRAINING = ("step", "hours", "options", "code", "averaged", "started_from")
 """Metadata of a network that say how it was trained; the networks that are trained further keep them."""
 
 
-def start_network(size: str | None, init: Path | None, *, imagenet: bool) -> tuple[str, Network, dict[str, Any]]:
+def start_network(size: str | None, init: Path | None, *, imagenet: bool) -> tuple[str, Network, dict[str, object]]:
     """Returns the size of the network to train, the network, and the metadata of its earlier training.
 
     Args:
@@ -48,7 +47,7 @@ def start_network(size: str | None, init: Path | None, *, imagenet: bool) -> tup
     return known, model, {key: metadata[key] for key in OF_TRAINING if key in metadata}
 
 
-def parameter_groups(model: Network, *, imagenet: bool) -> list[dict[str, Any]]:
+def parameter_groups(model: Network, *, imagenet: bool) -> list[dict[str, object]]:
     """Returns the parameters in groups for the optimiser, with their `relative_rate`."""
     encoder = model.encoder if isinstance(model, UNet) else None
     pretrained = encoder.colour.parameters() if imagenet and isinstance(encoder, MobileEncoder) else ()

@@ -9,7 +9,6 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 import msgspec
 import numpy as np
@@ -114,7 +113,7 @@ class Run:
         }
         FILES.save(self.args.out / "semexp.safetensors", self.policy.net, card)
 
-    def _parts(self) -> dict[str, Any]:
+    def _parts(self) -> dict[str, object]:
         """Returns the content of `state.pt` apart from the progress."""
         return {"net": self.policy.net, "optimiser": self.policy.optimizer}
 

@@ -6,7 +6,6 @@ The format is that of `pycocotools` and of the libraries that read its files (ht
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import msgspec
 import numpy as np
@@ -18,7 +17,7 @@ from sim.houses.labels import Instance
 
 STUFF: tuple[str, ...] = ("void", "wall", "floor", "ceiling")
 """Categories that are surfaces and not objects: they have pixels in the image of instances, but no annotation."""
-CATEGORIES: tuple[dict[str, Any], ...] = tuple(
+CATEGORIES: tuple[dict[str, object], ...] = tuple(
     {"id": i, "name": name} for i, name in enumerate(MPCAT40) if name not in STUFF
 )
 """The categories of COCO files; their ids are those of mpcat40."""
@@ -33,7 +32,7 @@ class _Runs(msgspec.Struct):
 
 def annotate(
     instance_ids: NDArray[np.uint16], instances: Sequence[Instance], styles: Mapping[str, str] | None = None
-) -> list[dict[str, Any]]:
+) -> list[dict[str, object]]:
     """Returns an annotation for each visible object of a view, without the id of the image.
 
     Args:

@@ -141,7 +141,7 @@ class FurnitureSource:
                 return style.uses
         return ()
 
-    def _single(self, category: str, use: str | None, fresh: bool, hints: Mapping[str, Any]) -> Item | None:
+    def _single(self, category: str, use: str | None, fresh: bool, hints: Mapping[str, object]) -> Item | None:
         """Returns an item of the style that the home has least often.
 
         A third item of one design is returned only if the category is in `REQUIRED` and no variant was found; None if
@@ -184,7 +184,7 @@ class FurnitureSource:
                         return made
         return None
 
-    def _new(self, category: str, style: str, use: str | None, hints: Mapping[str, Any]) -> Item:
+    def _new(self, category: str, style: str, use: str | None, hints: Mapping[str, object]) -> Item:
         asked = hints if use is None else {"use": use, **hints}
         return self._catalogue.make_item(
             category, self.rng, pool=self.pool, style=style, reshape=self._reshape, **asked
@@ -211,7 +211,7 @@ class FurnitureSource:
         tried.add(chosen)
         return chosen
 
-    def _of_set(self, category: str, use: str | None, fresh: bool, hints: Mapping[str, Any]) -> Item:
+    def _of_set(self, category: str, use: str | None, fresh: bool, hints: Mapping[str, object]) -> Item:
         """Returns one of the few designs of a set, all of them in turn; `fresh` allows one more."""
         key = repr((category, use, sorted(hints.items())))
         known = self._designs.setdefault(key, [])

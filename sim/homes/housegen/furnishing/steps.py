@@ -110,7 +110,7 @@ def lay_rug(
 
     `size_m` is its depth and width. Returns False if no item fits there.
     """
-    hints: dict[str, Any] = {"depth_m": size_m[0], "width_m": size_m[1]} if size_m else {}
+    hints: dict[str, object] = {"depth_m": size_m[0], "width_m": size_m[1]} if size_m else {}
     for n in range(3):
         rug = source.make("floor", "rug", fresh=n > 0, **hints)
         if rug is None:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,7 +66,7 @@ def may_reshape(item: Item) -> bool:
     return all(geom.mesh is None or geom.mesh.texture_uv is None for geom in item.geoms)
 
 
-def reshaped(item: Item, rng: np.random.Generator, hints: Mapping[str, Any]) -> Item:
+def reshaped(item: Item, rng: np.random.Generator, hints: Mapping[str, object]) -> Item:
     """Returns the item in other proportions; sides that a hint determines keep their length."""
     warp = _draw(item, rng, hints)
     return _warped(item, warp, tuple(_child(child, warp) for child in item.children))
@@ -112,7 +111,7 @@ def _warped(item: Item, warp: Warp, children: tuple[Child, ...]) -> Item:
     )  # fmt: skip
 
 
-def _draw(item: Item, rng: np.random.Generator, hints: Mapping[str, Any]) -> Warp:
+def _draw(item: Item, rng: np.random.Generator, hints: Mapping[str, object]) -> Warp:
     hinted = [hints.get(name) is not None for name in ("depth_m", "width_m", "height_m")]
     x, y, z = np.where(hinted, 1.0, rng.uniform(*STRETCH, size=3))
     top = item.size_m[2]

@@ -18,7 +18,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 import msgspec
 
@@ -54,7 +54,7 @@ class Generator:
     """True: an asset that lies flat is set on its edge."""
     dimensions_m: tuple[tuple[float, float], ...] | None = None
     """Ranges of depth, width and height for generators that take them; None: the generator draws them."""
-    options: Mapping[str, Any] = field(default_factory=dict)
+    options: Mapping[str, object] = field(default_factory=dict)
     """Further arguments of the class."""
     title: str = ""
     """The beginning of the names of its files; "": the name of the class."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib.metadata import version
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import msgspec
 
@@ -30,7 +30,7 @@ class _Entry(msgspec.Struct, forbid_unknown_fields=True):
 class GeneratedHouses:
     """The `HouseMaker` of this project's generator."""
 
-    def recipe(self, entry: Mapping[str, Any], where: str) -> Recipe:
+    def recipe(self, entry: Mapping[str, object], where: str) -> Recipe:
         """Returns the recipe of a JSON object.
 
         Raises:
