@@ -11,14 +11,14 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import TypeVar, Unpack
 
 import numpy as np
 
 from sim.homes.housegen.furnishing.placement import RoomLayout
 from sim.homes.housegen.furniture import CATALOGUE
 from sim.homes.housegen.furniture.catalogue import Catalogue
-from sim.homes.housegen.furniture.item import Item, Look, Pool
+from sim.homes.housegen.furniture.item import Hints, Item, Look, Pool
 from sim.homes.housegen.surfaces import materials
 
 T = TypeVar("T")
@@ -110,7 +110,7 @@ class FurnitureSource:
         self._before = (_items(others), _styles(others))
         self._layouts = [*others, layout]
 
-    def make(self, category: str, *uses: str, fresh: bool = False, **hints: Any) -> Item | None:
+    def make(self, category: str, *uses: str, fresh: bool = False, **hints: Unpack[Hints]) -> Item | None:
         """Returns an item for the first of the uses for which the pool has a style, or for any use when none is given.
 
         `fresh` returns another style than the calls before it if there is one, for a position where those did not fit.
@@ -141,7 +141,7 @@ class FurnitureSource:
                 return style.uses
         return ()
 
-    def _single(self, category: str, use: str | None, fresh: bool, hints: Mapping[str, object]) -> Item | None:
+    def _single(self, category: str, use: str | None, fresh: bool, hints: Hints) -> Item | None:
         """Returns an item of the style that the home has least often.
 
         A third item of one design is returned only if the category is in `REQUIRED` and no variant was found; None if
@@ -184,8 +184,8 @@ class FurnitureSource:
                         return made
         return None
 
-    def _new(self, category: str, style: str, use: str | None, hints: Mapping[str, object]) -> Item:
-        asked = hints if use is None else {"use": use, **hints}
+    def _new(self, category: str, style: str, use: str | None, hints: Hints) -> Item:
+        asked: Hints = hints if use is None else {"use": use, **hints}
         return self._catalogue.make_item(
             category, self.rng, pool=self.pool, style=style, reshape=self._reshape, **asked
         )
@@ -211,7 +211,7 @@ class FurnitureSource:
         tried.add(chosen)
         return chosen
 
-    def _of_set(self, category: str, use: str | None, fresh: bool, hints: Mapping[str, object]) -> Item:
+    def _of_set(self, category: str, use: str | None, fresh: bool, hints: Hints) -> Item:
         """Returns one of the few designs of a set, all of them in turn; `fresh` allows one more."""
         key = repr((category, use, sorted(hints.items())))
         known = self._designs.setdefault(key, [])

@@ -6,7 +6,6 @@ Each function puts its group into a room and returns its main item, or None if t
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
 from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
@@ -15,7 +14,7 @@ from sim.homes.housegen.furnishing.placement.free_standing import put_in_middle
 from sim.homes.housegen.furnishing.placement.on_walls import hang_from_ceiling
 from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.homes.housegen.furnishing.steps import hang_above, lay_rug, place, place_beside, place_in_front, put_on_top
-from sim.homes.housegen.furniture.item import Item
+from sim.homes.housegen.furniture.item import Hints, Item
 
 Seat = tuple[float, float, float]
 """x, y where a chair meets the table's edge, in the table's frame, and the heading of its front."""
@@ -75,7 +74,7 @@ def dining_group(
     """Places a table with chairs at its sides, a lamp above it and perhaps a rug under it."""
     chair = source.make("chair", "dining")
     for width_m, least in ((None, 0.65), (1.3, 0.7), (0.85, 0.0)):
-        hints: dict[str, Any] = {"width_m": width_m} if width_m else {}
+        hints: Hints = {"width_m": width_m} if width_m else {}
         item = source.make("table", "dining", **hints)
         if item is None or chair is None:
             return None

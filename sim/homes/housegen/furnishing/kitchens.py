@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
-from typing import Any
 
 from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, SIDES, Side
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
@@ -15,7 +14,7 @@ from sim.homes.housegen.furnishing.placement.floor import put_against_wall, put_
 from sim.homes.housegen.furnishing.placement.free_standing import put_in_middle
 from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
 from sim.homes.housegen.furnishing.steps import AISLE_M, place, place_row, put_on_top
-from sim.homes.housegen.furniture.item import Item, Look
+from sim.homes.housegen.furniture.item import Hints, Item, Look
 
 LONG_RUN_M = 3.2
 """Longest worktop along a second wall."""
@@ -76,8 +75,8 @@ def _complete(layout: RoomLayout, source: FurnitureSource, units: Units) -> None
     """Places a short worktop with a sink, and large appliances, that a kitchen lacks after its first run."""
     if not any(unit.item.category == "counter" for unit in units.placed):
         for width_m in (1.6, 1.3, 1.0, 0.8):
-            hints: dict[str, Any] = {"width_m": width_m, "with_sink": True, "with_hob": width_m > 1.3}
-            counter = place(layout, source, "counter", "run", front_m=0.6, looks=units.looks, tries=1, **hints)
+            hints: Hints = {"width_m": width_m, "with_sink": True, "with_hob": width_m > 1.3, "looks": units.looks}
+            counter = place(layout, source, "counter", "run", front_m=0.6, tries=1, **hints)
             if counter is not None and counter.side is not None:
                 units.placed.append(counter)
                 units.sides.append(counter.side)
@@ -183,7 +182,7 @@ def _hang_cabinets(
 def _place_island(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     """Places a free-standing counter with stools at one side."""
     for width_m in (None, 1.3):
-        hints: dict[str, Any] = {"width_m": width_m} if width_m else {}
+        hints: Hints = {"width_m": width_m} if width_m else {}
         item = source.make("counter", "island", **hints)
         if item is None:
             return None

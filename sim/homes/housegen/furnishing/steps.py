@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Unpack
 
 from sim.homes.housegen.floor_plan.rectangles import Side
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
@@ -16,7 +16,7 @@ from sim.homes.housegen.furnishing.placement.floor import find_row_start, lay_fl
 from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
 from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.homes.housegen.furnishing.placement.walls import Along
-from sim.homes.housegen.furniture.item import Item
+from sim.homes.housegen.furniture.item import Hints, Item
 
 RUNNER_M = 1.0
 """Rugs narrower than this are runners."""
@@ -36,7 +36,7 @@ _WALL_USES = {"mirror": ("wall",), "towel": ("rail",)}
 
 def place(
     layout: RoomLayout, source: FurnitureSource, category: str, *uses: str, along: Along = "any", front_m: float = 0.6,
-    tries: int = 2, **hints: Any,
+    tries: int = 2, **hints: Unpack[Hints],
 ) -> Placement | None:  # fmt: skip
     """Places an item against a wall; tries another style when the first one does not fit.
 
@@ -110,7 +110,7 @@ def lay_rug(
 
     `size_m` is its depth and width. Returns False if no item fits there.
     """
-    hints: dict[str, object] = {"depth_m": size_m[0], "width_m": size_m[1]} if size_m else {}
+    hints: Hints = {"depth_m": size_m[0], "width_m": size_m[1]} if size_m else {}
     for n in range(3):
         rug = source.make("floor", "rug", fresh=n > 0, **hints)
         if rug is None:

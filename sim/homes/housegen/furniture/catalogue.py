@@ -7,20 +7,18 @@ import itertools
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, get_args
+from typing import Unpack, get_args
 
 import numpy as np
 
 from sim.core.errors import ConfigError
 from sim.core.interface import MPCAT40_ID
-from sim.homes.housegen.furniture.item import Item, Mount, Pool
+from sim.homes.housegen.furniture.item import Hints, Item, Mount, Pool
 from sim.homes.housegen.furniture.reshape import may_reshape, reshaped
 from sim.homes.housegen.furniture.uses import fault_of_uses
 from sim.homes.housegen.furniture.workbench import Workbench
 
-HINTS: frozenset[str] = frozenset(
-    {"use", "width_m", "depth_m", "height_m", "looks", "with_sink", "with_hob", "cushions"}
-)
+HINTS = frozenset(Hints.__annotations__)
 """All hints that `Catalogue.make_item` accepts."""
 RESHAPED_SHARE = 0.5
 """Probability that an item gets other proportions than those of its style, where this is asked for."""
@@ -114,7 +112,7 @@ class Catalogue:
 
     def make_item(
         self, category: str, rng: np.random.Generator, *, pool: Pool, style: str | None = None, reshape: bool = False,
-        **hints: Any,
+        **hints: Unpack[Hints],
     ) -> Item:  # fmt: skip
         """Builds one piece of furniture.
 

@@ -7,9 +7,9 @@ at smallest x. When an item is placed, its yaw is the direction of its front.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,19 @@ Mount = Literal["floor", "wall", "ceiling", "top"]
 """The support on which the origin of an item lies: the floor, a wall (x = 0 is its surface), the ceiling, or a top."""
 Pool = Literal["train", "heldout"]
 """The styles, sizes, colours and textures that may be drawn: `heldout` (val and test) shares none with `train`."""
+
+
+class Hints(TypedDict, total=False):
+    """What a room asks of an item; the tables of `Catalogue.make_item` explain each key."""
+
+    use: str | None
+    width_m: float
+    depth_m: float
+    height_m: float
+    looks: Mapping[str, Look] | None
+    with_sink: bool
+    with_hob: bool
+    cushions: int
 
 
 @dataclass(frozen=True)

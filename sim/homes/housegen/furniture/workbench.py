@@ -8,13 +8,13 @@ axis.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeVar
+from collections.abc import Callable, Sequence
+from typing import TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.homes.housegen.furniture.item import Child, Geom, Item, Look, MeshShape, Mount, Pool, Shape, Surface
+from sim.homes.housegen.furniture.item import Child, Geom, Hints, Item, Look, MeshShape, Mount, Pool, Shape, Surface
 from sim.homes.housegen.furniture.transforms import bounds, euler_from_matrix, matrix_from_euler
 from sim.homes.housegen.surfaces import materials
 from sim.homes.housegen.surfaces.textures import TEXTURES
@@ -31,9 +31,7 @@ MIN_HALF_M = 0.0005
 class Workbench:
     """The state of one item while it is built. `make` builds the children (cushions, sinks) that a style needs."""
 
-    def __init__(
-        self, rng: np.random.Generator, pool: Pool, hints: Mapping[str, Any], make: Callable[..., Item]
-    ) -> None:
+    def __init__(self, rng: np.random.Generator, pool: Pool, hints: Hints, make: Callable[..., Item]) -> None:
         self.rng = rng
         self.pool: Pool = pool
         self.hints = hints
@@ -180,7 +178,7 @@ class Workbench:
         centre = (0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1]), z)
         self._surfaces.append(Surface(centre, (0.5 * (x[1] - x[0]), 0.5 * (y[1] - y[0])), kind))
 
-    def make(self, category: str, **hints: Any) -> Item:
+    def make(self, category: str, **hints: Unpack[Hints]) -> Item:
         """Builds an item of another category from the same pool."""
         return self._make(category, self.rng, pool=self.pool, **hints)
 
