@@ -176,13 +176,9 @@ def table_run(args: Args, key: RunKey, episodes: int, folders: Mapping[RunKey, P
         raise ConfigError(f"'{key.split}' has version {split.version}, the tables {VERSION} (result_archive.py).")
     name = "_".join(filter(None, (file_name(setup.agent), setup.semantics, key.split, setup.variant)))
     options = replace(
-        setup.run_options(),
-        split=key.split,
-        episodes=episodes,
-        workers=args.workers,
-        out=folders.get(key, args.out / name),
-        keep_results=True,
-    )
+        setup.run_options(), split=key.split, episodes=episodes, workers=args.workers,
+        out=folders.get(key, args.out / name), keep_results=True,
+    )  # fmt: skip
     return TableRun(options, split, split.episodes[:episodes])
 
 
@@ -255,10 +251,7 @@ def comparison_record(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> R
         value = difference_cell(metric, second, first).estimate
         record |= _estimate_columns(metric, value) | {f"{metric.key}_significant": _yes(value.significant)}
         if metric in PRIMARY_METRICS:
-            record |= {
-                f"{metric.key}_p": f"{1.0 if value.p is None else value.p:.6f}",
-                f"{metric.key}_p_holm": "",
-            }
+            record |= {f"{metric.key}_p": f"{1.0 if value.p is None else value.p:.6f}", f"{metric.key}_p_holm": ""}
     outcomes = [(bool(a.success), bool(b.success)) for a, b in zip(first, second, strict=True)]
     return record | {
         "only_first_succeeds": str(outcomes.count((True, False))),

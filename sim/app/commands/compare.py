@@ -72,7 +72,7 @@ def compare(first: Run, second: Run) -> ResultTable:
     errors = [sum(result.is_error for result in results) for results in (a, b)]
     if any(errors):
         notes.append(
-            f"Ended with an error: {errors[0]} of A, {errors[1]} of B; they count in success only, as failures."
+            f"Ended with an error: {errors[0]} of A, {errors[1]} of B; they are failures, and other metrics omit them."
         )
     if note := difference_note(a, b):
         notes.append(note)

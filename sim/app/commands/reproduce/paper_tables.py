@@ -70,11 +70,11 @@ class PaperTable:
 
 def failures(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     """Returns Table I: causes of the failed episodes; `failure` of a line is one of `sim.task.failures.CAUSES`."""
-    rows: list[tuple[str, list[Cell | str]]] = []
-    for cause in CAUSES:
-        rows.append((cause, [_share_of_failures(cause, lines[setup]) for setup in setups]))
-    rows.append(("failed episodes", [_count_of_failures(lines[setup]) for setup in setups]))
-    rows.append(("success %", [mean_cell(SUCCESS, lines[setup]) for setup in setups]))
+    rows: list[tuple[str, list[Cell | str]]] = [
+        *((cause, [_share_of_failures(cause, lines[setup]) for setup in setups]) for cause in CAUSES),
+        ("failed episodes", [_count_of_failures(lines[setup]) for setup in setups]),
+        ("success %", [mean_cell(SUCCESS, lines[setup]) for setup in setups]),
+    ]
     header = ("cause", *(setup.label for setup in setups))
     causes = ResultTable("failures", "Causes of failure, % of the failed episodes", header, rows)
     pairs = _against_first(setups)

@@ -285,18 +285,10 @@ def _print(console: Console, parts: Sequence[ResultTable], notes: Sequence[str])
 def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
     """Returns the options of `stubborn run` for one setup."""
     return replace(
-        setup.run_options(),
-        split=args.split,
-        episodes=args.episodes,
-        seed=args.seed,
-        workers=args.workers,
-        executor=args.executor,
-        address=args.address,
-        step_timeout=args.step_timeout,
-        noise=args.noise,
-        out=_folder(args, setup),
-        record=True,
-    )
+        setup.run_options(), split=args.split, episodes=args.episodes, seed=args.seed, workers=args.workers,
+        executor=args.executor, address=args.address, step_timeout=args.step_timeout, noise=args.noise,
+        out=_folder(args, setup), record=True,
+    )  # fmt: skip
 
 
 def _table_run(part: SplitEpisodes, setup: AgentSetup) -> TableRun:

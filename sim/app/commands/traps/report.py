@@ -134,11 +134,8 @@ def run_trials(args: Args, name: str, episodes: Sequence[Episode], done: Set[str
     env = ObjectNavEnv(split=args.split, sensors=sensors, max_steps=args.max_steps)
     try:
         agent = make_agent(name, env)
-        first_of_others = {
-            episode.house: episode.episode_id
-            for episode in reversed(episodes)
-            if env.split.sidecar(episode.house).trap is None
-        }
+        others = [episode for episode in reversed(episodes) if env.split.sidecar(episode.house).trap is None]
+        first_of_others = {episode.house: episode.episode_id for episode in others}
         for episode in episodes:
             if episode.episode_id in done:
                 continue

@@ -79,13 +79,8 @@ def parts(args: Args, turns: int) -> Iterator[generate.Args]:
         houses["reshaped"] += houses.pop("models")
     for name, count in houses.items():
         train = _options(args, name, views=VIEWS_PER_HOUSE * count * turns, per_house=VIEWS_PER_HOUSE)
-        yield replace(
-            train,
-            withheld="without",
-            reshape=name != "train",
-            furniture=args.furniture if name in ("models", "aimed") else None,
-            aim="rare" if name == "aimed" else None,
-        )
+        furniture, aim = args.furniture if name in ("models", "aimed") else None, "rare" if name == "aimed" else None
+        yield replace(train, withheld="without", reshape=name != "train", furniture=furniture, aim=aim)
 
 
 def selection(args: Args) -> generate.Args:

@@ -228,7 +228,7 @@ def test_a_comparison_names_errors_and_metrics_without_a_value(tmp_path: Path) -
     a, b, c = first.results.values()
     results = {"a": changed(a, **broken), "b": changed(b, distance_to_goal=None), "c": c}
     notes = compare(first, replace(first, results=results)).notes
-    assert "Ended with an error: 0 of A, 1 of B; failures, in no other metric's means." in notes
+    assert any("0 of A, 1 of B" in note for note in notes)
     (fewer,) = (note for note in notes if note.startswith("Differences of fewer"))
     assert "distance to goal, m 1" in fewer
     assert "success" not in fewer

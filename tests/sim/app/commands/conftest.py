@@ -13,7 +13,7 @@ from tests.helpers.worlds import room, with_box
 
 
 @pytest.fixture(scope="session")
-def seats_split(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def seats(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The house `seats` with a sofa, and three episodes."""
     folder = tmp_path_factory.mktemp("splits") / "tiny"
     folder.mkdir()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import collections
 import gzip
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -63,7 +64,7 @@ def test_a_house_without_goals_is_refused():
 
 def test_the_episodes_can_be_run_and_goals_that_cannot_be_reached_are_listed(folder, capsys):
     assert main(Args(split=folder, episodes=6)) == 0
-    assert "second: cannot be reached and is no goal: sink_00" in capsys.readouterr().out
+    assert re.search(r"second: cannot be reached.*: sink_00", capsys.readouterr().out)
     assert read_unreachable(folder) == {"second": ("sink_00",)}
     split = load_split(folder)
     assert [episode.house for episode in split.episodes] == ["first", "second"] * 3

@@ -26,8 +26,8 @@ def log_after(split: Path, log: Path, episodes: int) -> list[dict]:
     return [json.loads(line) for line in (log / "results.jsonl").read_text().splitlines()]
 
 
-def test_the_agent_of_the_log_uses_no_fitted_parameters(seats_split: Path, tmp_path: Path):
-    args = train_tracks.Args(split=str(seats_split), semantics="noisy", log=tmp_path, out=tmp_path / "x.json")
+def test_the_agent_of_the_log_uses_no_fitted_parameters(seats: Path, tmp_path: Path):
+    args = train_tracks.Args(split=str(seats), semantics="noisy", log=tmp_path, out=tmp_path / "x.json")
     runner = train_tracks.TrackRunner((args, tmp_path))
     seeker = runner._recorder._agent.seeker
     assert isinstance(seeker, TrackSeeker)
@@ -36,8 +36,8 @@ def test_the_agent_of_the_log_uses_no_fitted_parameters(seats_split: Path, tmp_p
 
 
 @pytest.mark.costly
-def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(seats_split: Path, tmp_path: Path):
-    first = log_after(seats_split, tmp_path, 2)
+def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(seats: Path, tmp_path: Path):
+    first = log_after(seats, tmp_path, 2)
     assert [line["steps"] for line in first] == [30, 30]
     for line in first:
         content = train_tracks.read_tracks(tmp_path / "tracks" / f"{line['episode_id']}.npz")
@@ -51,29 +51,29 @@ def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(seats_spl
         sofa = int(content["counts"][:, MPCAT40.index("sofa")].argmax())
         seen_as = content["mean"][content["track"][content["sample"]] == sofa].mean(axis=0)
         assert seen_as[MPCAT40.index("sofa") - 1] > 0.2
-    more = log_after(seats_split, tmp_path, 3)
+    more = log_after(seats, tmp_path, 3)
     assert more[:2] == first
     assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
 
 
 @pytest.mark.costly
-def test_a_file_holds_the_tracks_only(seats_split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_file_holds_the_tracks_only(seats: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """NumPy before 2.2 stores each keyword of `savez_compressed` as an array."""
     stored: list[set[str]] = []
     write = np.savez_compressed
     monkeypatch.setattr(
         np, "savez_compressed", lambda file, **arrays: stored.append(set(arrays)) or write(file, **arrays)
     )
-    log_after(seats_split, tmp_path, 1)
+    log_after(seats, tmp_path, 1)
     assert stored == [{"counts", "track", "sample", "view", "mean", "weight"}]
 
 
 def test_an_episode_without_tracks_is_logged_and_adds_no_samples(
-    seats_split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    seats: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setattr(track_log, "MIN_VOXELS", 10**9)
     args = train_tracks.Args(
-        split=str(seats_split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
+        split=str(seats), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
     )
     with pytest.raises(ConfigError, match="The log has no tracks: run episodes"):
         train_tracks.main(args)
@@ -87,9 +87,9 @@ def test_an_episode_without_tracks_is_logged_and_adds_no_samples(
     }  # fmt: skip
 
 
-def test_a_log_of_another_seed_and_a_broken_file_are_refused(seats_split: Path, tmp_path: Path):
+def test_a_log_of_another_seed_and_a_broken_file_are_refused(seats: Path, tmp_path: Path):
     args = train_tracks.Args(
-        split=str(seats_split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
+        split=str(seats), semantics="noisy", episodes=1, max_steps=3, log=tmp_path, out=tmp_path / "x.json"
     )
     with pytest.raises(ConfigError, match=r"are needed.*run more episodes"):  # more samples, or another house
         train_tracks.main(args)

@@ -39,8 +39,8 @@ def log_after(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> 
 
 
 @pytest.mark.costly
-def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(seats_split: Path, tmp_path: Path):
-    first = log_after(seats_split, tmp_path, 2)
+def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(seats: Path, tmp_path: Path):
+    first = log_after(seats, tmp_path, 2)
     assert [line["steps"] for line in first] == [30, 30]
     candidates = [candidate for line in first for candidate in line["candidates"]]
     assert any(
@@ -55,12 +55,12 @@ def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(seats
         assert 0.5 < highest <= 1.0
         assert highest <= total + 1e-3 <= views + 2e-3
         assert 0.0 <= other <= 1.0
-    more = log_after(seats_split, tmp_path, 3)
+    more = log_after(seats, tmp_path, 3)
     assert more[:2] == first
     assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
 
 
-def test_an_episode_ends_when_the_robot_has_fallen(seats_split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_an_episode_ends_when_the_robot_has_fallen(seats: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     step = ObjectNavEnv.step
 
     def fallen_after_5(env: ObjectNavEnv, action: int) -> tuple[Any, ...]:
@@ -68,7 +68,7 @@ def test_an_episode_ends_when_the_robot_has_fallen(seats_split: Path, tmp_path: 
         return observation, reward, env.scene.task.num_steps >= 5, truncated, info
 
     monkeypatch.setattr(ObjectNavEnv, "step", fallen_after_5)
-    (line,) = log_after(seats_split, tmp_path, 1)
+    (line,) = log_after(seats, tmp_path, 1)
     assert line["steps"] == 5
 
 
@@ -82,22 +82,17 @@ def test_the_recorded_command_names_all_options_that_change_the_fit_and_the_epis
 
 @pytest.mark.parametrize("change", ["split_identity", "detector.flicker_rate", "code", "seed", "max_steps"])
 def test_a_log_of_another_split_code_or_detector_is_refused_with_the_difference(
-    seats_split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: str
+    seats: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: str
 ):
     args = train_verifier.Args(
-        split=str(seats_split),
-        episodes=1,
-        max_steps=3,
-        least_of_either=500,
-        log=tmp_path / "log",
-        out=tmp_path / "x.json",
+        split=str(seats), episodes=1, max_steps=3, least_of_either=500, log=tmp_path / "log", out=tmp_path / "x.json"
     )
     with pytest.raises(ConfigError, match="500 of each are needed"):
         train_verifier.main(args)
     if change == "split_identity":  # the same name and version, another house
-        other = tmp_path / seats_split.name
-        shutil.copytree(seats_split, other)
-        (other / "seats.xml").write_text((seats_split / "seats.xml").read_text() + "\n")
+        other = tmp_path / seats.name
+        shutil.copytree(seats, other)
+        (other / "seats.xml").write_text((seats / "seats.xml").read_text() + "\n")
         args = replace(args, split=str(other))
     elif change == "detector.flicker_rate":
         monkeypatch.setattr(episode_logs, "detector_config", lambda *_: NoisyConfig(flicker_rate=0.5))
@@ -146,10 +141,10 @@ def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
 
 
 @pytest.mark.slow
-def test_two_workers_log_the_same_as_one(seats_split: Path, tmp_path: Path):
-    one = log_after(seats_split, tmp_path / "one", 3)
+def test_two_workers_log_the_same_as_one(seats: Path, tmp_path: Path):
+    one = log_after(seats, tmp_path / "one", 3)
     args = train_verifier.Args(
-        split=str(seats_split),
+        split=str(seats),
         episodes=3,
         max_steps=30,
         least_of_either=500,
@@ -163,11 +158,11 @@ def test_two_workers_log_the_same_as_one(seats_split: Path, tmp_path: Path):
     assert sorted(two, key=lambda line: line["episode_id"]) == one
 
 
-def test_a_time_limit_leaves_whole_lines_and_zero_runs_nothing(seats_split: Path, tmp_path: Path):
+def test_a_time_limit_leaves_whole_lines_and_zero_runs_nothing(seats: Path, tmp_path: Path):
     args = train_verifier.Args(
-        split=str(seats_split), episodes=3, max_steps=30, minutes=1e-6, log=tmp_path / "log", out=tmp_path / "x.json"
+        split=str(seats), episodes=3, max_steps=30, minutes=1e-6, log=tmp_path / "log", out=tmp_path / "x.json"
     )
-    loaded = load_split(str(seats_split))
+    loaded = load_split(str(seats))
     assert len(train_verifier.candidates_of(args, loaded)) == 1
     assert len(train_verifier.candidates_of(replace(args, minutes=0.0, seed=9), loaded)) == 1
     assert train_verifier.candidates_of(replace(args, minutes=0.0, log=tmp_path / "none"), loaded) == []
