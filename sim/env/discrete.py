@@ -8,6 +8,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 from gymnasium import spaces
+from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
 from sim.core.interface import FORWARD_M, TURN_RAD, Action, wrap_angle
@@ -26,7 +27,7 @@ LONGEST_S = 4.0
 """Longest time of an action."""
 
 
-class DiscreteActions(gymnasium.Wrapper[Any, Any, Any, Any]):
+class DiscreteActions(gymnasium.Wrapper[dict[str, NDArray], Any, dict[str, NDArray], Any]):
     """Gives `ObjectNavVelocityEnv` the actions of `ObjectNavEnv`: 0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT, 3 TURN_RIGHT.
 
     An action is a motion from rest to rest. Like the drive of `ObjectNavEnv` it keeps an absolute heading, and ends
@@ -39,7 +40,7 @@ class DiscreteActions(gymnasium.Wrapper[Any, Any, Any, Any]):
         ConfigError: it is another environment.
     """
 
-    def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
+    def __init__(self, env: gymnasium.Env[dict[str, NDArray], Any]) -> None:
         from sim.env.velocity import ObjectNavVelocityEnv  # loads MuJoCo, which `import sim.gym` need not
 
         super().__init__(env)
@@ -58,14 +59,14 @@ class DiscreteActions(gymnasium.Wrapper[Any, Any, Any, Any]):
         self._last: tuple[Any, ...] = ()
         """The return value of the last period."""
 
-    def reset(self, **options: Any) -> tuple[Any, dict[str, Any]]:
+    def reset(self, **options: Any) -> tuple[dict[str, NDArray], dict[str, Any]]:
         """Starts an episode."""
         observation, info = self.env.reset(**options)
         self._speed = self._rate = 0.0
         self._heading, self._last = float(observation["compass"][0]), (observation, 0.0, False, False, info)
         return observation, info
 
-    def step(self, action: int) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+    def step(self, action: int) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
         """Performs one action."""
         if not self._last:
             raise gymnasium.error.ResetNeeded("Call reset() before the first step.")

@@ -31,6 +31,9 @@ from sim.sensors.sensor import Sensor, SensorContext
 from sim.sensors.standard import STANDARD_SENSORS, resolve_sensors
 from sim.task.config import TaskConfig
 
+StepResult = tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]
+"""Observation, reward, terminated, truncated and info of a step, as Gymnasium declares them."""
+
 
 class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arrays, which `spaces.Dict` does not type
     """Find an object of a category in an apartment that the agent has not seen before.
@@ -107,12 +110,12 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         profile: str | RenderProfile = "fast",
         noise: str | NoiseConfig = "none",
         render_mode: str | None = None,
-        task: TaskConfig | Mapping[str, Any] | None = None,
-        success: SuccessRule | Mapping[str, Any] | None = None,
+        task: TaskConfig | Mapping[str, object] | None = None,
+        success: SuccessRule | Mapping[str, object] | None = None,
         max_steps: int | None = None,
-        camera: CameraModel | Mapping[str, Any] | None = None,
-        scan: ScanConfig | Mapping[str, Any] | None = None,
-        robot: RobotConfig | Mapping[str, Any] | None = None,
+        camera: CameraModel | Mapping[str, object] | None = None,
+        scan: ScanConfig | Mapping[str, object] | None = None,
+        robot: RobotConfig | Mapping[str, object] | None = None,
         cached_houses: int = 1,
     ) -> None:
         _check_options(goal, render_mode)
@@ -183,7 +186,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         return self._motion
 
     def reset(
-        self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
+        self, *, seed: int | None = None, options: Mapping[str, object] | None = None
     ) -> tuple[dict[str, NDArray], dict[str, Any]]:
         """Starts an episode; see the class."""
         if self._closed:
@@ -204,12 +207,12 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         scene.task.look(semantic)
         return observation, self._info(collided=False)
 
-    def step(self, action: int) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
+    def step(self, action: int) -> StepResult:
         """Carries out one action; see the class."""
         self.scene.task.require_running()
         return self._outcome(self.scene.world.move(Action(action)))
 
-    def _outcome(self, motion: Motion) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
+    def _outcome(self, motion: Motion) -> StepResult:
         """Returns what `step` returns after a motion."""
         scene, self._motion = self.scene, motion
         observation, semantic = self._observe()
@@ -326,7 +329,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
 
 
 def _with_changes(
-    task: TaskConfig, success: SuccessRule | Mapping[str, Any] | None, max_steps: int | None
+    task: TaskConfig, success: SuccessRule | Mapping[str, object] | None, max_steps: int | None
 ) -> TaskConfig:
     """Returns the configuration of the task with the fields that are not None replaced."""
     if success is not None:

@@ -18,7 +18,6 @@ import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from sim.core.errors import EpisodeError, HouseError, did_you_mean
 from sim.core.files import inside, write_together
@@ -228,7 +227,7 @@ def house_sum(path: Path, *, with_also: bytes = b"", root: Path | None = None) -
 def write_split(
     folder: Path,
     episodes: Sequence[Episode],
-    goals_by_house: Mapping[str, Mapping[str, list[dict[str, Any]]]],
+    goals_by_house: Mapping[str, Mapping[str, Sequence[Mapping[str, object]]]],
     *,
     version: str,
     unreachable: Mapping[str, Sequence[str]] | None = None,
@@ -373,7 +372,7 @@ def _sidecar_bytes(house_file: Path) -> bytes:
     return read_bytes(file, what="Sidecar", error=HouseError) if file.is_file() else b""
 
 
-def _to_habitat(split: str, episode: Episode) -> dict[str, Any]:
+def _to_habitat(split: str, episode: Episode) -> dict[str, object]:
     state = habitat.to_agent_state(episode.start)
     return {
         "episode_id": episode.episode_id,

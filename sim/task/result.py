@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType, NoneType
-from typing import Annotated, Any, Literal, Self, get_args, get_type_hints
+from typing import Annotated, Literal, Self, get_args, get_type_hints
 
 import msgspec
 from msgspec import UNSET, Meta, UnsetType
@@ -162,7 +162,7 @@ class EpisodeResult(RolloutResult, frozen=True, kw_only=True):
     other_driver: str | UnsetType | None = UNSET
     """The agent that chose the other actions; None: there were none."""
 
-    def as_json(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, object]:
         """Returns the JSON values of the line, the episode and the agent first."""
         values = msgspec.to_builtins(self)
         return {name: values[name] for name in _KEYS if name in values}

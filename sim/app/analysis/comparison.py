@@ -14,7 +14,7 @@ from typing import Any
 
 from sim.app.analysis.tables import ResultTable
 from sim.app.evaluation.config_fields import ABSENT, differing_fields, field_text, run_differences
-from sim.app.evaluation.results import read_record, read_results
+from sim.app.evaluation.results import RunRecord, read_record, read_results
 from sim.core.errors import ConfigError
 from sim.task.result import EpisodeResult
 from sim.task.trajectory import read_trajectory, trajectory_file
@@ -37,7 +37,7 @@ class Run:
     """The content of a run's folder."""
 
     path: Path
-    config: Mapping[str, Any]
+    config: RunRecord
     results: Mapping[str, EpisodeResult]
     """Results by `episode_id`."""
 
@@ -105,7 +105,7 @@ def _counted(values: Mapping[str, list[str]]) -> dict[str, list[str]]:
     return rows
 
 
-def _short_text(value: Any) -> str:
+def _short_text(value: object) -> str:
     """Returns a value as JSON; for an object that the other run does not have, only its number of fields."""
     return f"{len(value)} fields" if isinstance(value, Mapping) else field_text(value)
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import functools
 import shlex
 from collections.abc import Sequence
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Literal, TypeVar
 
 import cv2
 import msgspec
@@ -212,7 +212,7 @@ class ProcessAgent:
 
     def _ask(
         self,
-        request: dict[str, Any],
+        request: dict[str, object],
         kind: type[T],
         arrays: Observation | None = None,
         *,

@@ -19,7 +19,7 @@ import sys
 import time
 import weakref
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,7 +117,7 @@ class AgentProcess:
         self._memory = None
 
     def ask(
-        self, request: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]] | None = None, *, within_s: float
+        self, request: Mapping[str, object], arrays: Mapping[str, NDArray] | None = None, *, within_s: float
     ) -> Answer:
         """Sends a request and returns its answer.
 
@@ -140,7 +140,7 @@ class AgentProcess:
             answer = self._exchange([memoryview(part).cast("B") for part in parts], within_s)
         except ProtocolError as fault:
             raise AgentError(f"its answer is not valid: {fault}") from None
-        given = answer.parsed(dict[str, Any]).get("id")
+        given = answer.parsed(dict[str, object]).get("id")
         if given != self._number:
             raise AgentError(f"it answered request {one_line(str(given), 40)}, but {self._number} was asked")
         return answer
@@ -300,7 +300,7 @@ class _SharedMemory:
         except OSError:
             return None
 
-    def write(self, arrays: Mapping[str, NDArray[Any]]) -> None:
+    def write(self, arrays: Mapping[str, NDArray]) -> None:
         """Writes arrays one after the other."""
         begin = stubborn_client.SHARED_START
         size = begin + sum(array.nbytes for array in arrays.values())

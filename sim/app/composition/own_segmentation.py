@@ -101,7 +101,7 @@ class OwnSegmenter:
         self._reads = frozenset(("depth", *names, *POSE_SENSORS))
         self._arrays: tuple[NDArray, ...] = ()
         """Arrays of the present frame: they identify it, because an agent may put them into another dictionary."""
-        self._done: dict[str, object] = {}
+        self._done: dict[str, Any] = {}
         """Results of the present frame by method and goal."""
 
     @property
@@ -133,7 +133,7 @@ class OwnSegmenter:
         """
         return self._once(observation, "categories", lambda seen: self._categories(observation, seen))
 
-    def _once(self, observation: Observation, key: str, compute: Callable[[Observation], Any]) -> Any:
+    def _once(self, observation: Observation, key: str, compute: Callable[[Observation], T]) -> T:
         """Returns a result of a frame; it is computed at the first request, from the sensors that are declared."""
         arrays = tuple(observation.values())
         if len(arrays) != len(self._arrays) or any(map(operator.is_not, arrays, self._arrays)):

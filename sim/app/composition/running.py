@@ -53,7 +53,8 @@ def run_missing(
         options.executor, workers=options.workers, address=options.address, isolation=isolation_of(options)
     )
     record = record_of(setup, split)
-    run, code = RunDirectory(options.out, record, EpisodeResult), record["versions"]["code"]
+    versions = record.get("versions", {})
+    run, code = RunDirectory(options.out, record, EpisodeResult), versions["code"]
     try:
         if run.healed:
             console.print(run.healed)
@@ -69,7 +70,7 @@ def run_missing(
         segmentation = f" with segmentation by {named}" if named else ""
         console.print(
             f"{options.agent}{segmentation}, {display.counted(len(episodes), 'episode')} of {split['name']} "
-            f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
+            f"(version {split['version']}), rendered by {versions['gl_renderer']}; results in {options.out}"
         )
         for note in notes_on(options.agent):
             console.print(note, highlight=False, soft_wrap=True)

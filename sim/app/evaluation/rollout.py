@@ -8,7 +8,7 @@ import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 import numpy as np
@@ -24,6 +24,7 @@ from sim.episodes.episode import Episode
 from sim.task.result import EpisodeMetrics, RolloutResult, failed_metrics
 from sim.task.trajectory import FARTHEST_M, Recording, trajectory_file, write_trajectory
 
+T = TypeVar("T")
 OnStep = Callable[[int, Agent, dict[str, Any]], None]
 """Called with the number of the step, the agent and the environment's info after each step."""
 
@@ -163,7 +164,7 @@ def rollout_result(
     )
 
 
-def ask(where: str, call: Callable[[], Any]) -> Any:
+def ask(where: str, call: Callable[[], T]) -> T:
     """Returns what a call of the agent returns.
 
     Raises:

@@ -6,7 +6,7 @@ A contradiction is refused by one sentence. What passes is consistent; whether i
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Literal
 
 import msgspec
 
@@ -49,7 +49,7 @@ class _Recorded(msgspec.Struct):
 
 
 def require_consistent(
-    submission: Submission, config: Mapping[str, Any], setting: Setting, split: Split, *, where: str
+    submission: Submission, config: Mapping[str, object], setting: Setting, split: Split, *, where: str
 ) -> None:
     """Raises ConfigError where a submission contradicts itself, its split, or this version of the simulator.
 
@@ -112,7 +112,7 @@ def _require_same_split(submission: Submission, split: Split, where: str) -> Non
         )
 
 
-def _require_declared(submission: Submission, config: Mapping[str, Any], setting: Setting, where: str) -> None:
+def _require_declared(submission: Submission, config: Mapping[str, object], setting: Setting, where: str) -> None:
     """Raises ConfigError where the declared inputs are not those of the configuration or of the result lines."""
     inputs, found = submission.manifest.inputs, convert(dict(config), _Recorded, where=f"{where}, field 'config'")
     recorded = {

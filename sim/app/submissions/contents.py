@@ -10,11 +10,12 @@ import gzip
 import tempfile
 from collections import Counter
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal, cast
 
 import msgspec
 from msgspec import Meta
 
+from sim.app.evaluation.results import RunRecord
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
 from sim.core.reading import Count, Metres, Name, Seed, parse_json, read_bytes, read_gzip_json
@@ -98,7 +99,7 @@ class Submission(msgspec.Struct, forbid_unknown_fields=True):
     """The run's `config.json` without options that change no result."""
     episodes: Annotated[list[Entry], Meta(min_length=1, max_length=MAX_EPISODES)]
 
-    def config_tree(self, *, where: str) -> dict[str, Any]:
+    def config_tree(self, *, where: str) -> RunRecord:
         """Returns the configuration.
 
         Args:
@@ -110,7 +111,7 @@ class Submission(msgspec.Struct, forbid_unknown_fields=True):
         content = bytes(self.config)
         if len(content) > MAX_CONFIG_BYTES:
             raise ConfigError(f"{where}, field 'config': it has {len(content)} bytes, at most {MAX_CONFIG_BYTES}.")
-        return parse_json(content, dict[str, Any], where=f"{where}, field 'config',")
+        return cast(RunRecord, parse_json(content, dict[str, object], where=f"{where}, field 'config',"))
 
 
 def read_submission(file: Path) -> Submission:

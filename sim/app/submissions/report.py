@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import msgspec
 
@@ -33,7 +33,7 @@ class Report(msgspec.Struct):
     tolerance_m: Number
 
 
-def report_of(checked: Checked, choices: Choices, found: Sequence[Verdict], seconds: float) -> dict[str, Any]:
+def report_of(checked: Checked, choices: Choices, found: Sequence[Verdict], seconds: float) -> dict[str, object]:
     """Returns the outcome of a verification; `seconds` of processor time were needed."""
     count = counts(found)
     return {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TypeVar
 
 from sim.core.configuration import as_json, leaves_of, with_fields
 from sim.core.errors import ConfigError
@@ -13,6 +13,7 @@ from sim.robot.config import RobotConfig
 from sim.sensors.noise import NOISE_PRESETS, NoiseConfig
 from sim.task.config import TaskConfig
 
+PartT = TypeVar("PartT")
 PARTS = ("robot", "camera", "task", "noise")
 OWN_NOISE = "own"
 """Name of noise that is none of the presets."""
@@ -46,7 +47,7 @@ class Setting:
         return found
 
 
-def setting_of(config: Mapping[str, Any], *, where: str) -> Setting:
+def setting_of(config: Mapping[str, object], *, where: str) -> Setting:
     """Returns the setting that the configuration of a run records.
 
     Args:
@@ -75,13 +76,13 @@ def _noise_name(noise: NoiseConfig) -> str:
     return next((name for name, preset in NOISE_PRESETS.items() if as_json(preset) == as_json(noise)), OWN_NOISE)
 
 
-def _part(default: Any, given: Any, name: str, where: str) -> Any:
+def _part(default: PartT, recorded: object, name: str, where: str) -> PartT:
     """Returns one part of a setting."""
-    if not isinstance(given, Mapping):
+    if not isinstance(recorded, Mapping):
         raise ConfigError(f"{where}: its configuration has no field 'config.{name}'.")
-    if given.get("file") is not None:
+    if recorded.get("file") is not None:
         raise ConfigError(f"{where}: the robot is that of a file (--robot), which a submission does not contain.")
-    values = dict(leaves_of(given))
+    values = dict(leaves_of(recorded))
     try:
         return with_fields(default, {path: value for path, value in values.items() if path != "file"})
     except ConfigError as error:

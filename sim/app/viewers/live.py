@@ -81,7 +81,7 @@ class LiveView:
             place = mujoco.mjtGridPos.mjGRID_TOPLEFT.value
             self._handle.set_texts((mujoco.mjtFontScale.mjFONTSCALE_100.value, place, left, right))
 
-    def moved(self, info: Mapping[str, Any]) -> None:
+    def moved(self, info: Mapping[str, object]) -> None:
         """Shows the motion of the action."""
         if not self._is_open:
             return

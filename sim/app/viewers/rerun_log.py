@@ -129,7 +129,7 @@ class RerunLog:
         self._stream.log("map", self._rr.Image(self._map.paint(MAP_PX)).compress(jpeg_quality=95))
         self._text("; ".join(filter(None, [ACTION_WORDS[moment.action], self._map.words()])))
 
-    def moved(self, info: Mapping[str, Any]) -> None:
+    def moved(self, info: Mapping[str, object]) -> None:
         """Logs the outcome of the action."""
         if info["distance_to_goal"] is not None:
             self._stream.log("distance_to_goal", self._rr.Scalars(info["distance_to_goal"]))

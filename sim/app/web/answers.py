@@ -6,7 +6,7 @@ import json
 import os
 import re
 from collections.abc import Callable, Mapping
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import anyio.to_thread
 from starlette.requests import Request
@@ -20,7 +20,7 @@ _CHUNK_BYTES = 1 << 18
 _RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})")
 
 
-def as_ascii(content: Any) -> str:
+def as_ascii(content: object) -> str:
     """Returns JSON in ASCII, so that text with lone surrogates, such as some file names, can be sent too."""
     return json.dumps(content, ensure_ascii=True, allow_nan=False)
 
@@ -28,7 +28,7 @@ def as_ascii(content: Any) -> str:
 class Json(JSONResponse):
     """A response in JSON."""
 
-    def render(self, content: Any) -> bytes:
+    def render(self, content: object) -> bytes:
         """Returns the body of the response."""
         return as_ascii(content).encode("ascii")
 

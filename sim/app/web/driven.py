@@ -64,7 +64,7 @@ class DrivenRuns:
         content = record_of(person, split)
         directory = RunDirectory(run, content, EpisodeResult)
         try:
-            driven = record_driven(person, env, episode, result, content["versions"])
+            driven = record_driven(person, env, episode, result, content.get("versions", {}))
             other = setup.options.agent if with_agent else None
             directory.append(
                 msgspec.structs.replace(driven, person_steps=person_steps, hint_steps=hint_steps, other_driver=other)

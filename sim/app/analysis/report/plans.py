@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TypedDict
 
 import cv2
 import numpy as np
@@ -38,6 +38,18 @@ SMOOTH_PX = 1.5
 _NEIGHBOURS = np.array([(r, c) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c])
 
 
+class Plan(TypedDict):
+    """The drawing of one storey, JSON types."""
+
+    size: tuple[int, int]
+    floor: list[list[int]]
+    """Rectangles."""
+    shapes: list[list[str]]
+    """[category, name, SVG path], from the lowest up."""
+    rooms: list[list[str | int]]
+    """[name, x, y, width]."""
+
+
 @dataclass(frozen=True)
 class Sheet:
     """The place of a storey on the page."""
@@ -64,12 +76,8 @@ def sheet_around(positions_m: NDArray[np.floating], margin_m: float = 1.0) -> Sh
     return Sheet(GridFrame(origin_xy_m=(float(low[0]), float(low[1])), shape=(rows, cols), cell_m=cell))
 
 
-def draw_plan(truth: GroundTruth, floor_z_m: float) -> dict[str, Any]:
-    """Returns the drawing of one storey as JSON types.
-
-    Keys: `size`, `floor` (rectangles), `shapes` ([category, name, SVG path]) from the lowest up, and `rooms`
-    ([name, x, y, width]).
-    """
+def draw_plan(truth: GroundTruth, floor_z_m: float) -> Plan:
+    """Returns the drawing of one storey."""
     sheet = Sheet(truth.space(floor_z_m).frame)
     rooms = [room for room in truth.world.rooms if abs(room.floor_z_m - floor_z_m) < truth.world.rule.same_storey_m]
     return {

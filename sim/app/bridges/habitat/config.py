@@ -101,7 +101,7 @@ def make_config(
 
 
 def get_config(
-    config_paths: str | Sequence[str] | None = None, overrides: Sequence[Any] | None = None, *_: Any, **__: Any
+    config_paths: str | Sequence[str] | None = None, overrides: Sequence[object] | None = None, *_: object, **__: Any
 ) -> Config:
     """Returns the configuration of this project's task, changed by files and by overrides.
 
@@ -143,7 +143,7 @@ def with_entries_of(config: Config, file: Path) -> Config:
     return found
 
 
-def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
+def settings_of(config: Mapping[str, object]) -> dict[str, Any]:
     """Returns the entries of `SETTINGS` whose values differ from those of this project's task.
 
     The tree under `habitat`, which scripts of the new layout also give, will do.
@@ -152,20 +152,20 @@ def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
         ConfigError: two paths of one setting have different values, such as the widths of RGB and depth, or the
             configuration has no section of either layout.
     """
-    default, found = make_config(), dict[str, Any]()
+    default, settings = make_config(), dict[str, Any]()
     config = _whole(config, default)
     for name, paths in SETTINGS.items():
         values = {path: _at(config, path) for path in paths}
         changed = {path: value for path, value in values.items() if value not in (None, _at(default, path))}
         for path, value in changed.items():
-            if found.setdefault(name, value) != value:
+            if settings.setdefault(name, value) != value:
                 first = next(iter(changed))
                 why = "all images have one camera" if "sensor" in path.lower() else "both layouts must agree"
-                raise ConfigError(f"The configuration has {first}={found[name]!r} and {path}={value!r}; {why}.")
-    return found
+                raise ConfigError(f"The configuration has {first}={settings[name]!r} and {path}={value!r}; {why}.")
+    return settings
 
 
-def log_ignored(config: Mapping[str, Any]) -> None:
+def log_ignored(config: Mapping[str, object]) -> None:
     """Logs the entries that change nothing: those with another value than this project's task, and unknown ones."""
     default = make_config()
     taken = {path for paths in SETTINGS.values() for path in paths}
@@ -189,7 +189,7 @@ def _warn_once(text: str) -> None:
     _LOG.warning("%s", text)
 
 
-def _whole(config: Mapping[str, Any], default: Config) -> Mapping[str, Any]:
+def _whole(config: Mapping[str, object], default: Config) -> Mapping[str, object]:
     """Returns a configuration, or that whose tree under `habitat` is given.
 
     Raises:
@@ -205,11 +205,11 @@ def _whole(config: Mapping[str, Any], default: Config) -> Mapping[str, Any]:
     return {"habitat": config}
 
 
-def _upper(tree: Mapping[str, Any]) -> dict[str, Any]:
+def _upper(tree: Mapping[str, object]) -> dict[str, object]:
     return {name.upper(): value for name, value in tree.items()}
 
 
-def _at(config: Mapping[str, Any], path: str) -> Any:
+def _at(config: Mapping[str, object], path: str) -> Any:
     """Returns the value at a dotted path; None if the configuration has no such path."""
     value: Any = config
     for name in path.split("."):
@@ -217,7 +217,7 @@ def _at(config: Mapping[str, Any], path: str) -> Any:
     return value
 
 
-def _read_yaml(file: Path) -> Mapping[str, Any]:
+def _read_yaml(file: Path) -> Mapping[str, object]:
     """Returns the content of a YAML file.
 
     Raises:

@@ -20,7 +20,7 @@ import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from gymnasium import spaces
@@ -46,6 +46,13 @@ class Observations(_Observation):
 
 HabitatSimActions = HabitatActions()
 """`HabitatSimActions.MOVE_FORWARD` or `.move_forward` is 1, as in Habitat."""
+
+
+class HabitatsAgent(Protocol):
+    """An agent with Habitat's interface."""
+
+    def reset(self) -> None: ...  # noqa: D102
+    def act(self, observations: Observations) -> object: ...  # noqa: D102
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,7 +121,7 @@ class Conversion:
         return ((clipped - near_m) / (far_m - near_m) if self.normalize_depth else clipped).astype(np.float32)
 
 
-def to_action(given: Any) -> Action:
+def to_action(chosen: object) -> Action:
     """Returns the action that a Habitat agent gave: a number, a name, or a dict with the key `action`.
 
     A number may be an integer of Python or NumPy, or a tensor or array of one element; a name may be in upper case.
@@ -123,15 +130,15 @@ def to_action(given: Any) -> Action:
         AgentError: it is not one of the four actions.
     """
     try:
-        inner = from_habitat(given)
+        inner = from_habitat(chosen)
         number = ACTION_IDS.get(inner.lower()) if isinstance(inner, str) else operator.index(inner)
     except Exception:  # that of the user's class too
         number = None
     if number in (ACTION_IDS["look_up"], ACTION_IDS["look_down"]):
-        raise AgentError(f"Action {reprlib.repr(given)}: the camera of this robot does not tilt.")
+        raise AgentError(f"Action {reprlib.repr(chosen)}: the camera of this robot does not tilt.")
     if number is None or number not in tuple(Action):
         names = ", ".join(f"{number} {name}" for name, number in ACTION_IDS.items() if number < len(Action))
         raise AgentError(
-            f'{reprlib.repr(given)} is no action. An action is one of {names}, or a dict {{"action": one of these}}.'
+            f'{reprlib.repr(chosen)} is no action. An action is one of {names}, or a dict {{"action": one of these}}.'
         )
     return Action(number)

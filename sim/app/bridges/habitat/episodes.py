@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import msgspec
 
@@ -42,7 +41,7 @@ class ObjectGoalNavEpisode:
     start_position: list[float]
     start_rotation: list[float]
     object_category: str
-    info: dict[str, Any]
+    info: dict[str, object]
     """`geodesic_distance`: recorded length of the shortest path, metres; None: unknown."""
     goals_file: Path
     """The file of the house's episodes and goals; it does not exist for episodes that are drawn in a house file."""
@@ -79,7 +78,7 @@ class _GoalEntry(msgspec.Struct):
     object_id: str | int
     object_category: str
     position: list[float]
-    view_points: list[dict[str, Any]] = msgspec.field(default_factory=list)
+    view_points: list[dict[str, object]] = msgspec.field(default_factory=list)
 
 
 class _GoalsFile(msgspec.Struct):
