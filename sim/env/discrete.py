@@ -154,7 +154,7 @@ class DiscreteActions(gymnasium.Wrapper[dict[str, NDArray], Any, dict[str, NDArr
         return bool(self._last[2] or self._last[3])
 
 
-def stopping_velocity(left: float, velocity: float, acceleration: float, period_s: float) -> float:
+def stopping_velocity(remaining: float, velocity: float, acceleration: float, period_s: float) -> float:
     """Returns the largest velocity to command for a period after which the base can still stop at its goal.
 
     The base moves to the command with its acceleration during the period, and later to 0. With v0 the velocity now and
@@ -166,14 +166,14 @@ def stopping_velocity(left: float, velocity: float, acceleration: float, period_
         acceleration: limit of the base, > 0.
         period_s: time for which the command is held.
     """
-    goal, v0 = abs(left), max(0.0, velocity * math.copysign(1.0, left))
+    goal, v0 = abs(remaining), max(0.0, velocity * math.copysign(1.0, remaining))
     faster = (goal + 0.5 * v0 * v0 / acceleration) / (period_s + v0 / acceleration)
     if faster >= v0:
-        return math.copysign(faster, left)
+        return math.copysign(faster, remaining)
     half = 0.5 * (period_s - v0 / acceleration)
     root = half * half - (0.5 * v0 * v0 / acceleration - goal) / acceleration
     slower = acceleration * (math.sqrt(root) - half) if root > 0.0 else 0.0
-    return math.copysign(max(0.0, slower), left)
+    return math.copysign(max(0.0, slower), remaining)
 
 
 def _towards(velocity: float, most: float, command: float, change: float) -> float:

@@ -137,7 +137,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._robot = as_settings(robot, RobotConfig(), name="robot")
         self._default_noise = self._make_noise(noise if isinstance(noise, NoiseConfig) else get_noise(noise))
         self._noise = self._default_noise
-        self.observation_space = spaces.Dict({each.name: each.space(self.camera_model) for each in self.sensors})
+        self.observation_space = spaces.Dict({sensor.name: sensor.space(self.camera_model) for sensor in self.sensors})
         self.action_space = spaces.Discrete(len(Action))
         self._episodes = [episode for episode in self.split.episodes if goal in (None, episode.goal)]
         if self.split.episodes and not self._episodes:
@@ -290,7 +290,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
 
     def _require_in_space(self, observation: dict[str, NDArray]) -> None:
         """Raises ConfigError if the first reading of a user's sensor is not in its space."""
-        for sensor in (each for each in self.sensors if each.name not in STANDARD_SENSORS):
+        for sensor in (sensor for sensor in self.sensors if sensor.name not in STANDARD_SENSORS):
             space, reading = sensor.space(self.camera_model), observation[sensor.name]
             if not space.contains(reading):
                 raise ConfigError(
@@ -302,8 +302,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         """Returns the observation, and the true segmentation, which the metrics need even if no agent gets it."""
         world = self.scene.world
         needed = {name for sensor in self._noise.sensors for name in sensor.images}
-        wanted = sorted({"semantic", *needed, *self._truth, *self._noise.images})
-        images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, wanted)
+        names = sorted({"semantic", *needed, *self._truth, *self._noise.images})
+        images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, names)
         fields = {
             "goal": self.episode.goal,
             "collided": self._motion is not None and self._motion.collided,
@@ -314,7 +314,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             "model": world.model,
             "data": world.data,
         }
-        readings = {each.name: each.read(SensorContext(each, images, **fields)) for each in self._noise.sensors}
+        readings = {sensor.name: sensor.read(SensorContext(sensor, images, **fields)) for sensor in self._noise.sensors}
         return self._noise.apply(readings, images), images["semantic"]
 
     def _info(self, collided: bool) -> dict[str, Any]:
@@ -340,8 +340,8 @@ def _with_changes(
 def _with_scan(sensors: tuple[Sensor, ...], scan: ScanConfig) -> tuple[Sensor, ...]:
     """Returns the sensors with this lidar in place of the standard one; a `ScanSensor` of another one stays."""
     return tuple(
-        replace(each, config=scan) if isinstance(each, ScanSensor) and each == ScanSensor() else each
-        for each in sensors
+        replace(sensor, config=scan) if isinstance(sensor, ScanSensor) and sensor == ScanSensor() else sensor
+        for sensor in sensors
     )
 
 

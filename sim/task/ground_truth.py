@@ -142,7 +142,7 @@ class GroundTruth:
         if off_m is not None and off_m <= within_m:
             return goal
         world, place = self.world, np.array([[x_m, y_m]])
-        found: list[tuple[bool, float, float, str]] = []
+        candidates: list[tuple[bool, float, float, str]] = []
         for instance in world.labels.instances:
             if instance.category in _NO_OBJECTS or not self._may_be_within(instance.geom_ids, x_m, y_m, within_m):
                 continue
@@ -153,8 +153,8 @@ class GroundTruth:
             if distance_m <= within_m:
                 x0, y0, x1, y1 = footprint.bounds_m
                 is_structure = instance.category in SIGHT_BLOCKERS
-                found.append((is_structure, distance_m, (x1 - x0) * (y1 - y0), instance.category))
-        return min(found)[-1] if found else None
+                candidates.append((is_structure, distance_m, (x1 - x0) * (y1 - y0), instance.category))
+        return min(candidates)[-1] if candidates else None
 
     def _may_be_within(self, geoms: tuple[int, ...], x_m: float, y_m: float, within_m: float) -> bool:
         """Returns False if all bounding spheres of the geoms are farther than `within_m` from the place, in plan."""

@@ -100,8 +100,8 @@ def _counted(values: Mapping[str, list[str]]) -> dict[str, list[str]]:
     for part, paths in lacking.items():
         if len(paths) > MOST_LACKING:
             texts = [rows.pop(path) for path in paths]
-            had = [sum(text != ABSENT.value for text in of_run) for of_run in zip(*texts, strict=True)]
-            rows[f"{part}: fields of some runs only"] = [f"{count} fields" for count in had]
+            counts = [sum(text != ABSENT.value for text in of_run) for of_run in zip(*texts, strict=True)]
+            rows[f"{part}: fields of some runs only"] = [f"{count} fields" for count in counts]
     return rows
 
 

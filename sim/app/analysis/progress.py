@@ -140,11 +140,11 @@ class ProgressReport:
             return ""
         expected = self._steps_done / self._done if self._done else float(self._max_steps)
         waiting = self._total - self._done - len(counts)
-        left = waiting * expected + sum(max(0.0, expected - count) for count in counts)
+        remaining = waiting * expected + sum(max(0.0, expected - count) for count in counts)
         rate, bound = (made - self._first[1]) / (now_s - self._first[0]), "about" if self._done else "at most"
-        if left == 0.0:  # the last episodes are longer than the ones before them
+        if remaining == 0.0:  # the last episodes are longer than the ones before them
             return f"; {rate:.1f} steps/s"
-        return f"; {rate:.1f} steps/s, {bound} {_duration(left / rate)} left"
+        return f"; {rate:.1f} steps/s, {bound} {_duration(remaining / rate)} left"
 
     def _print(self, words: str) -> None:
         self._printed_s = time.monotonic()

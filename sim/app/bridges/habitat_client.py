@@ -91,8 +91,8 @@ def read_write(config):
 def to_config(value: object) -> Any:
     """Returns nested dicts as a `Config`; lists and dicts are copied."""
     if isinstance(value, dict):
-        return Config({str(key): to_config(each) for key, each in value.items()})
-    return [to_config(each) for each in value] if isinstance(value, list) else value
+        return Config({str(key): to_config(item) for key, item in value.items()})
+    return [to_config(item) for item in value] if isinstance(value, list) else value
 
 
 def merge(config: Config, changes: "Mapping") -> None:
@@ -128,12 +128,12 @@ def override(config: Config, overrides: "Iterable[object] | None") -> None:
     Raises:
         ValueError: a path has no value.
     """
-    left = list(overrides or ())
-    while left:
-        path, separator, text = str(left.pop(0)).partition("=")
-        if not separator and not left:
+    remaining = list(overrides or ())
+    while remaining:
+        path, separator, text = str(remaining.pop(0)).partition("=")
+        if not separator and not remaining:
             raise ValueError(f"An override has the form path=value, got '{path}'.")
-        tree: Any = text if separator else left.pop(0)
+        tree: Any = text if separator else remaining.pop(0)
         tree = parsed(tree) if isinstance(tree, str) else tree
         for name in reversed(path.lstrip("+").split(".")):
             tree = {name: tree}
@@ -156,11 +156,11 @@ def remove_other_actions(config: Config) -> "set[str]":
         listed = tree.get(name) if isinstance(tree, Config) else None
         if not isinstance(tree, Config) or not isinstance(listed, (list, Config)):
             continue
-        others = {str(each) for each in listed if str(each).lower() not in HABITAT_ACTIONS}
+        others = {str(action) for action in listed if str(action).lower() not in HABITAT_ACTIONS}
         if isinstance(listed, Config):
             tree[name] = Config({key: value for key, value in listed.items() if key not in others})
         else:
-            tree[name] = [each for each in listed if str(each) not in others]
+            tree[name] = [action for action in listed if str(action) not in others]
         removed |= others
     return removed
 
@@ -193,8 +193,8 @@ class StandIn(Loader):
         self._fill(module)
         if module.__name__ == "habitat":
             modules = [importlib.import_module(name) for name in HABITAT_MODULES]
-            for each in modules:
-                self._fill(each)  # again: a function may have the name of a module
+            for part in modules:
+                self._fill(part)  # again: a function may have the name of a module
 
     def _fill(self, module):
         vars(module).update({name: self._objects[name] for name in HABITAT_MODULES[module.__name__].split()})
@@ -358,8 +358,8 @@ def _config_of_the_run() -> Config:
 def _provide_habitat():
     """Makes `import habitat` work in this process if Habitat is not installed, and the import of `EMPTY_PACKAGES`."""
     sys.meta_path.append(EmptyModules())
-    found = importlib.util.find_spec("habitat")
-    if found is not None and found.origin is not None:  # a folder of this name has no origin
+    spec = importlib.util.find_spec("habitat")
+    if spec is not None and spec.origin is not None:  # a folder of this name has no origin
         return
     LOG.addHandler(logging.StreamHandler())
     LOG.setLevel(logging.INFO)
@@ -381,15 +381,15 @@ def _maker_of(name, words):
 
     def make(_):
         module, _, attribute = name.partition(":")
-        found = getattr(importlib.import_module(module), attribute)
-        given = dict(word.split("=", 1) for word in words)
-        given = {key: called(parsed(text)) for key, text in given.items()}
-        for argument in inspect.signature(found).parameters.values():
+        build = getattr(importlib.import_module(module), attribute)
+        arguments = dict(word.split("=", 1) for word in words)
+        arguments = {key: called(parsed(text)) for key, text in arguments.items()}
+        for argument in inspect.signature(build).parameters.values():
             if argument.name in OF_THE_RUN and argument.default is argument.empty and takes_config(argument):
-                file = given.get(argument.name)
+                file = arguments.get(argument.name)
                 if file is None or isinstance(file, str):
-                    given[argument.name] = _get_config(file)
-        return found(**given)
+                    arguments[argument.name] = _get_config(file)
+        return build(**arguments)
 
     return make
 

@@ -177,7 +177,7 @@ class ProcessAgent:
     def map_image(self) -> tuple[NDArray[np.uint8], str]:
         """Returns the agent's map, uint8 RGB (h, w, 3), and a few words on what the agent is doing."""
         drawn, answer = self._ask({"type": "map"}, _Map)
-        described = [msgspec.to_builtins(each) for each in drawn.arrays]
+        described = [msgspec.to_builtins(array) for array in drawn.arrays]
         try:
             return unpack_arrays(described, answer.content)["map"], one_line(drawn.state)
         except ProtocolError as fault:
@@ -262,9 +262,9 @@ class ProcessPainter:
         image, self._words = ask(f"Agent '{self._agent.name}', map_image", self._agent.map_image)
         height, width = (max(1, round(side * size_px / max(image.shape[:2]))) for side in image.shape[:2])
         kind = cv2.INTER_AREA if height < image.shape[0] else cv2.INTER_NEAREST
-        top, left = (size_px - height) // 2, (size_px - width) // 2
+        top, left_px = (size_px - height) // 2, (size_px - width) // 2
         paper = np.full((size_px, size_px, 3), 255, np.uint8)
-        paper[top : top + height, left : left + width] = cv2.resize(image, (width, height), interpolation=kind)
+        paper[top : top + height, left_px : left_px + width] = cv2.resize(image, (width, height), interpolation=kind)
         return paper
 
     def words(self) -> str:

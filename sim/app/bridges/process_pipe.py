@@ -140,9 +140,9 @@ class AgentProcess:
             answer = self._exchange([memoryview(part).cast("B") for part in parts], within_s)
         except ProtocolError as fault:
             raise AgentError(f"its answer is not valid: {fault}") from None
-        given = answer.parsed(dict[str, object]).get("id")
-        if given != self._number:
-            raise AgentError(f"it answered request {one_line(str(given), 40)}, but {self._number} was asked")
+        answered = answer.parsed(dict[str, object]).get("id")
+        if answered != self._number:
+            raise AgentError(f"it answered request {one_line(str(answered), 40)}, but {self._number} was asked")
         return answer
 
     def close(self, *, at_once: bool = False) -> None:

@@ -108,7 +108,7 @@ def _require_own_lines(options: RunOptions, run: RunDirectory[EpisodeResult], ep
     others = [line for line in run.lines if line.episode_id not in known]
     if others and options.house is None:  # of the same split, but not asked for now
         every = with_replicates(load_split(options.split).episodes, options.replicates)
-        known |= {each.episode_id: (each.house, each.goal) for each in every}
+        known |= {episode.episode_id: (episode.house, episode.goal) for episode in every}
     elif options.house is not None:
         stem = re.escape(options.house.stem)
         drawn = (line for line in others if re.fullmatch(rf"{stem}_\d{{4,}}(~\d+)?", line.episode_id))

@@ -112,8 +112,8 @@ def estimate(
     if not names:
         return Estimate(None, None, None, 0, 0)
     mean, error, clusters = _mean_and_error(numbers, names)
-    found = _bounded(mean, error, clusters, len(names)) if most == 1.0 else _amount(mean, error, clusters)
-    return Estimate(mean, *found, len(names), len(set(names)))
+    interval = _bounded(mean, error, clusters, len(names)) if most == 1.0 else _amount(mean, error, clusters)
+    return Estimate(mean, *interval, len(names), len(set(names)))
 
 
 def paired_difference(
@@ -180,12 +180,12 @@ def ratio_of_medians(
     values = [numbers for numbers, _ in rows]
     index = np.unique(_clusters(names), return_inverse=True)[1]
     count = int(index.max()) + 1
-    middle = _ratio(*(np.array([np.median(each)]) for each in values))[0]
+    middle = _ratio(*(np.array([np.median(column)]) for column in values))[0]
     counts = (len(names), len(set(names)))
     if count < 2:
         return Estimate(float(middle), None, None, *counts, neutral=1.0)
     drawn = np.random.default_rng(0).multinomial(count, np.full(count, 1.0 / count), RESAMPLES)  # (resamples, houses)
-    ratios = _ratio(*(_medians(each, index, drawn) for each in values))
+    ratios = _ratio(*(_medians(column, index, drawn) for column in values))
     level = 100.0 * float(ndtr(-math.sqrt(count / (count - 1)) * _quantile(count)))
     low, high = np.percentile(ratios, [level, 100.0 - level], method="nearest")  # ratios may be infinite
     return Estimate(float(middle), float(low), float(high), *counts, neutral=1.0)
@@ -204,25 +204,25 @@ def replicate_spread(values: Sequence[Value], episodes: Sequence[str]) -> float 
     Raises:
         ValueError: the arguments have different lengths.
     """
-    found: dict[str, list[float]] = {}
+    groups: dict[str, list[float]] = {}
     for value, episode in zip(values, episodes, strict=True):
         if value is not None:
-            found.setdefault(episode, []).append(float(value))
-    variances = [float(np.var(each, ddof=1)) for each in found.values() if len(each) > 1]
-    return math.sqrt(sum(variances) / len(variances) / len(found)) if variances else None
+            groups.setdefault(episode, []).append(float(value))
+    variances = [float(np.var(group, ddof=1)) for group in groups.values() if len(group) > 1]
+    return math.sqrt(sum(variances) / len(variances) / len(groups)) if variances else None
 
 
 def _of_episodes(
     values: Sequence[Value], houses: Sequence[str], episodes: Sequence[str] | None
 ) -> tuple[NDArray[np.float64], list[str]]:
     """Returns the values (n,) of episodes that have one, and the house of each, in an order that no value changes."""
-    found: dict[tuple[str, object], list[float]] = {}
+    groups: dict[tuple[str, object], list[float]] = {}
     keys: Sequence[object] = range(len(values)) if episodes is None else episodes
     for value, house, key in zip(values, houses, keys, strict=True):
         if value is not None:
-            found.setdefault((house, key), []).append(float(value))
-    of = sorted(found.items(), key=lambda item: (item[0][0], str(item[0][1])))
-    return np.array([sum(each) / len(each) for _, each in of]), [house for (house, _), _ in of]
+            groups.setdefault((house, key), []).append(float(value))
+    of = sorted(groups.items(), key=lambda item: (item[0][0], str(item[0][1])))
+    return np.array([sum(group) / len(group) for _, group in of]), [house for (house, _), _ in of]
 
 
 def _clusters(houses: Sequence[str]) -> list[str]:

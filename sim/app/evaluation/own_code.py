@@ -78,7 +78,7 @@ def hash_of_own(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
             _read_with_imports(file, file.parent, contents)
     for place, source in sorted(contents.values()):
         digest.update(place.encode() + source)
-    for file in (each for each in others if each.suffix != ".py"):
+    for file in (path for path in others if path.suffix != ".py"):
         digest.update(file.name.encode() + bytes.fromhex(sha256_of(file, what="File of an agent")))
     return digest.hexdigest()[:12] if contents or others else ""
 
@@ -91,9 +91,9 @@ def _read_with_imports(file: Path, root: Path, contents: dict[Path, tuple[str, b
     contents[file] = str(file.relative_to(root)), source
     for module in _imported(source, file, root):
         path = root.joinpath(*module.split("."))
-        for each in (path.with_name(f"{path.name}.py"), path / "__init__.py"):
-            if each.is_file() and _is_users(each):
-                _read_with_imports(each, root, contents)
+        for candidate in (path.with_name(f"{path.name}.py"), path / "__init__.py"):
+            if candidate.is_file() and _is_users(candidate):
+                _read_with_imports(candidate, root, contents)
 
 
 def _imported(source: bytes, file: Path, root: Path) -> Iterator[str]:
@@ -106,11 +106,11 @@ def _imported(source: bytes, file: Path, root: Path) -> Iterator[str]:
     names: list[str] = []
     for node in nodes:
         if isinstance(node, ast.Import):
-            names += [each.name for each in node.names]
+            names += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             parts = (*package[: len(package) + 1 - node.level], *filter(None, [node.module])) if node.level else ()
             base = ".".join(parts) if node.level else node.module or ""
-            names += [base, *(f"{base}.{each.name}".lstrip(".") for each in node.names)]
+            names += [base, *(f"{base}.{alias.name}".lstrip(".") for alias in node.names)]
     for name in filter(None, names):
         parts = name.split(".")
         yield from (".".join(parts[: end + 1]) for end in range(len(parts)))

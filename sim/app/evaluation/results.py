@@ -158,7 +158,7 @@ class RunDirectory(Generic[LineT]):
             return
         existing = read_record(self.path / "config.json")
         codes = existing.get("codes") or [existing.get("versions", {}).get("code", "")]
-        before = [each.partition("+")[2] for each in codes if each]
+        before = [text.partition("+")[2] for text in codes if text]
         now = code.partition("+")[2]
         if now and all(before) and before and now not in before:
             number = f"{len(kept)} episode" + "s" * (len(kept) != 1)
@@ -249,14 +249,14 @@ class RunDirectory(Generic[LineT]):
             same = size == self._bytes
             if same and content:
                 same = sha256_of(self._file, what="Results") == self._digest.hexdigest()
-            found = f"was changed by another program: it has {size} bytes, and this run wrote {self._bytes}"
+            reason = f"was changed by another program: it has {size} bytes, and this run wrote {self._bytes}"
         except (OSError, ConfigError):
-            same, found = False, "was removed by another program"
+            same, reason = False, "was removed by another program"
         if not same:
             ids = [line.episode_id for line in self.lines] + [new] * bool(new)
-            named = f"'{ids[0]}' to '{ids[-1]}'" if len(ids) > 1 else "".join(f"'{each}'" for each in ids)
+            named = f"'{ids[0]}' to '{ids[-1]}'" if len(ids) > 1 else "".join(f"'{episode_id}'" for episode_id in ids)
             raise ConfigError(
-                f"While the run wrote to it, '{self._file}' {found}. The results of {len(ids)} episodes are lost or "
+                f"While the run wrote to it, '{self._file}' {reason}. The results of {len(ids)} episodes are lost or "
                 f"may be damaged ({named}); run them again with another --out."
             )
 

@@ -121,12 +121,12 @@ def read_submission(file: Path) -> Submission:
         ConfigError: the file cannot be read, is damaged or too large, has another format, or has an episode twice.
     """
     read_bytes(file, what="Submission", most=MAX_FILE_BYTES)  # refuses a large file before it is decompressed
-    found: Submission = read_gzip_json(file, Submission, what="Submission", strict=False)  # 0.2.0 writes 3.0 steps
-    counts = Counter(entry.result.episode_id for entry in found.episodes)
+    submission: Submission = read_gzip_json(file, Submission, what="Submission", strict=False)  # 0.2.0 writes 3.0 steps
+    counts = Counter(entry.result.episode_id for entry in submission.episodes)
     twice = next((name for name, count in counts.items() if count > 1), None)
     if twice is not None:
         raise ConfigError(f"Submission '{file}' has the episode '{twice}' {counts[twice]} times; each counts once.")
-    return found
+    return submission
 
 
 def write_submission(file: Path, submission: Submission) -> int:

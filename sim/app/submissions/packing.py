@@ -89,9 +89,9 @@ def pack(run: Run, about: About) -> Submission:
 def _without_folders(value: object) -> object:
     """Returns a configuration in which files of the user, such as weights, have their name without its folder."""
     if isinstance(value, dict):
-        return {key: _without_folders(each) for key, each in value.items()}
+        return {key: _without_folders(item) for key, item in value.items()}
     if isinstance(value, list):
-        return [_without_folders(each) for each in value]
+        return [_without_folders(item) for item in value]
     return PurePath(value).name if isinstance(value, str) and PurePath(value).is_absolute() else value
 
 

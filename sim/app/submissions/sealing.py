@@ -117,9 +117,9 @@ def other_versions(seal: Seal) -> list[str]:
     """Returns a phrase for each version of the seal that is not the one here."""
     here = house_maker().versions()
     return [
-        f"{name} {there} there and {here.get(name)} here"
-        for name, there in seal.made_with.items()
-        if here.get(name) != there
+        f"{name} {sealed} there and {here.get(name)} here"
+        for name, sealed in seal.made_with.items()
+        if here.get(name) != sealed
     ]
 
 

@@ -36,15 +36,15 @@ class Setting:
     def changes(self) -> list[str]:
         """Returns a text for each field that differs from the standard: name, value, standard value."""
         standard = Setting()
-        found = []
+        changes = []
         for part in ("robot", "camera", "task"):
             before = dict(leaves_of(as_json(getattr(standard, part)), f"{part}."))
             for path, value in leaves_of(as_json(getattr(self, part)), f"{part}."):
                 if value != before.get(path):
-                    found.append(f"{path} is {value!r}, in the standard {before.get(path)!r}")
+                    changes.append(f"{path} is {value!r}, in the standard {before.get(path)!r}")
         if self.noise_name == OWN_NOISE:
-            found.append(f"noise is none of {', '.join(NOISE_PRESETS)}")
-        return found
+            changes.append(f"noise is none of {', '.join(NOISE_PRESETS)}")
+        return changes
 
 
 def setting_of(config: Mapping[str, object], *, where: str) -> Setting:

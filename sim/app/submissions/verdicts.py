@@ -78,13 +78,13 @@ def _differences(
         area = AREA_OF_RENDERER * (metrics.area_seen_m2 or 0.0)
         allowed |= dict.fromkeys(SEEN_EXACT, 0.0) | {SEEN_STEPS: STEPS_OF_RENDERER, SEEN_AREA: area}
     for name, most in allowed.items():
-        there, here = getattr(entry.result, name), getattr(metrics, name)
-        off = _off(there, here)
+        submitted, replayed = getattr(entry.result, name), getattr(metrics, name)
+        off = _off(submitted, replayed)
         if name in LENGTHS and math.isfinite(off):
             largest = max(largest, off)
         if off > ROUNDING:
             (differing if off > max(most, ROUNDING) else near).append(
-                f"{name} {_text(there)}, in the replay {_text(here)}"
+                f"{name} {_text(submitted)}, in the replay {_text(replayed)}"
             )
     return differing, largest, near
 
@@ -93,7 +93,7 @@ def _meaning(entry: Entry, replay: Replay, tolerance_m: float) -> str:
     """Returns a sentence on the likely reason of a difference."""
     if len(entry.places_m) == len(replay.places_m):
         off = [math.dist(a, b) for a, b in zip(entry.places_m, replay.places_m, strict=True)]
-        apart = next((number for number, each in enumerate(off) if each > tolerance_m + 1e-4), None)
+        apart = next((number for number, distance_m in enumerate(off) if distance_m > tolerance_m + 1e-4), None)
         if apart is None:
             return "The actions lead along the recorded path, so the result itself was changed or computed otherwise"
         step = min((apart + 1) * PLACE_EVERY, len(entry.actions))
@@ -104,12 +104,12 @@ def _meaning(entry: Entry, replay: Replay, tolerance_m: float) -> str:
     return "The recorded path has another number of places than the actions: one of them was changed"
 
 
-def _off(there: object, here: object) -> float:
+def _off(submitted: object, replayed: object) -> float:
     """Returns how far apart two values are; infinity where one is missing or they are no numbers."""
-    if isinstance(there, (bool, int, float)) and isinstance(here, (bool, int, float)):
-        off = abs(float(there) - float(here))
+    if isinstance(submitted, (bool, int, float)) and isinstance(replayed, (bool, int, float)):
+        off = abs(float(submitted) - float(replayed))
         return off if math.isfinite(off) else math.inf
-    return 0.0 if there == here else math.inf
+    return 0.0 if submitted == replayed else math.inf
 
 
 def _text(value: object) -> str:

@@ -96,9 +96,9 @@ def draw_top(house: House, *, colours: NDArray[np.uint8] | None = None) -> Pictu
     light.ambient, light.diffuse, light.specular = np.ones(3), np.zeros(3), np.zeros(3)  # unlit: plain colours
     picture = np.ascontiguousarray(render(model, camera, TOP_PX, **view))
     named = [
-        (f"{each.name}: {each.category}", each.geom_ids)
-        for each in labels.instances
-        if MPCAT40_ID[each.category] not in _STRUCTURE
+        (f"{instance.name}: {instance.category}", instance.geom_ids)
+        for instance in labels.instances
+        if MPCAT40_ID[instance.category] not in _STRUCTURE
     ]
     named += [(f"{name}: {VOID}", tuple(geoms)) for name, geoms in objects.items()]
     _write_names(picture, model, named, np.array(camera.lookat), float(camera.distance))
@@ -244,9 +244,13 @@ def _object_poses(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) ->
     places = np.random.default_rng(0).permutation(space.frame.to_metres(np.argwhere(space.largest_part())))[
         :MOST_PLACES
     ]
-    first = {each.category: each for each in reversed(labels.instances) if MPCAT40_ID[each.category] not in _STRUCTURE}
-    ordered = sorted(first.values(), key=lambda each: each.category not in GOAL_CATEGORIES)
-    poses = ((each.name, _look_at(model, data, each, places)) for each in ordered)
+    first = {
+        instance.category: instance
+        for instance in reversed(labels.instances)
+        if MPCAT40_ID[instance.category] not in _STRUCTURE
+    }
+    ordered = sorted(first.values(), key=lambda instance: instance.category not in GOAL_CATEGORIES)
+    poses = ((instance.name, _look_at(model, data, instance, places)) for instance in ordered)
     yield from itertools.islice(((name, pose) for name, pose in poses if pose is not None), MOST_VIEWS)
 
 
@@ -281,15 +285,15 @@ def _viewpoint(
     if len(points) == 0:
         return None
     rng = np.random.default_rng(0)
-    best, found = -1.0, None
+    best, pose = -1.0, None
     for x, y in points[rng.integers(len(points), size=40)]:
         inside = _view_lengths(model, data, room, float(x), float(y))
         for i in range(0, len(FAN_DEG), 3):  # nine rays across the field of view
             view = inside[np.arange(i - 4, i + 5) % len(FAN_DEG)]
             score = float(view.mean() + 1.5 * min(view.min(), 1.0))
             if score > best:
-                best, found = score, (float(x), float(y), float(FAN_DEG[i]))
-    return found
+                best, pose = score, (float(x), float(y), float(FAN_DEG[i]))
+    return pose
 
 
 def _view_lengths(model: mujoco.MjModel, data: mujoco.MjData, room: Room, x: float, y: float) -> NDArray[np.float64]:
@@ -343,7 +347,7 @@ def _box(
 
 def add_backdrop(spec: mujoco.MjSpec) -> None:
     """Adds a plain background in place of those of the file."""
-    for texture in [each for each in spec.textures if each.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX]:
+    for texture in [texture for texture in spec.textures if texture.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX]:
         spec.delete(texture)
     spec.add_texture(
         name="backdrop", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,

@@ -119,7 +119,7 @@ class McapLog:
         self._part = part_file(mcap_file(self._run, episode.episode_id), what="recording")
         self._stream = self._part.open("wb")
         self._out = RosMessages(self._stream)
-        scans = [each for each in env.sensors if isinstance(each, ScanSensor)]
+        scans = [sensor for sensor in env.sensors if isinstance(sensor, ScanSensor)]
         self._scan = scans[0] if scans else ScanSensor(config=env.scan_config)
         about = {"episode_id": episode.episode_id, "house": episode.house, "goal": episode.goal}
         self._out.describe("episode", about)

@@ -165,7 +165,7 @@ class FrameComposer:
 
     def add_end(self, frame: Picture, outcome: Outcome) -> None:
         """Writes the outcome of the episode over the camera's picture, and its headline into the header."""
-        colour = FOUND if outcome.found else MISSED
+        colour = FOUND if outcome.success else MISSED
         frame[:_HEADER_PX, 600:] = HEADER
         write(frame, outcome.headline, (612, 28), WIDTH_PX - 630, 22, colour, BOLD)
         left, top, width, height = _CAMERA
@@ -204,7 +204,7 @@ class FrameComposer:
         left = _SMALL_LEFT[len(self._segments) - 1] + _SMALL[0] + 12
         columns = (_CAMERA[0] + _CAMERA[2] - left) // _NAMES_PX
         rows, goal_id = _SMALL[1] // _ROW_PX, MPCAT40_ID[self.goal]
-        together = np.concatenate([each.ravel() for each in segments])
+        together = np.concatenate([segment.ravel() for segment in segments])
         for place, category in enumerate(names_in_sight(together, self.goal)[: columns * rows]):
             x, y = left + (place // rows) * _NAMES_PX, _SMALL_TOP + (place % rows) * _ROW_PX
             red, green, blue = PALETTE[category].tolist()

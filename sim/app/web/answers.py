@@ -56,23 +56,23 @@ class OpenFile(Response):
         """Sends the file."""
         with self._stream:
             await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
-            left = 0 if scope["method"] == "HEAD" else self._left
+            remaining = 0 if scope["method"] == "HEAD" else self._left
             self._stream.seek(self._begin)
-            while left > 0:
-                piece = await anyio.to_thread.run_sync(self._stream.read, min(left, _CHUNK_BYTES))
-                piece = piece or bytes(min(left, _CHUNK_BYTES))  # the file has become shorter
-                left -= len(piece)
-                await send({"type": "http.response.body", "body": piece, "more_body": left > 0})
+            while remaining > 0:
+                piece = await anyio.to_thread.run_sync(self._stream.read, min(remaining, _CHUNK_BYTES))
+                piece = piece or bytes(min(remaining, _CHUNK_BYTES))  # the file has become shorter
+                remaining -= len(piece)
+                await send({"type": "http.response.body", "body": piece, "more_body": remaining > 0})
             if scope["method"] == "HEAD" or self._left == 0:
                 await send({"type": "http.response.body", "body": b""})
 
 
 def _range(header: str, size: int) -> tuple[int, int] | None:
     """Returns begin and end of the range in a header; None: the whole file, also if the range is outside the file."""
-    found = _RANGE.fullmatch(header.strip())
-    if found is None or not any(found.groups()):
+    match = _RANGE.fullmatch(header.strip())
+    if match is None or not any(match.groups()):
         return None
-    first, last = found.groups()
+    first, last = match.groups()
     if not first:
         begin, end = max(0, size - int(last)), size
     else:

@@ -192,7 +192,7 @@ def _goals_of_split(name: str) -> Goals:
     goals: dict[str, dict[str, list[str]]] = {}
     for episode in load_split(name).episodes:
         goals.setdefault(episode.house, {}).setdefault(episode.goal, []).append(episode.episode_id)
-    return {house: dict(sorted(found.items())) for house, found in sorted(goals.items())}
+    return {house: dict(sorted(of_house.items())) for house, of_house in sorted(goals.items())}
 
 
 def _goals_of_house(file: Path, options: RunOptions) -> Goals:
@@ -200,8 +200,8 @@ def _goals_of_house(file: Path, options: RunOptions) -> Goals:
     split = one_house(file, labels=options.labels, root=options.root)
     house = split.load_house(file.stem)
     fixed = split.sidecar(file.stem).goal
-    found = read_labels(house.spec.copy().compile(), rules=house.rules).categories()
-    goals = [goal for goal in GOAL_CATEGORIES if goal in found and fixed in (None, goal)]
+    categories = read_labels(house.spec.copy().compile(), rules=house.rules).categories()
+    goals = [goal for goal in GOAL_CATEGORIES if goal in categories and fixed in (None, goal)]
     if not goals:
         raise HouseError(f"House '{file}' has no object of a goal category to look for.")
     return {file.stem: {goal: [] for goal in sorted(goals)}}

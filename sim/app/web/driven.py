@@ -80,4 +80,4 @@ class DrivenRuns:
         """Returns a folder that does not exist yet."""
         name = time.strftime("driven_%Y-%m-%d_%H-%M-%S")
         names = [name, *(f"{name}_{number}" for number in range(2, 100))]
-        return next(self._folder / each for each in names if not (self._folder / each).exists())
+        return next(self._folder / free for free in names if not (self._folder / free).exists())

@@ -175,8 +175,8 @@ class OnlyFromHere:
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                given = {name for name, _ in message["headers"]}
-                message["headers"] += [pair for pair in _HEADERS if pair[0] not in given]
+                present = {name for name, _ in message["headers"]}
+                message["headers"] += [pair for pair in _HEADERS if pair[0] not in present]
             await send(message)
 
         await self._app(scope, receive, send_with_headers)
@@ -212,8 +212,8 @@ def _only(scope: Scope, name: bytes) -> str | None:
 
 def _name_of(host: str) -> str:
     """Returns the name in a Host header, without the port; "" if the header has another form."""
-    found = _HOST.fullmatch(host)
-    return "" if found is None else (found["address"] or found["name"]).lower()
+    match = _HOST.fullmatch(host)
+    return "" if match is None else (match["address"] or match["name"]).lower()
 
 
 def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -> Starlette:
@@ -337,9 +337,9 @@ def _carry_out(hub: Hub, make_request: MakeRequest, client: Client, text: str | 
             raise ConfigError("A message must be text.")
         message = parse_json(text, dict[str, object], where="The message")
         if message.get("do") == "show":
-            wanted = message.get("pictures")
+            pictures = message.get("pictures")
             before = client.names
-            client.names = frozenset(name for name in NAMES if isinstance(wanted, list) and name in wanted)
+            client.names = frozenset(name for name in NAMES if isinstance(pictures, list) and name in pictures)
             if client.names - before:
                 client.frame_number = 0  # the present frame may have them already
         elif message.get("do") in ("start", "again"):

@@ -295,7 +295,9 @@ def choose_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int, setup:
         return _draw_episode(env, request, turn)
     if request.episode_id is not None:
         return env.split.episode(request.episode_id)
-    fitting = [each for each in env.split.episodes if (each.house, each.goal) == (request.house, request.goal)]
+    fitting = [
+        episode for episode in env.split.episodes if (episode.house, episode.goal) == (request.house, request.goal)
+    ]
     if not fitting:
         raise EpisodeError(
             f"Split '{request.split}' has no episode with '{in_words(request.goal)}' in house '{request.house}'."

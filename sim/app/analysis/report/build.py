@@ -121,8 +121,8 @@ def _title(runs: Sequence[Run]) -> str:
 
 
 def _replicate_notes(lines: Runs, labels: Sequence[str]) -> list[str]:
-    found = [(label, replicate_note(of_run)) for label, of_run in zip(labels, lines, strict=True)]
-    return [f"{label}: {note}".removeprefix(": ") for label, note in found if note]
+    notes = [(label, replicate_note(of_run)) for label, of_run in zip(labels, lines, strict=True)]
+    return [f"{label}: {note}".removeprefix(": ") for label, note in notes if note]
 
 
 def _errors(lines: Runs, labels: Sequence[str]) -> Iterable[tuple[str, str, str]]:

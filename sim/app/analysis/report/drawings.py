@@ -216,8 +216,8 @@ def path_on(sheet: Sheet, trajectory: Trajectory, *, radius_m: float) -> DrawnPa
 
 
 def _marks(run: Run, episode_id: str, trajectory: Trajectory) -> list[list[str | int | None]]:
-    found = marks(run.results[episode_id], trajectory)
-    return [[mark.kind, mark.step, mark.until, mark.words] for mark in found]
+    moments = marks(run.results[episode_id], trajectory)
+    return [[mark.kind, mark.step, mark.until, mark.words] for mark in moments]
 
 
 def _differences(values: NDArray[np.integer]) -> list[int]:

@@ -93,12 +93,12 @@ def _setting(value: object) -> str:
 
 def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:
     """Yields sentences about what is missing in a run."""
-    wanted, count, out = run.config.get("episodes"), len(run.results), run.path
-    if isinstance(wanted, int):
+    planned, count, out = run.config.get("episodes"), len(run.results), run.path
+    if isinstance(planned, int):
         if shard := run.config.get("shard"):
-            wanted, out = len(Shard.parse(str(shard)).select(range(wanted))), run.path.parent
-        if count < wanted:
-            yield f"Not finished: {count} of {wanted} episodes have ended. The command with --out {out} runs the rest."
+            planned, out = len(Shard.parse(str(shard)).select(range(planned))), run.path.parent
+        if count < planned:
+            yield f"Not finished: {count} of {planned} episodes have ended. The command with --out {out} runs the rest."
     errors = sum(result.is_error for result in run.results.values())
     if errors:
         yield f"{errors} of {count} episodes ended with an error; they count as failures and are listed below."
@@ -132,4 +132,4 @@ def _missing(run: Run, trajectories: Trajectories, index: int) -> list[tuple[str
         ("pictures of the end", "--record", [picture_of(run, i) for i in ended]),
         ("videos", "--video", [video_of(run, i) for i in ended]),
     )
-    return [(name, option, sum(each is None for each in of), len(of)) for name, option, of in kinds]
+    return [(name, option, sum(file is None for file in of), len(of)) for name, option, of in kinds]

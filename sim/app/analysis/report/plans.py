@@ -118,7 +118,7 @@ def _objects(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[lis
     """Returns the shapes of the objects on this storey."""
     model, labels = truth.world.model, truth.world.labels
     data, rendered = _at_rest(model), rendered_geoms(model)
-    found: list[tuple[float, list[str]]] = []
+    shapes: list[tuple[float, list[str]]] = []
     for instance in labels.instances:
         geoms = [geom for geom in instance.geom_ids if rendered[geom]]
         if instance.category in LEFT_OUT or not geoms:
@@ -128,8 +128,8 @@ def _objects(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[lis
         highest_m = HIGHEST_GOAL_M if instance.category in GOAL_CATEGORIES else HIGHEST_M
         if -truth.world.rule.same_storey_m < low_m <= highest_m:
             parts = [part for geom in geoms for part in _cut(model, data, geom, -math.inf, math.inf)]
-            found.append((top_m, [instance.category, instance.name, _union(sheet, parts)]))
-    return [shape for _, shape in sorted(found, key=lambda item: item[0])]
+            shapes.append((top_m, [instance.category, instance.name, _union(sheet, parts)]))
+    return [shape for _, shape in sorted(shapes, key=lambda item: item[0])]
 
 
 def _structure(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[list[str]]:

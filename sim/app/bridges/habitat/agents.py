@@ -86,7 +86,7 @@ def spec_of(name: str, declared: object) -> AgentSpec:
     if not callable(declared):
         raise ConfigError(f"Agent '{name}' must be a class, a factory or an AgentSpec, got {type(declared).__name__}.")
     arguments = _arguments(declared)
-    taken = {each[0] for each in BRIDGE_FIELDS} & {each.name for each in arguments}
+    taken = {argument[0] for argument in BRIDGE_FIELDS} & {argument.name for argument in arguments}
     if taken:
         raise ConfigError(
             f"Agent '{name}' has an argument '{min(taken)}', which is also a field of the bridge; give a function "
@@ -162,7 +162,9 @@ def _arguments(make: Callable[..., object]) -> list[inspect.Parameter]:
         signature = inspect.signature(make)
     except (TypeError, ValueError):
         return []
-    return [each for each in signature.parameters.values() if each.kind is not inspect.Parameter.VAR_POSITIONAL]
+    return [
+        argument for argument in signature.parameters.values() if argument.kind is not inspect.Parameter.VAR_POSITIONAL
+    ]
 
 
 def _config_of(make: Callable[..., object], arguments: list[inspect.Parameter]) -> BridgeConfig:
@@ -241,7 +243,7 @@ def _values(
     if missing:
         raise ConfigError(
             f"Agent '{name}' needs the argument {' and '.join(missing)}: give --config "
-            + " ".join(f"agent.{each}=VALUE" for each in missing)
+            + " ".join(f"agent.{argument}=VALUE" for argument in missing)
             + "."
         )
     return positional, by_name

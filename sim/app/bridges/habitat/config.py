@@ -138,9 +138,9 @@ def with_entries_of(config: Config, file: Path) -> Config:
     Raises:
         ConfigError: the file cannot be read.
     """
-    found = config.clone()
-    add(found, _read_yaml(file))
-    return found
+    merged = config.clone()
+    add(merged, _read_yaml(file))
+    return merged
 
 
 def settings_of(config: Mapping[str, object]) -> dict[str, Any]:
@@ -178,10 +178,10 @@ def log_ignored(config: Mapping[str, object]) -> None:
             unknown.append(path)
         else:
             others.append(f"{path}={value!r} (here {here!r})")
-    for what, found in (("have no effect", others), ("are unknown here", unknown)):
-        if found:
-            more = f" and {len(found) - MOST_NAMED} more" if len(found) > MOST_NAMED else ""
-            _warn_once(f"These entries of the configuration {what}: {', '.join(found[:MOST_NAMED])}{more}.")
+    for what, entries in (("have no effect", others), ("are unknown here", unknown)):
+        if entries:
+            more = f" and {len(entries) - MOST_NAMED} more" if len(entries) > MOST_NAMED else ""
+            _warn_once(f"These entries of the configuration {what}: {', '.join(entries[:MOST_NAMED])}{more}.")
 
 
 @functools.cache

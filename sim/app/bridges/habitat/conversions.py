@@ -90,29 +90,31 @@ class Conversion:
 
     def observations(self, observation: Observation) -> Observations:
         """Returns an observation in Habitat's form; it shares no memory with the given one."""
-        found = Observations({name: np.array(value) for name, value in observation.items()})
-        if "depth" in found:
-            found["depth"] = self._depth(found["depth"])[:, :, None]
-        if "semantic" in found:
-            found["semantic"] = found["semantic"].astype(np.int32)[:, :, None]
+        converted = Observations({name: np.array(value) for name, value in observation.items()})
+        if "depth" in converted:
+            converted["depth"] = self._depth(converted["depth"])[:, :, None]
+        if "semantic" in converted:
+            converted["semantic"] = converted["semantic"].astype(np.int32)[:, :, None]
         forward_m, left_m = observation["gps"]
-        found["gps"] = np.array([forward_m, 0.0 - left_m], np.float32)
-        found["compass"] = (np.round(observation["compass"] / COMPASS_STEP_RAD) * COMPASS_STEP_RAD).astype(np.float32)
+        converted["gps"] = np.array([forward_m, 0.0 - left_m], np.float32)
+        converted["compass"] = (np.round(observation["compass"] / COMPASS_STEP_RAD) * COMPASS_STEP_RAD).astype(
+            np.float32
+        )
         number = self.goal_number(GOAL_CATEGORIES[int(observation["objectgoal"][0])])
-        found["objectgoal"] = np.array([number], np.int64)
-        return found
+        converted["objectgoal"] = np.array([number], np.int64)
+        return converted
 
     def space(self, own: Mapping[str, spaces.Space[Any]]) -> spaces.Dict:
         """Returns the space of the observations in Habitat's form, from the spaces of this project's sensors."""
-        found = dict(own)
+        spaces_by_name = dict(own)
         height_px, width_px = self.camera.height_px, self.camera.width_px
-        found["objectgoal"] = spaces.Box(0, len(self.goals) - 1, (1,), np.int64)
-        if "depth" in found:
+        spaces_by_name["objectgoal"] = spaces.Box(0, len(self.goals) - 1, (1,), np.int64)
+        if "depth" in spaces_by_name:
             deepest = 1.0 if self.normalize_depth else self.camera.max_depth_m
-            found["depth"] = spaces.Box(0.0, deepest, (height_px, width_px, 1), np.float32)
-        if "semantic" in found:
-            found["semantic"] = spaces.Box(0, len(MPCAT40) - 1, (height_px, width_px, 1), np.int32)
-        return spaces.Dict(found)
+            spaces_by_name["depth"] = spaces.Box(0.0, deepest, (height_px, width_px, 1), np.float32)
+        if "semantic" in spaces_by_name:
+            spaces_by_name["semantic"] = spaces.Box(0, len(MPCAT40) - 1, (height_px, width_px, 1), np.int32)
+        return spaces.Dict(spaces_by_name)
 
     def _depth(self, depth_m: np.ndarray) -> np.ndarray:
         """Returns depth clipped to the camera's range and scaled, float32 (h, w)."""

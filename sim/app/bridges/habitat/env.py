@@ -92,7 +92,9 @@ class Env:
         self.sim = Simulator(self._env)
         self.config = config if config is not None else self._own_config()
         self.action_space = spaces.Discrete(len(Action))
-        self.observation_space = self._conversion.space({each.name: each.space(camera) for each in self._env.sensors})
+        self.observation_space = self._conversion.space(
+            {sensor.name: sensor.space(camera) for sensor in self._env.sensors}
+        )
 
     @property
     def episodes(self) -> list[ObjectGoalNavEpisode]:
@@ -102,14 +104,14 @@ class Env:
     @episodes.setter
     def episodes(self, chosen: Iterable[ObjectGoalNavEpisode]) -> None:
         """Chooses some of these episodes, and their order; the next `reset` starts the first one."""
-        known = {each.episode_id: each for each in self._listed}
-        ids = [each.episode_id for each in chosen]
-        other = next((each for each in ids if each not in known), None)
+        known = {episode.episode_id: episode for episode in self._listed}
+        ids = [episode.episode_id for episode in chosen]
+        other = next((episode_id for episode_id in ids if episode_id not in known), None)
         if other is not None or not ids:
             raise ConfigError(
                 f"episodes must be one or more of env.episodes, got {'none' if other is None else other}."
             )
-        self._listed = [known[each] for each in ids]
+        self._listed = [known[episode_id] for episode_id in ids]
         self.rewind()
 
     @property
@@ -198,7 +200,9 @@ class Env:
             names = ",".join(env.split.houses)
             drawn = [env.draw_episode(rng, episode_id=f"{names}_{i:04d}") for i, rng in enumerate(rngs)]
             return [self._known(episode) for episode in drawn]
-        known = [each for each in env.split.episodes if each.goal in goals and env.goal in (None, each.goal)]
+        known = [
+            episode for episode in env.split.episodes if episode.goal in goals and env.goal in (None, episode.goal)
+        ]
         if not known:
             raise ConfigError(f"Split '{env.split.name}' has no episode with a goal of {', '.join(goals)}.")
         if count is not None and count > len(known):

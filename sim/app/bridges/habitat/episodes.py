@@ -63,12 +63,12 @@ class ObjectGoalNavEpisode:
         content = read_gzip_json(self.goals_file, _GoalsFile, what="Episode file")
         return [
             ObjectGoal(
-                object_id=str(each.object_id),
-                object_category=each.object_category,
-                position=each.position,
-                view_points=[to_config(place) for place in each.view_points],
+                object_id=str(goal.object_id),
+                object_category=goal.object_category,
+                position=goal.position,
+                view_points=[to_config(place) for place in goal.view_points],
             )
-            for each in content.goals_by_category.get(self.goals_key, [])
+            for goal in content.goals_by_category.get(self.goals_key, [])
         ]
 
 
