@@ -83,7 +83,7 @@ def find_house_asks(task: Task, recipe: EpisodeRecipe, fixed: Sidecar = EMPTY_SI
     if fixed.goal is not None:
         reachable = [ask for ask in reachable if ask.goal == fixed.goal]
         listed = {goal: instances for goal, instances in listed.items() if goal == fixed.goal}
-        _require(reachable, task, f"asks for '{fixed.goal}', of which no instance can be reached")
+        _require(reachable, task, f"asks for '{fixed.goal}', but the robot can reach no instance of it")
     if fixed.start is not None:
         task.world.reset(fixed.start)
         asks = [ask for ask in reachable if _leads_to(task, ask, fixed.start)]

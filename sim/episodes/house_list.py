@@ -71,7 +71,7 @@ class HouseMaker(Protocol):
 
 
 class _Entry(msgspec.Struct):
-    """What every entry of the file has in addition to its recipe."""
+    """The fields that every entry of the file has in addition to its recipe."""
 
     name: Name
     sha256: Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{64}\Z")]

@@ -38,7 +38,7 @@ UNREACHABLE_FILE = "unreachable.json"
 LABELS_FILE = "labels.json"
 HOUSE_SUFFIXES = (".xml", ".mjcf")
 """Suffixes of house files, in lower or upper case."""
-_MOST_BYTES = 256 << 20
+_MAX_BYTES = 256 << 20
 """Largest size of a house file."""
 
 
@@ -118,7 +118,7 @@ class Split:
 
 
 def house_sidecar(house_file: Path, labels_path: Path | None) -> Sidecar:
-    """Returns the sidecar of a house file; empty if there is none, or if the file holds the label rules.
+    """Returns the sidecar of a house file; empty if it does not exist, or if the file holds the label rules.
 
     Raises:
         HouseError: the file violates the format of `sim.houses.sidecar`.
@@ -215,7 +215,7 @@ def house_sum(path: Path, *, with_also: bytes = b"", root: Path | None = None) -
     Raises:
         HouseError: a file cannot be read.
     """
-    digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=_MOST_BYTES) + _sidecar_bytes(path))
+    digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=_MAX_BYTES) + _sidecar_bytes(path))
     digest.update(with_also)
     for file in files_of(path, root):  # a house in a single file keeps the checksum of version 0.1
         name = os.path.relpath(file, path.resolve().parent)

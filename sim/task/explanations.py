@@ -89,9 +89,9 @@ def explain_end(
         result: of the episode.
         goal: category that the episode asked for.
         rule: when a STOP succeeds.
-        nearest_m: distance in plan to the nearest instance of the goal on the storey; None: there is none.
+        nearest_m: distance in plan to the nearest instance of the goal on the storey; None: the storey has no instance.
         detects: whether the agent stops because of a segmentation. A person, or an agent without one, has
-            stopped too early where the goal is not; that is no false detection.
+            stopped too early where the goal is not; that is not a false detection.
     """
     success, steps = bool(result.success), f"{result.num_steps} step" + "s" * (result.num_steps != 1)
     headline = f"{'Found' if success else 'Not found'} after {steps}"

@@ -72,7 +72,7 @@ class GroundTruth:
         return self._spaces[floor_z_m]
 
     def unseen_floor(self, floor_z_m: float = 0.0) -> SeenFloor:
-        """Returns the floor of a storey of which the camera has seen nothing yet."""
+        """Returns the floor of a storey before the camera has seen any of it."""
         if floor_z_m not in self._floors:
             world = self.world
             outlines = floor_polygons(world.model, self._at_rest, world.labels, floor_z_m)
@@ -104,7 +104,7 @@ class GroundTruth:
         return self._regions[goal, floor_z_m]
 
     def goals(self) -> tuple[str, ...]:
-        """Returns the goal categories of which something is rendered in the house, in the contract's order."""
+        """Returns the goal categories that have a rendered object in the house, in the contract's order."""
         rendered, of_category = rendered_geoms(self.world.model), self.world.labels.of_category
         return tuple(
             goal

@@ -28,7 +28,7 @@ LETTERS = "ABCDEFGHIJKL"
 """Names of the runs that are compared, the first one `A`."""
 SAME_PATH_M = 0.05
 """Largest difference of the same shortest path measured by two versions of the code: one cell."""
-MOST_LACKING = 5
+MAX_LACKING = 5
 """A part of the configuration has a row for each field that not all runs have, up to this number of fields."""
 
 
@@ -98,7 +98,7 @@ def _counted(values: Mapping[str, list[str]]) -> dict[str, list[str]]:
             lacking.setdefault(f"{top}.{inner[0]}" if top == "config" and inner else top, []).append(path)
     rows = dict(values)
     for part, paths in lacking.items():
-        if len(paths) > MOST_LACKING:
+        if len(paths) > MAX_LACKING:
             texts = [rows.pop(path) for path in paths]
             counts = [sum(text != ABSENT.value for text in of_run) for of_run in zip(*texts, strict=True)]
             rows[f"{part}: fields of some runs only"] = [f"{count} fields" for count in counts]

@@ -23,7 +23,7 @@ from sim.app.bridges.habitat.config import make_config
 from sim.app.bridges.habitat.conversions import Conversion
 from sim.app.bridges.process_command import ProcessConfig, command_of
 from sim.app.bridges.process_pipe import AgentProcess, Answer
-from sim.app.bridges.stubborn_client import MOST_HEADER_BYTES, ProtocolError, unpack_arrays
+from sim.app.bridges.stubborn_client import MAX_HEADER_BYTES, ProtocolError, unpack_arrays
 from sim.app.evaluation.own_code import one_line
 from sim.app.evaluation.rollout import ask
 from sim.app.options import PROCESS
@@ -45,7 +45,7 @@ from sim.task.trajectory import FARTHEST_M
 
 T = TypeVar("T")
 _Metres = Annotated[float, Meta(ge=-FARTHEST_M, le=FARTHEST_M)]
-_Text = Annotated[str, Meta(max_length=MOST_HEADER_BYTES)]
+_Text = Annotated[str, Meta(max_length=MAX_HEADER_BYTES)]
 
 
 class _Ready(msgspec.Struct, tag_field="type", tag="ready"):

@@ -32,7 +32,7 @@ from sim.core.errors import AgentError
 from sim.core.reading import parse_json, printable
 
 T = TypeVar("T")
-MOST_ANSWER_BYTES = 64 << 20
+MAX_ANSWER_BYTES = 64 << 20
 """Largest size of the arrays of an answer: a map of 4600 x 4600 pixels."""
 TAIL_LINES, TAIL_BYTES = 6, 2000
 """Number of the last lines of standard error that an error message repeats, and of the bytes that are kept."""
@@ -270,8 +270,8 @@ class AgentProcess:
         if len(self._received) < (PREFIX.size if self._begun else PREFIX.size + len(MARK)):
             return None
         header_bytes, array_bytes = stubborn_client.sizes_of(bytes(self._received[: PREFIX.size]))
-        if array_bytes > MOST_ANSWER_BYTES:
-            raise ProtocolError(f"its arrays have {array_bytes} bytes, at most {MOST_ANSWER_BYTES}")
+        if array_bytes > MAX_ANSWER_BYTES:
+            raise ProtocolError(f"its arrays have {array_bytes} bytes, at most {MAX_ANSWER_BYTES}")
         begin = PREFIX.size + header_bytes
         if len(self._received) < begin + array_bytes:
             return None

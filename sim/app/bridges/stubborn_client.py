@@ -62,8 +62,8 @@ MARK = b"\x89STUBB\r\n"
 """The first bytes of each message."""
 PREFIX = struct.Struct("<8sIIQ")
 """Mark, version, bytes of the header, bytes of the arrays."""
-MOST_HEADER_BYTES = 1 << 16
-MOST_ARRAY_BYTES = 1 << 29
+MAX_HEADER_BYTES = 1 << 16
+MAX_ARRAY_BYTES = 1 << 29
 """Largest size of the arrays of a message."""
 SHARED_START = 4096
 """Offset of the arrays in shared memory, in bytes; the key is stored before them."""
@@ -97,7 +97,7 @@ def pack(header, arrays=None, shared=False):
             buffers.append(array.reshape(-1).view(np.uint8).data)
             size += array.nbytes
     head = json.dumps(dict(header, arrays=described, shared=shared)).encode()
-    if len(head) > MOST_HEADER_BYTES or size > MOST_ARRAY_BYTES:
+    if len(head) > MAX_HEADER_BYTES or size > MAX_ARRAY_BYTES:
         raise ProtocolError(f"a message of {len(head)} + {size} bytes is too large")
     return [PREFIX.pack(MARK, VERSION, len(head), size) + head] + [buffer for buffer in buffers if len(buffer)]
 
@@ -109,8 +109,8 @@ def sizes_of(prefix):
         raise ProtocolError(f"a message does not begin with {prefix!r}")
     if version != VERSION:
         raise ProtocolError(f"version {version} of the protocol, not {VERSION}: copy stubborn_client.py again")
-    if header_bytes > MOST_HEADER_BYTES or array_bytes > MOST_ARRAY_BYTES:
-        most = f"{MOST_HEADER_BYTES} + {MOST_ARRAY_BYTES}"
+    if header_bytes > MAX_HEADER_BYTES or array_bytes > MAX_ARRAY_BYTES:
+        most = f"{MAX_HEADER_BYTES} + {MAX_ARRAY_BYTES}"
         raise ProtocolError(f"a message of {header_bytes} + {array_bytes} bytes is too large, at most {most}")
     return header_bytes, array_bytes
 
@@ -264,7 +264,7 @@ def from_habitat(action: Any) -> Any:
     if isinstance(inner, (list, tuple)) and len(inner) == 1:
         inner = inner[0]
     if isinstance(inner, bool) or "bool" in str(getattr(inner, "dtype", "")):
-        raise TypeError("a truth value is no action")
+        raise TypeError("a truth value is not an action")
     if isinstance(inner, str):
         return HABITAT_ACTIONS.get(inner.lower(), inner)
     shape = getattr(inner, "shape", ())

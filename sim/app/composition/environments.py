@@ -114,7 +114,7 @@ def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
     if len(episodes) < options.episodes:
         raise ConfigError(
             f"House '{house}' has {len(episodes)} different episode{'' if len(episodes) == 1 else 's'} with "
-            f"this start and goal, and {options.episodes} were asked for (--episodes, by default {RunOptions.episodes}); give "
+            f"this start and goal, but --episodes is {options.episodes} (by default {RunOptions.episodes}); give "
             f"--episodes {len(episodes)}, or --noise."
         )
     return list(episodes.values())

@@ -9,7 +9,7 @@ houses and n episodes (Cochran 1977, section 6.3). Student's t with H - 1 degree
   1 and has a width where all episodes succeed: all of 100 episodes give [0.96, 1] or, in 20 houses, a little less;
 - an amount without an upper limit, such as collisions: on the logarithm of the mean;
 - a difference: around the mean. Of two values between 0 and 1, its variance is at least that of one changed episode,
-  `1 / n^2`, because no difference in n episodes does not show that there is none in others.
+  `1 / n^2`, because equal results in n episodes do not show that other episodes are equal.
 
 They were chosen by simulation from recorded results (with version 0.2.0), with 10 to 30 houses of 7 to 15 episodes.
 They hold the true value in 93 to 97 % of the samples for success and SPL between 0.08 and 0.94 and for paired
@@ -36,7 +36,7 @@ RESAMPLES = 2_000
 """Resamples of `ratio_of_medians`."""
 MIN_PAIRS = 20
 """A difference with fewer pairs is never significant: intervals were tried with 50 episodes and more."""
-MOST_EFFECTIVE = 25.0
+MAX_EFFECTIVE = 25.0
 """Largest effective number of episodes per episode: values that are nearly equal, such as the SPL of an agent that
 always succeeds, do not show how often others fail."""
 _ROUNDS = 50
@@ -59,7 +59,7 @@ class Estimate:
     neutral: float = 0.0
     """The value that two equal runs give: 0 for a difference, 1 for a ratio."""
     p: float | None = field(default=None, compare=False)
-    """Of a difference: the two-sided p-value that its true value is 0; below 0.05 where the interval excludes 0."""
+    """The two-sided p-value that a difference is 0; below 0.05 where the interval excludes 0."""
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -247,7 +247,7 @@ def _bounded(mean: float, error: float, clusters: int, count: int) -> tuple[floa
         return None, None
     spread, effective = mean * (1.0 - mean), float(count)
     if spread > 0.0:
-        effective = min(MOST_EFFECTIVE * count, spread / error**2 if error > 0.0 else math.inf)
+        effective = min(MAX_EFFECTIVE * count, spread / error**2 if error > 0.0 else math.inf)
     shift = _quantile(clusters) ** 2 / effective
     middle = (mean + 0.5 * shift) / (1.0 + shift)
     half = math.sqrt(shift * spread + 0.25 * shift**2) / (1.0 + shift)

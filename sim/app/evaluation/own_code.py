@@ -12,7 +12,7 @@ from pathlib import Path
 
 from sim.core.reading import printable, read_bytes, sha256_of
 
-MOST_LETTERS = 2000
+MAX_CHARACTERS = 2000
 """Longest text of an error in results and messages."""
 _OURS = tuple(Path(__file__).resolve().parents[3] / name for name in ("sim", "stubborn"))
 _LIBRARIES = tuple(Path(sysconfig.get_path(name)).resolve() for name in ("stdlib", "platstdlib", "purelib", "platlib"))
@@ -40,7 +40,7 @@ def place_of(error: BaseException, *, below: str) -> str:
 
 
 def text_of(error: BaseException) -> str:
-    """Returns an error's message in one line of at most `MOST_LETTERS`, even if the error's class cannot print it."""
+    """Returns an error's message in one line of at most `MAX_CHARACTERS`, even if the error's class cannot print it."""
     try:
         text = str(error)
     except BaseException as fault:
@@ -48,9 +48,9 @@ def text_of(error: BaseException) -> str:
     return one_line(text) or "no message"
 
 
-def one_line(text: str, most: int = MOST_LETTERS) -> str:
+def one_line(text: str, most: int = MAX_CHARACTERS) -> str:
     """Returns a text in one line that a terminal, JSON and UTF-8 can hold; a long text is truncated."""
-    cut = f" ... ({len(text)} letters)" if len(text) > most else ""
+    cut = f" ... ({len(text)} characters)" if len(text) > most else ""
     return printable(" ".join(text[:most].split())) + cut
 
 

@@ -150,7 +150,7 @@ class _Process:
 
 
 _spare: _Process | None = None
-"""A process that was started before its work is known; None: there is none."""
+"""A process that was started before its work is known; None: no process was started."""
 
 
 @contextlib.contextmanager

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import msgspec
 import numpy as np
 
-from sim.app.evaluation.own_code import MOST_LETTERS, one_line, place_of, text_of
+from sim.app.evaluation.own_code import MAX_CHARACTERS, one_line, place_of, text_of
 from sim.app.evaluation.watch import count_steps, is_stop, marked
 from sim.app.viewers.viewer import Moment, Viewer
 from sim.core.errors import AgentError, PhysicsError, debug
@@ -160,7 +160,7 @@ def rollout_result(
         stop_confidence=stop_confidence,
         wall_time_s=wall_time_s,
         steps_per_s=steps_per_s,
-        error=None if error is None else one_line(error, 2 * MOST_LETTERS),
+        error=None if error is None else one_line(error, 2 * MAX_CHARACTERS),
     )
 
 

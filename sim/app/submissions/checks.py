@@ -39,7 +39,7 @@ class _Segmentation(msgspec.Struct):
 
 
 class _Recorded(msgspec.Struct):
-    """What a configuration says about the inputs of its agent."""
+    """The entries of a configuration about the inputs of its agent."""
 
     agent: str
     semantics: str
@@ -82,7 +82,7 @@ def truth_of(inputs: Inputs) -> Truth:
 def coverage(submission: Submission, split: Split) -> tuple[bool, str]:
     """Returns whether the episodes are the first ones of the split, and which they are as text.
 
-    The order of a split is balanced over houses and goals, so that its first N episodes are no choice of the authors.
+    The order of a split is balanced over houses and goals, so that the authors do not choose the first N episodes.
     Of each episode there must be as many replicates, numbered from 0.
     """
     submitted = {entry.result.episode_id for entry in submission.episodes}

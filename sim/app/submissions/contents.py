@@ -44,7 +44,7 @@ Version = Annotated[str, Meta(max_length=300, pattern=_PLAIN)]
 
 
 class Inputs(msgspec.Struct, forbid_unknown_fields=True):
-    """What the agent got, as the authors declare it: a replay cannot prove it."""
+    """The inputs of the agent as the authors declare them: a replay cannot prove them."""
 
     agent: Annotated[str, Meta(min_length=1, max_length=1000, pattern=_NO_FORMULA)]
     semantics: Name
@@ -64,7 +64,7 @@ class SplitOf(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class Manifest(msgspec.Struct, forbid_unknown_fields=True):
-    """What the authors say about the run."""
+    """The statements of the authors about the run."""
 
     name: Short
     """Name of the row."""

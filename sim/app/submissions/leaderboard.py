@@ -24,7 +24,7 @@ from sim.core.errors import ConfigError
 from sim.robot.config import PHYSICS_VERSION
 from sim.task.result import EpisodeResult
 
-LEAST_EPISODES = 50
+MIN_EPISODES = 50
 """Least number of episodes of a row; replicates do not count. In 20, the interval of a success of 65 % is 42 points."""
 SUBMISSIONS, REPORTS = "submissions", "reports"
 HEADER = (
@@ -54,13 +54,13 @@ class Row:
 
     @property
     def refusal(self) -> str:
-        """The reason why this is no row of the table; "": it is one."""
+        """The reason why the table has no such row; "": the submission is accepted."""
         if self.report.different:
             return f"{self.report.different} episodes are different in the replay"
         if not self.report.is_first:
             return "its episodes were chosen by the authors; the first ones of the split are allowed"
-        if self.episodes < LEAST_EPISODES:
-            return f"it has {self.episodes} episodes; a row needs {LEAST_EPISODES}"
+        if self.episodes < MIN_EPISODES:
+            return f"it has {self.episodes} episodes; a row needs {MIN_EPISODES}"
         if self.report.nonstandard:
             return f"not the standard: {self.report.nonstandard[0]}"
         inputs = self.submission.manifest.inputs

@@ -27,7 +27,7 @@ from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 
 @dataclass(frozen=True, kw_only=True)
 class About:
-    """What the authors say about a run."""
+    """The statements of the authors about a run."""
 
     name: str
     authors: Sequence[str]

@@ -19,7 +19,7 @@ class Report(msgspec.Struct):
     """The fields of a report that are read."""
 
     sha256: Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{64}\Z")]
-    """Of the submission."""
+    """SHA-256 of the submission."""
     physics: Count
     episodes: Count
     equal: Count

@@ -38,7 +38,7 @@ Digest = Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{64}\Z")]
 
 
 class Seal(msgspec.Struct, forbid_unknown_fields=True):
-    """What an organiser publishes before the deadline."""
+    """The file that an organiser publishes before the deadline."""
 
     format: Literal["stubborn-sealed-1"]
     name: Name
@@ -163,7 +163,7 @@ def number_of(secret: str, what: str, most: int) -> int:
 
 
 def recipes(secret: str, name: str, house: int) -> Iterator[Recipe]:
-    """Yields recipes of a house of a sealed split, of which the first that gives a house is taken."""
+    """Yields recipes of a house of a sealed split; the first that gives a house is taken."""
     shape = SPLITS[LIKE][number_of(secret, f"shape {house}", len(SPLITS[LIKE]))]
     for attempt in range(TRIES):
         seed = FIRST_SEED + number_of(secret, f"house {house} {attempt}", SEEDS)

@@ -16,8 +16,8 @@ from sim.task.config import TaskConfig
 PartT = TypeVar("PartT")
 PARTS = ("robot", "camera", "task", "noise")
 OWN_NOISE = "own"
-"""Name of noise that is none of the presets."""
-LEAST_TIMESTEP_S = 1e-4
+"""Name of noise that differs from all presets."""
+MIN_TIMESTEP_S = 1e-4
 """A smaller time step would let the file of somebody else occupy this machine for days."""
 
 
@@ -43,7 +43,7 @@ class Setting:
                 if value != before.get(path):
                     changes.append(f"{path} is {value!r}, in the standard {before.get(path)!r}")
         if self.noise_name == OWN_NOISE:
-            changes.append(f"noise is none of {', '.join(NOISE_PRESETS)}")
+            changes.append(f"noise differs from {', '.join(NOISE_PRESETS)}")
         return changes
 
 
@@ -66,8 +66,8 @@ def setting_of(config: Mapping[str, object], *, where: str) -> Setting:
         setting = Setting(**parts, noise_name=_noise_name(parts["noise"]))
     except RecursionError:
         raise ConfigError(f"{where}: its configuration is nested too deeply.") from None
-    if setting.robot.physics.timestep_s < LEAST_TIMESTEP_S:
-        raise ConfigError(f"{where}: robot.physics.timestep_s is below {LEAST_TIMESTEP_S} s.")
+    if setting.robot.physics.timestep_s < MIN_TIMESTEP_S:
+        raise ConfigError(f"{where}: robot.physics.timestep_s is below {MIN_TIMESTEP_S} s.")
     return setting
 
 

@@ -27,7 +27,7 @@ STEPS_OF_RENDERER = 1
 """Other OpenGL renderers draw edges of a pixel differently, which can shift the first sight by one frame ..."""
 AREA_OF_RENDERER = 0.01
 """... and the seen area by this share."""
-LEAST_PATH_M = 0.5
+MIN_PATH_M = 0.5
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Verdict:
     judgement: Judgement
     framed: bool
     text: str
-    """What differs and what that means; "" for an equal episode."""
+    """The differences and their meaning; "" for an equal episode."""
     largest: float
     """Largest difference of a length, metres."""
 
@@ -71,7 +71,7 @@ def _differences(
 ) -> tuple[list[str], float, list[str]]:
     """Returns the differences beyond the tolerance, the largest difference in metres, and those within it."""
     differing, near, largest = [], [], 0.0
-    shortest_m = max(metrics.shortest_path or 0.0, LEAST_PATH_M)
+    shortest_m = max(metrics.shortest_path or 0.0, MIN_PATH_M)
     allowed = dict.fromkeys(EXACT, 0.0) | dict.fromkeys(LENGTHS, tolerance_m)
     allowed |= dict.fromkeys(SHARES, tolerance_m / shortest_m)
     if framed:
@@ -105,7 +105,7 @@ def _meaning(entry: Entry, replay: Replay, tolerance_m: float) -> str:
 
 
 def _off(submitted: object, replayed: object) -> float:
-    """Returns how far apart two values are; infinity where one is missing or they are no numbers."""
+    """Returns how far apart two values are; infinity where one is missing or not a number."""
     if isinstance(submitted, (bool, int, float)) and isinstance(replayed, (bool, int, float)):
         off = abs(float(submitted) - float(replayed))
         return off if math.isfinite(off) else math.inf

@@ -33,7 +33,7 @@ TOP_AMBIENT = 0.4
 """Least ambient light from above: the walls of a house without any are not black."""
 NAME_SHARE = 0.02
 """Height of a line of names from above, as a share of the picture's height."""
-MOST_MOVES = 12
+MAX_MOVES = 12
 """Most lines by which a name is moved so that it covers no other name."""
 EXTENT_M = 10.0
 """Unit of the near and far plane in a model."""
@@ -45,10 +45,10 @@ BACKDROP = (0.86, 0.90, 0.95)
 """Colour of the background."""
 FAN_DEG = np.arange(0, 360, 10)
 """Directions of the rays that measure how far a view reaches."""
-MOST_VIEWS = 9
+MAX_VIEWS = 9
 """Most views of a house without rooms."""
-MOST_PLACES = 400
-"""Free places of which one is chosen for such a view."""
+MAX_PLACES = 400
+"""Free places; one of them is chosen for such a view."""
 NEAREST_LOOK_M = 1.0
 LOOK_SIZES = 1.2
 """The best distance from the middle of an object: this many times its size, and `NEAREST_LOOK_M` more."""
@@ -144,7 +144,7 @@ def _write_names(
         middle = round(height / 2 - (y - lookat[1]) * scale) + below_px
         free = (
             base
-            for base in range(middle, middle + MOST_MOVES * line_px, line_px)
+            for base in range(middle, middle + MAX_MOVES * line_px, line_px)
             if not _covers(taken, left, left + wide, base, line_px)
         )
         base = next(free, middle)
@@ -241,9 +241,7 @@ def _room_poses(
 def _object_poses(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> Iterator[tuple[str, ViewPose]]:
     """Yields the name of the first instance of each category, goals first, and a pose from which it is visible."""
     space = FreeSpace(model, data, labels)
-    places = np.random.default_rng(0).permutation(space.frame.to_metres(np.argwhere(space.largest_part())))[
-        :MOST_PLACES
-    ]
+    places = np.random.default_rng(0).permutation(space.frame.to_metres(np.argwhere(space.largest_part())))[:MAX_PLACES]
     first = {
         instance.category: instance
         for instance in reversed(labels.instances)
@@ -251,7 +249,7 @@ def _object_poses(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) ->
     }
     ordered = sorted(first.values(), key=lambda instance: instance.category not in GOAL_CATEGORIES)
     poses = ((instance.name, _look_at(model, data, instance, places)) for instance in ordered)
-    yield from itertools.islice(((name, pose) for name, pose in poses if pose is not None), MOST_VIEWS)
+    yield from itertools.islice(((name, pose) for name, pose in poses if pose is not None), MAX_VIEWS)
 
 
 def _look_at(

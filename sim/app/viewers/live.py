@@ -46,7 +46,7 @@ def require_display() -> None:
 
         if not glfw.init():
             raise ConfigError(
-                "--view needs a display, and there is none: DISPLAY and WAYLAND_DISPLAY name no running server. "
+                "--view needs a display: DISPLAY and WAYLAND_DISPLAY must name a running server. "
                 "--video writes a video instead."
             )
 

@@ -22,7 +22,7 @@ from sim.core.errors import ConfigError
 from sim.core.reading import open_plain, printable
 from sim.task.result import METRICS, EpisodeResult
 
-MOST_RUNS = 100
+MAX_RUNS = 100
 """Largest number of runs that are listed, the newest ones."""
 REPORT = "report.html"
 _FILES: Mapping[str, Callable[[Path, str], Path]] = {"pictures": picture_file, "videos": video_file}
@@ -141,7 +141,7 @@ class Runs:
         return [_table_as_json(table) for table in (means, differences_table(a, b))]
 
     def _newest(self) -> list[tuple[int, Path]]:
-        return sorted(self._found(), reverse=True)[:MOST_RUNS]
+        return sorted(self._found(), reverse=True)[:MAX_RUNS]
 
     def _found(self) -> Iterator[tuple[int, Path]]:
         """Yields the folders that hold results, with the time of the last line, nanoseconds since 1970."""
@@ -198,7 +198,7 @@ class Runs:
             return known.run
         run = Run(folder, read_record(config), {result.episode_id: result for result in read_results(results).values})
         self._read[folder] = _Read(state, run)
-        while len(self._read) > MOST_RUNS:
+        while len(self._read) > MAX_RUNS:
             self._read.pop(next(iter(self._read)), None)
         return run
 

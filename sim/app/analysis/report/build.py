@@ -23,22 +23,22 @@ from sim.app.evaluation.intervals import MIN_PAIRS
 from sim.core.errors import ConfigError
 from sim.task.explanations import explain
 
-MOST_RUNS = len(LETTERS)
+MAX_RUNS = len(LETTERS)
 
 
 def build_page(runs: Sequence[Run], *, out_folder: Path, command: str) -> str:
     """Returns the HTML of the report.
 
     Args:
-        runs: one run, or up to `MOST_RUNS` runs of the same episodes; differences are from the first one.
+        runs: one run, or up to `MAX_RUNS` runs of the same episodes; differences are from the first one.
         out_folder: folder of the page; links to pictures and videos are relative to it.
         command: the command that made the page, for its footer.
 
     Raises:
         ConfigError: no episode has ended yet, the runs are not of the same episodes, or there are too many.
     """
-    if not 1 <= len(runs) <= MOST_RUNS:
-        raise ConfigError(f"A report shows 1 to {MOST_RUNS} runs, got {len(runs)}.")
+    if not 1 <= len(runs) <= MAX_RUNS:
+        raise ConfigError(f"A report shows 1 to {MAX_RUNS} runs, got {len(runs)}.")
     for run in runs:
         if not run.results:
             raise ConfigError(f"'{run.path}' has no result yet: its first episode has not ended.")

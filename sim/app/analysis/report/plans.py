@@ -212,7 +212,7 @@ def _at_rest(model: mujoco.MjModel) -> mujoco.MjData:
 
 
 def _nearest_with_path(space: FreeSpace, target: Target, xy_m: Sequence[float]) -> tuple[int, int] | None:
-    """Returns the nearest cell within 0.3 m from which there is a path; None if there is none."""
+    """Returns the nearest cell within 0.3 m from which there is a path; None if no cell has one."""
     x_m, y_m = float(xy_m[0]), float(xy_m[1])
     window = space.frame.index_of((x_m, y_m, x_m, y_m), 0.3)
     x, y = space.frame.axes(window)

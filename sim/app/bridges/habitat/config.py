@@ -20,10 +20,10 @@ from sim.core.interface import FORWARD_M, MAX_STEPS, TURN_RAD, Action, CameraMod
 from sim.core.reading import read_bytes
 
 _LOG = logging.getLogger("habitat")
-_MOST_BYTES = 1 << 20
-_MOST_VALUES = 20_000
+_MAX_BYTES = 1 << 20
+_MAX_VALUES = 20_000
 """Largest number of values of a file; a value that aliases repeat counts each time."""
-MOST_NAMED = 6
+MAX_NAMED = 6
 """A warning names so many entries."""
 _OLD, _NEW = "SIMULATOR.{}_SENSOR.{}", "habitat.simulator.agents.main_agent.sim_sensors.{}_sensor.{}"
 
@@ -180,8 +180,8 @@ def log_ignored(config: Mapping[str, object]) -> None:
             others.append(f"{path}={value!r} (here {here!r})")
     for what, entries in (("have no effect", others), ("are unknown here", unknown)):
         if entries:
-            more = f" and {len(entries) - MOST_NAMED} more" if len(entries) > MOST_NAMED else ""
-            _warn_once(f"These entries of the configuration {what}: {', '.join(entries[:MOST_NAMED])}{more}.")
+            more = f" and {len(entries) - MAX_NAMED} more" if len(entries) > MAX_NAMED else ""
+            _warn_once(f"These entries of the configuration {what}: {', '.join(entries[:MAX_NAMED])}{more}.")
 
 
 @functools.cache
@@ -227,7 +227,7 @@ def _read_yaml(file: Path) -> Mapping[str, object]:
         import yaml
     except ImportError:
         raise ConfigError(f"Configuration '{file}': reading YAML needs the package pyyaml (extra `habitat`).") from None
-    content = read_bytes(file, what="Configuration", most=_MOST_BYTES)
+    content = read_bytes(file, what="Configuration", most=_MAX_BYTES)
     try:
         tree = yaml.safe_load(content)
         values = 0
@@ -235,8 +235,8 @@ def _read_yaml(file: Path) -> Mapping[str, object]:
         while stack:
             value = stack.pop()
             values += 1
-            if values > _MOST_VALUES:
-                raise ConfigError(f"Configuration '{file}' has more than {_MOST_VALUES} values.")
+            if values > _MAX_VALUES:
+                raise ConfigError(f"Configuration '{file}' has more than {_MAX_VALUES} values.")
             stack += value.values() if isinstance(value, Mapping) else value if isinstance(value, list) else ()
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         if isinstance(error, ConfigError):

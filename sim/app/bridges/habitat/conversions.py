@@ -141,6 +141,6 @@ def to_action(chosen: object) -> Action:
     if number is None or number not in tuple(Action):
         names = ", ".join(f"{number} {name}" for name, number in ACTION_IDS.items() if number < len(Action))
         raise AgentError(
-            f'{reprlib.repr(chosen)} is no action. An action is one of {names}, or a dict {{"action": one of these}}.'
+            f'Unknown action {reprlib.repr(chosen)}. An action is one of {names}, or a dict {{"action": one of these}}.'
         )
     return Action(number)

@@ -274,9 +274,9 @@ class AgentState:
         """A quaternion xyzw, float32 (4,)."""
 
 
-def _lacks(thing: object, what: str, name: str) -> AttributeError:
+def _lacks(owner: object, what: str, name: str) -> AttributeError:
     """Returns the error for an attribute that Habitat's class has and ours does not."""
-    names = sorted({n for n in (*dir(type(thing)), *vars(thing)) if not n.startswith("_")})
+    names = sorted({n for n in (*dir(type(owner)), *vars(owner)) if not n.startswith("_")})
     return AttributeError(f"{what} of this project has no '{name}'. It has: {', '.join(names)}.")
 
 

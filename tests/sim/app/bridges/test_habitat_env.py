@@ -258,7 +258,7 @@ def test_what_habitats_environment_has_and_this_one_lacks_is_said_with_what_ther
         with pytest.raises(AttributeError, match=r"^Env\.sim of this .* no 'pathfinder'\. It has: env, geodesic"):
             _ = env.sim.pathfinder
         assert not hasattr(env, "task")
-        with pytest.raises(AgentError, match=r"^'fly' is no action\. An action is one of 0 stop, "):
+        with pytest.raises(AgentError, match=r"^Unknown action 'fly'\. An action is one of 0 stop, "):
             env.step("fly")
 
 

@@ -243,7 +243,7 @@ class Signature:
         (Answers(lambda: sys.exit(3)), "step 2: SystemExit: 3"),
         (Answers(lambda: fail(GeneratorExit())), "step 2: GeneratorExit: no message"),
         (Answers(lambda: fail(asyncio.CancelledError("late"))), "step 2: CancelledError: late"),
-        (Answers(lambda: fail(RuntimeError("x" * 10_000_000))), "xxx ... (10000000 letters)"),
+        (Answers(lambda: fail(RuntimeError("x" * 10_000_000))), "xxx ... (10000000 characters)"),
         (Answers(lambda: fail(RuntimeError("a\udcffb\x1b"))), r"RuntimeError: a\udcffb\x1b"),
         (Answers(lambda: fail(Mute())), "step 2: Mute: its message cannot be read (ValueError)"),
         (Answers(lambda: {}["sofa"]), "step 2: KeyError: 'sofa'"),
