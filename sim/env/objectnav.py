@@ -93,7 +93,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         HouseError: a house that violates the house format.
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012 - declared by Gymnasium
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012 - declared by Gymnasium
 
     def __init__(
         self,
@@ -317,7 +317,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         readings = {sensor.name: sensor.read(SensorContext(sensor, images, **fields)) for sensor in self._noise.sensors}
         return self._noise.apply(readings, images), images["semantic"]
 
-    def _info(self, collided: bool) -> dict[str, Any]:
+    def _info(self, collided: bool) -> dict[str, object]:
         episode = self.episode
         return {
             "episode_id": episode.episode_id,

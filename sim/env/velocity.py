@@ -44,7 +44,7 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
         ConfigError: see `ObjectNavEnv`; or a period, a limit or an action that is not allowed.
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 - declared by Gymnasium
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 - declared by Gymnasium
 
     def __init__(self, *, period_s: float = 0.1, time_limit_s: float = MAX_STEPS * ACTION_S, **options: Any) -> None:
         if options.get("max_steps") is not None:
@@ -84,7 +84,7 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
         speed_m_s, rate_rad_s, stop = np.clip(command, space.low, space.high).tolist()
         return speed_m_s, rate_rad_s, stop
 
-    def _info(self, collided: bool) -> dict[str, Any]:
+    def _info(self, collided: bool) -> dict[str, object]:
         info, motion = super()._info(collided), self.motion
         blocked = motion is not None and motion.ended == "blocked"
         return info | {"blocked": blocked}

@@ -201,7 +201,7 @@ class StandIn(Loader):
 
 
 class _Module(ModuleType):
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> object:
         raise AttributeError(f"'{self.__name__}.{name}' {NOT_IN_THE_STAND_IN}")
 
 
@@ -228,7 +228,7 @@ class EmptyModules(Loader):
 
 
 class _EmptyModule(ModuleType):
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> object:
         if name.startswith("__"):
             raise AttributeError(name)
         return _Unusable(f"{self.__name__}.{name}")
@@ -240,13 +240,13 @@ class _Unusable:
     def __init__(self, name):
         self._name = name
 
-    def __call__(self, *_: object, **__: object) -> Any:
+    def __call__(self, *_: object, **__: object) -> object:
         package = self._name.split(".")[0]
         raise ImportError(f"'{self._name}' is used, but {package} is not installed", name=self._name)
 
     __mro_entries__ = __call__
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> object:
         if name.startswith("__"):
             raise AttributeError(name)
         return self()

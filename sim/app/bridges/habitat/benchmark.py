@@ -25,12 +25,7 @@ class Benchmark:
         options: further arguments of `Env`, such as `split` and `episodes`.
     """
 
-    def __init__(
-        self,
-        config_paths: Mapping[str, object] | str | Sequence[str] | None = None,
-        eval_remote: bool = False,
-        **options: Any,
-    ) -> None:
+    def __init__(self, config_paths: ConfigPaths = None, eval_remote: bool = False, **options: Any) -> None:
         if eval_remote:
             raise ConfigError("eval_remote must be False: there is no evaluation server.")
         self._env = Env(config_paths if isinstance(config_paths, Mapping) else get_config(config_paths), **options)

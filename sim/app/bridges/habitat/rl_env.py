@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from gymnasium import spaces
-
 from sim.app.bridges.habitat.config import Config
 from sim.app.bridges.habitat.conversions import Observations
 from sim.app.bridges.habitat.env import Env
@@ -24,8 +22,8 @@ class RLEnv:
 
     def __init__(self, config: Mapping[str, object] | None = None, dataset: None = None, **options: Any) -> None:
         self._env = Env(config, dataset, **options)
-        self.action_space: spaces.Space[Any] = self._env.action_space
-        self.observation_space: spaces.Space[Any] = self._env.observation_space
+        self.action_space = self._env.action_space
+        self.observation_space = self._env.observation_space
         self.number_of_episodes = self._env.number_of_episodes
 
     @property
