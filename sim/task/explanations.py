@@ -62,7 +62,7 @@ ENDS: Mapping[str, str] = {
 class Outcome:
     """The end of an episode in words."""
 
-    success: bool
+    found: bool
     headline: str
     """For example "Found after 48 steps"."""
     sentence: str

@@ -165,7 +165,7 @@ class FrameComposer:
 
     def add_end(self, frame: Picture, outcome: Outcome) -> None:
         """Writes the outcome of the episode over the camera's picture, and its headline into the header."""
-        colour = FOUND if outcome.success else MISSED
+        colour = FOUND if outcome.found else MISSED
         frame[:_HEADER_PX, 600:] = HEADER
         write(frame, outcome.headline, (612, 28), WIDTH_PX - 630, 22, colour, BOLD)
         left, top, width, height = _CAMERA

@@ -497,7 +497,7 @@ def test_the_explanation_of_the_end_names_its_cause(
     whole = a_result(**fixed | {"distance_to_goal": None} | line)
     outcome = explain_end(whole, "chair", SuccessRule(), nearest_m, detects=detects)
     assert expected in outcome.sentence
-    assert outcome.success == bool(whole.success)
+    assert outcome.found == bool(whole.success)
 
 
 @pytest.mark.parametrize("semantics", ["gt", "noisy"])
