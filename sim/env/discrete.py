@@ -8,6 +8,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 from gymnasium import spaces
+from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
 from sim.core.interface import FORWARD_M, TURN_RAD, Action, wrap_angle
@@ -26,7 +27,7 @@ LONGEST_S = 4.0
 """Longest time of an action."""
 
 
-class DiscreteActions(gymnasium.Wrapper[Any, Any, Any, Any]):
+class DiscreteActions(gymnasium.Wrapper[dict[str, NDArray], Any, dict[str, NDArray], Any]):
     """Gives `ObjectNavVelocityEnv` the actions of `ObjectNavEnv`: 0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT, 3 TURN_RIGHT.
 
     An action is a motion from rest to rest. Like the drive of `ObjectNavEnv` it keeps an absolute heading, and ends
@@ -39,7 +40,7 @@ class DiscreteActions(gymnasium.Wrapper[Any, Any, Any, Any]):
         ConfigError: it is another environment.
     """
 
-    def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
+    def __init__(self, env: gymnasium.Env[dict[str, NDArray], Any]) -> None:
         from sim.env.velocity import ObjectNavVelocityEnv  # loads MuJoCo, which `import sim.gym` need not
 
         super().__init__(env)
@@ -58,14 +59,14 @@ class DiscreteActions(gymnasium.Wrapper[Any, Any, Any, Any]):
         self._last: tuple[Any, ...] = ()
         """The return value of the last period."""
 
-    def reset(self, **options: Any) -> tuple[Any, dict[str, Any]]:
+    def reset(self, **options: Any) -> tuple[dict[str, NDArray], dict[str, Any]]:
         """Starts an episode."""
         observation, info = self.env.reset(**options)
         self._speed = self._rate = 0.0
         self._heading, self._last = float(observation["compass"][0]), (observation, 0.0, False, False, info)
         return observation, info
 
-    def step(self, action: int) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+    def step(self, action: int) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
         """Performs one action."""
         if not self._last:
             raise gymnasium.error.ResetNeeded("Call reset() before the first step.")
@@ -153,7 +154,7 @@ class DiscreteActions(gymnasium.Wrapper[Any, Any, Any, Any]):
         return bool(self._last[2] or self._last[3])
 
 
-def stopping_velocity(left: float, velocity: float, acceleration: float, period_s: float) -> float:
+def stopping_velocity(remaining: float, velocity: float, acceleration: float, period_s: float) -> float:
     """Returns the largest velocity to command for a period after which the base can still stop at its goal.
 
     The base moves to the command with its acceleration during the period, and later to 0. With v0 the velocity now and
@@ -165,14 +166,14 @@ def stopping_velocity(left: float, velocity: float, acceleration: float, period_
         acceleration: limit of the base, > 0.
         period_s: time for which the command is held.
     """
-    goal, v0 = abs(left), max(0.0, velocity * math.copysign(1.0, left))
+    goal, v0 = abs(remaining), max(0.0, velocity * math.copysign(1.0, remaining))
     faster = (goal + 0.5 * v0 * v0 / acceleration) / (period_s + v0 / acceleration)
     if faster >= v0:
-        return math.copysign(faster, left)
+        return math.copysign(faster, remaining)
     half = 0.5 * (period_s - v0 / acceleration)
     root = half * half - (0.5 * v0 * v0 / acceleration - goal) / acceleration
     slower = acceleration * (math.sqrt(root) - half) if root > 0.0 else 0.0
-    return math.copysign(max(0.0, slower), left)
+    return math.copysign(max(0.0, slower), remaining)
 
 
 def _towards(velocity: float, most: float, command: float, change: float) -> float:

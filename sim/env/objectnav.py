@@ -31,6 +31,9 @@ from sim.sensors.sensor import Sensor, SensorContext
 from sim.sensors.standard import STANDARD_SENSORS, resolve_sensors
 from sim.task.config import TaskConfig
 
+StepResult = tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]
+"""Observation, reward, terminated, truncated and info of a step, as Gymnasium declares them."""
+
 
 class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arrays, which `spaces.Dict` does not type
     """Find an object of a category in an apartment that the agent has not seen before.
@@ -90,7 +93,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         HouseError: a house that violates the house format.
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012 - declared by Gymnasium
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012 - declared by Gymnasium
 
     def __init__(
         self,
@@ -107,12 +110,12 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         profile: str | RenderProfile = "fast",
         noise: str | NoiseConfig = "none",
         render_mode: str | None = None,
-        task: TaskConfig | Mapping[str, Any] | None = None,
-        success: SuccessRule | Mapping[str, Any] | None = None,
+        task: TaskConfig | Mapping[str, object] | None = None,
+        success: SuccessRule | Mapping[str, object] | None = None,
         max_steps: int | None = None,
-        camera: CameraModel | Mapping[str, Any] | None = None,
-        scan: ScanConfig | Mapping[str, Any] | None = None,
-        robot: RobotConfig | Mapping[str, Any] | None = None,
+        camera: CameraModel | Mapping[str, object] | None = None,
+        scan: ScanConfig | Mapping[str, object] | None = None,
+        robot: RobotConfig | Mapping[str, object] | None = None,
         cached_houses: int = 1,
     ) -> None:
         _check_options(goal, render_mode)
@@ -134,7 +137,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._robot = as_settings(robot, RobotConfig(), name="robot")
         self._default_noise = self._make_noise(noise if isinstance(noise, NoiseConfig) else get_noise(noise))
         self._noise = self._default_noise
-        self.observation_space = spaces.Dict({each.name: each.space(self.camera_model) for each in self.sensors})
+        self.observation_space = spaces.Dict({sensor.name: sensor.space(self.camera_model) for sensor in self.sensors})
         self.action_space = spaces.Discrete(len(Action))
         self._episodes = [episode for episode in self.split.episodes if goal in (None, episode.goal)]
         if self.split.episodes and not self._episodes:
@@ -183,7 +186,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         return self._motion
 
     def reset(
-        self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
+        self, *, seed: int | None = None, options: Mapping[str, object] | None = None
     ) -> tuple[dict[str, NDArray], dict[str, Any]]:
         """Starts an episode; see the class."""
         if self._closed:
@@ -204,12 +207,12 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         scene.task.look(semantic)
         return observation, self._info(collided=False)
 
-    def step(self, action: int) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
+    def step(self, action: int) -> StepResult:
         """Carries out one action; see the class."""
         self.scene.task.require_running()
         return self._outcome(self.scene.world.move(Action(action)))
 
-    def _outcome(self, motion: Motion) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
+    def _outcome(self, motion: Motion) -> StepResult:
         """Returns what `step` returns after a motion."""
         scene, self._motion = self.scene, motion
         observation, semantic = self._observe()
@@ -287,7 +290,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
 
     def _require_in_space(self, observation: dict[str, NDArray]) -> None:
         """Raises ConfigError if the first reading of a user's sensor is not in its space."""
-        for sensor in (each for each in self.sensors if each.name not in STANDARD_SENSORS):
+        for sensor in (sensor for sensor in self.sensors if sensor.name not in STANDARD_SENSORS):
             space, reading = sensor.space(self.camera_model), observation[sensor.name]
             if not space.contains(reading):
                 raise ConfigError(
@@ -299,8 +302,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         """Returns the observation, and the true segmentation, which the metrics need even if no agent gets it."""
         world = self.scene.world
         needed = {name for sensor in self._noise.sensors for name in sensor.images}
-        wanted = sorted({"semantic", *needed, *self._truth, *self._noise.images})
-        images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, wanted)
+        names = sorted({"semantic", *needed, *self._truth, *self._noise.images})
+        images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, names)
         fields = {
             "goal": self.episode.goal,
             "collided": self._motion is not None and self._motion.collided,
@@ -311,10 +314,10 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             "model": world.model,
             "data": world.data,
         }
-        readings = {each.name: each.read(SensorContext(each, images, **fields)) for each in self._noise.sensors}
+        readings = {sensor.name: sensor.read(SensorContext(sensor, images, **fields)) for sensor in self._noise.sensors}
         return self._noise.apply(readings, images), images["semantic"]
 
-    def _info(self, collided: bool) -> dict[str, Any]:
+    def _info(self, collided: bool) -> dict[str, object]:
         episode = self.episode
         return {
             "episode_id": episode.episode_id,
@@ -326,7 +329,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
 
 
 def _with_changes(
-    task: TaskConfig, success: SuccessRule | Mapping[str, Any] | None, max_steps: int | None
+    task: TaskConfig, success: SuccessRule | Mapping[str, object] | None, max_steps: int | None
 ) -> TaskConfig:
     """Returns the configuration of the task with the fields that are not None replaced."""
     if success is not None:
@@ -337,8 +340,8 @@ def _with_changes(
 def _with_scan(sensors: tuple[Sensor, ...], scan: ScanConfig) -> tuple[Sensor, ...]:
     """Returns the sensors with this lidar in place of the standard one; a `ScanSensor` of another one stays."""
     return tuple(
-        replace(each, config=scan) if isinstance(each, ScanSensor) and each == ScanSensor() else each
-        for each in sensors
+        replace(sensor, config=scan) if isinstance(sensor, ScanSensor) and sensor == ScanSensor() else sensor
+        for sensor in sensors
     )
 
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import Any, SupportsFloat
 
 import gymnasium
+from gymnasium.core import ActType, ObsType
 
 from sim.core.errors import ConfigError
 from sim.core.geometry.numbers import is_number
 
 
-class ProgressReward(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):
+class ProgressReward(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], gymnasium.utils.RecordConstructorArgs):
     """Replaces the sparse reward of `stubborn/ObjectNav-v0` by a dense one.
 
     The reward of an action is
@@ -36,7 +37,7 @@ class ProgressReward(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Reco
 
     def __init__(
         self,
-        env: gymnasium.Env[Any, Any],
+        env: gymnasium.Env[ObsType, ActType],
         *,
         per_metre: float = 1.0,
         success: float = 2.5,
@@ -55,7 +56,9 @@ class ProgressReward(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Reco
         self._per_step, self._per_collision = per_step, per_collision
         self._distance_m: float | None = None
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, object] | None = None
+    ) -> tuple[ObsType, dict[str, Any]]:
         """Starts an episode.
 
         Raises:
@@ -67,7 +70,7 @@ class ProgressReward(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Reco
         self._distance_m = info["distance_to_goal"]
         return observation, info
 
-    def step(self, action: Any) -> tuple[Any, SupportsFloat, bool, bool, dict[str, Any]]:
+    def step(self, action: ActType) -> tuple[ObsType, SupportsFloat, bool, bool, dict[str, Any]]:
         """Carries out one action and returns the dense reward in place of the sparse one."""
         observation, _, terminated, truncated, info = super().step(action)
         before_m, after_m = self._distance_m, info["distance_to_goal"]

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
 from sim.core.errors import ConfigError
 from sim.core.interface import MAX_STEPS, Action
-from sim.env.objectnav import ObjectNavEnv
+from sim.env.objectnav import ObjectNavEnv, StepResult
 from sim.robot.velocity import Velocity
 
 ACTION_S = 1.2
@@ -44,7 +44,7 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
         ConfigError: see `ObjectNavEnv`; or a period, a limit or an action that is not allowed.
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 - declared by Gymnasium
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 - declared by Gymnasium
 
     def __init__(self, *, period_s: float = 0.1, time_limit_s: float = MAX_STEPS * ACTION_S, **options: Any) -> None:
         if options.get("max_steps") is not None:
@@ -63,7 +63,7 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
         high = np.array([drive.speed_m_s, drive.turn_speed_rad_s, 1.0], np.float32)
         self.action_space = spaces.Box(high * np.array([-1.0, -1.0, 0.0], np.float32), high)
 
-    def step(self, action: Any) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
+    def step(self, action: ArrayLike) -> StepResult:
         """Holds one command for a period; see the class."""
         self.scene.task.require_running()
         speed_m_s, rate_rad_s, stop = self._clipped(action)
@@ -71,7 +71,7 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
             return self._outcome(self.scene.world.move(Action.STOP))
         return self._outcome(self.scene.world.hold(Velocity(speed_m_s, rate_rad_s), self.period_s))
 
-    def _clipped(self, action: Any) -> tuple[float, float, float]:
+    def _clipped(self, action: ArrayLike) -> tuple[float, float, float]:
         """Returns speed, turn rate and STOP, within the space."""
         command = np.asarray(action, np.float64)
         if command.shape != (3,) or not np.isfinite(command).all():
@@ -84,7 +84,7 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
         speed_m_s, rate_rad_s, stop = np.clip(command, space.low, space.high).tolist()
         return speed_m_s, rate_rad_s, stop
 
-    def _info(self, collided: bool) -> dict[str, Any]:
+    def _info(self, collided: bool) -> dict[str, object]:
         info, motion = super()._info(collided), self.motion
         blocked = motion is not None and motion.ended == "blocked"
         return info | {"blocked": blocked}

@@ -14,9 +14,9 @@ import gzip
 import io
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, TypedDict
 
 import msgspec
 
@@ -24,7 +24,33 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, wrap_angle
 from sim.core.reading import Metres, Name, Number, read_gzip_json
 
-Json = dict[str, Any]
+
+class AgentState(TypedDict):
+    """A pose as Habitat writes it: position in metres, y up, and quaternion xyzw."""
+
+    position: list[float]
+    rotation: list[float]
+
+
+class ViewPoint(TypedDict):
+    """A position from which a goal can be seen."""
+
+    agent_state: AgentState
+    iou: float | None
+
+
+class Goal(TypedDict):
+    """A goal instance as the file of a house lists it."""
+
+    position: list[float]
+    radius: None
+    object_id: str
+    object_name: str
+    object_name_id: None
+    object_category: str
+    room_id: str | None
+    room_name: str | None
+    view_points: list[ViewPoint]
 
 
 def to_position(x_m: float, y_m: float, z_m: float) -> list[float]:
@@ -50,7 +76,7 @@ def from_rotation(rotation: Sequence[float]) -> float:
     return wrap_angle(2.0 * math.atan2(y, w) + 0.5 * math.pi)
 
 
-def to_agent_state(pose: Pose) -> Json:
+def to_agent_state(pose: Pose) -> AgentState:
     """Returns a pose as an `agent_state` of Habitat."""
     return {"position": to_position(pose.x_m, pose.y_m, pose.floor_z_m), "rotation": to_rotation(pose.yaw_rad)}
 
@@ -66,7 +92,7 @@ def goals_key(house: str, goal: str) -> str:
     return f"{house}.xml_{goal}"
 
 
-def category_tables() -> Json:
+def category_tables() -> dict[str, dict[str, int]]:
     """Returns the two tables that Habitat's loader needs in each file."""
     return {
         "category_to_task_category_id": {goal: i for i, goal in enumerate(GOAL_CATEGORIES)},
@@ -122,7 +148,7 @@ def read_index(path: Path) -> IndexFile:
     return read_gzip_json(path, IndexFile, what="Episode file")
 
 
-def zipped_json(content: Json) -> bytes:
+def zipped_json(content: Mapping[str, object]) -> bytes:
     """Returns one gzipped JSON object; the same content gives the same bytes."""
     text, raw = json.dumps(content, separators=(",", ":"), allow_nan=False), io.BytesIO()
     with gzip.GzipFile(filename="", mode="wb", fileobj=raw, mtime=0) as file:

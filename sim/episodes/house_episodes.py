@@ -40,7 +40,7 @@ class Ask(NamedTuple):
 class HouseAsks:
     """The goals of a house and the episodes that it can have."""
 
-    listed: Mapping[str, list[habitat.Json]]
+    listed: Mapping[str, list[habitat.Goal]]
     """For each goal category with an instance that can be reached, Habitat's goals with their view points."""
     unreachable: tuple[str, ...]
     """Names of goal instances that cannot be reached from the largest free space of their storey."""
@@ -71,7 +71,7 @@ def find_house_asks(task: Task, recipe: EpisodeRecipe, fixed: Sidecar = EMPTY_SI
     Raises:
         EpisodeError: the goal or the start of the sidecar is not possible.
     """
-    listed: dict[str, list[habitat.Json]] = {}
+    listed: dict[str, list[habitat.Goal]] = {}
     unreachable: list[str] = []
     reachable: list[Ask] = []
     for floor_z_m in storeys_of(task):
@@ -83,7 +83,7 @@ def find_house_asks(task: Task, recipe: EpisodeRecipe, fixed: Sidecar = EMPTY_SI
     if fixed.goal is not None:
         reachable = [ask for ask in reachable if ask.goal == fixed.goal]
         listed = {goal: instances for goal, instances in listed.items() if goal == fixed.goal}
-        _require(reachable, task, f"asks for '{fixed.goal}', of which no instance can be reached")
+        _require(reachable, task, f"asks for '{fixed.goal}', but the robot can reach no instance of it")
     if fixed.start is not None:
         task.world.reset(fixed.start)
         asks = [ask for ask in reachable if _leads_to(task, ask, fixed.start)]

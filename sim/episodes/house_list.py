@@ -18,7 +18,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Protocol
+from typing import Annotated, Protocol
 
 import msgspec
 
@@ -49,7 +49,7 @@ class Recipe(Protocol):
         """
         ...
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """Returns the recipe as a JSON object with the entry `name`."""
         ...
 
@@ -57,7 +57,7 @@ class Recipe(Protocol):
 class HouseMaker(Protocol):
     """Makes houses from recipes."""
 
-    def recipe(self, entry: Mapping[str, Any], where: str) -> Recipe:
+    def recipe(self, entry: Mapping[str, object], where: str) -> Recipe:
         """Returns the recipe of a JSON object.
 
         Raises:
@@ -71,7 +71,7 @@ class HouseMaker(Protocol):
 
 
 class _Entry(msgspec.Struct):
-    """What every entry of the file has in addition to its recipe."""
+    """The fields that every entry of the file has in addition to its recipe."""
 
     name: Name
     sha256: Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{64}\Z")]
@@ -82,7 +82,7 @@ class _List(msgspec.Struct):
 
     version: Name
     made_with: dict[str, str]
-    houses: list[dict[str, Any]]
+    houses: list[dict[str, object]]
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ _DECIMALS = 3
 class HouseGoals:
     """The goals of one storey of a house."""
 
-    listed: Mapping[str, list[habitat.Json]]
+    listed: Mapping[str, list[habitat.Goal]]
     """For each goal category with an instance that can be reached, Habitat's goals with their view points."""
     unreachable: tuple[str, ...]
     """Names of goal instances for which no place of the free space satisfies success."""
@@ -48,7 +48,7 @@ def find_reachable_goals(task: Task, *, max_view_points: int = MAX_VIEW_POINTS, 
     space = task.truth.space(floor_z_m)
     inside = space.largest_part()
     coarse_m = space.frame.to_metres(_spread(inside))
-    listed: dict[str, list[habitat.Json]] = {}
+    listed: dict[str, list[habitat.Goal]] = {}
     unreachable: list[str] = []
     for goal in task.truth.goals():
         region = task.truth.region(goal, floor_z_m)
@@ -87,7 +87,7 @@ def _spread(mask: NDArray[np.bool_]) -> NDArray[np.int64]:
     return cells[np.all(cells % VIEW_STEP_CELLS == VIEW_STEP_CELLS // 2, axis=1)]
 
 
-def _to_habitat(footprint: Footprint, views_m: NDArray[np.float64], rooms: Iterable[Room]) -> habitat.Json:
+def _to_habitat(footprint: Footprint, views_m: NDArray[np.float64], rooms: Iterable[Room]) -> habitat.Goal:
     """Returns an instance as an entry of Habitat's `goals_by_category`."""
     x0, y0, x1, y1 = footprint.bounds_m
     x, y, z = 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * sum(footprint.z_m)
@@ -103,8 +103,8 @@ def _to_habitat(footprint: Footprint, views_m: NDArray[np.float64], rooms: Itera
         "room_id": room,
         "room_name": room,
         "view_points": [
-            {"agent_state": {key: _rounded(value) for key, value in habitat.to_agent_state(pose).items()}, "iou": None}
-            for pose in poses
+            {"agent_state": {"position": _rounded(s["position"]), "rotation": _rounded(s["rotation"])}, "iou": None}
+            for s in map(habitat.to_agent_state, poses)
         ],
     }
 

@@ -42,16 +42,16 @@ def replicate_number(episode_id: str) -> int:
 
 
 def episode_of(episode_id: str) -> str:
-    """Returns the id of the episode of which this is a replicate; of the episode itself, its own id."""
+    """Returns the id of the episode that a replicate repeats; the id of an episode itself is returned unchanged."""
     return episode_id.rpartition(MARK)[0] if replicate_number(episode_id) else episode_id
 
 
 def find_episode(episodes: Mapping[str, Episode], episode_id: str) -> Episode | None:
-    """Returns the episode or the replicate with an id; None where there is none.
+    """Returns the episode or the replicate with an id; None if it does not exist.
 
     Args:
         episodes: the episodes of a split by id, without replicates.
-        episode_id: for example `val_0003` or `val_0003~1`. Numbers are written in one way: `val_0003~01` is no id.
+        episode_id: for example `val_0003` or `val_0003~1`. Numbers are written in one way: `val_0003~01` is not an id.
     """
     if episode_id in episodes:
         return episodes[episode_id]

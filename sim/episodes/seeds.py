@@ -13,7 +13,7 @@ class EpisodeSeeds(NamedTuple):
     """The seeds of one episode, each in [0, 2**32)."""
 
     environment: int
-    """Of the noise of sensors and drive; it depends only on the run's seed and the episode's id."""
+    """Seed of the noise of sensors and drive; it depends only on the run's seed and the episode's id."""
     agent: int
     """A hash with the key of the run, which no agent gets."""
 

@@ -18,7 +18,6 @@ import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from sim.core.errors import EpisodeError, HouseError, did_you_mean
 from sim.core.files import inside, write_together
@@ -39,7 +38,7 @@ UNREACHABLE_FILE = "unreachable.json"
 LABELS_FILE = "labels.json"
 HOUSE_SUFFIXES = (".xml", ".mjcf")
 """Suffixes of house files, in lower or upper case."""
-_MOST_BYTES = 256 << 20
+_MAX_BYTES = 256 << 20
 """Largest size of a house file."""
 
 
@@ -119,7 +118,7 @@ class Split:
 
 
 def house_sidecar(house_file: Path, labels_path: Path | None) -> Sidecar:
-    """Returns the sidecar of a house file; empty if there is none, or if the file holds the label rules.
+    """Returns the sidecar of a house file; empty if it does not exist, or if the file holds the label rules.
 
     Raises:
         HouseError: the file violates the format of `sim.houses.sidecar`.
@@ -216,7 +215,7 @@ def house_sum(path: Path, *, with_also: bytes = b"", root: Path | None = None) -
     Raises:
         HouseError: a file cannot be read.
     """
-    digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=_MOST_BYTES) + _sidecar_bytes(path))
+    digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=_MAX_BYTES) + _sidecar_bytes(path))
     digest.update(with_also)
     for file in files_of(path, root):  # a house in a single file keeps the checksum of version 0.1
         name = os.path.relpath(file, path.resolve().parent)
@@ -228,7 +227,7 @@ def house_sum(path: Path, *, with_also: bytes = b"", root: Path | None = None) -
 def write_split(
     folder: Path,
     episodes: Sequence[Episode],
-    goals_by_house: Mapping[str, Mapping[str, list[dict[str, Any]]]],
+    goals_by_house: Mapping[str, Mapping[str, Sequence[Mapping[str, object]]]],
     *,
     version: str,
     unreachable: Mapping[str, Sequence[str]] | None = None,
@@ -373,7 +372,7 @@ def _sidecar_bytes(house_file: Path) -> bytes:
     return read_bytes(file, what="Sidecar", error=HouseError) if file.is_file() else b""
 
 
-def _to_habitat(split: str, episode: Episode) -> dict[str, Any]:
+def _to_habitat(split: str, episode: Episode) -> dict[str, object]:
     state = habitat.to_agent_state(episode.start)
     return {
         "episode_id": episode.episode_id,

@@ -21,7 +21,7 @@ from sim.task.metrics import EXPLORED_SHARE, goal_share
 from sim.task.objectnav import Task
 from sim.world.freespace import FreeSpace
 
-LEAST_START_M2 = 1.0
+MIN_START_M2 = 1.0
 """Smaller areas hold too few different starts for a rule."""
 NEAR_PATH_M = 0.3
 """A path that comes this near to a hazard meets it: the robot's radius is 0.18 m, and its paths leave some margin."""
@@ -46,7 +46,7 @@ def start_cells(
         instances: number of reachable instances on the storey.
 
     Returns:
-        None where the rule leaves less than `LEAST_START_M2`; the rule `any` leaves what there is.
+        None where the rule leaves less than `MIN_START_M2`; the rule `any` leaves what there is.
     """
     space = task.truth.space(floor_z_m)
     distance_m = np.where(space.largest_part(), task.truth.target(goal, floor_z_m).distance_m, np.inf)
@@ -145,4 +145,4 @@ def _past_a_hazard(
 
 
 def _is_enough(cells: NDArray[np.bool_], space: FreeSpace) -> bool:
-    return int(np.count_nonzero(cells)) * space.frame.cell_m**2 >= LEAST_START_M2
+    return int(np.count_nonzero(cells)) * space.frame.cell_m**2 >= MIN_START_M2

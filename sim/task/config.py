@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from sim.core.errors import ConfigError
 from sim.core.interface import MAX_STEPS, SuccessRule
 
-MOST_STEPS = 1_000_000
+MAX_STEP_LIMIT = 1_000_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,5 +19,5 @@ class TaskConfig:
     """Number of actions after which an episode is truncated."""
 
     def __post_init__(self) -> None:
-        if not 1 <= self.max_steps <= MOST_STEPS:  # NaN is not
-            raise ConfigError(f"TaskConfig.max_steps must be in [1, {MOST_STEPS}], got {self.max_steps}.")
+        if not 1 <= self.max_steps <= MAX_STEP_LIMIT:  # NaN is not
+            raise ConfigError(f"TaskConfig.max_steps must be in [1, {MAX_STEP_LIMIT}], got {self.max_steps}.")

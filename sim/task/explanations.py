@@ -89,25 +89,25 @@ def explain_end(
         result: of the episode.
         goal: category that the episode asked for.
         rule: when a STOP succeeds.
-        nearest_m: distance in plan to the nearest instance of the goal on the storey; None: there is none.
+        nearest_m: distance in plan to the nearest instance of the goal on the storey; None: the storey has no instance.
         detects: whether the agent stops because of a segmentation. A person, or an agent without one, has
-            stopped too early where the goal is not; that is no false detection.
+            stopped too early where the goal is not; that is not a false detection.
     """
-    found, steps = bool(result.success), f"{result.num_steps} step" + "s" * (result.num_steps != 1)
-    headline = f"{'Found' if found else 'Not found'} after {steps}"
+    success, steps = bool(result.success), f"{result.num_steps} step" + "s" * (result.num_steps != 1)
+    headline = f"{'Found' if success else 'Not found'} after {steps}"
     if result.error:
         return Outcome(False, headline, result.error)
     if result.end_reason == "fallen":
         return Outcome(False, headline, "The robot drove over an edge and fell.")
     if result.end_reason == "stop":
-        stop = _success(result, goal, nearest_m) if found else _wrong_stop(result, goal, rule, nearest_m, detects)
-        return Outcome(found, headline, stop)
+        stop = _success(result, goal, nearest_m) if success else _wrong_stop(result, goal, rule, nearest_m, detects)
+        return Outcome(success, headline, stop)
     left_m = result.distance_to_goal
     cause = _CAUSES.get(result.failure or "", "The goal was in sight.")
-    left = "" if left_m is None else f" A place where a STOP counts is {left_m:.1f} m away."
+    remaining = "" if left_m is None else f" A place where a STOP counts is {left_m:.1f} m away."
     if left_m == 0.0:
-        left = " The robot is where a STOP counts, and STOP was not called."
-    return Outcome(False, headline, f"All {steps} are used up. {cause}{left}")
+        remaining = " The robot is where a STOP counts, and STOP was not called."
+    return Outcome(False, headline, f"All {steps} are used up. {cause}{remaining}")
 
 
 def _success(result: RolloutResult, goal: str, nearest_m: float | None) -> str:
@@ -169,23 +169,23 @@ def explain(result: EpisodeResult, trajectory: Trajectory | None) -> str:
 def marks(result: EpisodeResult, trajectory: Trajectory) -> list[Mark]:
     """Returns the decisive moments in the order of their steps; the end is always among them."""
     goal, last = in_words(result.goal), trajectory.num_steps
-    found: list[Mark] = []
+    moments: list[Mark] = []
     seen, at_goal = _seen(trajectory), _at_goal(trajectory)
     if len(seen):
-        found.append(Mark("seen", int(seen[0]), None, f"{goal} first in view ({len(seen)} frames in all)"))
+        moments.append(Mark("seen", int(seen[0]), None, f"{goal} first in view ({len(seen)} frames in all)"))
     if len(at_goal) and not trajectory.success:
-        found.append(Mark("at_goal", int(at_goal[0]), None, "the robot is where a STOP would succeed"))
+        moments.append(Mark("at_goal", int(at_goal[0]), None, "the robot is where a STOP would succeed"))
     elif not trajectory.success and (nearest := _nearest(trajectory)) is not None:
-        found.append(Mark("nearest", nearest[0], None, f"nearest to the goal, {nearest[1]:.1f} m to go"))
+        moments.append(Mark("nearest", nearest[0], None, f"nearest to the goal, {nearest[1]:.1f} m to go"))
     trapped, looping = first_trapped_step(trajectory.positions_m), first_looping_step(trajectory)
     if trapped is not None:
         until = trapped + TRAPPED_WINDOW_STEPS
-        found.append(Mark("trapped", trapped, until, TRAPPED))
+        moments.append(Mark("trapped", trapped, until, TRAPPED))
     if looping is not None:
         until = looping + LOOP_STEPS
-        found.append(Mark("loop", looping, until, f"{LOOP_STEPS} steps over visited ground"))
-    found.append(Mark("end", last, None, _end(result, trajectory)))
-    return sorted(found, key=lambda mark: mark.step)
+        moments.append(Mark("loop", looping, until, f"{LOOP_STEPS} steps over visited ground"))
+    moments.append(Mark("end", last, None, _end(result, trajectory)))
+    return sorted(moments, key=lambda mark: mark.step)
 
 
 def _found(result: EpisodeResult, trajectory: Trajectory) -> str:

@@ -117,7 +117,7 @@ def first_trapped_step(positions_m: NDArray[np.floating]) -> int | None:
 
 
 def first_looping_step(trajectory: Trajectory) -> int | None:
-    """Returns the first step of the first window that the robot spent on old ground; None if there is none."""
+    """Returns the first step of the first window that the robot spent on old ground; None if no window is."""
     if trajectory.num_steps < LOOP_STEPS:
         return None
     path_m = np.concatenate([[0.0], np.cumsum(trajectory.moved_m)])

@@ -72,7 +72,7 @@ class GroundTruth:
         return self._spaces[floor_z_m]
 
     def unseen_floor(self, floor_z_m: float = 0.0) -> SeenFloor:
-        """Returns the floor of a storey of which the camera has seen nothing yet."""
+        """Returns the floor of a storey before the camera has seen any of it."""
         if floor_z_m not in self._floors:
             world = self.world
             outlines = floor_polygons(world.model, self._at_rest, world.labels, floor_z_m)
@@ -104,7 +104,7 @@ class GroundTruth:
         return self._regions[goal, floor_z_m]
 
     def goals(self) -> tuple[str, ...]:
-        """Returns the goal categories of which something is rendered in the house, in the contract's order."""
+        """Returns the goal categories that have a rendered object in the house, in the contract's order."""
         rendered, of_category = rendered_geoms(self.world.model), self.world.labels.of_category
         return tuple(
             goal
@@ -142,7 +142,7 @@ class GroundTruth:
         if off_m is not None and off_m <= within_m:
             return goal
         world, place = self.world, np.array([[x_m, y_m]])
-        found: list[tuple[bool, float, float, str]] = []
+        candidates: list[tuple[bool, float, float, str]] = []
         for instance in world.labels.instances:
             if instance.category in _NO_OBJECTS or not self._may_be_within(instance.geom_ids, x_m, y_m, within_m):
                 continue
@@ -153,8 +153,8 @@ class GroundTruth:
             if distance_m <= within_m:
                 x0, y0, x1, y1 = footprint.bounds_m
                 is_structure = instance.category in SIGHT_BLOCKERS
-                found.append((is_structure, distance_m, (x1 - x0) * (y1 - y0), instance.category))
-        return min(found)[-1] if found else None
+                candidates.append((is_structure, distance_m, (x1 - x0) * (y1 - y0), instance.category))
+        return min(candidates)[-1] if candidates else None
 
     def _may_be_within(self, geoms: tuple[int, ...], x_m: float, y_m: float, within_m: float) -> bool:
         """Returns False if all bounding spheres of the geoms are farther than `within_m` from the place, in plan."""

@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType, NoneType
-from typing import Annotated, Any, Literal, Self, get_args, get_type_hints
+from typing import Annotated, Literal, Self, get_args, get_type_hints
 
 import msgspec
 from msgspec import UNSET, Meta, UnsetType
@@ -74,14 +74,14 @@ class StopTarget(msgspec.Struct, frozen=True, kw_only=True):
     stop_target_to_goal_m: Number | None
     """Metres in plan from there to the nearest instance of the goal, walls ignored; None also: the storey has none."""
     stop_target_category: str | None
-    """Category of the object there; None also: there is no object."""
+    """Category of the object there; None also where the place has no object."""
 
 
 NO_STOP_TARGET = StopTarget(stop_target_xy_m=None, stop_target_to_goal_m=None, stop_target_category=None)
 
 
 class EpisodeMetrics(StopTarget, frozen=True, kw_only=True):
-    """What the task measures (docs/task.md). A field that may be None is None where the episode could not begin."""
+    """The measurements of the task (docs/task.md). A field that may be None is None if the episode did not begin."""
 
     success: Annotated[Share, Metric("success", "%", most=1.0, counts_errors=True)]
     spl: Annotated[Share, Metric("SPL", digits=3, most=1.0, counts_errors=True)]
@@ -162,7 +162,7 @@ class EpisodeResult(RolloutResult, frozen=True, kw_only=True):
     other_driver: str | UnsetType | None = UNSET
     """The agent that chose the other actions; None: there were none."""
 
-    def as_json(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, object]:
         """Returns the JSON values of the line, the episode and the agent first."""
         values = msgspec.to_builtins(self)
         return {name: values[name] for name in _KEYS if name in values}

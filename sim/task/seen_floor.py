@@ -59,10 +59,10 @@ class SeenFloor:
         x, y = self.frame.axes(window)
         c, s = math.cos(camera_pose.yaw_rad), math.sin(camera_pose.yaw_rad)
         dx, dy = (x - camera_pose.x_m)[None, :], (y - camera_pose.y_m)[:, None]
-        ahead, left = c * dx + s * dy, c * dy - s * dx
-        inside = waiting & (ahead > self._near_m) & (ahead <= self._far_m) & (np.abs(left) < self._side * ahead)
+        ahead, sideways = c * dx + s * dy, c * dy - s * dx
+        inside = waiting & (ahead > self._near_m) & (ahead <= self._far_m) & (np.abs(sideways) < self._side * ahead)
         rows, cols = np.nonzero(inside)
-        shown = semantic[self._pixels(ahead[rows, cols], left[rows, cols], semantic.shape)] == _FLOOR
+        shown = semantic[self._pixels(ahead[rows, cols], sideways[rows, cols], semantic.shape)] == _FLOOR
         waiting[rows[shown], cols[shown]] = False
         self.cells[window][rows[shown], cols[shown]] = True
         self._count += int(np.count_nonzero(shown))
@@ -71,8 +71,8 @@ class SeenFloor:
         """Returns the smallest and largest x and y of the floor in the camera's range."""
         c, s = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
         corners = [(d, side * d * self._side) for d in (self._near_m, self._far_m) for side in (-1.0, 1.0)]
-        x = [pose.x_m + c * ahead - s * left for ahead, left in corners]
-        y = [pose.y_m + s * ahead + c * left for ahead, left in corners]
+        x = [pose.x_m + c * ahead - s * sideways for ahead, sideways in corners]
+        y = [pose.y_m + s * ahead + c * sideways for ahead, sideways in corners]
         return min(x), min(y), max(x), max(y)
 
     def _pixels(

@@ -189,9 +189,9 @@ def _not_hidden(
     for blocker in blockers:
         hidden = np.ones(len(places), dtype=np.bool_)
         for corner in ((x0, y0), (x1, y0), (x1, y1), (x0, y1)):
-            left = np.flatnonzero(hidden)
-            ends = np.broadcast_to(np.array(corner), (len(left), 2))
-            hidden[left] = lines_blocked(xy_m[places[left]], ends, (blocker,))
+            remaining = np.flatnonzero(hidden)
+            ends = np.broadcast_to(np.array(corner), (len(remaining), 2))
+            hidden[remaining] = lines_blocked(xy_m[places[remaining]], ends, (blocker,))
         places = places[~hidden]
     return places
 

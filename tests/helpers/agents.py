@@ -26,9 +26,9 @@ class SpyConfig:
 class Spy:
     """Records the keys of its observations, drives forward a few times and stops."""
 
-    def __init__(self, config: SpyConfig | None = None, **given: object) -> None:
+    def __init__(self, config: SpyConfig | None = None, **parts: object) -> None:
         self.config = config or SpyConfig()
-        self.given = given
+        self.given = parts
 
     def reset(self, goal: str, seed: int) -> None:
         self.step = 0
@@ -40,9 +40,9 @@ class Spy:
         return Action.MOVE_FORWARD if self.step <= self.config.forwards else Action.STOP
 
 
-def make_spy(**given: object) -> Spy:
+def make_spy(**parts: object) -> Spy:
     """Builds an agent without a declaration of its needs."""
-    return Spy(**given)  # type: ignore[arg-type]
+    return Spy(**parts)  # type: ignore[arg-type]
 
 
 def make_narrow(*, camera: object, robot: object) -> Spy:

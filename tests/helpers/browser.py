@@ -54,11 +54,11 @@ class Browser:
             f"--user-data-dir={profile}",
             *(["--blink-settings=preferredColorScheme=0"] if dark else []),
         ]
-        wanted = {
+        preferences = {
             "goog:chromeOptions": {"binary": binary, "args": options},
             "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"},
         }
-        session = self._call("POST", "/session", {"capabilities": {"alwaysMatch": wanted}})
+        session = self._call("POST", "/session", {"capabilities": {"alwaysMatch": preferences}})
         self._root += f"/session/{session['sessionId']}"
         self.resize(width, height)
 

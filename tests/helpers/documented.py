@@ -77,15 +77,15 @@ def example_of(block: Block) -> str | None:
 
 def commands() -> dict[str, str]:
     """Every command of the shell blocks in its canonical form, and where it stands first."""
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     for page in pages():
         for block in blocks(page):
             if block.language == "sh":
                 for line in block.text.replace("\\\n", " ").splitlines():
                     words = shlex.split(line, comments=True)
                     if words:
-                        found.setdefault(canonical(words), f"{block.page}:{block.line}")
-    return found
+                        texts.setdefault(canonical(words), f"{block.page}:{block.line}")
+    return texts
 
 
 def unmarked_commands() -> dict[str, str]:
@@ -94,7 +94,7 @@ def unmarked_commands() -> dict[str, str]:
     begins = re.compile(
         rf"(?:\.venv/bin/)?(?:python (?:-m (?:sim|tools|stubborn)\b|tools/|examples/)|stubborn (?:{started})\b)"
     )
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     for page in pages():
         lines = [line for block in blocks(page) if block.language == "text" for line in block.text.splitlines()]
         prose = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
@@ -104,8 +104,8 @@ def unmarked_commands() -> dict[str, str]:
             command = canonical(shlex.split(code.replace("\n", " "), comments=True))
             name, options = program_of(command)
             if options and not {"...", "|"} & set(options) and name:
-                found.setdefault(command, str(page.relative_to(ROOT)))
-    return found
+                texts.setdefault(command, str(page.relative_to(ROOT)))
+    return texts
 
 
 def program_of(command: str) -> tuple[str, list[str]]:

@@ -68,6 +68,6 @@ def write_scene(folder: Path, *, name: str = "train_1", objects: Any = None) -> 
         '<light pos="1 1 2"/>'
         f"{rooms}{''.join(bodies)}</worldbody></mujoco>"
     )
-    found = objects if objects is not None else {name: {"category": kind} for name, kind in OBJECTS.items()}
-    (folder / f"{name}_metadata.json").write_text(json.dumps({"objects": found}))
+    listed = objects if objects is not None else {name: {"category": kind} for name, kind in OBJECTS.items()}
+    (folder / f"{name}_metadata.json").write_text(json.dumps({"objects": listed}))
     return folder / f"{name}.xml"

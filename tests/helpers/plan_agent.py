@@ -115,7 +115,7 @@ def plan_agent_config(config: AgentConfig) -> AgentConfig:
     if not isinstance(config.seeker, TargetSeekerConfig):
         raise ConfigError("The twin has no images, which the agent's seeker reads; give it agent.seeker of stubborn.")
     default = MappingConfig(drops=config.mapping.drops, candidate_score=config.mapping.candidate_score)
-    changed = [each.name for each in fields(default) if vars(config.mapping)[each.name] != vars(default)[each.name]]
+    changed = [field.name for field in fields(default) if vars(config.mapping)[field.name] != vars(default)[field.name]]
     if changed:
         raise ConfigError(f"The twin has a camera of its own, without the agent's mapping.{changed[0]}.")
     return replace(config, mapping=replace(config.mapping, drops=replace(config.mapping.drops, enabled=False)))

@@ -40,8 +40,8 @@ OBJECT = fixture("distr_counter_main", ".05 .05 .05", "1 -.4 .951", "<freejoint/
 
 def write_kitchen(folder: Path, *, name: str = "kitchen", fixtures: str = FIXTURES, robot: str = ROBOT) -> Path:
     """Writes `scenes/<name>.xml` and the texture in `assets` that it uses; returns the file of the kitchen."""
-    for each in ("scenes", "assets"):
-        (folder / each).mkdir(parents=True, exist_ok=True)
+    for part in ("scenes", "assets"):
+        (folder / part).mkdir(parents=True, exist_ok=True)
     cv2.imwrite(str(folder / "assets" / "wood.png"), np.full((LARGE_PX, LARGE_PX // 2, 3), 90, np.uint8))
     drives = (
         '<actuator><motor joint="robot0_joint1"/></actuator><contact><exclude body1="robot0_base" '

@@ -102,9 +102,9 @@ class Bright:
 
     def posteriors(self, observation: Observation) -> NDArray:
         bright = observation["rgb"][..., 0] > self.config.bar
-        found = np.zeros((40, *bright.shape), np.float32)
-        found[MPCAT40_ID["sofa"] - 1], found[MPCAT40_ID["wall"] - 1] = bright, ~bright
-        return found
+        posteriors = np.zeros((40, *bright.shape), np.float32)
+        posteriors[MPCAT40_ID["sofa"] - 1], posteriors[MPCAT40_ID["wall"] - 1] = bright, ~bright
+        return posteriors
 
 
 BRIGHT = SegmentationSpec(make=Bright, config=BrightConfig(), spec=Bright.spec)

@@ -81,8 +81,8 @@ def in_first_result(**changes: Any) -> Edit:
 
 def in_all_results(**changes: Any) -> Edit:
     def edit(content: dict[str, Any]) -> None:
-        for each in content["episodes"]:
-            each["result"].update(changes)
+        for episode in content["episodes"]:
+            episode["result"].update(changes)
 
     return edit
 
@@ -103,18 +103,18 @@ def in_config(**changes: Any) -> Edit:
 
 def in_actions(change: Callable[[str], str], *, counted: bool = False) -> Edit:
     def edit(content: dict[str, Any]) -> None:
-        each = content["episodes"][0]
-        each["actions"] = change(each["actions"])
+        episode = content["episodes"][0]
+        episode["actions"] = change(episode["actions"])
         if counted:
-            each["result"]["num_steps"] = len(each["actions"])
+            episode["result"]["num_steps"] = len(episode["actions"])
 
     return edit
 
 
 def together(*edits: Edit) -> Edit:
     def edit(content: dict[str, Any]) -> None:
-        for each in edits:
-            each(content)
+        for edit in edits:
+            edit(content)
 
     return edit
 

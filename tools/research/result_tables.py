@@ -229,7 +229,7 @@ def result_record(run: ArchivedRun, episodes: int) -> Record:
     failed = Counter(result.failure for result in lines if not result.success)
     record |= {f"{FAILED}{cause}": str(failed[cause]) for cause in CAUSES}
     config = run.run.config
-    versions, split = config.get("versions", {}), config["split_identity"]
+    versions, split = config.get("versions", {}), run.run.recorded("split_identity")
     return record | {
         "package": versions.get("stubborn-objectnav", ""),
         "mujoco": versions.get("mujoco", ""),

@@ -14,7 +14,7 @@ from typing import Any
 
 from sim.app.analysis.tables import ResultTable
 from sim.app.evaluation.config_fields import ABSENT, differing_fields, field_text, run_differences
-from sim.app.evaluation.results import read_record, read_results
+from sim.app.evaluation.results import RunRecord, read_record, read_results
 from sim.core.errors import ConfigError
 from sim.task.result import EpisodeResult
 from sim.task.trajectory import read_trajectory, trajectory_file
@@ -28,7 +28,7 @@ LETTERS = "ABCDEFGHIJKL"
 """Names of the runs that are compared, the first one `A`."""
 SAME_PATH_M = 0.05
 """Largest difference of the same shortest path measured by two versions of the code: one cell."""
-MOST_LACKING = 5
+MAX_LACKING = 5
 """A part of the configuration has a row for each field that not all runs have, up to this number of fields."""
 
 
@@ -37,7 +37,7 @@ class Run:
     """The content of a run's folder."""
 
     path: Path
-    config: Mapping[str, Any]
+    config: RunRecord
     results: Mapping[str, EpisodeResult]
     """Results by `episode_id`."""
 
@@ -98,14 +98,14 @@ def _counted(values: Mapping[str, list[str]]) -> dict[str, list[str]]:
             lacking.setdefault(f"{top}.{inner[0]}" if top == "config" and inner else top, []).append(path)
     rows = dict(values)
     for part, paths in lacking.items():
-        if len(paths) > MOST_LACKING:
+        if len(paths) > MAX_LACKING:
             texts = [rows.pop(path) for path in paths]
-            had = [sum(text != ABSENT.value for text in of_run) for of_run in zip(*texts, strict=True)]
-            rows[f"{part}: fields of some runs only"] = [f"{count} fields" for count in had]
+            counts = [sum(text != ABSENT.value for text in of_run) for of_run in zip(*texts, strict=True)]
+            rows[f"{part}: fields of some runs only"] = [f"{count} fields" for count in counts]
     return rows
 
 
-def _short_text(value: Any) -> str:
+def _short_text(value: object) -> str:
     """Returns a value as JSON; for an object that the other run does not have, only its number of fields."""
     return f"{len(value)} fields" if isinstance(value, Mapping) else field_text(value)
 

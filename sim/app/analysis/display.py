@@ -17,7 +17,7 @@ from sim.core.errors import debug
 from sim.core.reading import printable
 from sim.task.result import METRICS, EpisodeResult
 
-MOST_EPISODES_SHOWN = 20
+MAX_EPISODES_SHOWN = 20
 PLAIN_WIDTH = 120
 """Columns of output that is not a terminal (a file, a pipe, a CI log)."""
 
@@ -48,7 +48,7 @@ def print_where_to_look(
         console: prints.
         out: folder of the run.
         video: whether its episodes were filmed.
-        failed: ID of a failed episode of a split; None: there is none.
+        failed: ID of a failed episode of a split; None: none failed.
         sharded: whether the run is a part of a larger one.
     """
     say = functools.partial(console.print, highlight=False, soft_wrap=True)
@@ -88,7 +88,7 @@ def counted(number: int, noun: str) -> str:
 
 def print_results(console: Console, results: Sequence[EpisodeResult], summary: Mapping[str, Any]) -> None:
     """Prints the episodes if they are few, and the means with their intervals."""
-    if len(results) <= MOST_EPISODES_SHOWN:
+    if len(results) <= MAX_EPISODES_SHOWN:
         console.print(_episode_table(results))
     console.print(_summary_table(summary))
     causes = Counter(cause for cause in map(_cause, results) if cause is not None)

@@ -21,7 +21,7 @@ QUIET_S = 5.0
 """First interval between two lines on a running episode, if the output is not a terminal; the interval then grows."""
 LONGEST_QUIET_S = 60.0
 """Longest interval between two such lines: the log of a long episode stays short."""
-MOST_NAMED = 3
+MAX_NAMED = 3
 """Largest number of running episodes that a line names."""
 
 
@@ -115,9 +115,9 @@ class ProgressReport:
             f"{name} for {now_s - self._running[name].since_s:.0f} s"
             if count is None
             else f"{name}, step {count} of {self._max_steps}"
-            for name, count in itertools.islice(steps.items(), MOST_NAMED)
+            for name, count in itertools.islice(steps.items(), MAX_NAMED)
         ]
-        others = f" and {len(steps) - MOST_NAMED} more" if len(steps) > MOST_NAMED else ""
+        others = f" and {len(steps) - MAX_NAMED} more" if len(steps) > MAX_NAMED else ""
         counts = [0 if count is None else count for count in steps.values()]
         pace = self._pace(counts, now_s) if None not in steps.values() else ""
         if self._bar is None:
@@ -140,11 +140,11 @@ class ProgressReport:
             return ""
         expected = self._steps_done / self._done if self._done else float(self._max_steps)
         waiting = self._total - self._done - len(counts)
-        left = waiting * expected + sum(max(0.0, expected - count) for count in counts)
+        remaining = waiting * expected + sum(max(0.0, expected - count) for count in counts)
         rate, bound = (made - self._first[1]) / (now_s - self._first[0]), "about" if self._done else "at most"
-        if left == 0.0:  # the last episodes are longer than the ones before them
+        if remaining == 0.0:  # the last episodes are longer than the ones before them
             return f"; {rate:.1f} steps/s"
-        return f"; {rate:.1f} steps/s, {bound} {_duration(left / rate)} left"
+        return f"; {rate:.1f} steps/s, {bound} {_duration(remaining / rate)} left"
 
     def _print(self, words: str) -> None:
         self._printed_s = time.monotonic()

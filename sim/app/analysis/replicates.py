@@ -34,6 +34,6 @@ def _sentence(spreads: Sequence[float | None], results: Sequence[EpisodeResult],
         return ""
     count = len(set(episodes_of(results)))
     return (
-        f"{len(results)} replicates of {count} episodes, each of which counts once. Chance alone gives {what} a "
+        f"{len(results)} replicates of {count} episodes; each episode counts once. Chance alone gives {what} a "
         f"standard deviation of {100.0 * success:.1f} points of success and {spl:.3f} of SPL."
     )

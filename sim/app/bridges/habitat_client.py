@@ -17,6 +17,7 @@ import os
 import re
 import runpy
 import sys
+from collections.abc import Iterable, Iterator, Mapping
 from importlib.abc import Loader
 from importlib.machinery import ModuleSpec
 from types import ModuleType, SimpleNamespace
@@ -67,7 +68,7 @@ class Config(dict):
             content = f"It has: {', '.join(map(str, self))}." if self else "It is empty."
             raise AttributeError(f"The configuration has no '{name}' here. {content}") from None
 
-    def __setattr__(self, name: str, value: Any) -> None:
+    def __setattr__(self, name: str, value: object) -> None:
         self[name] = value
 
     def clone(self) -> "Config":
@@ -87,14 +88,14 @@ def read_write(config):
     yield config
 
 
-def to_config(value: Any) -> Any:
+def to_config(value: object) -> Any:
     """Returns nested dicts as a `Config`; lists and dicts are copied."""
     if isinstance(value, dict):
-        return Config({str(key): to_config(each) for key, each in value.items()})
-    return [to_config(each) for each in value] if isinstance(value, list) else value
+        return Config({str(key): to_config(item) for key, item in value.items()})
+    return [to_config(item) for item in value] if isinstance(value, list) else value
 
 
-def merge(config: Config, changes: Any) -> None:
+def merge(config: Config, changes: "Mapping") -> None:
     """Writes the values of nested dicts into a configuration, in place."""
     for key, value in changes.items():
         inner = config.get(str(key))
@@ -104,14 +105,14 @@ def merge(config: Config, changes: Any) -> None:
             config[str(key)] = to_config(value)
 
 
-def add(config: Config, entries: Any) -> None:
+def add(config: Config, entries: "Mapping") -> None:
     """Adds entries of nested dicts that a run's configuration lacks, in place; logs those that it has otherwise."""
     others = list(_added(config, entries, ""))
     if others:
         LOG.warning("The run determines %s.", ", ".join(others))
 
 
-def _added(config: Config, entries: Any, place: str) -> Any:
+def _added(config: Config, entries: "Mapping", place: str) -> "Iterator[str]":
     """Adds entries, and yields text on each that has another value already."""
     for key, value in entries.items():
         present = config.setdefault(str(key), to_config(value))
@@ -121,25 +122,25 @@ def _added(config: Config, entries: Any, place: str) -> Any:
             yield f"{place}{key}={present!r}, not {value!r}"
 
 
-def override(config: Config, overrides: Any) -> None:
+def override(config: Config, overrides: "Iterable[object] | None") -> None:
     """Changes a configuration, in place, by texts `path=value`, or by paths and values alternately.
 
     Raises:
         ValueError: a path has no value.
     """
-    left = list(overrides or ())
-    while left:
-        path, separator, text = str(left.pop(0)).partition("=")
-        if not separator and not left:
+    remaining = list(overrides or ())
+    while remaining:
+        path, separator, text = str(remaining.pop(0)).partition("=")
+        if not separator and not remaining:
             raise ValueError(f"An override has the form path=value, got '{path}'.")
-        value = text if separator else left.pop(0)
-        value = parsed(value) if isinstance(value, str) else value
+        tree: Any = text if separator else remaining.pop(0)
+        tree = parsed(tree) if isinstance(tree, str) else tree
         for name in reversed(path.lstrip("+").split(".")):
-            value = {name: value}
-        merge(config, value)
+            tree = {name: tree}
+        merge(config, tree)
 
 
-def parsed(text: str) -> Any:
+def parsed(text: str) -> object:
     """Returns the value of a text in JSON or Python, such as `false` and `False`; the text itself if it is neither."""
     for read in (json.loads, ast.literal_eval):
         with contextlib.suppress(ValueError, SyntaxError, MemoryError, RecursionError):
@@ -155,11 +156,11 @@ def remove_other_actions(config: Config) -> "set[str]":
         listed = tree.get(name) if isinstance(tree, Config) else None
         if not isinstance(tree, Config) or not isinstance(listed, (list, Config)):
             continue
-        others = {str(each) for each in listed if str(each).lower() not in HABITAT_ACTIONS}
+        others = {str(action) for action in listed if str(action).lower() not in HABITAT_ACTIONS}
         if isinstance(listed, Config):
             tree[name] = Config({key: value for key, value in listed.items() if key not in others})
         else:
-            tree[name] = [each for each in listed if str(each) not in others]
+            tree[name] = [action for action in listed if str(action) not in others]
         removed |= others
     return removed
 
@@ -192,15 +193,15 @@ class StandIn(Loader):
         self._fill(module)
         if module.__name__ == "habitat":
             modules = [importlib.import_module(name) for name in HABITAT_MODULES]
-            for each in modules:
-                self._fill(each)  # again: a function may have the name of a module
+            for part in modules:
+                self._fill(part)  # again: a function may have the name of a module
 
     def _fill(self, module):
         vars(module).update({name: self._objects[name] for name in HABITAT_MODULES[module.__name__].split()})
 
 
 class _Module(ModuleType):
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> object:
         raise AttributeError(f"'{self.__name__}.{name}' {NOT_IN_THE_STAND_IN}")
 
 
@@ -227,7 +228,7 @@ class EmptyModules(Loader):
 
 
 class _EmptyModule(ModuleType):
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> object:
         if name.startswith("__"):
             raise AttributeError(name)
         return _Unusable(f"{self.__name__}.{name}")
@@ -239,13 +240,13 @@ class _Unusable:
     def __init__(self, name):
         self._name = name
 
-    def __call__(self, *_: Any, **__: Any) -> Any:
+    def __call__(self, *_: object, **__: object) -> object:
         package = self._name.split(".")[0]
         raise ImportError(f"'{self._name}' is used, but {package} is not installed", name=self._name)
 
     __mro_entries__ = __call__
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> object:
         if name.startswith("__"):
             raise AttributeError(name)
         return self()
@@ -290,7 +291,7 @@ class _Challenge(_Benchmark):
 class _Env:
     """Refuses to be made: the episodes run in the simulator."""
 
-    def __init__(self, *_: Any, **__: Any) -> None:
+    def __init__(self, *_: object, **__: object) -> None:
         raise RuntimeError(
             "Episodes and shortest paths are in the simulator's process: stubborn habitat 'SCRIPT ARGUMENTS'"
         )
@@ -325,7 +326,7 @@ class _Record(SimpleNamespace):
     """An object with attributes, in place of Habitat's classes of episodes."""
 
 
-def _get_config(config_paths=None, overrides=None, *_: Any, **__: Any) -> Config:
+def _get_config(config_paths=None, overrides=None, *_: object, **__: object) -> Config:
     """Returns the configuration of the run, with what YAML files add to it, changed by overrides."""
     config = _config_of_the_run()
     paths = config_paths.split(",") if isinstance(config_paths, str) else [str(path) for path in config_paths or ()]
@@ -341,7 +342,7 @@ def _get_config(config_paths=None, overrides=None, *_: Any, **__: Any) -> Config
     return config
 
 
-def _read_yaml(path: str) -> Any:
+def _read_yaml(path: str) -> dict:
     """Returns the content of a file, read with PyYAML of the agent's environment."""
     yaml = importlib.import_module("yaml")
     with open(path) as file:
@@ -357,8 +358,8 @@ def _config_of_the_run() -> Config:
 def _provide_habitat():
     """Makes `import habitat` work in this process if Habitat is not installed, and the import of `EMPTY_PACKAGES`."""
     sys.meta_path.append(EmptyModules())
-    found = importlib.util.find_spec("habitat")
-    if found is not None and found.origin is not None:  # a folder of this name has no origin
+    spec = importlib.util.find_spec("habitat")
+    if spec is not None and spec.origin is not None:  # a folder of this name has no origin
         return
     LOG.addHandler(logging.StreamHandler())
     LOG.setLevel(logging.INFO)
@@ -380,30 +381,30 @@ def _maker_of(name, words):
 
     def make(_):
         module, _, attribute = name.partition(":")
-        found = getattr(importlib.import_module(module), attribute)
-        given = dict(word.split("=", 1) for word in words)
-        given = {key: called(parsed(text)) for key, text in given.items()}
-        for argument in inspect.signature(found).parameters.values():
+        build = getattr(importlib.import_module(module), attribute)
+        arguments = dict(word.split("=", 1) for word in words)
+        arguments = {key: called(parsed(text)) for key, text in arguments.items()}
+        for argument in inspect.signature(build).parameters.values():
             if argument.name in OF_THE_RUN and argument.default is argument.empty and takes_config(argument):
-                file = given.get(argument.name)
+                file = arguments.get(argument.name)
                 if file is None or isinstance(file, str):
-                    given[argument.name] = _get_config(file)
-        return found(**given)
+                    arguments[argument.name] = _get_config(file)
+        return build(**arguments)
 
     return make
 
 
-def takes_config(argument: Any) -> bool:
+def takes_config(argument: inspect.Parameter) -> bool:
     """Returns whether an argument of an agent's constructor can be a configuration, not the name of a file."""
     return argument.annotation not in (str, "str")
 
 
-def called(value: Any) -> Any:
+def called(value: object) -> object:
     """Returns the result of the function that a text `module:NAME()` names; returns any other value unchanged."""
-    found = CALL.match(value) if isinstance(value, str) else None
-    if found is None or found.end() != len(value):
+    call = CALL.match(value) if isinstance(value, str) else None
+    if call is None or call.end() != len(call.string):
         return value
-    return getattr(importlib.import_module(found.group(1)), found.group(2))()
+    return getattr(importlib.import_module(call.group(1)), call.group(2))()
 
 
 def main(words):

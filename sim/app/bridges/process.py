@@ -11,7 +11,7 @@ from __future__ import annotations
 import functools
 import shlex
 from collections.abc import Sequence
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Literal, TypeVar
 
 import cv2
 import msgspec
@@ -23,7 +23,7 @@ from sim.app.bridges.habitat.config import make_config
 from sim.app.bridges.habitat.conversions import Conversion
 from sim.app.bridges.process_command import ProcessConfig, command_of
 from sim.app.bridges.process_pipe import AgentProcess, Answer
-from sim.app.bridges.stubborn_client import MOST_HEADER_BYTES, ProtocolError, unpack_arrays
+from sim.app.bridges.stubborn_client import MAX_HEADER_BYTES, ProtocolError, unpack_arrays
 from sim.app.evaluation.own_code import one_line
 from sim.app.evaluation.rollout import ask
 from sim.app.options import PROCESS
@@ -45,7 +45,7 @@ from sim.task.trajectory import FARTHEST_M
 
 T = TypeVar("T")
 _Metres = Annotated[float, Meta(ge=-FARTHEST_M, le=FARTHEST_M)]
-_Text = Annotated[str, Meta(max_length=MOST_HEADER_BYTES)]
+_Text = Annotated[str, Meta(max_length=MAX_HEADER_BYTES)]
 
 
 class _Ready(msgspec.Struct, tag_field="type", tag="ready"):
@@ -177,7 +177,7 @@ class ProcessAgent:
     def map_image(self) -> tuple[NDArray[np.uint8], str]:
         """Returns the agent's map, uint8 RGB (h, w, 3), and a few words on what the agent is doing."""
         drawn, answer = self._ask({"type": "map"}, _Map)
-        described = [msgspec.to_builtins(each) for each in drawn.arrays]
+        described = [msgspec.to_builtins(array) for array in drawn.arrays]
         try:
             return unpack_arrays(described, answer.content)["map"], one_line(drawn.state)
         except ProtocolError as fault:
@@ -212,7 +212,7 @@ class ProcessAgent:
 
     def _ask(
         self,
-        request: dict[str, Any],
+        request: dict[str, object],
         kind: type[T],
         arrays: Observation | None = None,
         *,
@@ -262,9 +262,9 @@ class ProcessPainter:
         image, self._words = ask(f"Agent '{self._agent.name}', map_image", self._agent.map_image)
         height, width = (max(1, round(side * size_px / max(image.shape[:2]))) for side in image.shape[:2])
         kind = cv2.INTER_AREA if height < image.shape[0] else cv2.INTER_NEAREST
-        top, left = (size_px - height) // 2, (size_px - width) // 2
+        top, left_px = (size_px - height) // 2, (size_px - width) // 2
         paper = np.full((size_px, size_px, 3), 255, np.uint8)
-        paper[top : top + height, left : left + width] = cv2.resize(image, (width, height), interpolation=kind)
+        paper[top : top + height, left_px : left_px + width] = cv2.resize(image, (width, height), interpolation=kind)
         return paper
 
     def words(self) -> str:

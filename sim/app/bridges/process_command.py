@@ -73,7 +73,7 @@ def files_of(name: str) -> list[Path]:
     words = command_of(name)
     modules = [word for before, word in itertools.pairwise(words) if before == "-m"]
     modules += [word.partition(":")[0] for word in words if re.fullmatch(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*", word)]
-    folders = [Path(each) for each in ("", *os.environ.get("PYTHONPATH", "").split(os.pathsep))]
+    folders = [Path(folder) for folder in ("", *os.environ.get("PYTHONPATH", "").split(os.pathsep))]
     files = [f"{module.replace('.', '/')}{end}" for module in modules for end in (".py", "/__main__.py")]
     paths = [Path(word) for word in words] + [folder / file for file in files for folder in folders]
     return list(dict.fromkeys(path for path in paths if is_file(path)))

@@ -84,10 +84,10 @@ def _descendants() -> Iterator[int]:
     for name in os.listdir("/proc") if os.path.isdir("/proc") else ():
         with contextlib.suppress(OSError, ValueError, IndexError), open(f"/proc/{int(name)}/stat", "rb") as stream:
             parents[int(name)] = int(stream.read().rpartition(b")")[2].split()[1])
-    found = {os.getpid()}
-    while more := {process for process, parent in parents.items() if parent in found} - found:
+    pids = {os.getpid()}
+    while more := {process for process, parent in parents.items() if parent in pids} - pids:
         yield from more
-        found |= more
+        pids |= more
 
 
 def _end_with_guard() -> None:

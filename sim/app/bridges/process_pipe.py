@@ -19,7 +19,7 @@ import sys
 import time
 import weakref
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ from sim.core.errors import AgentError
 from sim.core.reading import parse_json, printable
 
 T = TypeVar("T")
-MOST_ANSWER_BYTES = 64 << 20
+MAX_ANSWER_BYTES = 64 << 20
 """Largest size of the arrays of an answer: a map of 4600 x 4600 pixels."""
 TAIL_LINES, TAIL_BYTES = 6, 2000
 """Number of the last lines of standard error that an error message repeats, and of the bytes that are kept."""
@@ -117,7 +117,7 @@ class AgentProcess:
         self._memory = None
 
     def ask(
-        self, request: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]] | None = None, *, within_s: float
+        self, request: Mapping[str, object], arrays: Mapping[str, NDArray] | None = None, *, within_s: float
     ) -> Answer:
         """Sends a request and returns its answer.
 
@@ -140,9 +140,9 @@ class AgentProcess:
             answer = self._exchange([memoryview(part).cast("B") for part in parts], within_s)
         except ProtocolError as fault:
             raise AgentError(f"its answer is not valid: {fault}") from None
-        given = answer.parsed(dict[str, Any]).get("id")
-        if given != self._number:
-            raise AgentError(f"it answered request {one_line(str(given), 40)}, but {self._number} was asked")
+        answered = answer.parsed(dict[str, object]).get("id")
+        if answered != self._number:
+            raise AgentError(f"it answered request {one_line(str(answered), 40)}, but {self._number} was asked")
         return answer
 
     def close(self, *, at_once: bool = False) -> None:
@@ -270,8 +270,8 @@ class AgentProcess:
         if len(self._received) < (PREFIX.size if self._begun else PREFIX.size + len(MARK)):
             return None
         header_bytes, array_bytes = stubborn_client.sizes_of(bytes(self._received[: PREFIX.size]))
-        if array_bytes > MOST_ANSWER_BYTES:
-            raise ProtocolError(f"its arrays have {array_bytes} bytes, at most {MOST_ANSWER_BYTES}")
+        if array_bytes > MAX_ANSWER_BYTES:
+            raise ProtocolError(f"its arrays have {array_bytes} bytes, at most {MAX_ANSWER_BYTES}")
         begin = PREFIX.size + header_bytes
         if len(self._received) < begin + array_bytes:
             return None
@@ -300,7 +300,7 @@ class _SharedMemory:
         except OSError:
             return None
 
-    def write(self, arrays: Mapping[str, NDArray[Any]]) -> None:
+    def write(self, arrays: Mapping[str, NDArray]) -> None:
         """Writes arrays one after the other."""
         begin = stubborn_client.SHARED_START
         size = begin + sum(array.nbytes for array in arrays.values())

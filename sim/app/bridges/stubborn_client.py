@@ -62,8 +62,8 @@ MARK = b"\x89STUBB\r\n"
 """The first bytes of each message."""
 PREFIX = struct.Struct("<8sIIQ")
 """Mark, version, bytes of the header, bytes of the arrays."""
-MOST_HEADER_BYTES = 1 << 16
-MOST_ARRAY_BYTES = 1 << 29
+MAX_HEADER_BYTES = 1 << 16
+MAX_ARRAY_BYTES = 1 << 29
 """Largest size of the arrays of a message."""
 SHARED_START = 4096
 """Offset of the arrays in shared memory, in bytes; the key is stored before them."""
@@ -97,9 +97,9 @@ def pack(header, arrays=None, shared=False):
             buffers.append(array.reshape(-1).view(np.uint8).data)
             size += array.nbytes
     head = json.dumps(dict(header, arrays=described, shared=shared)).encode()
-    if len(head) > MOST_HEADER_BYTES or size > MOST_ARRAY_BYTES:
+    if len(head) > MAX_HEADER_BYTES or size > MAX_ARRAY_BYTES:
         raise ProtocolError(f"a message of {len(head)} + {size} bytes is too large")
-    return [PREFIX.pack(MARK, VERSION, len(head), size) + head] + [each for each in buffers if len(each)]
+    return [PREFIX.pack(MARK, VERSION, len(head), size) + head] + [buffer for buffer in buffers if len(buffer)]
 
 
 def sizes_of(prefix):
@@ -109,8 +109,8 @@ def sizes_of(prefix):
         raise ProtocolError(f"a message does not begin with {prefix!r}")
     if version != VERSION:
         raise ProtocolError(f"version {version} of the protocol, not {VERSION}: copy stubborn_client.py again")
-    if header_bytes > MOST_HEADER_BYTES or array_bytes > MOST_ARRAY_BYTES:
-        most = f"{MOST_HEADER_BYTES} + {MOST_ARRAY_BYTES}"
+    if header_bytes > MAX_HEADER_BYTES or array_bytes > MAX_ARRAY_BYTES:
+        most = f"{MAX_HEADER_BYTES} + {MAX_ARRAY_BYTES}"
         raise ProtocolError(f"a message of {header_bytes} + {array_bytes} bytes is too large, at most {most}")
     return header_bytes, array_bytes
 
@@ -132,20 +132,20 @@ def unpack_arrays(described, content):
     Raises:
         ProtocolError: the description does not fit the content.
     """
-    found, begin = Observation(), 0
-    for each in described:
-        if each["dtype"] not in DTYPES:
-            raise ProtocolError("array '{}' has the type {!r}".format(each["name"], each["dtype"]))
-        dtype, count = np.dtype(each["dtype"]), 1
-        for side in each["shape"]:
+    observation, begin = Observation(), 0
+    for description in described:
+        if description["dtype"] not in DTYPES:
+            raise ProtocolError("array '{}' has the type {!r}".format(description["name"], description["dtype"]))
+        dtype, count = np.dtype(description["dtype"]), 1
+        for side in description["shape"]:
             count *= int(side)
-        if min(each["shape"], default=0) < 0 or begin + count * dtype.itemsize > len(content):
-            raise ProtocolError("array '{}' of shape {} is truncated".format(each["name"], each["shape"]))
-        found[each["name"]] = np.frombuffer(content, dtype, count, begin).reshape(each["shape"])
+        if min(description["shape"], default=0) < 0 or begin + count * dtype.itemsize > len(content):
+            raise ProtocolError("array '{}' of shape {} is truncated".format(description["name"], description["shape"]))
+        observation[description["name"]] = np.frombuffer(content, dtype, count, begin).reshape(description["shape"])
         begin += count * dtype.itemsize
     if begin != len(content):
         raise ProtocolError(f"{len(content) - begin} bytes follow the last array")
-    return found
+    return observation
 
 
 def serve(agent):
@@ -236,21 +236,21 @@ class _Client:
         self.agent.reset()
 
     def act(self, observation):
-        given = self.agent.act(observation)
+        chosen = self.agent.act(observation)
         try:
-            action = operator.index(from_habitat(given) if self.interface == "habitat" else given)
+            action = operator.index(from_habitat(chosen) if self.interface == "habitat" else chosen)
         except TypeError:
-            raise TypeError(f"act() returned {given!r:.100}; an action is one of {ACTIONS}") from None
+            raise TypeError(f"act() returned {chosen!r:.100}; an action is one of {ACTIONS}") from None
         answer = {"type": "action", "action": action}
         if action == STOP and hasattr(self.agent, "stop_confidence"):
             answer["stop_confidence"] = _number(self.agent.stop_confidence())
         if action == STOP and hasattr(self.agent, "stop_target_xy_m"):
             place = self.agent.stop_target_xy_m()
-            answer["stop_target_xy_m"] = None if place is None else [_number(each) for each in place]
+            answer["stop_target_xy_m"] = None if place is None else [_number(number) for number in place]
         return answer
 
 
-def from_habitat(given: Any) -> Any:
+def from_habitat(action: Any) -> Any:
     """Returns the number of an action in one of Habitat's forms: a number, a name, or a dict with the key `action`.
 
     A number may be a tensor or array of one element. Anything else is returned unchanged.
@@ -258,13 +258,13 @@ def from_habitat(given: Any) -> Any:
     Raises:
         TypeError: it is a truth value.
     """
-    inner: Any = given
+    inner: Any = action
     for _ in range(3):  # a dict may hold itself
         inner = inner["action"] if isinstance(inner, Mapping) and "action" in inner else inner
     if isinstance(inner, (list, tuple)) and len(inner) == 1:
         inner = inner[0]
     if isinstance(inner, bool) or "bool" in str(getattr(inner, "dtype", "")):
-        raise TypeError("a truth value is no action")
+        raise TypeError("a truth value is not an action")
     if isinstance(inner, str):
         return HABITAT_ACTIONS.get(inner.lower(), inner)
     shape = getattr(inner, "shape", ())
@@ -292,9 +292,9 @@ class _SharedMemory:
     def read(self, described):
         """Returns a copy of the bytes of the arrays."""
         size = 0
-        for each in described:
-            count = np.dtype(each["dtype"]).itemsize
-            for side in each["shape"]:
+        for description in described:
+            count = np.dtype(description["dtype"]).itemsize
+            for side in description["shape"]:
                 count *= side
             size += count
         if self._view is None or len(self._view) < SHARED_START + size:
@@ -373,7 +373,7 @@ def _number(value):
 def _as_namespace(value):
     """Returns JSON objects as objects with attributes."""
     if isinstance(value, dict):
-        return SimpleNamespace(**{name: _as_namespace(each) for name, each in value.items()})
+        return SimpleNamespace(**{name: _as_namespace(item) for name, item in value.items()})
     return value
 
 
@@ -381,5 +381,5 @@ def _text_of(error):
     """Returns an error in one line, with file and line of the agent's code."""
     text = " ".join(f"{type(error).__name__}: {error}".split())[:2000]
     frames = traceback.extract_tb(error.__traceback__)
-    frame = next((each for each in reversed(frames) if each[0] != __file__ and not each[0].startswith("<")), None)
+    frame = next((frame for frame in reversed(frames) if frame[0] != __file__ and not frame[0].startswith("<")), None)
     return text if frame is None else f"{text} ({os.path.basename(frame[0])}, line {frame[1]})"

@@ -20,7 +20,7 @@ import tyro
 from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.comparison import read_run
-from sim.app.analysis.report.build import MOST_RUNS, build_page
+from sim.app.analysis.report.build import MAX_RUNS, build_page
 from sim.core.errors import ConfigError
 from sim.core.files import require_writable, write_atomically
 
@@ -37,8 +37,8 @@ class Args:
 
 def main(args: Args) -> int:
     """Reads the runs and writes the page; returns the exit status."""
-    if not 1 <= len(args.runs) <= MOST_RUNS:
-        raise ConfigError(f"Give 1 to {MOST_RUNS} folders of runs, got {len(args.runs)}.")
+    if not 1 <= len(args.runs) <= MAX_RUNS:
+        raise ConfigError(f"Give 1 to {MAX_RUNS} folders of runs, got {len(args.runs)}.")
     runs = [read_run(path) for path in args.runs]
     out = args.out or _default_out(args.runs)
     require_writable(out, name="--out", folder=False)

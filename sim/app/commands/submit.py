@@ -19,7 +19,7 @@ from sim.app import cli
 from sim.app.analysis.comparison import read_run
 from sim.app.submissions.checks import truth_of
 from sim.app.submissions.contents import SUFFIX, write_submission
-from sim.app.submissions.leaderboard import LEAST_EPISODES
+from sim.app.submissions.leaderboard import MIN_EPISODES
 from sim.app.submissions.packing import About, pack
 from sim.core.errors import ConfigError
 from sim.core.invocation import command
@@ -60,7 +60,7 @@ def main(args: Args) -> int:
         f"Declared: agent '{inputs.agent}' {isolated}; semantics {semantics}; ground truth {truth_of(inputs)}; "
         f"noise {inputs.noise}."
     )
-    if count < LEAST_EPISODES:
-        print(f"A leaderboard shows submissions of {LEAST_EPISODES} episodes and more.")
+    if count < MIN_EPISODES:
+        print(f"A leaderboard shows submissions of {MIN_EPISODES} episodes and more.")
     print(f"Check it: {command('verify', out)}")
     return 0

@@ -76,12 +76,12 @@ def find_agent(name: str) -> AgentSpec:
             f" Available: {', '.join(SPECS)}, or your own as package.module:NAME, "
             "habitat:package.module:CLASS, or in a process of its own as process:COMMAND."
         )
-    found = import_attribute(name)
-    if isinstance(found, AgentSpec):
-        return found
-    if not callable(found):
-        raise ConfigError(f"Agent '{name}' must be an AgentSpec or a factory, got {type(found).__name__}.")
-    return AgentSpec(make=cast(AgentFactory, found), description=(inspect.getdoc(found) or "").partition("\n")[0])
+    declared = import_attribute(name)
+    if isinstance(declared, AgentSpec):
+        return declared
+    if not callable(declared):
+        raise ConfigError(f"Agent '{name}' must be an AgentSpec or a factory, got {type(declared).__name__}.")
+    return AgentSpec(make=cast(AgentFactory, declared), description=(inspect.getdoc(declared) or "").partition("\n")[0])
 
 
 def _find_habitat_agent(name: str) -> AgentSpec:
@@ -93,8 +93,8 @@ def _find_habitat_agent(name: str) -> AgentSpec:
         raise ConfigError(f"--agent '{name}' must have the form habitat:package.module:CLASS.")
     stand_in.install()
     with bridge.own_command_line():
-        found = import_attribute(name, stand_in.lacking, prefix=HABITAT)
-    return bridge.spec_of(name, found)
+        declared = import_attribute(name, stand_in.lacking, prefix=HABITAT)
+    return bridge.spec_of(name, declared)
 
 
 def notes_on(name: str) -> tuple[str, ...]:
@@ -122,10 +122,10 @@ def find_explorer(name: str) -> ExplorerConfig:
             f"Unknown --explorer '{name}'. Available: {', '.join(agents.EXPLORERS)}, or your own as "
             "package.module:NAME."
         )
-    found = import_attribute(name)
-    if not dataclasses.is_dataclass(found) or isinstance(found, type) or not isinstance(found, ExplorerConfig):
+    declared = import_attribute(name)
+    if not dataclasses.is_dataclass(declared) or isinstance(declared, type) or not isinstance(declared, ExplorerConfig):
         raise ConfigError(f"--explorer '{name}' must be a dataclass object with a method make(camera).")
-    return found
+    return declared
 
 
 def takes_explorer(spec: AgentSpec) -> bool:

@@ -101,23 +101,23 @@ def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
     options, (house,) = setup.options, env.split.houses
     known = known_goals(setup)
     repeats = setup.config.noise != get_noise("none") or bool(env.split.sidecar(house).noise)
-    found: dict[tuple[str, Pose] | int, Episode] = {}
+    episodes: dict[tuple[str, Pose] | int, Episode] = {}
     i = last = 0
-    while len(found) < options.episodes and i - last <= MAX_REPEATS:
-        episode = env.draw_episode(drawing_generator(options.seed, i), episode_id=f"{house}_{len(found):04d}")
+    while len(episodes) < options.episodes and i - last <= MAX_REPEATS:
+        episode = env.draw_episode(drawing_generator(options.seed, i), episode_id=f"{house}_{len(episodes):04d}")
         key = i if repeats else (episode.goal, episode.start)
         i += 1
-        if episode.goal in known and key not in found:
-            found[key], last = episode, i
-    if not found:
+        if episode.goal in known and key not in episodes:
+            episodes[key], last = episode, i
+    if not episodes:
         raise ConfigError(f"House '{house}' has no episode with a goal that the agent knows: {', '.join(known)}.")
-    if len(found) < options.episodes:
+    if len(episodes) < options.episodes:
         raise ConfigError(
-            f"House '{house}' has {len(found)} different episode{'' if len(found) == 1 else 's'} with this start and "
-            f"goal, and {options.episodes} were asked for (--episodes, by default {RunOptions.episodes}); give "
-            f"--episodes {len(found)}, or --noise."
+            f"House '{house}' has {len(episodes)} different episode{'' if len(episodes) == 1 else 's'} with "
+            f"this start and goal, but --episodes is {options.episodes} (by default {RunOptions.episodes}); give "
+            f"--episodes {len(episodes)}, or --noise."
         )
-    return list(found.values())
+    return list(episodes.values())
 
 
 def _named_episodes(split: Split, options: RunOptions) -> list[Episode]:

@@ -43,16 +43,16 @@ def load_specification(name: str) -> SegmentationSpec:
     Raises:
         ConfigError: there is no such module or name, or its object has another type.
     """
-    found = import_attribute(name)
-    if isinstance(found, SegmentationSpec):
-        return found
-    if not callable(found):
-        raise ConfigError(f"--semantics '{name}' must be a SegmentationSpec or a factory, got {type(found).__name__}.")
-    declared = getattr(found, "spec", None)
-    description = (inspect.getdoc(found) or "").partition("\n")[0]
+    own = import_attribute(name)
+    if isinstance(own, SegmentationSpec):
+        return own
+    if not callable(own):
+        raise ConfigError(f"--semantics '{name}' must be a SegmentationSpec or a factory, got {type(own).__name__}.")
+    declared = getattr(own, "spec", None)
+    description = (inspect.getdoc(own) or "").partition("\n")[0]
     if isinstance(declared, SegmenterSpec):
-        return SegmentationSpec(make=found, spec=declared, description=description)
-    return SegmentationSpec(make=found, description=description)
+        return SegmentationSpec(make=own, spec=declared, description=description)
+    return SegmentationSpec(make=own, description=description)
 
 
 def make_own(name: str, own: SegmentationSpec, env: ObjectNavEnv, config: object) -> OwnSegmenter:
@@ -72,9 +72,9 @@ def built(name: str, own: SegmentationSpec, *, camera: CameraModel, **others: ob
         ConfigError: as `make_own`.
     """
     try:
-        given, parameters = {"camera": camera, **others}, inspect.signature(own.make).parameters
-        takes_all = any(each.kind is inspect.Parameter.VAR_KEYWORD for each in parameters.values())
-        segmenter = own.make(**{key: value for key, value in given.items() if takes_all or key in parameters})
+        parts, parameters = {"camera": camera, **others}, inspect.signature(own.make).parameters
+        takes_all = any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in parameters.values())
+        segmenter = own.make(**{key: value for key, value in parts.items() if takes_all or key in parameters})
     except BaseException as error:
         if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
             raise
@@ -97,11 +97,11 @@ class OwnSegmenter:
         self._name, self._inner = name, segmenter
         self._methods = {name for name in _METHODS if callable(getattr(segmenter, name, None))}
         self._shape = camera.height_px, camera.width_px
-        names = [each if isinstance(each, str) else each.name for each in spec.sensors]
+        names = [sensor if isinstance(sensor, str) else sensor.name for sensor in spec.sensors]
         self._reads = frozenset(("depth", *names, *POSE_SENSORS))
         self._arrays: tuple[NDArray, ...] = ()
         """Arrays of the present frame: they identify it, because an agent may put them into another dictionary."""
-        self._done: dict[str, object] = {}
+        self._done: dict[str, Any] = {}
         """Results of the present frame by method and goal."""
 
     @property
@@ -133,7 +133,7 @@ class OwnSegmenter:
         """
         return self._once(observation, "categories", lambda seen: self._categories(observation, seen))
 
-    def _once(self, observation: Observation, key: str, compute: Callable[[Observation], Any]) -> Any:
+    def _once(self, observation: Observation, key: str, compute: Callable[[Observation], T]) -> T:
         """Returns a result of a frame; it is computed at the first request, from the sensors that are declared."""
         arrays = tuple(observation.values())
         if len(arrays) != len(self._arrays) or any(map(operator.is_not, arrays, self._arrays)):
@@ -146,11 +146,11 @@ class OwnSegmenter:
     def _scores(self, observation: Observation, seen: Observation, goal: str) -> Scores:
         if "scores" not in self._methods:
             return scores_of(self.posteriors(observation), goal)
-        given = self._ask("scores", lambda: tuple(np.asarray(each) for each in self._inner.scores(seen, goal)))
-        if len(given) != 2 or given[0].shape != given[1].shape:
-            shapes = ", ".join(str(each.shape) for each in given)
+        scores = self._ask("scores", lambda: tuple(np.asarray(score) for score in self._inner.scores(seen, goal)))
+        if len(scores) != 2 or scores[0].shape != scores[1].shape:
+            shapes = ", ".join(str(score.shape) for score in scores)
             self._refuse("scores", f"arrays of shapes {shapes}; it returns Scores(target, best_other), both (h, w)")
-        target, best_other = (self._checked("scores", each, ()) for each in given)
+        target, best_other = (self._checked("scores", score, ()) for score in scores)
         return Scores(target, best_other)
 
     def _posteriors(self, seen: Observation) -> NDArray[np.float32]:
@@ -158,8 +158,8 @@ class OwnSegmenter:
             raise AgentError(
                 f"Segmentation '{self._name}' has no method posteriors, which this agent reads in addition to scores."
             )
-        given = self._ask("posteriors", lambda: np.asarray(self._inner.posteriors(seen)))
-        return self._checked("posteriors", given, (len(MPCAT40) - 1,))
+        posteriors = self._ask("posteriors", lambda: np.asarray(self._inner.posteriors(seen)))
+        return self._checked("posteriors", posteriors, (len(MPCAT40) - 1,))
 
     def _categories(self, observation: Observation, seen: Observation) -> NDArray[np.uint8] | None:
         if "categories" not in self._methods:
@@ -168,31 +168,31 @@ class OwnSegmenter:
             posteriors = self.posteriors(observation)
             named = (posteriors.argmax(axis=0) + 1).astype(np.uint8)
             return np.where(posteriors.max(axis=0) > 0.0, named, np.uint8(0))
-        given = self._ask("categories", lambda: np.asarray(self._inner.categories(seen)))
-        self._require_shape("categories", given, ())
-        if given.dtype.kind not in "iu" or not 0 <= given.min() <= given.max() < len(MPCAT40):
-            self._refuse("categories", f"an array of {given.dtype}; it holds mpcat40 ids, integers from 0 to 40")
-        return given.astype(np.uint8)
+        categories = self._ask("categories", lambda: np.asarray(self._inner.categories(seen)))
+        self._require_shape("categories", categories, ())
+        if categories.dtype.kind not in "iu" or not 0 <= categories.min() <= categories.max() < len(MPCAT40):
+            self._refuse("categories", f"an array of {categories.dtype}; it holds mpcat40 ids, integers from 0 to 40")
+        return categories.astype(np.uint8)
 
-    def _checked(self, method: str, given: NDArray, before: tuple[int, ...]) -> NDArray[np.float32]:
+    def _checked(self, method: str, array: NDArray, before: tuple[int, ...]) -> NDArray[np.float32]:
         """Returns an array (*before, h, w) as float32 after a check of shape and range."""
-        self._require_shape(method, given, before)
-        if given.dtype.kind not in "fiub":
-            self._refuse(method, f"an array of {given.dtype}; it is float32")
-        low, high = float(given.min()), float(given.max())
+        self._require_shape(method, array, before)
+        if array.dtype.kind not in "fiub":
+            self._refuse(method, f"an array of {array.dtype}; it is float32")
+        low, high = float(array.min()), float(array.max())
         if not (low >= -1e-3 and high <= 1.001):  # also for nan
             self._refuse(method, f"numbers from {low:g} to {high:g}; they are probabilities in [0, 1]")
-        return np.clip(given, 0.0, 1.0).astype(np.float32, copy=False)
+        return np.clip(array, 0.0, 1.0).astype(np.float32, copy=False)
 
-    def _require_shape(self, method: str, given: NDArray, before: tuple[int, ...]) -> None:
+    def _require_shape(self, method: str, array: NDArray, before: tuple[int, ...]) -> None:
         """Raises AgentError unless an array is (*before, h, w), with h x w the image's or a whole fraction of it."""
         height, width = self._shape
-        rows, cols = given.shape[-2:] if given.ndim >= 2 else (0, 0)
-        if given.shape[:-2] != before or not rows or not cols or height % rows or height // rows * cols != width:
-            wanted = ", ".join(map(str, (*before, "h", "w")))
+        rows, cols = array.shape[-2:] if array.ndim >= 2 else (0, 0)
+        if array.shape[:-2] != before or not rows or not cols or height % rows or height // rows * cols != width:
+            expected = ", ".join(map(str, (*before, "h", "w")))
             self._refuse(
                 method,
-                f"an array of shape {given.shape}; it is ({wanted}) with h x w the image's {height} x {width} or a "
+                f"an array of shape {array.shape}; it is ({expected}) with h x w the image's {height} x {width} or a "
                 "whole fraction of it",
             )
 

@@ -83,8 +83,8 @@ class StatedByAgent:
         """
         del observation, goal
         where = f"Agent '{self._agent_name}', stated_segmentation"
-        given = ask(where, self._agent.stated_segmentation)
-        return None if given is None else ask(where, lambda: _checked(given))
+        stated = ask(where, self._agent.stated_segmentation)
+        return None if stated is None else ask(where, lambda: _checked(stated))
 
 
 def seen_by(setup: Setup, agent: Agent, segmenter: Segmenter | None) -> SeesFrames | None:
@@ -106,12 +106,12 @@ def _arrays_of(observation: Observation) -> tuple[NDArray, ...]:
     return tuple(observation.values())
 
 
-def _checked(given: Perceived) -> Perceived:
+def _checked(perceived: Perceived) -> Perceived:
     """Returns the segmentation that an agent states, as arrays; raises ValueError if a shape or value is wrong."""
-    scores, categories = given
+    scores, categories = perceived
     if scores is not None:
-        target, best_other = (np.asarray(each, np.float32) for each in scores)
-        if any(each.ndim != 2 or not 0.0 <= each.min() <= each.max() <= 1.0 for each in (target, best_other)):
+        target, best_other = (np.asarray(score, np.float32) for score in scores)
+        if any(score.ndim != 2 or not 0.0 <= score.min() <= score.max() <= 1.0 for score in (target, best_other)):
             raise ValueError("scores must be Scores(target, best_other), both (h, w) in [0, 1]")
         scores = Scores(target, best_other)
     if categories is not None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 import msgspec
 
@@ -14,6 +14,7 @@ from sim.app.bridges.process_command import files_of, is_file
 from sim.app.composition.segmenters import NetworkConfig, file_sha256, precision_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.own_code import hash_of_own
+from sim.app.evaluation.results import RunRecord, SplitIdentity
 from sim.app.evaluation.rollout import rollout_result
 from sim.app.options import RunOptions, is_process
 from sim.core.configuration import as_json
@@ -27,18 +28,20 @@ from sim.task.result import EpisodeResult, RolloutResult, metrics_without_episod
 from sim.task.trajectory import Recording, SplitName, StartPose
 
 
-def record_of(setup: Setup, split: Mapping[str, str]) -> dict[str, Any]:
+def record_of(setup: Setup, split: Mapping[str, str]) -> RunRecord:
     """Returns the content of `config.json`: options, configuration tree, checksums of files, split and versions."""
     recorded = [name for name, option in meanings(RunOptions).items() if option.recorded]
-    return {name: as_json(getattr(setup.options, name)) for name in recorded} | {
-        "settings": as_json(setup.settings),
-        "config": as_json(setup.config),
-        "physics": PHYSICS_VERSION,
-        "segmentation": _segmentation_of(setup),
-        "files_sha256": _checksums(setup),
-        "split_identity": dict(split),
-        "versions": versions(setup.options),
-    }
+    options = {name: as_json(getattr(setup.options, name)) for name in recorded}
+    derived = RunRecord(
+        settings=as_json(setup.settings),
+        config=as_json(setup.config),
+        physics=PHYSICS_VERSION,
+        segmentation=_segmentation_of(setup),
+        files_sha256=_checksums(setup),
+        split_identity=cast(SplitIdentity, dict(split)),
+        versions=versions(setup.options),
+    )
+    return cast(RunRecord, options | derived)
 
 
 def versions(options: RunOptions) -> dict[str, str]:
@@ -61,27 +64,27 @@ def code_of(options: RunOptions) -> str:
 
 def _checksums(setup: Setup) -> dict[str, str]:
     """Returns the SHA-256 of the user's or shipped files that the result depends on."""
-    found, config = {}, setup.config
+    checksums, config = dict[str, str](), setup.config
     if isinstance(config.detector, NetworkConfig):
-        found["weights"] = file_sha256(config.detector.weights)
+        checksums["weights"] = file_sha256(config.detector.weights)
     else:
-        found |= {name: file_sha256(file) for name, file in _files_in(config.detector, "detector")}
+        checksums |= {name: file_sha256(file) for name, file in _files_in(config.detector, "detector")}
     if config.verification.parameters is not None:
-        found["verifier"] = file_sha256(config.verification.parameters)
+        checksums["verifier"] = file_sha256(config.verification.parameters)
     if setup.options.robot is not None:
-        found["robot"] = robot_sha256(setup.options.robot)
-    return found | {name: file_sha256(file) for name, file in _files_in(config.agent, "agent")}
+        checksums["robot"] = robot_sha256(setup.options.robot)
+    return checksums | {name: file_sha256(file) for name, file in _files_in(config.agent, "agent")}
 
 
-def _segmentation_of(setup: Setup) -> dict[str, Any]:
+def _segmentation_of(setup: Setup) -> dict[str, object]:
     """Returns the name of the segmentation that the agent acts on and, if `--semantics` names it, its declaration."""
     if not setup.spec.uses_segmentation:
         return {"name": setup.segmentation_name or None}
     spec, verified = setup.segmentation.spec, not setup.borrowed_parameters
     declared = as_json(replace(spec, sensors=tuple(x if isinstance(x, str) else x.name for x in spec.sensors)))
-    found = {"name": setup.segmentation_name, **declared, "has_fitted_parameters": verified}
+    declaration: dict[str, object] = {"name": setup.segmentation_name, **declared, "has_fitted_parameters": verified}
     precision = precision_of(setup.config.detector)
-    return found if precision is None else found | {"precision": precision}
+    return declaration if precision is None else declaration | {"precision": precision}
 
 
 def _files_in(tree: object, name: str) -> Iterator[tuple[str, Path]]:

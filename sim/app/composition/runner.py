@@ -85,7 +85,7 @@ class EpisodeRunner:
         seeds = episode_seeds(options.seed, episode.episode_id, options.seed_key)
         try:
             self._require_same_house(episode.house)
-            played = play_episode(
+            ended = play_episode(
                 self._env,
                 self._agent,
                 episode,
@@ -100,7 +100,7 @@ class EpisodeRunner:
             if is_stop(error):
                 raise
             return self._broken(episode, error)
-        result = result_of(self._setup, episode, played)
+        result = result_of(self._setup, episode, ended)
         if options.record and options.out is not None:
             split = SplitName(self._env.split.name, self._env.split.version)
             recording = recording_of(self._setup, episode, result, split, self._versions)

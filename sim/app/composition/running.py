@@ -53,7 +53,8 @@ def run_missing(
         options.executor, workers=options.workers, address=options.address, isolation=isolation_of(options)
     )
     record = record_of(setup, split)
-    run, code = RunDirectory(options.out, record, EpisodeResult), record["versions"]["code"]
+    versions = record.get("versions", {})
+    run, code = RunDirectory(options.out, record, EpisodeResult), versions["code"]
     try:
         if run.healed:
             console.print(run.healed)
@@ -69,7 +70,7 @@ def run_missing(
         segmentation = f" with segmentation by {named}" if named else ""
         console.print(
             f"{options.agent}{segmentation}, {display.counted(len(episodes), 'episode')} of {split['name']} "
-            f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
+            f"(version {split['version']}), rendered by {versions['gl_renderer']}; results in {options.out}"
         )
         for note in notes_on(options.agent):
             console.print(note, highlight=False, soft_wrap=True)
@@ -107,7 +108,7 @@ def _require_own_lines(options: RunOptions, run: RunDirectory[EpisodeResult], ep
     others = [line for line in run.lines if line.episode_id not in known]
     if others and options.house is None:  # of the same split, but not asked for now
         every = with_replicates(load_split(options.split).episodes, options.replicates)
-        known |= {each.episode_id: (each.house, each.goal) for each in every}
+        known |= {episode.episode_id: (episode.house, episode.goal) for episode in every}
     elif options.house is not None:
         stem = re.escape(options.house.stem)
         drawn = (line for line in others if re.fullmatch(rf"{stem}_\d{{4,}}(~\d+)?", line.episode_id))

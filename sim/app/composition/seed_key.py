@@ -40,7 +40,7 @@ def seed_key_of(options: RunOptions) -> str:
 
 
 def _shared_key(file: Path, *, make: bool) -> str | None:
-    """Returns the key in the file that all shards of a run share; None if there is none.
+    """Returns the key in the file that all shards of a run share; None: the file does not exist.
 
     Args:
         file: the file with the key.

@@ -205,7 +205,7 @@ def detector_config(kind: SegmentationKind, weights: Path | None) -> object:
 
 
 def precision_of(config: object) -> str | None:
-    """Returns the precision in which a network computes on this machine, bf16 or fp32; None: it is no network."""
+    """Returns the precision in which a network computes on this machine, bf16 or fp32; None: it is not a network."""
     if not isinstance(config, NetworkConfig):
         return None
     return "bf16" if config.mirrored and computes_bf16() else "fp32"

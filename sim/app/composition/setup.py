@@ -150,7 +150,7 @@ class Setup:
     @property
     def sensors(self) -> tuple[str | Sensor, ...]:
         """The sensors of the observation: the agent's own objects, and names of standard sensors."""
-        own = {each.name: each for each in _own_sensors(self.spec, self.segmentation)}
+        own = {sensor.name: sensor for sensor in _own_sensors(self.spec, self.segmentation)}
         return tuple(own.get(name, name) for name in self.config.sensors)
 
     @property
@@ -240,7 +240,7 @@ def _received(content: bytes) -> Setup:
 
 def _check(options: RunOptions) -> None:
     """Raises ConfigError if options contradict each other or are out of range."""
-    if options.house is None and any(each is not None for each in (options.labels, options.root, options.start_deg)):
+    if options.house is None and any(value is not None for value in (options.labels, options.root, options.start_deg)):
         raise ConfigError("--labels, --root and --start-deg need --house.")
     if options.only and options.house is not None:
         raise ConfigError("--only names episodes of a split; with --house, episodes are sampled.")
@@ -310,13 +310,13 @@ def _agent_config(options: RunOptions, spec: AgentSpec) -> object:
 def _sensor_names(spec: AgentSpec, segmentation: SegmentationKind) -> tuple[str, ...]:
     """Returns the names of the sensors that an agent and its segmentation declare."""
     read = (*spec.sensors, *(("depth", *segmentation.spec.sensors) if spec.uses_segmentation else ()))
-    return tuple(dict.fromkeys(each if isinstance(each, str) else each.name for each in read))
+    return tuple(dict.fromkeys(sensor if isinstance(sensor, str) else sensor.name for sensor in read))
 
 
 def _own_sensors(spec: AgentSpec, segmentation: SegmentationKind) -> list[Sensor]:
     """Returns the sensors of an agent and of its segmentation that are objects, and not names of standard sensors."""
     read = (*spec.sensors, *(segmentation.spec.sensors if spec.uses_segmentation else ()))
-    return [each for each in read if not isinstance(each, str)]
+    return [sensor for sensor in read if not isinstance(sensor, str)]
 
 
 def _check_sensors(setup: Setup) -> None:
@@ -326,13 +326,15 @@ def _check_sensors(setup: Setup) -> None:
     if missing:
         raise ConfigError(f"sensors: agent '{options.agent}' with {options.semantics} needs {', '.join(missing)}.")
     own = _own_sensors(spec, segmentation)
-    for each in own:
-        same_name = [other for other in own if other.name == each.name and other is not each]
-        if same_name and same_name[0] != each:
-            raise ConfigError(f"Agent '{options.agent}' and {options.semantics} have two sensors named '{each.name}'.")
-        if not spec.uses_ground_truth and each in spec.sensors and _noise_reads_truth(each):
+    for sensor in own:
+        same_name = [other for other in own if other.name == sensor.name and other is not sensor]
+        if same_name and same_name[0] != sensor:
             raise ConfigError(
-                f"sensors: the noise of '{each.name}' reads ground truth, and agent '{options.agent}' does not declare "
+                f"Agent '{options.agent}' and {options.semantics} have two sensors named '{sensor.name}'."
+            )
+        if not spec.uses_ground_truth and sensor in spec.sensors and _noise_reads_truth(sensor):
+            raise ConfigError(
+                f"sensors: the noise of '{sensor.name}' reads ground truth; agent '{options.agent}' must declare "
                 "uses_ground_truth."
             )
     if "semantic" in segmentation.spec.sensors and segmentation.own is not None and not spec.uses_ground_truth:
@@ -348,7 +350,7 @@ def _check_sensors(setup: Setup) -> None:
 
 def _noise_reads_truth(sensor: Sensor) -> bool:
     """Returns whether the noise of a sensor is of a user's class and declares true images."""
-    shipped = {type(getattr(NoiseConfig(), each.name)) for each in fields(NoiseConfig)}
+    shipped = {type(getattr(NoiseConfig(), field.name)) for field in fields(NoiseConfig)}
     if sensor.noise is None or type(sensor.noise) in shipped:
         return False
     model = sensor.noise.model(CameraModel())

@@ -78,11 +78,11 @@ def _differences(path: str, a: object, b: object) -> list[Difference]:
     first, second = _fields(a, b), _fields(b, a)
     if first is None or second is None:
         return [] if a == b and isinstance(a, bool) == isinstance(b, bool) else [(path, a, b)]
-    found: list[Difference] = []
+    differences: list[Difference] = []
     for key in {*first, *second}:
         inner = f"{path}.{key}" if path else key
-        found += _differences(inner, first.get(key, ABSENT), second.get(key, ABSENT))
-    return found
+        differences += _differences(inner, first.get(key, ABSENT), second.get(key, ABSENT))
+    return differences
 
 
 def _fields(value: object, other: object) -> Mapping[str, object] | None:

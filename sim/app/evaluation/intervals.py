@@ -9,7 +9,7 @@ houses and n episodes (Cochran 1977, section 6.3). Student's t with H - 1 degree
   1 and has a width where all episodes succeed: all of 100 episodes give [0.96, 1] or, in 20 houses, a little less;
 - an amount without an upper limit, such as collisions: on the logarithm of the mean;
 - a difference: around the mean. Of two values between 0 and 1, its variance is at least that of one changed episode,
-  `1 / n^2`, because no difference in n episodes does not show that there is none in others.
+  `1 / n^2`, because equal results in n episodes do not show that other episodes are equal.
 
 They were chosen by simulation from recorded results (with version 0.2.0), with 10 to 30 houses of 7 to 15 episodes.
 They hold the true value in 93 to 97 % of the samples for success and SPL between 0.08 and 0.94 and for paired
@@ -36,7 +36,7 @@ RESAMPLES = 2_000
 """Resamples of `ratio_of_medians`."""
 MIN_PAIRS = 20
 """A difference with fewer pairs is never significant: intervals were tried with 50 episodes and more."""
-MOST_EFFECTIVE = 25.0
+MAX_EFFECTIVE = 25.0
 """Largest effective number of episodes per episode: values that are nearly equal, such as the SPL of an agent that
 always succeeds, do not show how often others fail."""
 _ROUNDS = 50
@@ -59,7 +59,7 @@ class Estimate:
     neutral: float = 0.0
     """The value that two equal runs give: 0 for a difference, 1 for a ratio."""
     p: float | None = field(default=None, compare=False)
-    """Of a difference: the two-sided p-value that its true value is 0; below 0.05 where the interval excludes 0."""
+    """The two-sided p-value that a difference is 0; below 0.05 where the interval excludes 0."""
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -112,8 +112,8 @@ def estimate(
     if not names:
         return Estimate(None, None, None, 0, 0)
     mean, error, clusters = _mean_and_error(numbers, names)
-    found = _bounded(mean, error, clusters, len(names)) if most == 1.0 else _amount(mean, error, clusters)
-    return Estimate(mean, *found, len(names), len(set(names)))
+    interval = _bounded(mean, error, clusters, len(names)) if most == 1.0 else _amount(mean, error, clusters)
+    return Estimate(mean, *interval, len(names), len(set(names)))
 
 
 def paired_difference(
@@ -180,12 +180,12 @@ def ratio_of_medians(
     values = [numbers for numbers, _ in rows]
     index = np.unique(_clusters(names), return_inverse=True)[1]
     count = int(index.max()) + 1
-    middle = _ratio(*(np.array([np.median(each)]) for each in values))[0]
+    middle = _ratio(*(np.array([np.median(column)]) for column in values))[0]
     counts = (len(names), len(set(names)))
     if count < 2:
         return Estimate(float(middle), None, None, *counts, neutral=1.0)
     drawn = np.random.default_rng(0).multinomial(count, np.full(count, 1.0 / count), RESAMPLES)  # (resamples, houses)
-    ratios = _ratio(*(_medians(each, index, drawn) for each in values))
+    ratios = _ratio(*(_medians(column, index, drawn) for column in values))
     level = 100.0 * float(ndtr(-math.sqrt(count / (count - 1)) * _quantile(count)))
     low, high = np.percentile(ratios, [level, 100.0 - level], method="nearest")  # ratios may be infinite
     return Estimate(float(middle), float(low), float(high), *counts, neutral=1.0)
@@ -204,25 +204,25 @@ def replicate_spread(values: Sequence[Value], episodes: Sequence[str]) -> float 
     Raises:
         ValueError: the arguments have different lengths.
     """
-    found: dict[str, list[float]] = {}
+    groups: dict[str, list[float]] = {}
     for value, episode in zip(values, episodes, strict=True):
         if value is not None:
-            found.setdefault(episode, []).append(float(value))
-    variances = [float(np.var(each, ddof=1)) for each in found.values() if len(each) > 1]
-    return math.sqrt(sum(variances) / len(variances) / len(found)) if variances else None
+            groups.setdefault(episode, []).append(float(value))
+    variances = [float(np.var(group, ddof=1)) for group in groups.values() if len(group) > 1]
+    return math.sqrt(sum(variances) / len(variances) / len(groups)) if variances else None
 
 
 def _of_episodes(
     values: Sequence[Value], houses: Sequence[str], episodes: Sequence[str] | None
 ) -> tuple[NDArray[np.float64], list[str]]:
     """Returns the values (n,) of episodes that have one, and the house of each, in an order that no value changes."""
-    found: dict[tuple[str, object], list[float]] = {}
+    groups: dict[tuple[str, object], list[float]] = {}
     keys: Sequence[object] = range(len(values)) if episodes is None else episodes
     for value, house, key in zip(values, houses, keys, strict=True):
         if value is not None:
-            found.setdefault((house, key), []).append(float(value))
-    of = sorted(found.items(), key=lambda item: (item[0][0], str(item[0][1])))
-    return np.array([sum(each) / len(each) for _, each in of]), [house for (house, _), _ in of]
+            groups.setdefault((house, key), []).append(float(value))
+    of = sorted(groups.items(), key=lambda item: (item[0][0], str(item[0][1])))
+    return np.array([sum(group) / len(group) for _, group in of]), [house for (house, _), _ in of]
 
 
 def _clusters(houses: Sequence[str]) -> list[str]:
@@ -247,7 +247,7 @@ def _bounded(mean: float, error: float, clusters: int, count: int) -> tuple[floa
         return None, None
     spread, effective = mean * (1.0 - mean), float(count)
     if spread > 0.0:
-        effective = min(MOST_EFFECTIVE * count, spread / error**2 if error > 0.0 else math.inf)
+        effective = min(MAX_EFFECTIVE * count, spread / error**2 if error > 0.0 else math.inf)
     shift = _quantile(clusters) ** 2 / effective
     middle = (mean + 0.5 * shift) / (1.0 + shift)
     half = math.sqrt(shift * spread + 0.25 * shift**2) / (1.0 + shift)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from sim.core.reading import printable, read_bytes, sha256_of
 
-MOST_LETTERS = 2000
+MAX_CHARACTERS = 2000
 """Longest text of an error in results and messages."""
 _OURS = tuple(Path(__file__).resolve().parents[3] / name for name in ("sim", "stubborn"))
 _LIBRARIES = tuple(Path(sysconfig.get_path(name)).resolve() for name in ("stdlib", "platstdlib", "purelib", "platlib"))
@@ -40,7 +40,7 @@ def place_of(error: BaseException, *, below: str) -> str:
 
 
 def text_of(error: BaseException) -> str:
-    """Returns an error's message in one line of at most `MOST_LETTERS`, even if the error's class cannot print it."""
+    """Returns an error's message in one line of at most `MAX_CHARACTERS`, even if the error's class cannot print it."""
     try:
         text = str(error)
     except BaseException as fault:
@@ -48,9 +48,9 @@ def text_of(error: BaseException) -> str:
     return one_line(text) or "no message"
 
 
-def one_line(text: str, most: int = MOST_LETTERS) -> str:
+def one_line(text: str, most: int = MAX_CHARACTERS) -> str:
     """Returns a text in one line that a terminal, JSON and UTF-8 can hold; a long text is truncated."""
-    cut = f" ... ({len(text)} letters)" if len(text) > most else ""
+    cut = f" ... ({len(text)} characters)" if len(text) > most else ""
     return printable(" ".join(text[:most].split())) + cut
 
 
@@ -78,7 +78,7 @@ def hash_of_own(modules: Iterable[str], files: Iterable[Path] = ()) -> str:
             _read_with_imports(file, file.parent, contents)
     for place, source in sorted(contents.values()):
         digest.update(place.encode() + source)
-    for file in (each for each in others if each.suffix != ".py"):
+    for file in (path for path in others if path.suffix != ".py"):
         digest.update(file.name.encode() + bytes.fromhex(sha256_of(file, what="File of an agent")))
     return digest.hexdigest()[:12] if contents or others else ""
 
@@ -91,9 +91,9 @@ def _read_with_imports(file: Path, root: Path, contents: dict[Path, tuple[str, b
     contents[file] = str(file.relative_to(root)), source
     for module in _imported(source, file, root):
         path = root.joinpath(*module.split("."))
-        for each in (path.with_name(f"{path.name}.py"), path / "__init__.py"):
-            if each.is_file() and _is_users(each):
-                _read_with_imports(each, root, contents)
+        for candidate in (path.with_name(f"{path.name}.py"), path / "__init__.py"):
+            if candidate.is_file() and _is_users(candidate):
+                _read_with_imports(candidate, root, contents)
 
 
 def _imported(source: bytes, file: Path, root: Path) -> Iterator[str]:
@@ -106,11 +106,11 @@ def _imported(source: bytes, file: Path, root: Path) -> Iterator[str]:
     names: list[str] = []
     for node in nodes:
         if isinstance(node, ast.Import):
-            names += [each.name for each in node.names]
+            names += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             parts = (*package[: len(package) + 1 - node.level], *filter(None, [node.module])) if node.level else ()
             base = ".".join(parts) if node.level else node.module or ""
-            names += [base, *(f"{base}.{each.name}".lstrip(".") for each in node.names)]
+            names += [base, *(f"{base}.{alias.name}".lstrip(".") for alias in node.names)]
     for name in filter(None, names):
         parts = name.split(".")
         yield from (".".join(parts[: end + 1]) for end in range(len(parts)))

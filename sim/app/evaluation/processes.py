@@ -150,7 +150,7 @@ class _Process:
 
 
 _spare: _Process | None = None
-"""A process that was started before its work is known; None: there is none."""
+"""A process that was started before its work is known; None: no process was started."""
 
 
 @contextlib.contextmanager
@@ -198,8 +198,8 @@ class ProcessPool:
         """Returns the workers that sent a message, closed their pipe, or were killed because they were too slow."""
         while True:
             ready = wait([worker.connection for worker in workers], TICK_S if self._limit_s else None)
-            if found := [worker for worker in workers if worker.connection in ready or worker.is_overdue()]:
-                return found
+            if ended := [worker for worker in workers if worker.connection in ready or worker.is_overdue()]:
+                return ended
 
     def stop(self, workers: Sequence[_Process]) -> None:
         """Terminates busy workers and lets idle ones exit, which may hold a renderer; kills those that do not end."""

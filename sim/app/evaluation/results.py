@@ -14,9 +14,7 @@ import os
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any, Generic, Protocol, TypeVar
-
-import msgspec
+from typing import IO, Any, Generic, Protocol, Required, TypedDict, TypeVar, cast
 
 from sim.app.evaluation.config_fields import ABSENT, field_text, run_differences
 from sim.core.errors import ConfigError
@@ -56,41 +54,50 @@ class Line(Protocol):
         """True: a line of the next run of this episode replaces it."""
         ...
 
-    def as_json(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, object]:
         """Returns the JSON values of the line."""
         ...
 
 
-class SplitIdentity(msgspec.Struct):
+class SplitIdentity(TypedDict, total=False):
     """The fields that identify the source of a run's episodes."""
 
-    name: Name
-    version: str = ""
-    sha256: str = ""
+    name: Required[Name]
+    version: str
+    sha256: str
 
 
-class RunRecord(msgspec.Struct):
-    """The parts of `config.json` that are read; a run of an older version may lack any of them."""
+class RunRecord(TypedDict, total=False):
+    """The content of `config.json` as far as it is read; a run of an older version may lack any of the fields."""
 
-    agent: str | None = None
-    semantics: str | None = None
-    split: str | None = None
-    house: str | None = None
-    labels: str | None = None
-    root: str | None = None
-    robot: str | None = None
-    weights: str | None = None
-    goal: str | None = None
-    noise: str | None = None
-    seed: Seed | None = None
-    seed_key: str | None = None
-    episodes: Count | None = None
-    split_identity: SplitIdentity | None = None
-    versions: dict[str, str] = {}
-    codes: list[str] | None = None
-    config: dict[str, Any] = {}
-    physics: Count | None = None
-    files_sha256: dict[str, str] = {}
+    agent: str | None
+    explorer: str | None
+    semantics: str | None
+    split: str | None
+    house: str | None
+    labels: str | None
+    root: str | None
+    robot: str | None
+    weights: str | None
+    goal: str | None
+    noise: str | None
+    profile: str | None
+    shard: str | None
+    seed: Seed | None
+    seed_key: str | None
+    episodes: Count
+    replicates: Count | None
+    only: list[str] | None
+    split_identity: SplitIdentity | None
+    versions: dict[str, str]
+    codes: list[str] | None
+    settings: dict[str, Any]
+    """The fields of the configuration that `--config` changed, by path."""
+    config: dict[str, Any]
+    """The configuration tree (`sim.app.composition.setup.RunConfig`)."""
+    physics: Count | None
+    segmentation: dict[str, object] | None
+    files_sha256: dict[str, str]
 
 
 @dataclass
@@ -151,7 +158,7 @@ class RunDirectory(Generic[LineT]):
             return
         existing = read_record(self.path / "config.json")
         codes = existing.get("codes") or [existing.get("versions", {}).get("code", "")]
-        before = [each.partition("+")[2] for each in codes if each]
+        before = [text.partition("+")[2] for text in codes if text]
         now = code.partition("+")[2]
         if now and all(before) and before and now not in before:
             number = f"{len(kept)} episode" + "s" * (len(kept) != 1)
@@ -242,14 +249,14 @@ class RunDirectory(Generic[LineT]):
             same = size == self._bytes
             if same and content:
                 same = sha256_of(self._file, what="Results") == self._digest.hexdigest()
-            found = f"was changed by another program: it has {size} bytes, and this run wrote {self._bytes}"
+            reason = f"was changed by another program: it has {size} bytes, and this run wrote {self._bytes}"
         except (OSError, ConfigError):
-            same, found = False, "was removed by another program"
+            same, reason = False, "was removed by another program"
         if not same:
             ids = [line.episode_id for line in self.lines] + [new] * bool(new)
-            named = f"'{ids[0]}' to '{ids[-1]}'" if len(ids) > 1 else "".join(f"'{each}'" for each in ids)
+            named = f"'{ids[0]}' to '{ids[-1]}'" if len(ids) > 1 else "".join(f"'{episode_id}'" for episode_id in ids)
             raise ConfigError(
-                f"While the run wrote to it, '{self._file}' {found}. The results of {len(ids)} episodes are lost or "
+                f"While the run wrote to it, '{self._file}' {reason}. The results of {len(ids)} episodes are lost or "
                 f"may be damaged ({named}); run them again with another --out."
             )
 
@@ -262,11 +269,11 @@ class RunDirectory(Generic[LineT]):
         file = self.path / "config.json"
         existing = read_record(file)
         first_code = existing.get("versions", {}).get("code", "unknown")
-        codes = existing.get("codes", [first_code]) if self.lines else []
+        codes = (existing.get("codes") or [first_code]) if self.lines else []
         if code not in codes:
             codes = [*codes, code]
         if codes != existing.get("codes"):
-            _write_json(file, existing | {"codes": codes})
+            _write_json(file, {**existing, "codes": codes})
         return [other for other in codes if other != code]
 
     def other_versions(self) -> dict[str, tuple[str, str]]:
@@ -281,7 +288,7 @@ class RunDirectory(Generic[LineT]):
             if name != "code" and before.get(name, now[name]) != now[name]
         }
 
-    def write_summary(self, summary: Mapping[str, Any]) -> None:
+    def write_summary(self, summary: Mapping[str, object]) -> None:
         """Writes `summary.json`.
 
         Raises:
@@ -295,7 +302,7 @@ class RunDirectory(Generic[LineT]):
         self._results.close()
         self._lock.close()
 
-    def _require_same_physics(self, existing: Mapping[str, Any], config: Mapping[str, Any]) -> None:
+    def _require_same_physics(self, existing: RunRecord, config: Mapping[str, object]) -> None:
         """Raises ConfigError where the run was made with another version of the physics; the first wrote none."""
         before, now = existing.get("physics") or 1, config.get("physics")
         if now is not None and before != now:
@@ -336,26 +343,26 @@ class RunDirectory(Generic[LineT]):
         elif before and not now:
             changed["only"] = []
         if changed:
-            _write_json(file, existing | changed)
+            _write_json(file, {**existing, **changed})
 
 
 def _as_bytes(line: Line) -> bytes:
     return (json.dumps(line.as_json(), allow_nan=False) + "\n").encode()
 
 
-def _write_json(file: Path, content: Mapping[str, Any]) -> None:
+def _write_json(file: Path, content: Mapping[str, object]) -> None:
     write_atomically(file, json.dumps(content, indent=2, allow_nan=False) + "\n", sync=True)
 
 
-def read_record(file: Path) -> dict[str, Any]:
+def read_record(file: Path) -> RunRecord:
     """Returns the content of a `config.json`.
 
     Raises:
         ConfigError: it cannot be read, or a field has another type.
     """
-    content = read_json(file, dict[str, Any], what="Config")
+    content = read_json(file, dict[str, object], what="Config")
     convert(content, RunRecord, where=f"Config '{file}'")
-    return content
+    return cast(RunRecord, content)
 
 
 def read_results(file: Path) -> Lines[EpisodeResult]:

@@ -8,12 +8,12 @@ import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 import numpy as np
 
-from sim.app.evaluation.own_code import MOST_LETTERS, one_line, place_of, text_of
+from sim.app.evaluation.own_code import MAX_CHARACTERS, one_line, place_of, text_of
 from sim.app.evaluation.watch import count_steps, is_stop, marked
 from sim.app.viewers.viewer import Moment, Viewer
 from sim.core.errors import AgentError, PhysicsError, debug
@@ -24,6 +24,7 @@ from sim.episodes.episode import Episode
 from sim.task.result import EpisodeMetrics, RolloutResult, failed_metrics
 from sim.task.trajectory import FARTHEST_M, Recording, trajectory_file, write_trajectory
 
+T = TypeVar("T")
 OnStep = Callable[[int, Agent, dict[str, Any]], None]
 """Called with the number of the step, the agent and the environment's info after each step."""
 
@@ -159,11 +160,11 @@ def rollout_result(
         stop_confidence=stop_confidence,
         wall_time_s=wall_time_s,
         steps_per_s=steps_per_s,
-        error=None if error is None else one_line(error, 2 * MOST_LETTERS),
+        error=None if error is None else one_line(error, 2 * MAX_CHARACTERS),
     )
 
 
-def ask(where: str, call: Callable[[], Any]) -> Any:
+def ask(where: str, call: Callable[[], T]) -> T:
     """Returns what a call of the agent returns.
 
     Raises:
@@ -190,12 +191,12 @@ def next_action(agent: Agent, observation: Observation, where: str) -> Action:
     Raises:
         AgentError: `act` failed, or returned something else; the message begins with `where`.
     """
-    given = ask(where, lambda: agent.act(observation))
+    chosen = ask(where, lambda: agent.act(observation))
     try:
-        return Action(given)
+        return Action(chosen)
     except (ValueError, TypeError):
         actions = ", ".join(f"{action.value} {action.name}" for action in Action)
-        raise AgentError(f"{where}: act() returned {reprlib.repr(given)}; an action is one of {actions}.") from None
+        raise AgentError(f"{where}: act() returned {reprlib.repr(chosen)}; an action is one of {actions}.") from None
 
 
 def confidence_of(agent: Agent, where: str) -> float | None:
@@ -206,14 +207,14 @@ def confidence_of(agent: Agent, where: str) -> float | None:
     """
     if not isinstance(agent, StatesConfidence):
         return None
-    given = ask(where, agent.stop_confidence)
-    if given is None:
+    confidence = ask(where, agent.stop_confidence)
+    if confidence is None:
         return None
-    if not isinstance(given, (int, float, np.number)) or not 0.0 <= given <= 1.0:
+    if not isinstance(confidence, (int, float, np.number)) or not 0.0 <= confidence <= 1.0:
         raise AgentError(
-            f"{where}: stop_confidence() returned {reprlib.repr(given)}; it is a number in [0, 1], or None."
+            f"{where}: stop_confidence() returned {reprlib.repr(confidence)}; it is a number in [0, 1], or None."
         )
-    return round(float(given), 6)
+    return round(float(confidence), 6)
 
 
 def target_of(agent: Agent, where: str) -> tuple[float, float] | None:
@@ -224,16 +225,16 @@ def target_of(agent: Agent, where: str) -> tuple[float, float] | None:
     """
     if not isinstance(agent, StatesTarget):
         return None
-    given = ask(where, agent.stop_target_xy_m)
-    if given is None:
+    stated = ask(where, agent.stop_target_xy_m)
+    if stated is None:
         return None
     try:
-        place = np.asarray(given, np.float64)
+        place = np.asarray(stated, np.float64)
     except Exception:  # a tensor with a gradient raises its own
         place = np.zeros(0)
     if place.shape != (2,) or not (np.abs(place) <= FARTHEST_M).all():
         raise AgentError(
-            f"{where}: stop_target_xy_m() returned {reprlib.repr(given)}; it is a pair of numbers, at most "
+            f"{where}: stop_target_xy_m() returned {reprlib.repr(stated)}; it is a pair of numbers, at most "
             f"{FARTHEST_M:g} m from 0, or None."
         )
     x_m, y_m = place.tolist()

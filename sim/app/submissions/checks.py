@@ -6,7 +6,7 @@ A contradiction is refused by one sentence. What passes is consistent; whether i
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Literal
 
 import msgspec
 
@@ -39,7 +39,7 @@ class _Segmentation(msgspec.Struct):
 
 
 class _Recorded(msgspec.Struct):
-    """What a configuration says about the inputs of its agent."""
+    """The entries of a configuration about the inputs of its agent."""
 
     agent: str
     semantics: str
@@ -49,7 +49,7 @@ class _Recorded(msgspec.Struct):
 
 
 def require_consistent(
-    submission: Submission, config: Mapping[str, Any], setting: Setting, split: Split, *, where: str
+    submission: Submission, config: Mapping[str, object], setting: Setting, split: Split, *, where: str
 ) -> None:
     """Raises ConfigError where a submission contradicts itself, its split, or this version of the simulator.
 
@@ -82,16 +82,19 @@ def truth_of(inputs: Inputs) -> Truth:
 def coverage(submission: Submission, split: Split) -> tuple[bool, str]:
     """Returns whether the episodes are the first ones of the split, and which they are as text.
 
-    The order of a split is balanced over houses and goals, so that its first N episodes are no choice of the authors.
+    The order of a split is balanced over houses and goals, so that the authors do not choose the first N episodes.
     Of each episode there must be as many replicates, numbered from 0.
     """
-    there = {entry.result.episode_id for entry in submission.episodes}
-    replicates, total = 1 + max(map(replicate_number, there)), len(split.episodes)
-    count = len(there) // replicates
-    each = f", {replicates} replicates of each" if replicates > 1 else ""
-    if there != {episode.episode_id for episode in with_replicates(split.episodes[:count], replicates)}:
-        return False, f"{len(there)} of {total} episodes, chosen by the authors"
-    return True, f"all {total} episodes{each}" if count == total else f"the first {count} of {total} episodes{each}"
+    submitted = {entry.result.episode_id for entry in submission.episodes}
+    replicates, total = 1 + max(map(replicate_number, submitted)), len(split.episodes)
+    count = len(submitted) // replicates
+    repeated = f", {replicates} replicates of each" if replicates > 1 else ""
+    if submitted != {episode.episode_id for episode in with_replicates(split.episodes[:count], replicates)}:
+        return False, f"{len(submitted)} of {total} episodes, chosen by the authors"
+    return (
+        True,
+        f"all {total} episodes{repeated}" if count == total else f"the first {count} of {total} episodes{repeated}",
+    )
 
 
 def _require_same_physics(submission: Submission, where: str) -> None:
@@ -112,14 +115,14 @@ def _require_same_split(submission: Submission, split: Split, where: str) -> Non
         )
 
 
-def _require_declared(submission: Submission, config: Mapping[str, Any], setting: Setting, where: str) -> None:
+def _require_declared(submission: Submission, config: Mapping[str, object], setting: Setting, where: str) -> None:
     """Raises ConfigError where the declared inputs are not those of the configuration or of the result lines."""
-    inputs, found = submission.manifest.inputs, convert(dict(config), _Recorded, where=f"{where}, field 'config'")
+    inputs, record = submission.manifest.inputs, convert(dict(config), _Recorded, where=f"{where}, field 'config'")
     recorded = {
-        "agent": found.agent,
-        "semantics": found.semantics,
+        "agent": record.agent,
+        "semantics": record.semantics,
         "noise": setting.noise_name,
-        "sensors": found.config.sensors,
+        "sensors": record.config.sensors,
     }
     for name, value in recorded.items():
         declared = getattr(inputs, name)
@@ -127,7 +130,7 @@ def _require_declared(submission: Submission, config: Mapping[str, Any], setting
             raise ConfigError(f"{where} declares {name} {declared!r}, and its configuration has {value!r}.")
     if inputs.isolated != inputs.agent.startswith("process:"):
         raise ConfigError(f"{where} declares isolated {inputs.isolated} for the agent '{inputs.agent}'.")
-    segmentation = found.segmentation or _Segmentation()
+    segmentation = record.segmentation or _Segmentation()
     true_images = TRUE_IMAGES & {*inputs.sensors, *(segmentation.truth or ())}
     if segmentation.name == "ground truth":
         true_images |= {"semantic"}
@@ -135,8 +138,8 @@ def _require_declared(submission: Submission, config: Mapping[str, Any], setting
         raise ConfigError(
             f"{where} declares no ground truth, and its configuration gives the agent '{min(true_images)}', which is."
         )
-    if found.seed != submission.manifest.seed:
-        raise ConfigError(f"{where}: the seed is {submission.manifest.seed}, in its configuration {found.seed}.")
+    if record.seed != submission.manifest.seed:
+        raise ConfigError(f"{where}: the seed is {submission.manifest.seed}, in its configuration {record.seed}.")
 
 
 def _require_entry(entry: Entry, known: Episode, submission: Submission, setting: Setting, where: str) -> None:
@@ -175,8 +178,8 @@ def _require_coherent(result: EpisodeResult, actions: str, where: str) -> None:
         raise ConfigError(f"{where} is a success without STOP.")
     if bool(result.success) != (result.failure is None):
         raise ConfigError(f"{where} has success {result.success:g} and the cause of failure '{result.failure}'.")
-    wanted = metrics.spl(bool(result.success), result.shortest_path, result.path_length)
-    if not abs(result.spl - wanted) <= ROUNDING:
+    expected = metrics.spl(bool(result.success), result.shortest_path, result.path_length)
+    if not abs(result.spl - expected) <= ROUNDING:
         raise ConfigError(
-            f"{where} has spl {result.spl:.6g}; its success, shortest_path and path_length give {wanted:.6g}."
+            f"{where} has spl {result.spl:.6g}; its success, shortest_path and path_length give {expected:.6g}."
         )

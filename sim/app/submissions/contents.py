@@ -10,11 +10,12 @@ import gzip
 import tempfile
 from collections import Counter
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal, cast
 
 import msgspec
 from msgspec import Meta
 
+from sim.app.evaluation.results import RunRecord
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
 from sim.core.reading import Count, Metres, Name, Seed, parse_json, read_bytes, read_gzip_json
@@ -43,7 +44,7 @@ Version = Annotated[str, Meta(max_length=300, pattern=_PLAIN)]
 
 
 class Inputs(msgspec.Struct, forbid_unknown_fields=True):
-    """What the agent got, as the authors declare it: a replay cannot prove it."""
+    """The inputs of the agent as the authors declare them: a replay cannot prove them."""
 
     agent: Annotated[str, Meta(min_length=1, max_length=1000, pattern=_NO_FORMULA)]
     semantics: Name
@@ -63,7 +64,7 @@ class SplitOf(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class Manifest(msgspec.Struct, forbid_unknown_fields=True):
-    """What the authors say about the run."""
+    """The statements of the authors about the run."""
 
     name: Short
     """Name of the row."""
@@ -98,7 +99,7 @@ class Submission(msgspec.Struct, forbid_unknown_fields=True):
     """The run's `config.json` without options that change no result."""
     episodes: Annotated[list[Entry], Meta(min_length=1, max_length=MAX_EPISODES)]
 
-    def config_tree(self, *, where: str) -> dict[str, Any]:
+    def config_tree(self, *, where: str) -> RunRecord:
         """Returns the configuration.
 
         Args:
@@ -110,7 +111,7 @@ class Submission(msgspec.Struct, forbid_unknown_fields=True):
         content = bytes(self.config)
         if len(content) > MAX_CONFIG_BYTES:
             raise ConfigError(f"{where}, field 'config': it has {len(content)} bytes, at most {MAX_CONFIG_BYTES}.")
-        return parse_json(content, dict[str, Any], where=f"{where}, field 'config',")
+        return cast(RunRecord, parse_json(content, dict[str, object], where=f"{where}, field 'config',"))
 
 
 def read_submission(file: Path) -> Submission:
@@ -120,12 +121,12 @@ def read_submission(file: Path) -> Submission:
         ConfigError: the file cannot be read, is damaged or too large, has another format, or has an episode twice.
     """
     read_bytes(file, what="Submission", most=MAX_FILE_BYTES)  # refuses a large file before it is decompressed
-    found: Submission = read_gzip_json(file, Submission, what="Submission", strict=False)  # 0.2.0 writes 3.0 steps
-    counts = Counter(entry.result.episode_id for entry in found.episodes)
+    submission: Submission = read_gzip_json(file, Submission, what="Submission", strict=False)  # 0.2.0 writes 3.0 steps
+    counts = Counter(entry.result.episode_id for entry in submission.episodes)
     twice = next((name for name, count in counts.items() if count > 1), None)
     if twice is not None:
         raise ConfigError(f"Submission '{file}' has the episode '{twice}' {counts[twice]} times; each counts once.")
-    return found
+    return submission
 
 
 def write_submission(file: Path, submission: Submission) -> int:

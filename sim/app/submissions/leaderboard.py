@@ -24,7 +24,7 @@ from sim.core.errors import ConfigError
 from sim.robot.config import PHYSICS_VERSION
 from sim.task.result import EpisodeResult
 
-LEAST_EPISODES = 50
+MIN_EPISODES = 50
 """Least number of episodes of a row; replicates do not count. In 20, the interval of a success of 65 % is 42 points."""
 SUBMISSIONS, REPORTS = "submissions", "reports"
 HEADER = (
@@ -54,13 +54,13 @@ class Row:
 
     @property
     def refusal(self) -> str:
-        """The reason why this is no row of the table; "": it is one."""
+        """The reason why the table has no such row; "": the submission is accepted."""
         if self.report.different:
             return f"{self.report.different} episodes are different in the replay"
         if not self.report.is_first:
             return "its episodes were chosen by the authors; the first ones of the split are allowed"
-        if self.episodes < LEAST_EPISODES:
-            return f"it has {self.episodes} episodes; a row needs {LEAST_EPISODES}"
+        if self.episodes < MIN_EPISODES:
+            return f"it has {self.episodes} episodes; a row needs {MIN_EPISODES}"
         if self.report.nonstandard:
             return f"not the standard: {self.report.nonstandard[0]}"
         inputs = self.submission.manifest.inputs
@@ -93,15 +93,15 @@ def is_current(report: Report, sha256: str) -> bool:
 
 def tables(rows: Sequence[Row]) -> list[ResultTable]:
     """Returns a table for each split; rows with less ground truth come first, then those with more success."""
-    found = []
+    ranked = []
     by_split: dict[tuple[str, str, str], list[Row]] = {}
-    for row in (each for each in rows if not each.refusal):
+    for row in (row for row in rows if not row.refusal):
         by_split.setdefault(_split(row), []).append(row)
     for (name, version, sha256), members in sorted(by_split.items()):
         title = f"{plain(name)} {plain(version)} ({sha256[:12]})"
         ordered = sorted(members, key=_rank)
-        found.append(ResultTable(name, title, HEADER, [(_name(row), _cells(row)) for row in ordered], NOTES))
-    return found
+        ranked.append(ResultTable(name, title, HEADER, [(_name(row), _cells(row)) for row in ordered], NOTES))
+    return ranked
 
 
 NOTES = (
@@ -116,10 +116,10 @@ def csv_of(rows: Sequence[Row]) -> str:
     stream = io.StringIO()
     writer = csv.writer(stream)
     writer.writerow(CSV_COLUMNS)
-    for row in sorted((each for each in rows if not each.refusal), key=lambda each: (_split(each), _rank(each))):
+    for row in sorted((row for row in rows if not row.refusal), key=lambda row: (_split(row), _rank(row))):
         manifest, lines = row.submission.manifest, results_of(row.submission)
         estimates = [mean_cell(metric, lines).estimate for metric in (SUCCESS, SPL, COLLISIONS)]
-        numbers = (n for each in estimates for n in (each.mean, each.low, each.high))
+        numbers = (n for estimate in estimates for n in (estimate.mean, estimate.low, estimate.high))
         writer.writerow([
             *_split(row), manifest.name, "; ".join(manifest.authors), " ".join(manifest.links), manifest.inputs.agent,
             truth_of(manifest.inputs), "yes" if manifest.inputs.isolated else "no", manifest.inputs.noise, row.episodes,

@@ -6,13 +6,14 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
-from typing import Any
+from typing import cast
 
 import msgspec
 from numpy.typing import NDArray
 
 from sim.app.analysis.comparison import Run
 from sim.app.analysis.report.facts import command_of
+from sim.app.evaluation.results import RunRecord
 from sim.app.options import RunOptions
 from sim.app.submissions.contents import FORMAT, PLACE_EVERY, Entry, Manifest, Submission
 from sim.app.submissions.setting import setting_of
@@ -26,7 +27,7 @@ from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 
 @dataclass(frozen=True, kw_only=True)
 class About:
-    """What the authors say about a run."""
+    """The statements of the authors about a run."""
 
     name: str
     authors: Sequence[str]
@@ -85,18 +86,18 @@ def pack(run: Run, about: About) -> Submission:
     )
 
 
-def _without_folders(value: Any) -> Any:
+def _without_folders(value: object) -> object:
     """Returns a configuration in which files of the user, such as weights, have their name without its folder."""
     if isinstance(value, dict):
-        return {key: _without_folders(each) for key, each in value.items()}
+        return {key: _without_folders(item) for key, item in value.items()}
     if isinstance(value, list):
-        return [_without_folders(each) for each in value]
+        return [_without_folders(item) for item in value]
     return PurePath(value).name if isinstance(value, str) and PurePath(value).is_absolute() else value
 
 
 def recording(run: Run) -> str:
     """Returns the command that runs the episodes of a run again and records them."""
-    config: dict[str, Any] = {**run.config, "record": True, "video": False, "shard": None}
+    config = cast(RunRecord, {**run.config, "record": True, "video": False, "shard": None})
     return f"{command_of(config)} --out {run.path}_recorded"
 
 
@@ -128,7 +129,7 @@ def _require_of(trajectory: Trajectory, result: EpisodeResult, where: str) -> No
             )
 
 
-def places_of(positions_m: NDArray[Any]) -> tuple[tuple[float, float], ...]:
+def places_of(positions_m: NDArray) -> tuple[tuple[float, float], ...]:
     """Returns the positions after every `PLACE_EVERY`-th action and the last one, of those after each action (n, 2)."""
     chosen = [*range(PLACE_EVERY - 1, len(positions_m), PLACE_EVERY)]
     if len(positions_m) and (not chosen or chosen[-1] != len(positions_m) - 1):

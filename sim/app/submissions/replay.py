@@ -70,16 +70,18 @@ def replay_house(job: Job, entries: Sequence[tuple[Entry, bool]]) -> list[Replay
     began_s = time.process_time()
     split, setting = _split(job.split), job.setting
     episodes = [split.episode(entry.result.episode_id) for entry, _ in entries]
-    world, task, look, close = _scene(split, episodes[0].house, setting, frames=any(each for _, each in entries))
-    found = []
+    world, task, look, close = _scene(
+        split, episodes[0].house, setting, frames=any(with_frames for _, with_frames in entries)
+    )
+    verdicts = []
     try:
         for episode, (entry, framed) in zip(episodes, entries, strict=True):
             conditions = conditions_of(setting, split, episode, job.seed)
-            found.append(_replay(world, task, episode, entry, conditions, look if framed else None, began_s=began_s))
+            verdicts.append(_replay(world, task, episode, entry, conditions, look if framed else None, began_s=began_s))
             began_s = time.process_time()
     finally:
         close()
-    return found
+    return verdicts
 
 
 def conditions_of(setting: Setting, split: Split, episode: Episode, seed: int) -> Conditions:

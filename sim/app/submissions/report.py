@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import msgspec
 
@@ -19,7 +19,7 @@ class Report(msgspec.Struct):
     """The fields of a report that are read."""
 
     sha256: Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{64}\Z")]
-    """Of the submission."""
+    """SHA-256 of the submission."""
     physics: Count
     episodes: Count
     equal: Count
@@ -33,25 +33,27 @@ class Report(msgspec.Struct):
     tolerance_m: Number
 
 
-def report_of(checked: Checked, choices: Choices, found: Sequence[Verdict], seconds: float) -> dict[str, Any]:
+def report_of(checked: Checked, choices: Choices, verdicts: Sequence[Verdict], seconds: float) -> dict[str, object]:
     """Returns the outcome of a verification; `seconds` of processor time were needed."""
-    count = counts(found)
+    count = counts(verdicts)
     return {
         "sha256": checked.sha256,
         "physics": PHYSICS_VERSION,
-        "episodes": len(found),
+        "episodes": len(verdicts),
         "equal": count["equal"],
         "within_tolerance": count["within tolerance"],
         "different": count["different"],
         "errors": count["error"],
-        "frames": sum(verdict.framed for verdict in found),
+        "frames": sum(verdict.framed for verdict in verdicts),
         "is_first": checked.is_first,
         "nonstandard": list(checked.changes),
         "tolerance_m": choices.tolerance_m,
         "draw_seed": choices.draw_seed,
         "processor": processor(),
         "seconds": round(seconds, 1),
-        "remarks": [f"{each.episode_id}: {each.judgement}: {each.text}" for each in found if each.text],
+        "remarks": [
+            f"{verdict.episode_id}: {verdict.judgement}: {verdict.text}" for verdict in verdicts if verdict.text
+        ],
     }
 
 

@@ -38,7 +38,7 @@ Digest = Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{64}\Z")]
 
 
 class Seal(msgspec.Struct, forbid_unknown_fields=True):
-    """What an organiser publishes before the deadline."""
+    """The file that an organiser publishes before the deadline."""
 
     format: Literal["stubborn-sealed-1"]
     name: Name
@@ -117,9 +117,9 @@ def other_versions(seal: Seal) -> list[str]:
     """Returns a phrase for each version of the seal that is not the one here."""
     here = house_maker().versions()
     return [
-        f"{name} {there} there and {here.get(name)} here"
-        for name, there in seal.made_with.items()
-        if here.get(name) != there
+        f"{name} {sealed} there and {here.get(name)} here"
+        for name, sealed in seal.made_with.items()
+        if here.get(name) != sealed
     ]
 
 
@@ -163,7 +163,7 @@ def number_of(secret: str, what: str, most: int) -> int:
 
 
 def recipes(secret: str, name: str, house: int) -> Iterator[Recipe]:
-    """Yields recipes of a house of a sealed split, of which the first that gives a house is taken."""
+    """Yields recipes of a house of a sealed split; the first that gives a house is taken."""
     shape = SPLITS[LIKE][number_of(secret, f"shape {house}", len(SPLITS[LIKE]))]
     for attempt in range(TRIES):
         seed = FIRST_SEED + number_of(secret, f"house {house} {attempt}", SEEDS)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TypeVar
 
 from sim.core.configuration import as_json, leaves_of, with_fields
 from sim.core.errors import ConfigError
@@ -13,10 +13,11 @@ from sim.robot.config import RobotConfig
 from sim.sensors.noise import NOISE_PRESETS, NoiseConfig
 from sim.task.config import TaskConfig
 
+PartT = TypeVar("PartT")
 PARTS = ("robot", "camera", "task", "noise")
 OWN_NOISE = "own"
-"""Name of noise that is none of the presets."""
-LEAST_TIMESTEP_S = 1e-4
+"""Name of noise that differs from all presets."""
+MIN_TIMESTEP_S = 1e-4
 """A smaller time step would let the file of somebody else occupy this machine for days."""
 
 
@@ -35,18 +36,18 @@ class Setting:
     def changes(self) -> list[str]:
         """Returns a text for each field that differs from the standard: name, value, standard value."""
         standard = Setting()
-        found = []
+        changes = []
         for part in ("robot", "camera", "task"):
             before = dict(leaves_of(as_json(getattr(standard, part)), f"{part}."))
             for path, value in leaves_of(as_json(getattr(self, part)), f"{part}."):
                 if value != before.get(path):
-                    found.append(f"{path} is {value!r}, in the standard {before.get(path)!r}")
+                    changes.append(f"{path} is {value!r}, in the standard {before.get(path)!r}")
         if self.noise_name == OWN_NOISE:
-            found.append(f"noise is none of {', '.join(NOISE_PRESETS)}")
-        return found
+            changes.append(f"noise differs from {', '.join(NOISE_PRESETS)}")
+        return changes
 
 
-def setting_of(config: Mapping[str, Any], *, where: str) -> Setting:
+def setting_of(config: Mapping[str, object], *, where: str) -> Setting:
     """Returns the setting that the configuration of a run records.
 
     Args:
@@ -65,8 +66,8 @@ def setting_of(config: Mapping[str, Any], *, where: str) -> Setting:
         setting = Setting(**parts, noise_name=_noise_name(parts["noise"]))
     except RecursionError:
         raise ConfigError(f"{where}: its configuration is nested too deeply.") from None
-    if setting.robot.physics.timestep_s < LEAST_TIMESTEP_S:
-        raise ConfigError(f"{where}: robot.physics.timestep_s is below {LEAST_TIMESTEP_S} s.")
+    if setting.robot.physics.timestep_s < MIN_TIMESTEP_S:
+        raise ConfigError(f"{where}: robot.physics.timestep_s is below {MIN_TIMESTEP_S} s.")
     return setting
 
 
@@ -75,13 +76,13 @@ def _noise_name(noise: NoiseConfig) -> str:
     return next((name for name, preset in NOISE_PRESETS.items() if as_json(preset) == as_json(noise)), OWN_NOISE)
 
 
-def _part(default: Any, given: Any, name: str, where: str) -> Any:
+def _part(default: PartT, recorded: object, name: str, where: str) -> PartT:
     """Returns one part of a setting."""
-    if not isinstance(given, Mapping):
+    if not isinstance(recorded, Mapping):
         raise ConfigError(f"{where}: its configuration has no field 'config.{name}'.")
-    if given.get("file") is not None:
+    if recorded.get("file") is not None:
         raise ConfigError(f"{where}: the robot is that of a file (--robot), which a submission does not contain.")
-    values = dict(leaves_of(given))
+    values = dict(leaves_of(recorded))
     try:
         return with_fields(default, {path: value for path, value in values.items() if path != "file"})
     except ConfigError as error:

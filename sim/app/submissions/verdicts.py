@@ -27,7 +27,7 @@ STEPS_OF_RENDERER = 1
 """Other OpenGL renderers draw edges of a pixel differently, which can shift the first sight by one frame ..."""
 AREA_OF_RENDERER = 0.01
 """... and the seen area by this share."""
-LEAST_PATH_M = 0.5
+MIN_PATH_M = 0.5
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Verdict:
     judgement: Judgement
     framed: bool
     text: str
-    """What differs and what that means; "" for an equal episode."""
+    """The differences and their meaning; "" for an equal episode."""
     largest: float
     """Largest difference of a length, metres."""
 
@@ -71,20 +71,20 @@ def _differences(
 ) -> tuple[list[str], float, list[str]]:
     """Returns the differences beyond the tolerance, the largest difference in metres, and those within it."""
     differing, near, largest = [], [], 0.0
-    shortest_m = max(metrics.shortest_path or 0.0, LEAST_PATH_M)
+    shortest_m = max(metrics.shortest_path or 0.0, MIN_PATH_M)
     allowed = dict.fromkeys(EXACT, 0.0) | dict.fromkeys(LENGTHS, tolerance_m)
     allowed |= dict.fromkeys(SHARES, tolerance_m / shortest_m)
     if framed:
         area = AREA_OF_RENDERER * (metrics.area_seen_m2 or 0.0)
         allowed |= dict.fromkeys(SEEN_EXACT, 0.0) | {SEEN_STEPS: STEPS_OF_RENDERER, SEEN_AREA: area}
     for name, most in allowed.items():
-        there, here = getattr(entry.result, name), getattr(metrics, name)
-        off = _off(there, here)
+        submitted, replayed = getattr(entry.result, name), getattr(metrics, name)
+        off = _off(submitted, replayed)
         if name in LENGTHS and math.isfinite(off):
             largest = max(largest, off)
         if off > ROUNDING:
             (differing if off > max(most, ROUNDING) else near).append(
-                f"{name} {_text(there)}, in the replay {_text(here)}"
+                f"{name} {_text(submitted)}, in the replay {_text(replayed)}"
             )
     return differing, largest, near
 
@@ -93,7 +93,7 @@ def _meaning(entry: Entry, replay: Replay, tolerance_m: float) -> str:
     """Returns a sentence on the likely reason of a difference."""
     if len(entry.places_m) == len(replay.places_m):
         off = [math.dist(a, b) for a, b in zip(entry.places_m, replay.places_m, strict=True)]
-        apart = next((number for number, each in enumerate(off) if each > tolerance_m + 1e-4), None)
+        apart = next((number for number, distance_m in enumerate(off) if distance_m > tolerance_m + 1e-4), None)
         if apart is None:
             return "The actions lead along the recorded path, so the result itself was changed or computed otherwise"
         step = min((apart + 1) * PLACE_EVERY, len(entry.actions))
@@ -104,12 +104,12 @@ def _meaning(entry: Entry, replay: Replay, tolerance_m: float) -> str:
     return "The recorded path has another number of places than the actions: one of them was changed"
 
 
-def _off(there: object, here: object) -> float:
-    """Returns how far apart two values are; infinity where one is missing or they are no numbers."""
-    if isinstance(there, (bool, int, float)) and isinstance(here, (bool, int, float)):
-        off = abs(float(there) - float(here))
+def _off(submitted: object, replayed: object) -> float:
+    """Returns how far apart two values are; infinity where one is missing or not a number."""
+    if isinstance(submitted, (bool, int, float)) and isinstance(replayed, (bool, int, float)):
+        off = abs(float(submitted) - float(replayed))
         return off if math.isfinite(off) else math.inf
-    return 0.0 if there == here else math.inf
+    return 0.0 if submitted == replayed else math.inf
 
 
 def _text(value: object) -> str:

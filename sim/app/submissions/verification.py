@@ -118,8 +118,8 @@ def verdicts(checked: Checked, choices: Choices) -> Iterator[tuple[Verdict, floa
             groups.setdefault(checked.house_of[episode_id], []).append((entry, episode_id in framed))
     work = list(groups.values())
     replays = ordered_map(functools.partial(replay_house, checked.job), work, workers=choices.workers)
-    for group, found in zip(work, replays, strict=True):
-        for (entry, _), replay in zip(group, found, strict=True):
+    for group, verdicts in zip(work, replays, strict=True):
+        for (entry, _), replay in zip(group, verdicts, strict=True):
             yield judge(entry, replay, tolerance_m=choices.tolerance_m), replay.seconds
 
 
@@ -131,6 +131,6 @@ def drawn(entries: Sequence[Entry], choices: Choices) -> set[str]:
     return {ids[number] for number in rng.choice(len(ids), count, replace=False)} if count else set()
 
 
-def counts(found: Sequence[Verdict]) -> Counter[str]:
+def counts(verdicts: Sequence[Verdict]) -> Counter[str]:
     """Returns the number of episodes by judgement."""
-    return Counter(verdict.judgement for verdict in found)
+    return Counter(verdict.judgement for verdict in verdicts)

@@ -158,13 +158,15 @@ class ChaseView:
         mujoco.mjr_restoreBuffer(self._context)
         mujoco.mjr_render(self._rect, self._scene.scene, self._context)
         mujoco.mjr_readPixels(None, self._depth, self._rect, self._context)
-        there = self._depth[::-1] > 0.0
+        visible = self._depth[::-1] > 0.0
         before = self._depth[::-1] * np.float32(_depth_slope(near_m)) + np.float32(1.0 / Z_FAR_M)
-        mask = there & (1.0 / before < 1.0 / inverse - _IN_FRONT_M)
+        mask = visible & (1.0 / before < 1.0 / inverse - _IN_FRONT_M)
         tint = np.array(HIDDEN, np.float32)
         picture[mask] = ((1.0 - _TINT) * picture[mask] + _TINT * tint).astype(np.uint8)
         outlines, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
-        cv2.drawContours(picture, [each for each in outlines if cv2.contourArea(each) > _SPECK_PX], -1, HIDDEN, 1)
+        cv2.drawContours(
+            picture, [outline for outline in outlines if cv2.contourArea(outline) > _SPECK_PX], -1, HIDDEN, 1
+        )
 
     def _drawn(self, near_m: float, eye_m: NDArray, axes: NDArray) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         """Returns the picture of the filled scene, and the inverse of its depth (h, w) in 1 / m."""
@@ -225,7 +227,7 @@ def _is_inside_visible(world: World, geom: int) -> bool:
     visible = np.intersect1d(np.array(own, np.int64), np.flatnonzero(rendered_geoms(model)))
     if not visible.size or 2.0 * model.geom_aabb[geom, 3:].min() < _PANE_M:
         return False
-    boxes = np.array([geom_box(model, data, each) for each in visible.tolist()])
+    boxes = np.array([geom_box(model, data, geom) for geom in visible.tolist()])
     low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
     other_low, other_high = geom_box(model, data, geom)
     both = np.prod(np.maximum(np.minimum(high, other_high) - np.maximum(low, other_low), 0.0))
@@ -259,5 +261,5 @@ def eye_and_axes(pose: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     eye_m = np.array([pose.x_m - BEHIND_M * c, pose.y_m - BEHIND_M * s, pose.floor_z_m + ABOVE_M])
     aim_m = np.array([pose.x_m + AIM_M[0] * c, pose.y_m + AIM_M[0] * s, pose.floor_z_m + AIM_M[1]])
     forward = (aim_m - eye_m) / np.linalg.norm(aim_m - eye_m)
-    left = np.array([-s, c, 0.0])
-    return eye_m, np.stack([forward, left, np.cross(forward, left)])
+    left_axis = np.array([-s, c, 0.0])
+    return eye_m, np.stack([forward, left_axis, np.cross(forward, left_axis)])

@@ -30,7 +30,9 @@ def draw_episode_map(task: Task, episodes: Sequence[Episode]) -> Picture:
         episodes: episodes of this house; the storeys on which they start are drawn next to each other.
     """
     storeys = sorted({episode.start.floor_z_m for episode in episodes})
-    tiles = [_draw_storey(task, [each for each in episodes if each.start.floor_z_m == z_m], z_m) for z_m in storeys]
+    tiles = [
+        _draw_storey(task, [episode for episode in episodes if episode.start.floor_z_m == z_m], z_m) for z_m in storeys
+    ]
     picture = np.full((TITLE_PX + HEIGHT_PX, sum(tile.shape[1] for tile in tiles), 3), 255, np.uint8)
     picture[TITLE_PX:] = np.hstack(tiles)
     count = f"{len(episodes)} episode" + ("" if len(episodes) == 1 else "s")
@@ -48,7 +50,7 @@ def _draw_storey(task: Task, episodes: Sequence[Episode], floor_z_m: float) -> P
     footprints = {goal: task.truth.region(goal, floor_z_m).footprints for goal in goals}
     x, y = space.frame.axes()
     cols, rows = (np.flatnonzero(space.free.any(axis=axis)) for axis in (0, 1))
-    boxes = [each.bounds_m for of_goal in footprints.values() for each in of_goal]
+    boxes = [footprint.bounds_m for of_goal in footprints.values() for footprint in of_goal]
     corners = np.array([(x[cols[0]], y[rows[0]], x[cols[-1]], y[rows[-1]]), *boxes])  # (n, 4)
     low, high = corners[:, :2].min(axis=0) - 0.3, corners[:, 2:].max(axis=0) + 0.3
     px_m = (HEIGHT_PX - 2 * MARGIN_PX) / float(max(high - low))
@@ -91,12 +93,12 @@ def _write(picture: Picture, text: str, middle: NDArray[np.int32], taken: list[t
     `taken` holds left, top, right and bottom of each text so far.
     """
     (width, height), _ = cv2.getTextSize(text, _FONT, TEXT, 1)
-    left = int(np.clip(middle[0] - width // 2, 2, max(2, picture.shape[1] - width - 2)))
+    left_px = int(np.clip(middle[0] - width // 2, 2, max(2, picture.shape[1] - width - 2)))
     for shift in (0, 1, -1, 2, -2):
         base = int(middle[1]) + height // 2 + shift * (height + 4)
-        box = (left - 2, base - height - 2, left + width + 2, base + 2)
+        box = (left_px - 2, base - height - 2, left_px + width + 2, base + 2)
         if not any(box[0] < t[2] and t[0] < box[2] and box[1] < t[3] and t[1] < box[3] for t in taken):
             taken.append(box)
-            cv2.putText(picture, text, (left, base), _FONT, TEXT, FREE, 3, cv2.LINE_AA)
-            cv2.putText(picture, text, (left, base), _FONT, TEXT, ROBOT, 1, cv2.LINE_AA)
+            cv2.putText(picture, text, (left_px, base), _FONT, TEXT, FREE, 3, cv2.LINE_AA)
+            cv2.putText(picture, text, (left_px, base), _FONT, TEXT, ROBOT, 1, cv2.LINE_AA)
             return

@@ -33,7 +33,7 @@ TOP_AMBIENT = 0.4
 """Least ambient light from above: the walls of a house without any are not black."""
 NAME_SHARE = 0.02
 """Height of a line of names from above, as a share of the picture's height."""
-MOST_MOVES = 12
+MAX_MOVES = 12
 """Most lines by which a name is moved so that it covers no other name."""
 EXTENT_M = 10.0
 """Unit of the near and far plane in a model."""
@@ -45,10 +45,10 @@ BACKDROP = (0.86, 0.90, 0.95)
 """Colour of the background."""
 FAN_DEG = np.arange(0, 360, 10)
 """Directions of the rays that measure how far a view reaches."""
-MOST_VIEWS = 9
+MAX_VIEWS = 9
 """Most views of a house without rooms."""
-MOST_PLACES = 400
-"""Free places of which one is chosen for such a view."""
+MAX_PLACES = 400
+"""Free places; one of them is chosen for such a view."""
 NEAREST_LOOK_M = 1.0
 LOOK_SIZES = 1.2
 """The best distance from the middle of an object: this many times its size, and `NEAREST_LOOK_M` more."""
@@ -96,9 +96,9 @@ def draw_top(house: House, *, colours: NDArray[np.uint8] | None = None) -> Pictu
     light.ambient, light.diffuse, light.specular = np.ones(3), np.zeros(3), np.zeros(3)  # unlit: plain colours
     picture = np.ascontiguousarray(render(model, camera, TOP_PX, **view))
     named = [
-        (f"{each.name}: {each.category}", each.geom_ids)
-        for each in labels.instances
-        if MPCAT40_ID[each.category] not in _STRUCTURE
+        (f"{instance.name}: {instance.category}", instance.geom_ids)
+        for instance in labels.instances
+        if MPCAT40_ID[instance.category] not in _STRUCTURE
     ]
     named += [(f"{name}: {VOID}", tuple(geoms)) for name, geoms in objects.items()]
     _write_names(picture, model, named, np.array(camera.lookat), float(camera.distance))
@@ -144,7 +144,7 @@ def _write_names(
         middle = round(height / 2 - (y - lookat[1]) * scale) + below_px
         free = (
             base
-            for base in range(middle, middle + MOST_MOVES * line_px, line_px)
+            for base in range(middle, middle + MAX_MOVES * line_px, line_px)
             if not _covers(taken, left, left + wide, base, line_px)
         )
         base = next(free, middle)
@@ -241,13 +241,15 @@ def _room_poses(
 def _object_poses(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> Iterator[tuple[str, ViewPose]]:
     """Yields the name of the first instance of each category, goals first, and a pose from which it is visible."""
     space = FreeSpace(model, data, labels)
-    places = np.random.default_rng(0).permutation(space.frame.to_metres(np.argwhere(space.largest_part())))[
-        :MOST_PLACES
-    ]
-    first = {each.category: each for each in reversed(labels.instances) if MPCAT40_ID[each.category] not in _STRUCTURE}
-    ordered = sorted(first.values(), key=lambda each: each.category not in GOAL_CATEGORIES)
-    poses = ((each.name, _look_at(model, data, each, places)) for each in ordered)
-    yield from itertools.islice(((name, pose) for name, pose in poses if pose is not None), MOST_VIEWS)
+    places = np.random.default_rng(0).permutation(space.frame.to_metres(np.argwhere(space.largest_part())))[:MAX_PLACES]
+    first = {
+        instance.category: instance
+        for instance in reversed(labels.instances)
+        if MPCAT40_ID[instance.category] not in _STRUCTURE
+    }
+    ordered = sorted(first.values(), key=lambda instance: instance.category not in GOAL_CATEGORIES)
+    poses = ((instance.name, _look_at(model, data, instance, places)) for instance in ordered)
+    yield from itertools.islice(((name, pose) for name, pose in poses if pose is not None), MAX_VIEWS)
 
 
 def _look_at(
@@ -281,15 +283,15 @@ def _viewpoint(
     if len(points) == 0:
         return None
     rng = np.random.default_rng(0)
-    best, found = -1.0, None
+    best, pose = -1.0, None
     for x, y in points[rng.integers(len(points), size=40)]:
         inside = _view_lengths(model, data, room, float(x), float(y))
         for i in range(0, len(FAN_DEG), 3):  # nine rays across the field of view
             view = inside[np.arange(i - 4, i + 5) % len(FAN_DEG)]
             score = float(view.mean() + 1.5 * min(view.min(), 1.0))
             if score > best:
-                best, found = score, (float(x), float(y), float(FAN_DEG[i]))
-    return found
+                best, pose = score, (float(x), float(y), float(FAN_DEG[i]))
+    return pose
 
 
 def _view_lengths(model: mujoco.MjModel, data: mujoco.MjData, room: Room, x: float, y: float) -> NDArray[np.float64]:
@@ -343,7 +345,7 @@ def _box(
 
 def add_backdrop(spec: mujoco.MjSpec) -> None:
     """Adds a plain background in place of those of the file."""
-    for texture in [each for each in spec.textures if each.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX]:
+    for texture in [texture for texture in spec.textures if texture.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX]:
         spec.delete(texture)
     spec.add_texture(
         name="backdrop", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,

@@ -46,7 +46,7 @@ def require_display() -> None:
 
         if not glfw.init():
             raise ConfigError(
-                "--view needs a display, and there is none: DISPLAY and WAYLAND_DISPLAY name no running server. "
+                "--view needs a display: DISPLAY and WAYLAND_DISPLAY must name a running server. "
                 "--video writes a video instead."
             )
 
@@ -75,13 +75,13 @@ class LiveView:
     def decided(self, moment: Moment) -> None:
         """Shows the chosen action as text."""
         if self._is_open:
-            left = "Looking for\nStep\nAction\nHouse"
+            names = "Looking for\nStep\nAction\nHouse"
             goal = in_words(self._env.episode.goal)
             right = f"{goal}\n{moment.step}\n{ACTION_WORDS[moment.action]}\n{self._env.episode.house}"
             place = mujoco.mjtGridPos.mjGRID_TOPLEFT.value
-            self._handle.set_texts((mujoco.mjtFontScale.mjFONTSCALE_100.value, place, left, right))
+            self._handle.set_texts((mujoco.mjtFontScale.mjFONTSCALE_100.value, place, names, right))
 
-    def moved(self, info: Mapping[str, Any]) -> None:
+    def moved(self, info: Mapping[str, object]) -> None:
         """Shows the motion of the action."""
         if not self._is_open:
             return

@@ -24,7 +24,7 @@ import json
 import urllib.parse
 from collections.abc import Mapping
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 import cv2
 import msgspec
@@ -88,7 +88,7 @@ class RosMessages:
         """Writes one message at a simulated time."""
         self._writer.write_message(topic, self._schemas[TOPICS[topic]], message, round(time_s * 1e9))
 
-    def describe(self, name: str, content: Mapping[str, Any]) -> None:
+    def describe(self, name: str, content: Mapping[str, object]) -> None:
         """Writes metadata: a name, and JSON values by key."""
         self._writer.add_metadata(name, {key: json.dumps(value) for key, value in content.items()})
 
@@ -119,7 +119,7 @@ class McapLog:
         self._part = part_file(mcap_file(self._run, episode.episode_id), what="recording")
         self._stream = self._part.open("wb")
         self._out = RosMessages(self._stream)
-        scans = [each for each in env.sensors if isinstance(each, ScanSensor)]
+        scans = [sensor for sensor in env.sensors if isinstance(sensor, ScanSensor)]
         self._scan = scans[0] if scans else ScanSensor(config=env.scan_config)
         about = {"episode_id": episode.episode_id, "house": episode.house, "goal": episode.goal}
         self._out.describe("episode", about)
@@ -148,7 +148,7 @@ class McapLog:
         out.write("/scan", time_s, messages.laser_scan(time_s, self._scan_at(moment), self._scan.config))
         out.write("/cmd_vel", time_s, self._command(moment.action))
 
-    def moved(self, info: Mapping[str, Any]) -> None:
+    def moved(self, info: Mapping[str, object]) -> None:
         """Does nothing: the next decision shows the outcome."""
 
     def end(self, result: RolloutResult) -> None:

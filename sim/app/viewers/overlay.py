@@ -20,7 +20,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import cv2
 import numpy as np
@@ -153,7 +152,7 @@ class FrameComposer:
         write(frame, ACTION_WORDS[moment.action], (756, 27), 120, 18, WHITE, BOLD)
         return frame
 
-    def add_outcome(self, frame: Picture, info: Mapping[str, Any]) -> None:
+    def add_outcome(self, frame: Picture, info: Mapping[str, object]) -> None:
         """Writes the outcome of the action into a frame of `compose`: collision and the counts so far."""
         write(frame, str(info["episode_id"]), (890, 26), 230, 14, (170, 174, 182))
         distance_m, count = info["distance_to_goal"], info["collisions"]
@@ -205,7 +204,7 @@ class FrameComposer:
         left = _SMALL_LEFT[len(self._segments) - 1] + _SMALL[0] + 12
         columns = (_CAMERA[0] + _CAMERA[2] - left) // _NAMES_PX
         rows, goal_id = _SMALL[1] // _ROW_PX, MPCAT40_ID[self.goal]
-        together = np.concatenate([each.ravel() for each in segments])
+        together = np.concatenate([segment.ravel() for segment in segments])
         for place, category in enumerate(names_in_sight(together, self.goal)[: columns * rows]):
             x, y = left + (place // rows) * _NAMES_PX, _SMALL_TOP + (place % rows) * _ROW_PX
             red, green, blue = PALETTE[category].tolist()

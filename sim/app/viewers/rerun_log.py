@@ -87,10 +87,10 @@ def points_in_world(
     d = depth[rows, cols]
     valid = (d > 0.0) & (d < camera.max_depth_m)
     rows, cols, d = rows[valid], cols[valid], d[valid]
-    left = d * (0.5 * camera.width_px - 0.5 - cols) / camera.focal_px
+    left_m = d * (0.5 * camera.width_px - 0.5 - cols) / camera.focal_px
     up = d * (0.5 * camera.height_px - 0.5 - rows) / camera.focal_px
     cos, sin, ahead = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), d + forward_m
-    x_m, y_m = pose.x_m + cos * ahead - sin * left, pose.y_m + sin * ahead + cos * left
+    x_m, y_m = pose.x_m + cos * ahead - sin * left_m, pose.y_m + sin * ahead + cos * left_m
     points = [x_m, y_m, pose.floor_z_m + camera.height_m + up]
     return np.stack(points, axis=1).astype(np.float32), rows, cols
 
@@ -129,7 +129,7 @@ class RerunLog:
         self._stream.log("map", self._rr.Image(self._map.paint(MAP_PX)).compress(jpeg_quality=95))
         self._text("; ".join(filter(None, [ACTION_WORDS[moment.action], self._map.words()])))
 
-    def moved(self, info: Mapping[str, Any]) -> None:
+    def moved(self, info: Mapping[str, object]) -> None:
         """Logs the outcome of the action."""
         if info["distance_to_goal"] is not None:
             self._stream.log("distance_to_goal", self._rr.Scalars(info["distance_to_goal"]))

@@ -135,7 +135,7 @@ def whole_storey_m(space: FreeSpace, target: Target) -> NDArray[np.float64]:
     pieces = [piece for footprint in target.region.footprints for piece in footprint.parts]
     low = np.array(frame.origin_xy_m)
     high = low + np.array(frame.shape)[::-1] * frame.cell_m
-    vertices = np.vstack([free, *(each.vertices_m for each in (*space.obstacles, *pieces))])
+    vertices = np.vstack([free, *(shape.vertices_m for shape in (*space.obstacles, *pieces))])
     vertices = np.clip(vertices, low, high) if len(vertices) else np.stack([low, high])  # a terrain may be huge
     return cv2.convexHull(vertices.astype(np.float32)).reshape(-1, 2).astype(np.float64)
 

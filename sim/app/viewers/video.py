@@ -15,7 +15,6 @@ import urllib.parse
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 import av
 import numpy as np
@@ -184,7 +183,7 @@ class VideoRecorder:
             perceived=self._seen.perceived(moment.observation, goal) if self._seen is not None else None,
         )
 
-    def moved(self, info: Mapping[str, Any]) -> None:
+    def moved(self, info: Mapping[str, object]) -> None:
         """Adds the outcome of the action and writes the frame."""
         assert self._frame is not None
         assert self._writer is not None

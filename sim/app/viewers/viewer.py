@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,7 +53,7 @@ class Viewer(Protocol):
         """Called after the agent has chosen an action and before the environment executes it."""
         ...
 
-    def moved(self, info: Mapping[str, Any]) -> None:
+    def moved(self, info: Mapping[str, object]) -> None:
         """Called after the environment has executed the action; `info` is that of `env.step`."""
         ...
 

@@ -6,7 +6,7 @@ import json
 import os
 import re
 from collections.abc import Callable, Mapping
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import anyio.to_thread
 from starlette.requests import Request
@@ -20,7 +20,7 @@ _CHUNK_BYTES = 1 << 18
 _RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})")
 
 
-def as_ascii(content: Any) -> str:
+def as_ascii(content: object) -> str:
     """Returns JSON in ASCII, so that text with lone surrogates, such as some file names, can be sent too."""
     return json.dumps(content, ensure_ascii=True, allow_nan=False)
 
@@ -28,7 +28,7 @@ def as_ascii(content: Any) -> str:
 class Json(JSONResponse):
     """A response in JSON."""
 
-    def render(self, content: Any) -> bytes:
+    def render(self, content: object) -> bytes:
         """Returns the body of the response."""
         return as_ascii(content).encode("ascii")
 
@@ -56,23 +56,23 @@ class OpenFile(Response):
         """Sends the file."""
         with self._stream:
             await send({"type": "http.response.start", "status": self.status_code, "headers": self.raw_headers})
-            left = 0 if scope["method"] == "HEAD" else self._left
+            remaining = 0 if scope["method"] == "HEAD" else self._left
             self._stream.seek(self._begin)
-            while left > 0:
-                piece = await anyio.to_thread.run_sync(self._stream.read, min(left, _CHUNK_BYTES))
-                piece = piece or bytes(min(left, _CHUNK_BYTES))  # the file has become shorter
-                left -= len(piece)
-                await send({"type": "http.response.body", "body": piece, "more_body": left > 0})
+            while remaining > 0:
+                piece = await anyio.to_thread.run_sync(self._stream.read, min(remaining, _CHUNK_BYTES))
+                piece = piece or bytes(min(remaining, _CHUNK_BYTES))  # the file has become shorter
+                remaining -= len(piece)
+                await send({"type": "http.response.body", "body": piece, "more_body": remaining > 0})
             if scope["method"] == "HEAD" or self._left == 0:
                 await send({"type": "http.response.body", "body": b""})
 
 
 def _range(header: str, size: int) -> tuple[int, int] | None:
     """Returns begin and end of the range in a header; None: the whole file, also if the range is outside the file."""
-    found = _RANGE.fullmatch(header.strip())
-    if found is None or not any(found.groups()):
+    match = _RANGE.fullmatch(header.strip())
+    if match is None or not any(match.groups()):
         return None
-    first, last = found.groups()
+    first, last = match.groups()
     if not first:
         begin, end = max(0, size - int(last)), size
     else:

@@ -7,13 +7,14 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import msgspec
 
 from sim.app.composition.agents import EXPLORERS, SPECS, find_agent, find_explorer, takes_explorer
 from sim.app.composition.driven import HUMAN_NAME
 from sim.app.composition.segmenters import KINDS, NetworkConfig, find_segmentation
+from sim.app.evaluation.results import RunRecord
 from sim.app.options import RunOptions
 from sim.app.web.controls import Driver, EpisodeRequest
 from sim.core import invocation
@@ -74,7 +75,7 @@ class Choices:
             "semantics": (*offer.semantics, offer.options.semantics)[0],
         }
 
-    def as_json(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, object]:
         """Returns everything that can be chosen, as JSON types."""
         return {
             "splits": self._splits,
@@ -100,7 +101,7 @@ class Choices:
         """
         return self._request(convert(message, _Start, where="The message"))
 
-    def again(self, record: Mapping[str, object], result: EpisodeResult, driver: Driver) -> EpisodeRequest:
+    def again(self, record: RunRecord, result: EpisodeResult, driver: Driver) -> EpisodeRequest:
         """Returns a request for an episode of a finished run, with the agent, seed and settings of that run.
 
         Args:
@@ -191,7 +192,7 @@ def _goals_of_split(name: str) -> Goals:
     goals: dict[str, dict[str, list[str]]] = {}
     for episode in load_split(name).episodes:
         goals.setdefault(episode.house, {}).setdefault(episode.goal, []).append(episode.episode_id)
-    return {house: dict(sorted(found.items())) for house, found in sorted(goals.items())}
+    return {house: dict(sorted(of_house.items())) for house, of_house in sorted(goals.items())}
 
 
 def _goals_of_house(file: Path, options: RunOptions) -> Goals:
@@ -199,8 +200,8 @@ def _goals_of_house(file: Path, options: RunOptions) -> Goals:
     split = one_house(file, labels=options.labels, root=options.root)
     house = split.load_house(file.stem)
     fixed = split.sidecar(file.stem).goal
-    found = read_labels(house.spec.copy().compile(), rules=house.rules).categories()
-    goals = [goal for goal in GOAL_CATEGORIES if goal in found and fixed in (None, goal)]
+    categories = read_labels(house.spec.copy().compile(), rules=house.rules).categories()
+    goals = [goal for goal in GOAL_CATEGORIES if goal in categories and fixed in (None, goal)]
     if not goals:
         raise HouseError(f"House '{file}' has no object of a goal category to look for.")
     return {file.stem: {goal: [] for goal in sorted(goals)}}
@@ -215,7 +216,7 @@ def _place_of(episode_id: str, houses: Goals, split: str) -> tuple[str, str]:
     raise ConfigError(f"Split '{split}' has no episode '{episode_id}'.")
 
 
-def _settings(record: Mapping[str, object], own: Iterable[str]) -> tuple[str, ...]:
+def _settings(record: RunRecord, own: Iterable[str]) -> tuple[str, ...]:
     """Returns the settings of a run in the form of `--config`.
 
     Args:

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+from sim.app.evaluation.results import RunRecord
 from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.interface import Action
@@ -40,7 +41,7 @@ class EpisodeRequest:
     driver: Driver = "agent"
     options: RunOptions
     """Options of the run that the episode belongs to; they name agent, segmentation and explorer."""
-    record: Mapping[str, object] | None = None
+    record: RunRecord | None = None
     """The `config.json` of the finished run to which the episode belongs; None: it belongs to none."""
 
     def as_json(self) -> dict[str, object]:

@@ -64,7 +64,7 @@ class DrivenRuns:
         content = record_of(person, split)
         directory = RunDirectory(run, content, EpisodeResult)
         try:
-            driven = record_driven(person, env, episode, result, content["versions"])
+            driven = record_driven(person, env, episode, result, content.get("versions", {}))
             other = setup.options.agent if with_agent else None
             directory.append(
                 msgspec.structs.replace(driven, person_steps=person_steps, hint_steps=hint_steps, other_driver=other)
@@ -80,4 +80,4 @@ class DrivenRuns:
         """Returns a folder that does not exist yet."""
         name = time.strftime("driven_%Y-%m-%d_%H-%M-%S")
         names = [name, *(f"{name}_{number}" for number in range(2, 100))]
-        return next(self._folder / each for each in names if not (self._folder / each).exists())
+        return next(self._folder / free for free in names if not (self._folder / free).exists())

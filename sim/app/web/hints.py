@@ -21,7 +21,7 @@ class Hints:
 
         Args:
             step: number of actions so far.
-            last: the last of these actions; None: there is none.
+            last: the last of these actions; None: no action was taken.
         """
         if step == self._step:
             return self._given

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from typing import Any
 
 import cv2
 import numpy as np
@@ -84,7 +83,7 @@ class Pictures:
         return self._chase.render()
 
 
-def in_sight(semantic: NDArray[np.uint8], goal: str) -> list[dict[str, Any]]:
+def in_sight(semantic: NDArray[np.uint8], goal: str) -> list[dict[str, object]]:
     """Returns name, colour (CSS) and whether it is the goal of each true category in the frame."""
     shown = overlay.names_in_sight(semantic, goal)
     return [

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import BinaryIO, NamedTuple
 
 from sim.app.analysis.comparison import Run, differences_table, require_same_episodes
 from sim.app.analysis.metrics import difference_cell, episodes_of, mean_cell
@@ -22,7 +22,7 @@ from sim.core.errors import ConfigError
 from sim.core.reading import open_plain, printable
 from sim.task.result import METRICS, EpisodeResult
 
-MOST_RUNS = 100
+MAX_RUNS = 100
 """Largest number of runs that are listed, the newest ones."""
 REPORT = "report.html"
 _FILES: Mapping[str, Callable[[Path, str], Path]] = {"pictures": picture_file, "videos": video_file}
@@ -46,11 +46,11 @@ class Runs:
         self._folder = folder
         self._read: dict[Path, _Read] = {}
 
-    def as_json(self) -> list[dict[str, Any]]:
+    def as_json(self) -> list[dict[str, object]]:
         """Returns the runs, the newest first; a run whose files are broken is listed with the reason."""
         return [self._about(changed_ns, folder) for changed_ns, folder in self._newest()]
 
-    def episodes(self, name: str) -> list[dict[str, Any]]:
+    def episodes(self, name: str) -> list[dict[str, object]]:
         """Returns the result lines of a run, and whether each has a video.
 
         Raises:
@@ -58,8 +58,8 @@ class Runs:
         """
         run = self.run(name)
         return [
-            {key: getattr(result, key) for key in _COLUMNS} | {"video": self._there(video_file(run.path, each))}
-            for each, result in run.results.items()
+            {**{key: getattr(result, key) for key in _COLUMNS}, "video": self._there(video_file(run.path, episode_id))}
+            for episode_id, result in run.results.items()
         ]
 
     def run(self, name: str) -> Run:
@@ -123,7 +123,7 @@ class Runs:
             raise ConfigError(f"Run '{name}' has no report; {invocation.command('report', file.parent)} makes it.")
         return self._open(file)
 
-    def comparison(self, first: str, second: str) -> list[dict[str, Any]]:
+    def comparison(self, first: str, second: str) -> list[dict[str, object]]:
         """Returns the paired differences of two runs, and the fields in which their configurations differ, as tables.
 
         Raises:
@@ -131,7 +131,7 @@ class Runs:
         """
         a, b = self.run(first), self.run(second)
         common = require_same_episodes(a, b)
-        lines = [[of.results[each] for each in common] for of in (a, b)]
+        lines = [[run.results[episode_id] for episode_id in common] for run in (a, b)]
         rows = [
             (metric.title, [mean_cell(metric, lines[0]), mean_cell(metric, lines[1]), difference_cell(metric, *lines)])
             for metric in METRICS.values()
@@ -141,7 +141,7 @@ class Runs:
         return [_table_as_json(table) for table in (means, differences_table(a, b))]
 
     def _newest(self) -> list[tuple[int, Path]]:
-        return sorted(self._found(), reverse=True)[:MOST_RUNS]
+        return sorted(self._found(), reverse=True)[:MAX_RUNS]
 
     def _found(self) -> Iterator[tuple[int, Path]]:
         """Yields the folders that hold results, with the time of the last line, nanoseconds since 1970."""
@@ -164,8 +164,8 @@ class Runs:
                 return folder
         raise ConfigError(f"There is no run '{name}'.")
 
-    def _about(self, changed_ns: int, folder: Path) -> dict[str, Any]:
-        about = {"name": printable(folder.name), "changed_s": changed_ns / 1e9}
+    def _about(self, changed_ns: int, folder: Path) -> dict[str, object]:
+        about: dict[str, object] = {"name": printable(folder.name), "changed_s": changed_ns / 1e9}
         try:
             run = self._content(folder)
         except ConfigError as error:
@@ -198,7 +198,7 @@ class Runs:
             return known.run
         run = Run(folder, read_record(config), {result.episode_id: result for result in read_results(results).values})
         self._read[folder] = _Read(state, run)
-        while len(self._read) > MOST_RUNS:
+        while len(self._read) > MAX_RUNS:
             self._read.pop(next(iter(self._read)), None)
         return run
 
@@ -214,7 +214,7 @@ class Runs:
         return open_plain(file, what="File of a run")
 
 
-def _table_as_json(table: ResultTable) -> dict[str, Any]:
+def _table_as_json(table: ResultTable) -> dict[str, object]:
     """Returns a table as JSON types; a cell is its text and its verdict."""
     rows = [
         [label, *({"text": cell.text(), "verdict": cell.verdict} if isinstance(cell, Cell) else cell for cell in cells)]

@@ -13,9 +13,8 @@ import logging
 import mimetypes
 import re
 import struct
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from pathlib import Path
-from typing import Any
 
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
@@ -44,7 +43,7 @@ PAGE_FILES: Mapping[str, tuple[str, str]] = {
 }
 """Address, file and type of everything that the page consists of."""
 _log = logging.getLogger(__name__)
-MakeRequest = Callable[[Mapping[str, Any]], EpisodeRequest]
+MakeRequest = Callable[[Mapping[str, object]], EpisodeRequest]
 """Returns the request that a message of the page describes."""
 MAX_CLIENTS = 16
 MAX_MESSAGE_BYTES = 4096
@@ -74,7 +73,7 @@ class Hub:
         self.clients: set[Client] = set()
         self.session = Session(self, driven)
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._state: Mapping[str, Any] = {"phase": "idle", "message": "Choose a house, a goal and an agent."}
+        self._state: Mapping[str, object] = {"phase": "idle", "message": "Choose a house, a goal and an agent."}
         self._frame: Frame | None = None
         self._state_number = self._frame_number = 1
         self._wanted: frozenset[str] = frozenset()
@@ -92,7 +91,7 @@ class Hub:
         """Receives the newest frame from the thread that simulates."""
         self._in_loop(lambda: self._keep(frame=frame))
 
-    def show_state(self, state: Mapping[str, Any]) -> None:
+    def show_state(self, state: Mapping[str, object]) -> None:
         """Receives the newest state from the thread that simulates."""
         self._in_loop(lambda: self._keep(state=state))
 
@@ -107,7 +106,7 @@ class Hub:
         if self._wanted - before:
             self.session.controls.redraw()
 
-    def state(self) -> dict[str, Any]:
+    def state(self) -> dict[str, object]:
         """Returns the state of the episode and of the controls."""
         controls = self.session.controls
         names = ("driver", "paused", "per_s", "hints")
@@ -126,7 +125,7 @@ class Hub:
             await client.news.wait()
             client.news.clear()
 
-    def _keep(self, *, frame: Frame | None = None, state: Mapping[str, Any] | None = None) -> None:
+    def _keep(self, *, frame: Frame | None = None, state: Mapping[str, object] | None = None) -> None:
         if frame is not None:
             self._frame = frame
             self._frame_number += 1
@@ -176,8 +175,8 @@ class OnlyFromHere:
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                given = {name for name, _ in message["headers"]}
-                message["headers"] += [pair for pair in _HEADERS if pair[0] not in given]
+                present = {name for name, _ in message["headers"]}
+                message["headers"] += [pair for pair in _HEADERS if pair[0] not in present]
             await send(message)
 
         await self._app(scope, receive, send_with_headers)
@@ -213,8 +212,8 @@ def _only(scope: Scope, name: bytes) -> str | None:
 
 def _name_of(host: str) -> str:
     """Returns the name in a Host header, without the port; "" if the header has another form."""
-    found = _HOST.fullmatch(host)
-    return "" if found is None else (found["address"] or found["name"]).lower()
+    match = _HOST.fullmatch(host)
+    return "" if match is None else (match["address"] or match["name"]).lower()
 
 
 def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -> Starlette:
@@ -227,7 +226,7 @@ def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -
         hosts: names under which the server may be addressed.
     """
 
-    def make_request(message: Mapping[str, Any]) -> EpisodeRequest:
+    def make_request(message: Mapping[str, object]) -> EpisodeRequest:
         if message.get("do") != "again":
             return choices.request(message)
         run, result = runs.result(str(message.get("run")), str(message.get("episode")))
@@ -286,7 +285,7 @@ def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -
     )
 
 
-def _page_file(name: str, media_type: str) -> Callable[[Request], Any]:
+def _page_file(name: str, media_type: str) -> Callable[[Request], Awaitable[Response]]:
     async def answer(request: Request) -> Response:
         return await or_404(file_answer(request, lambda: open_plain(PAGE / name, what="Page"), media_type))
 
@@ -336,11 +335,11 @@ def _carry_out(hub: Hub, make_request: MakeRequest, client: Client, text: str | 
     try:
         if text is None:
             raise ConfigError("A message must be text.")
-        message = parse_json(text, dict[str, Any], where="The message")
+        message = parse_json(text, dict[str, object], where="The message")
         if message.get("do") == "show":
-            wanted = message.get("pictures")
+            pictures = message.get("pictures")
             before = client.names
-            client.names = frozenset(name for name in NAMES if isinstance(wanted, list) and name in wanted)
+            client.names = frozenset(name for name in NAMES if isinstance(pictures, list) and name in pictures)
             if client.names - before:
                 client.frame_number = 0  # the present frame may have them already
         elif message.get("do") in ("start", "again"):

@@ -7,7 +7,7 @@ import threading
 import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 from sim.app.cli import USAGE_ERRORS
 from sim.app.composition.environments import drawn_episodes
@@ -15,6 +15,7 @@ from sim.app.composition.record import record_of
 from sim.app.composition.runner import Parts, build_parts
 from sim.app.composition.setup import Setup, resolve
 from sim.app.evaluation.config_fields import run_differences
+from sim.app.evaluation.results import RunRecord
 from sim.app.evaluation.rollout import play_episode
 from sim.app.viewers.viewer import Moment
 from sim.app.web.controls import Controls, EpisodeRequest, Interrupted
@@ -37,7 +38,7 @@ _NAMED_DIFFERENCES = 4
 class Frame:
     """Numbers and pictures of one moment."""
 
-    facts: Mapping[str, Any]
+    facts: Mapping[str, object]
     """The step, the last action, the metrics so far and the categories in sight; JSON types."""
     pictures: Mapping[str, bytes]
     """JPEG files by name (`sim.app.web.pictures.NAMES`)."""
@@ -57,7 +58,7 @@ class Display(Protocol):
         """Receives the newest frame."""
         ...
 
-    def show_state(self, state: Mapping[str, Any]) -> None:
+    def show_state(self, state: Mapping[str, object]) -> None:
         """Receives the newest state of the episode, JSON types."""
         ...
 
@@ -119,7 +120,7 @@ class Session:
         episode = choose_episode(parts.env, request, self._turn, made.setup)
         self._turn += 1
         shared = SharedAgent(parts, pictures, self.controls, self._display)
-        about: dict[str, Any] = {"note": unlike_the_run(made.setup, parts.env, request.record)}
+        about: dict[str, object] = {"note": unlike_the_run(made.setup, parts.env, request.record)}
 
         def begun(env: ObjectNavEnv) -> None:
             about.update(episode_id=episode.episode_id, max_steps=env.task_config.max_steps, legends=pictures.legends())
@@ -173,7 +174,7 @@ class Session:
             self._made.parts.env.close()
         self._made = None
 
-    def _show_state(self, request: EpisodeRequest, phase: str, message: str, **more: Any) -> None:
+    def _show_state(self, request: EpisodeRequest, phase: str, message: str, **more: object) -> None:
         text = printable(" ".join(message.split()))
         self._display.show_state({"phase": phase, "message": text, "request": request.as_json(), **more})
 
@@ -185,7 +186,7 @@ class SharedAgent:
         self._parts, self._pictures, self._controls, self._display = parts, pictures, controls, display
         self._inner: Agent = parts.agent
         self._last: Action | None = None
-        self.info: Mapping[str, Any] = {}
+        self.info: Mapping[str, object] = {}
         self.stopped_by_person = False
         self.person_steps = self.hint_steps = 0
         self._hints: Hints | None = None
@@ -265,7 +266,7 @@ class _Watcher:
     def decided(self, moment: Moment) -> None:
         pass
 
-    def moved(self, info: Mapping[str, Any]) -> None:
+    def moved(self, info: Mapping[str, object]) -> None:
         self._shared.info = info
 
     def end(self, result: RolloutResult) -> None:
@@ -294,7 +295,9 @@ def choose_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int, setup:
         return _draw_episode(env, request, turn)
     if request.episode_id is not None:
         return env.split.episode(request.episode_id)
-    fitting = [each for each in env.split.episodes if (each.house, each.goal) == (request.house, request.goal)]
+    fitting = [
+        episode for episode in env.split.episodes if (episode.house, episode.goal) == (request.house, request.goal)
+    ]
     if not fitting:
         raise EpisodeError(
             f"Split '{request.split}' has no episode with '{in_words(request.goal)}' in house '{request.house}'."
@@ -314,7 +317,7 @@ def _draw_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int) -> Epis
     return env.draw_episode(drawing_generator(request.options.seed, int(number[1])), episode_id=number[0])
 
 
-def unlike_the_run(setup: Setup, env: ObjectNavEnv, record: Mapping[str, Any] | None) -> str:
+def unlike_the_run(setup: Setup, env: ObjectNavEnv, record: RunRecord | None) -> str:
     """Returns a sentence that names the differences from the run whose episode is shown; "" if there are none.
 
     Args:
@@ -328,7 +331,7 @@ def unlike_the_run(setup: Setup, env: ObjectNavEnv, record: Mapping[str, Any] | 
     fields = [path.removeprefix("config.") for path, _, _ in run_differences(record, now) if path.startswith("config.")]
     if (record.get("split_identity") or {}).get("sha256") != env.split.sha256:
         fields.append("the houses")
-    if (record.get("versions") or {}).get("code") != now["versions"]["code"]:
+    if (record.get("versions") or {}).get("code") != now.get("versions", {})["code"]:
         fields.append("the code")
     more = [f"{len(fields) - _NAMED_DIFFERENCES} more"] if len(fields) > _NAMED_DIFFERENCES else []
     return f"Not as in the run: {', '.join(fields[:_NAMED_DIFFERENCES] + more)}." if fields else ""

@@ -134,10 +134,10 @@ def test_an_episode_is_truncated_not_terminated_at_max_steps(env: ObjectNavEnv) 
         (False, True)
     ]
     assert steps[-1][4]["end_reason"] == "max_steps"
-    there = env.scene.world.pose
+    turned = env.scene.world.pose
     with pytest.raises(EpisodeError, match="has ended"):
         env.step(Action.TURN_LEFT)
-    assert env.scene.world.pose == there
+    assert env.scene.world.pose == turned
 
 
 def test_driving_into_a_wall_is_a_collision_and_driving_freely_is_not(env: ObjectNavEnv) -> None:

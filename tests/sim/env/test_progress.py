@@ -30,9 +30,9 @@ def options(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 def rewards(options: dict[str, Any], actions: list[Action], **weights: float) -> list[float]:
     env = ProgressReward(gymnasium.make(ENV_ID, **options), **weights)
     env.reset(seed=0)
-    given = [float(env.step(action)[1]) for action in actions]
+    rewards = [float(env.step(action)[1]) for action in actions]
     env.close()
-    return given
+    return rewards
 
 
 def test_driving_to_the_goal_and_back_has_no_net_reward(options: dict[str, Any]) -> None:

@@ -16,15 +16,15 @@ def test_one_replicate_is_the_episode_itself():
 
 
 def test_replicates_start_one_centimetre_away_with_the_same_heading_goal_and_house():
-    found = with_replicates(EPISODES, 3)
-    assert [each.episode_id for each in found[:4]] == ["val_0000", "val_0000~1", "val_0000~2", "val_0001"]
-    for index, each in enumerate(found):
+    replicates = with_replicates(EPISODES, 3)
+    assert [episode.episode_id for episode in replicates[:4]] == ["val_0000", "val_0000~1", "val_0000~2", "val_0001"]
+    for index, episode in enumerate(replicates):
         original = EPISODES[index // 3]
-        assert (each.house, each.goal) == (original.house, original.goal)
-        assert (each.start.yaw_rad, each.start.floor_z_m) == (0.5, 3.0)
-        assert each.start.distance_to(original.start) == pytest.approx(MOVED_M if index % 3 else 0.0)
-        assert each.shortest_path_m == (None if index % 3 else 4.0)
-    assert len({each.start for each in found}) == 7
+        assert (episode.house, episode.goal) == (original.house, original.goal)
+        assert (episode.start.yaw_rad, episode.start.floor_z_m) == (0.5, 3.0)
+        assert episode.start.distance_to(original.start) == pytest.approx(MOVED_M if index % 3 else 0.0)
+        assert episode.shortest_path_m == (None if index % 3 else 4.0)
+    assert len({episode.start for episode in replicates}) == 7
 
 
 def test_replicates_are_the_same_in_every_process_and_for_every_count():
@@ -39,8 +39,8 @@ def test_an_id_names_its_replicate(episode_id, number):
 
 
 def test_each_id_finds_its_replicate_and_no_other_way_to_write_it_does():
-    known = {each.episode_id: each for each in EPISODES}
-    for each in with_replicates(EPISODES, 3):
-        assert find_episode(known, each.episode_id) == each
+    known = {episode.episode_id: episode for episode in EPISODES}
+    for episode in with_replicates(EPISODES, 3):
+        assert find_episode(known, episode.episode_id) == episode
     for other in ("val_0000~0", "val_0000~01", "val_0000~", "val_0000~1~1", "val_0009~1", "~1", ""):
         assert find_episode(known, other) is None

@@ -56,7 +56,7 @@ class Case:
 
     scene: Scene
     episodes: list[Episode]
-    goals: dict[str, list[habitat.Json]]
+    goals: dict[str, list[habitat.Goal]]
     """Goals of each category with their view points."""
     recipe: EpisodeRecipe = DEFAULT_RECIPE
 
@@ -93,7 +93,7 @@ def written(folder: Path, pool: Pool, seed: int) -> Path:
     return path
 
 
-def goals_in_file(split: Split, house: str) -> dict[str, list[habitat.Json]]:
+def goals_in_file(split: Split, house: str) -> dict[str, list[habitat.Goal]]:
     content = json.loads(gzip.decompress((assets_dir() / split.name / "content" / f"{house}.json.gz").read_bytes()))
     return {key.removeprefix(f"{house}.xml_"): goals for key, goals in content["goals_by_category"].items()}
 

@@ -213,9 +213,9 @@ def test_a_robot_that_hardly_drives_is_not_in_a_loop() -> None:
 @pytest.mark.parametrize("yaw", [0.0, 0.3, 1.1])
 def test_new_ground_does_not_depend_on_the_direction_and_ground_next_to_the_old_path_is_not_new(yaw: float) -> None:
     turn = np.array([[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]])
-    there = line(100) @ turn.T
+    outward = line(100) @ turn.T
     beside = (line(100) + np.array([0.0, 0.4])) @ turn.T
-    new = on_new_ground(np.concatenate([there, beside[::-1]]))
+    new = on_new_ground(np.concatenate([outward, beside[::-1]]))
     assert new[:101].sum() == 1 + 25  # 20 m, one in every fourth step of 0.2 m
     assert new[101:].sum() <= 1
 

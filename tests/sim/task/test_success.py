@@ -65,9 +65,9 @@ def test_a_robot_under_a_table_has_found_it_though_its_edge_is_far():
 
 
 def test_a_wall_between_hides_the_goal():
-    there = region(two_rooms(), "bed")
-    assert there.succeeds(1.5, 0.0)
-    assert not there.succeeds(-0.4, 0.0)
+    reached = region(two_rooms(), "bed")
+    assert reached.succeeds(1.5, 0.0)
+    assert not reached.succeeds(-0.4, 0.0)
 
 
 @pytest.mark.parametrize("wall", ["wall_10", "door_00", "window_00"])
@@ -99,35 +99,35 @@ def test_a_wall_of_two_pieces_has_no_slit_where_they_meet():
 
 def test_a_picture_on_a_wall_is_found_from_its_own_room_only():
     house = with_box(two_rooms(), "picture_00", centre_m=(0.06, 1.2, 1.5), half_m=(0.01, 0.3, 0.2))
-    there = region(house, "picture")
-    assert there.succeeds(0.9, 1.2)
-    assert there.succeeds(0.3, 0.5)
-    assert not there.succeeds(-0.3, 1.2)
-    assert not there.succeeds(1.2, 1.2)
+    reached = region(house, "picture")
+    assert reached.succeeds(0.9, 1.2)
+    assert reached.succeeds(0.3, 0.5)
+    assert not reached.succeeds(-0.3, 1.2)
+    assert not reached.succeeds(1.2, 1.2)
 
 
 def test_a_picture_sunk_into_the_wall_is_found_by_its_visible_part():
     house = with_box(two_rooms(), "picture_00", centre_m=(0.05, 1.2, 1.5), half_m=(0.02, 0.3, 0.2))
-    there = region(house, "picture")
-    assert there.succeeds(0.9, 1.2)
-    assert not there.succeeds(-0.3, 1.2)
+    reached = region(house, "picture")
+    assert reached.succeeds(0.9, 1.2)
+    assert not reached.succeeds(-0.3, 1.2)
 
 
 def test_a_shower_in_a_corner_is_found_though_two_of_its_sides_lie_in_walls():
     house = with_box(room(4, 4), "shower_00", centre_m=(1.6, 1.6, 1.0), half_m=(0.45, 0.45, 1.0))
-    there = region(house, "shower")
-    assert there.succeeds(0.5, 1.5)
-    assert not there.succeeds(0.0, 1.5)
-    assert not there.succeeds(2.3, 1.6)
+    reached = region(house, "shower")
+    assert reached.succeeds(0.5, 1.5)
+    assert not reached.succeeds(0.0, 1.5)
+    assert not reached.succeeds(2.3, 1.6)
 
 
 def test_a_goal_seen_round_the_end_of_a_wall_counts_at_the_distance_of_its_visible_part():
     # The wall ends at y = 0; from (-0.3, -0.25) the near side of the bed is hidden, its far part is not.
     house = with_box(room(6, 6), "wall_10", centre_m=(0, -1.5, 1.25), half_m=(0.05, 1.5, 1.25))
     house = with_box(house, "bed_00", centre_m=(0.55, 0.0, 0.25), half_m=(0.5, 0.5, 0.25))
-    there = region(house, "bed")
-    assert there.succeeds(-0.3, -0.25)
-    assert not there.succeeds(-0.3, -1.2)
+    reached = region(house, "bed")
+    assert reached.succeeds(-0.3, -0.25)
+    assert not reached.succeeds(-0.3, -1.2)
 
 
 def test_the_boundary_alone_gives_the_result_of_all_points_of_the_footprint():
@@ -135,10 +135,10 @@ def test_the_boundary_alone_gives_the_result_of_all_points_of_the_footprint():
     house = with_box(house, "wall_11", centre_m=(1.4, 0.6, 1.25), half_m=(0.05, 0.5, 1.25), yaw_rad=0.4)
     house = with_box(house, "bed_01", centre_m=(1.7, -0.9, 0.2), half_m=(0.5, 0.2, 0.2), yaw_rad=0.7)
     model, data, labels = compiled(house)
-    there = region_in(model, data, labels, "bed")
+    reached = region_in(model, data, labels, "bed")
     grid = np.stack(np.meshgrid(np.arange(-1, 3, 0.02), np.arange(-2, 2, 0.02)), axis=-1).reshape(-1, 2)
-    points = np.concatenate([fp.boundary_m.data for fp in there.footprints])
-    inside = grid[np.any([fp.contains(grid) for fp in there.footprints], axis=0)]
+    points = np.concatenate([fp.boundary_m.data for fp in reached.footprints])
+    inside = grid[np.any([fp.contains(grid) for fp in reached.footprints], axis=0)]
     points = np.concatenate([points, inside])
     blockers = sight_blockers(model, data, labels, 0.88)
     rng = np.random.default_rng(0)
@@ -146,19 +146,19 @@ def test_the_boundary_alone_gives_the_result_of_all_points_of_the_footprint():
     for place in places:
         near = points[np.hypot(*(points - place).T) <= 1.0]
         expected = bool((~lines_blocked(np.broadcast_to(place, near.shape), near, blockers)).any())
-        assert there.succeeds(*place) == expected, place
+        assert reached.succeeds(*place) == expected, place
 
 
 def test_the_mask_has_for_each_free_cell_the_result_of_the_test_at_its_centre():
     house = two_rooms()
     model, data, labels = compiled(house)
     space = FreeSpace(model, data, labels, rooms=read_rooms(model))
-    there = region_in(model, data, labels, "bed")
-    mask = there.mask(space)
+    reached = region_in(model, data, labels, "bed")
+    mask = reached.mask(space)
     assert not (mask & ~space.free).any()
     assert mask.any()
     cells = np.argwhere(space.free)[::97]
-    assert [there.succeeds(*space.frame.to_metres(cell)) for cell in cells] == [bool(mask[tuple(c)]) for c in cells]
+    assert [reached.succeeds(*space.frame.to_metres(cell)) for cell in cells] == [bool(mask[tuple(c)]) for c in cells]
 
 
 def test_an_instance_on_another_storey_does_not_count():
@@ -192,11 +192,11 @@ def test_the_footprint_of_a_ring_is_not_its_middle():
     spec.worldbody.add_geom(
         name="seating_00", type=mujoco.mjtGeom.mjGEOM_MESH, meshname="ring", contype=0, conaffinity=0
     )
-    there = region(House("ring", spec), "seating")
-    assert not there.succeeds(0.0, 0.0)
-    assert there.succeeds(0.0, 1.9)
-    assert there.succeeds(0.0, 2.9)
-    assert not there.succeeds(0.0, 4.1)
+    reached = region(House("ring", spec), "seating")
+    assert not reached.succeeds(0.0, 0.0)
+    assert reached.succeeds(0.0, 1.9)
+    assert reached.succeeds(0.0, 2.9)
+    assert not reached.succeeds(0.0, 4.1)
 
 
 def _show_mesh(spec: mujoco.MjSpec, name: str, mesh: str) -> None:
@@ -220,9 +220,9 @@ def test_a_wall_that_is_a_mesh_hides_where_it_is_and_not_where_its_doorway_is():
     house = House("mesh_wall", spec)
     for number, y in ((0, 0.0), (1, 1.4)):
         house = with_box(house, f"stool_{number:02d}", centre_m=(0.5, y, 0.2), half_m=(0.1, 0.1, 0.2))
-    there = region(house, "stool")
-    assert there.succeeds(-0.4, 0.0)
-    assert not there.succeeds(-0.4, 1.4)
+    reached = region(house, "stool")
+    assert reached.succeeds(-0.4, 0.0)
+    assert not reached.succeeds(-0.4, 1.4)
 
 
 @pytest.mark.parametrize("turned", [False, True])
@@ -237,11 +237,11 @@ def test_a_picture_that_is_a_flat_mesh_is_found_from_in_front(turned):
         inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
     )  # fmt: skip
     _show_mesh(spec, "picture_00", "flat")
-    there = region(House("flat_picture", spec), "picture")
+    reached = region(House("flat_picture", spec), "picture")
     x, y = (2.5, 0.5) if turned else (0.0, 0.0)
-    assert there.succeeds(x - 0.9, y)
-    assert not there.succeeds(x - 1.4, y)
-    assert there.nearest_m(x - 0.5, y) == pytest.approx(0.219 if turned else 0.5, abs=0.01)
+    assert reached.succeeds(x - 0.9, y)
+    assert not reached.succeeds(x - 1.4, y)
+    assert reached.nearest_m(x - 0.5, y) == pytest.approx(0.219 if turned else 0.5, abs=0.01)
 
 
 def test_a_goal_counts_at_its_current_position():
@@ -254,9 +254,9 @@ def test_a_goal_counts_at_its_current_position():
     assert not moved.succeeds(1.2, 0.0)
 
 
-@pytest.mark.parametrize(("distance_m", "found"), [(1.0, True), (0.5, False)])
-def test_a_smaller_success_distance_needs_a_nearer_stop(distance_m, found):
-    assert region(two_rooms(), "bed", distance_m=distance_m).succeeds(1.75, 0.0) == found
+@pytest.mark.parametrize(("distance_m", "success"), [(1.0, True), (0.5, False)])
+def test_a_smaller_success_distance_needs_a_nearer_stop(distance_m, success):
+    assert region(two_rooms(), "bed", distance_m=distance_m).succeeds(1.75, 0.0) == success
 
 
 def test_a_taller_camera_sees_over_a_wall_that_blocks_the_default_one():

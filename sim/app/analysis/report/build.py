@@ -6,9 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
 
-from jinja2 import Environment, StrictUndefined
+from jinja2 import Environment, StrictUndefined, Template
 from markupsafe import Markup
 
 from sim.app.analysis.comparison import LETTERS, Run, differences_table, require_same_episodes
@@ -24,22 +23,22 @@ from sim.app.evaluation.intervals import MIN_PAIRS
 from sim.core.errors import ConfigError
 from sim.task.explanations import explain
 
-MOST_RUNS = len(LETTERS)
+MAX_RUNS = len(LETTERS)
 
 
 def build_page(runs: Sequence[Run], *, out_folder: Path, command: str) -> str:
     """Returns the HTML of the report.
 
     Args:
-        runs: one run, or up to `MOST_RUNS` runs of the same episodes; differences are from the first one.
+        runs: one run, or up to `MAX_RUNS` runs of the same episodes; differences are from the first one.
         out_folder: folder of the page; links to pictures and videos are relative to it.
         command: the command that made the page, for its footer.
 
     Raises:
         ConfigError: no episode has ended yet, the runs are not of the same episodes, or there are too many.
     """
-    if not 1 <= len(runs) <= MOST_RUNS:
-        raise ConfigError(f"A report shows 1 to {MOST_RUNS} runs, got {len(runs)}.")
+    if not 1 <= len(runs) <= MAX_RUNS:
+        raise ConfigError(f"A report shows 1 to {MAX_RUNS} runs, got {len(runs)}.")
     for run in runs:
         if not run.results:
             raise ConfigError(f"'{run.path}' has no result yet: its first episode has not ended.")
@@ -70,7 +69,7 @@ def build_page(runs: Sequence[Run], *, out_folder: Path, command: str) -> str:
     )
 
 
-def _figures(lines: Runs, labels: Sequence[str], house_m2: Mapping[str, float | None]) -> dict[str, Any]:
+def _figures(lines: Runs, labels: Sequence[str], house_m2: Mapping[str, float | None]) -> dict[str, object]:
     """Returns the tables and charts of a page."""
     return {
         "means": means(lines),
@@ -96,7 +95,7 @@ def _by_size(lines: Runs, house_m2: Mapping[str, float | None]) -> list[Group]:
     return grouped(lines, [bins.name(house_m2.get(result.house)) for result in lines[0]], bins.names)
 
 
-def _template() -> Any:
+def _template() -> Template:
     """Returns the template; it escapes all values and writes JSON without spaces."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     environment.filters["plain"] = lambda name: str(name).replace("_", " ")
@@ -122,8 +121,8 @@ def _title(runs: Sequence[Run]) -> str:
 
 
 def _replicate_notes(lines: Runs, labels: Sequence[str]) -> list[str]:
-    found = [(label, replicate_note(of_run)) for label, of_run in zip(labels, lines, strict=True)]
-    return [f"{label}: {note}".removeprefix(": ") for label, note in found if note]
+    notes = [(label, replicate_note(of_run)) for label, of_run in zip(labels, lines, strict=True)]
+    return [f"{label}: {note}".removeprefix(": ") for label, note in notes if note]
 
 
 def _errors(lines: Runs, labels: Sequence[str]) -> Iterable[tuple[str, str, str]]:
@@ -133,7 +132,7 @@ def _errors(lines: Runs, labels: Sequence[str]) -> Iterable[tuple[str, str, str]
                 yield label, result.episode_id, result.error or "no reason was recorded"
 
 
-def _data(labels: Sequence[str], drawings: Drawings, episodes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def _data(labels: Sequence[str], drawings: Drawings, episodes: Sequence[Mapping[str, object]]) -> dict[str, object]:
     """Returns what the script of the page reads."""
     return {
         "runs": labels,
@@ -146,7 +145,7 @@ def _data(labels: Sequence[str], drawings: Drawings, episodes: Sequence[Mapping[
 
 def _episodes(
     runs: Sequence[Run], rows: Sequence[Row], trajectories: Trajectories, drawings: Drawings, out_folder: Path
-) -> tuple[list[dict[str, Any]], list[str]]:
+) -> tuple[list[dict[str, object]], list[str]]:
     """Returns the data of each episode, and sentences about pictures that cannot be read."""
     problems: list[str] = []
     episodes = []

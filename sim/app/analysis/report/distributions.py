@@ -83,7 +83,7 @@ def _histogram(runs: Runs, labels: Sequence[str], bin_of: Callable[[EpisodeResul
     for lines in runs:
         counted = [line for line in lines if bin_of(line) is not None]
         bins = [bin_of(line) for line in counted]
-        shares.append([proportion_of([each == i for each in bins], counted) for i in range(len(labels))])
+        shares.append([proportion_of([number == i for number in bins], counted) for i in range(len(labels))])
     return Histogram(labels, shares)
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import NotRequired, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.app.analysis.comparison import Run
-from sim.app.analysis.report.plans import PX_M, Sheet, draw_area, draw_plan, sheet_around, shortest_path
+from sim.app.analysis.report.plans import PX_M, Plan, Sheet, draw_area, draw_plan, sheet_around, shortest_path
 from sim.core.configuration import with_fields
 from sim.core.errors import EpisodeError, HouseError
 from sim.core.interface import CameraModel, ConfigError, RobotModel, SuccessRule
@@ -64,15 +64,39 @@ def read_trajectories(runs: Sequence[Run], episode_ids: Sequence[str]) -> tuple[
     return {i: [read(run, i) for run in runs] for i in episode_ids}, problems
 
 
+class DrawnPath(TypedDict):
+    """A trajectory on a sheet; `x`, `y` and `a` are the first value, then differences."""
+
+    x: list[int]
+    y: list[int]
+    """Page units."""
+    a: list[int]
+    """Heading in degrees, clockwise on the page."""
+    d: list[int | None]
+    """Distance to the goal in decimetres; None: no path."""
+    actions: str
+    """One digit per action."""
+    hits: list[list[int]]
+    """Step, x and y of each contact that stopped a motion."""
+    stopped: list[int]
+    """The steps of these contacts."""
+    seen: list[list[int]]
+    """[first, last] of each span of steps with the goal in view."""
+    robot: int
+    """Radius of the robot in page units."""
+    marks: NotRequired[list[list[str | int | None]]]
+    """Kind, step, last step and text of each mark."""
+
+
 @dataclass(frozen=True)
 class Drawings:
     """All drawings of a page; those that several episodes share are stored once."""
 
-    plans: dict[str, Any] = field(default_factory=dict)
+    plans: dict[str, Plan] = field(default_factory=dict)
     """Plans by house and storey (`sim.app.analysis.report.plans.draw_plan`)."""
     areas: dict[str, str] = field(default_factory=dict)
     """The area where a STOP succeeds, by plan and goal."""
-    episodes: dict[str, Any] = field(default_factory=dict)
+    episodes: dict[str, dict[str, object]] = field(default_factory=dict)
     """Drawings by episode id: the names of plan and area, the shortest path, and a path for each run."""
     house_m2: dict[str, float | None] = field(default_factory=dict)
     """Floor area of all rooms of each house; None if the house declares none."""
@@ -84,7 +108,7 @@ class Drawings:
         existing = [trajectory for trajectory in trajectories if trajectory is not None]
         if truth is None:
             sheet = sheet_around(np.vstack([trajectory.positions_m for trajectory in existing]))
-            episode: dict[str, Any] = {"size": sheet.size_px}
+            episode: dict[str, object] = {"size": sheet.size_px}
             radius_m = RobotModel().radius_m
         else:
             result, floor_z_m = runs[0].results[episode_id], float(existing[0].poses[0, 3])
@@ -97,14 +121,14 @@ class Drawings:
         episode["paths"] = [
             None
             if trajectory is None
-            else path_on(sheet, trajectory, radius_m=radius_m) | {"marks": _marks(run, episode_id, trajectory)}
+            else {**path_on(sheet, trajectory, radius_m=radius_m), "marks": _marks(run, episode_id, trajectory)}
             for run, trajectory in zip(runs, trajectories, strict=True)
         ]
         self.episodes[episode_id] = episode
 
     def _target(
         self, truth: GroundTruth, plan: str, goal: str, floor_z_m: float, start_m: Sequence[float]
-    ) -> dict[str, Any]:
+    ) -> dict[str, object]:
         """Draws the area where a STOP succeeds and the shortest path to it, if the house has the goal."""
         try:
             target = truth.target(goal, floor_z_m)
@@ -166,19 +190,14 @@ def ground_truth_of(run: Run, house: House, robot: RobotConfig | None = None) ->
 
 def robot_of(run: Run) -> RobotConfig:
     """Returns the robot of a run: the default robot or that of `--robot`, with the fields that `--config` changed."""
-    robot = load_robot(run.config["robot"])[0] if run.config.get("robot") else RobotConfig()
+    file = run.config.get("robot")
+    robot = load_robot(file)[0] if file else RobotConfig()
     recorded = run.config.get("config", {}).get("robot", {})
     return with_fields(robot, {name: value for name, value in recorded.items() if name != "file"})
 
 
-def path_on(sheet: Sheet, trajectory: Trajectory, *, radius_m: float) -> dict[str, Any]:
-    """Returns a trajectory on a sheet, of a robot with this radius.
-
-    `x`, `y` (page units) and `a` (degrees, clockwise on the page) are the first value, then differences; `d` is the
-    distance to go in decimetres, null where there is no path; `actions` has one digit per action; `hits` are step, x
-    and y of each contact that stopped a motion; `stopped` are the steps of these contacts; `seen` are spans of steps
-    with the goal in view.
-    """
+def path_on(sheet: Sheet, trajectory: Trajectory, *, radius_m: float) -> DrawnPath:
+    """Returns a trajectory on a sheet, of a robot with this radius."""
     places = sheet.place(trajectory.positions_m)
     degrees = np.rad2deg(-np.unwrap(trajectory.poses[:, 2].astype(np.float64))).round().astype(np.int64)
     distances = [round(10.0 * d) if np.isfinite(d) else None for d in trajectory.distance_m.tolist()]
@@ -196,9 +215,9 @@ def path_on(sheet: Sheet, trajectory: Trajectory, *, radius_m: float) -> dict[st
     }
 
 
-def _marks(run: Run, episode_id: str, trajectory: Trajectory) -> list[list[Any]]:
-    found = marks(run.results[episode_id], trajectory)
-    return [[mark.kind, mark.step, mark.until, mark.words] for mark in found]
+def _marks(run: Run, episode_id: str, trajectory: Trajectory) -> list[list[str | int | None]]:
+    moments = marks(run.results[episode_id], trajectory)
+    return [[mark.kind, mark.step, mark.until, mark.words] for mark in moments]
 
 
 def _differences(values: NDArray[np.integer]) -> list[int]:

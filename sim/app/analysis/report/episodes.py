@@ -65,7 +65,7 @@ def columns_of(runs: int) -> list[Column]:
 def row_of(episode_id: str, lines: Sequence[EpisodeResult]) -> Row:
     """Returns the row of an episode from its line in each run."""
     named = list(enumerate(outcome(line) for line in lines))
-    cells = [[each] for each in named] if len(lines) <= 2 else [named]
+    cells = [[text] for text in named] if len(lines) <= 2 else [named]
     collisions = sum(result.collisions for result in lines)
     tokens = _tokens([name for _, name in named])
     return Row(episode_id, lines[0].goal, lines[0].house, cells, tokens, _numbers(lines), collisions)
@@ -104,11 +104,11 @@ def _tokens(outcomes: Sequence[str]) -> list[str]:
     failures = sorted({name for name in outcomes if name != "found"})
     if len(outcomes) == 1:
         return ["failed", *(name for name in failures if name != "failed")] if failures else ["found"]
-    found = [name == "found" for name in outcomes]
+    successes = [name == "found" for name in outcomes]
     if len(outcomes) > 2:
-        return ["all" if all(found) else "some" if any(found) else "none", *failures]
+        return ["all" if all(successes) else "some" if any(successes) else "none", *failures]
     token = {(True, True): "both", (True, False): "only-a", (False, True): "only-b", (False, False): "neither"}
-    return [token[found[0], found[1]], *failures]
+    return [token[successes[0], successes[1]], *failures]
 
 
 def outcome_choices(rows: Sequence[Row]) -> list[tuple[str, str, int]]:

@@ -6,19 +6,19 @@ import json
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from sim.app.analysis.comparison import Run
 from sim.app.analysis.report.drawings import Trajectories
 from sim.app.analysis.report.media import picture_of, video_of
 from sim.app.evaluation.parallel import Shard
+from sim.app.evaluation.results import RunRecord
 
 NO_DEFAULT = (
     "agent", "explorer", "semantics", "weights", "verifier", "split", "house", "labels", "root", "robot", "goal",
     "start_deg", "episodes", "shard", "seed_key",
 )  # fmt: skip
 """Options of `stubborn run` that the command of a run names if they have a value."""
-DEFAULTS: Mapping[str, Any] = {
+DEFAULTS: Mapping[str, object] = {
     "verification": "naive-bayes", "seed": 0, "profile": "fast", "noise": "none", "workers": 1, "replicates": 1,
 }  # fmt: skip
 """Options of `stubborn run` that the command of a run names if their value differs from this one."""
@@ -33,7 +33,7 @@ class RunFacts:
     label: str
     """`A`, `B` and so on; "" for a single run."""
     name: str
-    facts: Sequence[tuple[str, Any]]
+    facts: Sequence[tuple[str, object]]
     command: str
     notes: Sequence[str]
     hint: str
@@ -68,7 +68,7 @@ def facts_of(run: Run, label: str, trajectories: Trajectories, index: int) -> Ru
     )
 
 
-def command_of(config: Mapping[str, Any]) -> str:
+def command_of(config: RunRecord) -> str:
     """Returns the command of a run without `--out`."""
     words, only = ["stubborn", "run"], config.get("only")
     for key in (*NO_DEFAULT, *DEFAULTS):
@@ -82,23 +82,23 @@ def command_of(config: Mapping[str, Any]) -> str:
         words += [f"--{key.replace('_', '-')}", str(value)]
     if only:
         words += ["--only", *map(str, only)]
-    if config.get("settings"):
-        words += ["--config", *(f"{path}={_setting(value)}" for path, value in config["settings"].items())]
+    if settings := config.get("settings"):
+        words += ["--config", *(f"{path}={_setting(value)}" for path, value in settings.items())]
     return shlex.join([*words, *(f"--{name.replace('_', '-')}" for name in FILES if config.get(name))])
 
 
-def _setting(value: Any) -> str:
+def _setting(value: object) -> str:
     return value if isinstance(value, str) else json.dumps(value)
 
 
 def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:
     """Yields sentences about what is missing in a run."""
-    wanted, count, out = run.config.get("episodes"), len(run.results), run.path
-    if isinstance(wanted, int):
+    planned, count, out = run.config.get("episodes"), len(run.results), run.path
+    if isinstance(planned, int):
         if shard := run.config.get("shard"):
-            wanted, out = len(Shard.parse(str(shard)).select(range(wanted))), run.path.parent
-        if count < wanted:
-            yield f"Not finished: {count} of {wanted} episodes have ended. The command with --out {out} runs the rest."
+            planned, out = len(Shard.parse(str(shard)).select(range(planned))), run.path.parent
+        if count < planned:
+            yield f"Not finished: {count} of {planned} episodes have ended. The command with --out {out} runs the rest."
     errors = sum(result.is_error for result in run.results.values())
     if errors:
         yield f"{errors} of {count} episodes ended with an error; they count as failures and are listed below."
@@ -132,4 +132,4 @@ def _missing(run: Run, trajectories: Trajectories, index: int) -> list[tuple[str
         ("pictures of the end", "--record", [picture_of(run, i) for i in ended]),
         ("videos", "--video", [video_of(run, i) for i in ended]),
     )
-    return [(name, option, sum(each is None for each in of), len(of)) for name, option, of in kinds]
+    return [(name, option, sum(file is None for file in of), len(of)) for name, option, of in kinds]

@@ -76,12 +76,12 @@ def grouped(runs: Runs, names: Sequence[str], order: Sequence[str]) -> list[Grou
         names: the group of each episode.
         order: the groups to return; those without an episode are left out.
     """
-    found = []
+    rows = []
     for name in (name for name in order if name in names):
         some = [[line for line, of in zip(lines, names, strict=True) if of == name] for lines in runs]
         shares = [proportion_of([bool(result.success) for result in lines], lines) for lines in some]
-        found.append(Group(name, shares, differences(SUCCESS, some)))
-    return found
+        rows.append(Group(name, shares, differences(SUCCESS, some)))
+    return rows
 
 
 def causes(runs: Runs) -> list[Group]:
@@ -89,14 +89,14 @@ def causes(runs: Runs) -> list[Group]:
     outcomes = [[outcome(line) for line in lines] for lines in runs]
     houses, episodes = houses_of(runs[0]), episodes_of(runs[0])
     known = {name for names in outcomes for name in names} - {"found"}
-    found = []
+    rows = []
     for cause in [*(cause for cause in CAUSES if cause in known), *sorted(known.difference(CAUSES))]:
         failed = [[name == cause for name in names] for names in outcomes]
         shares = [proportion_of(values, runs[0]) for values in failed]
         compared = [paired_difference(failed[0], values, houses, episodes=episodes, most=1.0) for values in failed[1:]]
-        against = [Cell(each, percent=True, difference=True) for each in compared]
-        found.append(Group(cause, shares, against, MEANING.get(cause, _OTHER.get(cause, ""))))
-    return sorted(found, key=lambda group: -sum(share.count for share in group.shares))
+        against = [Cell(estimate, percent=True, difference=True) for estimate in compared]
+        rows.append(Group(cause, shares, against, MEANING.get(cause, _OTHER.get(cause, ""))))
+    return sorted(rows, key=lambda group: -sum(share.count for share in group.shares))
 
 
 _OTHER = {"error": "The episode ended with an error.", "failed": "No cause was recorded."}

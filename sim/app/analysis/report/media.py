@@ -22,13 +22,13 @@ THUMBNAIL_QUALITY = 70
 
 
 def video_of(run: Run, episode_id: str) -> Path | None:
-    """Returns the video of an episode, None if there is none."""
+    """Returns the video of an episode, None if it does not exist."""
     file = video_file(run.path, episode_id)
     return file if file.is_file() else None
 
 
 def picture_of(run: Run, episode_id: str) -> Path | None:
-    """Returns the camera's last picture of an episode, None if there is none."""
+    """Returns the camera's last picture of an episode, None if it does not exist."""
     file = picture_file(run.path, episode_id)
     return file if file.is_file() else None
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TypedDict
 
 import cv2
 import numpy as np
@@ -38,6 +38,18 @@ SMOOTH_PX = 1.5
 _NEIGHBOURS = np.array([(r, c) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c])
 
 
+class Plan(TypedDict):
+    """The drawing of one storey, JSON types."""
+
+    size: tuple[int, int]
+    floor: list[list[int]]
+    """Rectangles."""
+    shapes: list[list[str]]
+    """[category, name, SVG path], from the lowest up."""
+    rooms: list[list[str | int]]
+    """[name, x, y, width]."""
+
+
 @dataclass(frozen=True)
 class Sheet:
     """The place of a storey on the page."""
@@ -64,12 +76,8 @@ def sheet_around(positions_m: NDArray[np.floating], margin_m: float = 1.0) -> Sh
     return Sheet(GridFrame(origin_xy_m=(float(low[0]), float(low[1])), shape=(rows, cols), cell_m=cell))
 
 
-def draw_plan(truth: GroundTruth, floor_z_m: float) -> dict[str, Any]:
-    """Returns the drawing of one storey as JSON types.
-
-    Keys: `size`, `floor` (rectangles), `shapes` ([category, name, SVG path]) from the lowest up, and `rooms`
-    ([name, x, y, width]).
-    """
+def draw_plan(truth: GroundTruth, floor_z_m: float) -> Plan:
+    """Returns the drawing of one storey."""
     sheet = Sheet(truth.space(floor_z_m).frame)
     rooms = [room for room in truth.world.rooms if abs(room.floor_z_m - floor_z_m) < truth.world.rule.same_storey_m]
     return {
@@ -110,7 +118,7 @@ def _objects(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[lis
     """Returns the shapes of the objects on this storey."""
     model, labels = truth.world.model, truth.world.labels
     data, rendered = _at_rest(model), rendered_geoms(model)
-    found: list[tuple[float, list[str]]] = []
+    shapes: list[tuple[float, list[str]]] = []
     for instance in labels.instances:
         geoms = [geom for geom in instance.geom_ids if rendered[geom]]
         if instance.category in LEFT_OUT or not geoms:
@@ -120,8 +128,8 @@ def _objects(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[lis
         highest_m = HIGHEST_GOAL_M if instance.category in GOAL_CATEGORIES else HIGHEST_M
         if -truth.world.rule.same_storey_m < low_m <= highest_m:
             parts = [part for geom in geoms for part in _cut(model, data, geom, -math.inf, math.inf)]
-            found.append((top_m, [instance.category, instance.name, _union(sheet, parts)]))
-    return [shape for _, shape in sorted(found, key=lambda item: item[0])]
+            shapes.append((top_m, [instance.category, instance.name, _union(sheet, parts)]))
+    return [shape for _, shape in sorted(shapes, key=lambda item: item[0])]
 
 
 def _structure(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[list[str]]:
@@ -204,7 +212,7 @@ def _at_rest(model: mujoco.MjModel) -> mujoco.MjData:
 
 
 def _nearest_with_path(space: FreeSpace, target: Target, xy_m: Sequence[float]) -> tuple[int, int] | None:
-    """Returns the nearest cell within 0.3 m from which there is a path; None if there is none."""
+    """Returns the nearest cell within 0.3 m from which there is a path; None if no cell has one."""
     x_m, y_m = float(xy_m[0]), float(xy_m[1])
     window = space.frame.index_of((x_m, y_m, x_m, y_m), 0.3)
     x, y = space.frame.axes(window)

@@ -12,7 +12,7 @@ from sim.app.analysis.tables import Cell
 from sim.task.result import Metric
 
 METRICS: tuple[Metric, ...] = (SUCCESS, SPL, FIRST_SIGHT, COLLISIONS)
-LEAST_RUNS = 3
+MIN_RUNS = 3
 """Least number of runs that make a trend."""
 WIDTH, HEIGHT = 320, 170
 """Size of a chart in its own units, margins included."""
@@ -51,8 +51,8 @@ class Chart:
 
 
 def trend(runs: Runs, labels: Sequence[str]) -> list[Chart]:
-    """Returns the charts of at least `LEAST_RUNS` runs; none for fewer. Metrics that no run has are left out."""
-    if len(runs) < LEAST_RUNS:
+    """Returns the charts of at least `MIN_RUNS` runs; none for fewer. Metrics that no run has are left out."""
+    if len(runs) < MIN_RUNS:
         return []
     charts = (_chart(metric, [mean_cell(metric, lines) for lines in runs], labels) for metric in METRICS)
     return [chart for chart in charts if chart.points]

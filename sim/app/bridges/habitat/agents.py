@@ -22,7 +22,7 @@ import numpy as np
 
 from sim.app.bridges.habitat.config import make_config, with_entries_of
 from sim.app.bridges.habitat.conversions import Conversion, to_action
-from sim.app.bridges.habitat_client import OF_THE_RUN, called, takes_config
+from sim.app.bridges.habitat_client import OF_THE_RUN, Config, called, takes_config
 from sim.app.bridges.process_command import BridgeConfig
 from sim.core.errors import ConfigError
 from sim.core.interface import Action, AgentSpec, CameraModel, Observation, RobotModel, SuccessRule
@@ -70,41 +70,47 @@ class HabitatAgent:
         return to_action(self.agent.act(self._conversion.observations(observation)))
 
 
-def spec_of(name: str, found: Any) -> AgentSpec:
+def spec_of(name: str, declared: object) -> AgentSpec:
     """Returns the declaration of an agent with Habitat's interface.
 
     Args:
         name: the agent's name, for messages.
-        found: a class or factory of such agents, whose sensors `--config sensors=[...]` declares; or an `AgentSpec`
+        declared: a class or factory of such agents, whose sensors `--config sensors=[...]` declares; or an `AgentSpec`
             whose `make` returns such an agent.
 
     Raises:
         ConfigError: it has another type, or an argument of the constructor has the name of a field of the bridge.
     """
-    if isinstance(found, AgentSpec):
-        return _wrapped(name, found)
-    if not callable(found):
-        raise ConfigError(f"Agent '{name}' must be a class, a factory or an AgentSpec, got {type(found).__name__}.")
-    arguments = _arguments(found)
-    taken = {each[0] for each in BRIDGE_FIELDS} & {each.name for each in arguments}
+    if isinstance(declared, AgentSpec):
+        return _wrapped(name, declared)
+    if not callable(declared):
+        raise ConfigError(f"Agent '{name}' must be a class, a factory or an AgentSpec, got {type(declared).__name__}.")
+    arguments = _arguments(declared)
+    taken = {argument[0] for argument in BRIDGE_FIELDS} & {argument.name for argument in arguments}
     if taken:
         raise ConfigError(
             f"Agent '{name}' has an argument '{min(taken)}', which is also a field of the bridge; give a function "
             "without this argument that makes the agent."
         )
-    config = _config_of(found, arguments)
+    config = _config_of(declared, arguments)
 
     def make(
-        *, camera: CameraModel, robot: RobotModel, success: SuccessRule, config: Any, max_steps: int, **_: Any
+        *,
+        camera: CameraModel,
+        robot: RobotModel,
+        success: SuccessRule,
+        config: BridgeConfig,
+        max_steps: int,
+        **_: object,
     ) -> HabitatAgent:
         of_the_run = make_config(camera=camera, robot=robot, success=success, max_steps=max_steps)
         positional, by_name = _values(name, arguments, config, of_the_run)
         with own_command_line():
-            agent = found(*positional, **by_name)
+            agent = declared(*positional, **by_name)
         _require_methods(name, agent)
         return HabitatAgent(agent, _conversion(camera, config))
 
-    description = (inspect.getdoc(found) or "").partition("\n")[0]
+    description = (inspect.getdoc(declared) or "").partition("\n")[0]
     return AgentSpec(make=make, description=description, config=config, uses_segmentation=False, goals=_goals)
 
 
@@ -133,36 +139,38 @@ def _wrapped(name: str, spec: AgentSpec) -> AgentSpec:
     return dataclasses.replace(spec, make=make, painter=draw, goals=_goals)
 
 
-def _conversion(camera: CameraModel, config: Any) -> Conversion:
+def _conversion(camera: CameraModel, config: BridgeConfig) -> Conversion:
     """Returns the conversion that an agent's configuration describes."""
     return Conversion(camera=camera, **{field: getattr(config, field, default) for field, _, default in BRIDGE_FIELDS})
 
 
-def _goals(config: Any) -> tuple[str, ...]:
+def _goals(config: BridgeConfig) -> tuple[str, ...]:
     """Returns the goal categories that the agent knows."""
     return _conversion(CameraModel(), config).goals
 
 
-def _require_methods(name: str, agent: Any) -> None:
+def _require_methods(name: str, agent: object) -> None:
     """Raises ConfigError if an object is not an agent with Habitat's interface."""
     missing = [method for method in ("reset", "act") if not callable(getattr(agent, method, None))]
     if missing:
         raise ConfigError(f"Agent '{name}': a {type(agent).__name__} has no method {' and '.join(missing)}.")
 
 
-def _arguments(found: Callable[..., Any]) -> list[inspect.Parameter]:
+def _arguments(make: Callable[..., object]) -> list[inspect.Parameter]:
     """Returns the arguments of a class or factory, except for *args; an empty list if Python does not know them."""
     try:
-        signature = inspect.signature(found)
+        signature = inspect.signature(make)
     except (TypeError, ValueError):
         return []
-    return [each for each in signature.parameters.values() if each.kind is not inspect.Parameter.VAR_POSITIONAL]
+    return [
+        argument for argument in signature.parameters.values() if argument.kind is not inspect.Parameter.VAR_POSITIONAL
+    ]
 
 
-def _config_of(found: Callable[..., Any], arguments: list[inspect.Parameter]) -> Any:
+def _config_of(make: Callable[..., object], arguments: list[inspect.Parameter]) -> BridgeConfig:
     """Returns a frozen dataclass object with the arguments and the fields of the bridge, with their defaults."""
     fields: list[Any] = []
-    hints = _hints(found)
+    hints = _hints(make)
     for argument in arguments:
         if argument.kind is inspect.Parameter.VAR_KEYWORD:
             fields.append((argument.name, dict[str, Json] | None, None))
@@ -178,20 +186,20 @@ def _config_of(found: Callable[..., Any], arguments: list[inspect.Parameter]) ->
     )()
 
 
-def _require_known_values(config: Any) -> None:
+def _require_known_values(config: BridgeConfig) -> None:
     """Raises ConfigError if a field of the bridge has a value that is not allowed."""
     _goals(config)
 
 
-def _hints(found: Callable[..., Any]) -> dict[str, Any]:
+def _hints(make: Callable[..., object]) -> dict[str, object]:
     """Returns the annotations of a class's constructor or of a factory; an empty dict if they cannot be read."""
     try:
-        return typing.get_type_hints(found.__init__ if isinstance(found, type) else found)
+        return typing.get_type_hints(make.__init__ if isinstance(make, type) else make)
     except Exception:  # names that exist only for type checkers
         return {}
 
 
-def _shown(argument: inspect.Parameter) -> Any:
+def _shown(argument: inspect.Parameter) -> bool | int | float | str | None:
     """Returns the default of an argument for the configuration; None if it is required, or not a plain value."""
     default = argument.default
     if isinstance(default, Path):
@@ -201,21 +209,22 @@ def _shown(argument: inspect.Parameter) -> Any:
 
 
 def _values(
-    name: str, arguments: list[inspect.Parameter], config: Any, of_the_run: Any
-) -> tuple[list[Any], dict[str, Any]]:
+    name: str, arguments: list[inspect.Parameter], config: BridgeConfig, of_the_run: Config
+) -> tuple[list[object], dict[str, object]]:
     """Returns the positional arguments and the arguments by name: those that are set, and the run's configuration.
 
     Raises:
         ConfigError: a required argument is not set.
     """
-    positional: list[Any] = []
-    by_name: dict[str, Any] = {}
+    positional: list[object] = []
+    by_name: dict[str, object] = {}
     missing: list[str] = []
     for argument in arguments:
-        value = _result(getattr(config, argument.name))
+        chosen = getattr(config, argument.name)
         if argument.kind is inspect.Parameter.VAR_KEYWORD:
-            by_name |= {key: _result(each) for key, each in (value or {}).items()}
+            by_name |= {key: _result(item) for key, item in (chosen or {}).items()}
             continue
+        value = _result(chosen)
         required = argument.default is inspect.Parameter.empty
         if value is None and required and argument.name in OF_THE_RUN:
             value = of_the_run
@@ -234,7 +243,7 @@ def _values(
     if missing:
         raise ConfigError(
             f"Agent '{name}' needs the argument {' and '.join(missing)}: give --config "
-            + " ".join(f"agent.{each}=VALUE" for each in missing)
+            + " ".join(f"agent.{argument}=VALUE" for argument in missing)
             + "."
         )
     return positional, by_name
@@ -245,7 +254,7 @@ def _names_file(argument: inspect.Parameter, value: str) -> bool:
     return takes_config(argument) and value.endswith((".yaml", ".yml"))
 
 
-def _result(value: Any) -> Any:
+def _result(value: object) -> object:
     """Returns the result of the function that a text `module:NAME()` names; returns any other value unchanged."""
     with own_command_line():
         return called(value)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sim.app.bridges.habitat.config import get_config
-from sim.app.bridges.habitat.env import Env
+from sim.app.bridges.habitat.conversions import HabitatsAgent
+from sim.app.bridges.habitat.env import Env, Metrics
 from sim.core.errors import ConfigError
 
 _LOG = logging.getLogger("habitat")
+ConfigPaths = Mapping[str, object] | str | Sequence[str] | None
 
 
 class Benchmark:
@@ -23,12 +25,12 @@ class Benchmark:
         options: further arguments of `Env`, such as `split` and `episodes`.
     """
 
-    def __init__(self, config_paths: Any = None, eval_remote: bool = False, **options: Any) -> None:
+    def __init__(self, config_paths: ConfigPaths = None, eval_remote: bool = False, **options: Any) -> None:
         if eval_remote:
             raise ConfigError("eval_remote must be False: there is no evaluation server.")
         self._env = Env(config_paths if isinstance(config_paths, Mapping) else get_config(config_paths), **options)
 
-    def evaluate(self, agent: Any, num_episodes: int | None = None) -> dict[str, float]:
+    def evaluate(self, agent: HabitatsAgent, num_episodes: int | None = None) -> dict[str, float]:
         """Runs the agent and returns the mean of each metric; `collisions` gives `collisions/count` and so on.
 
         Each call begins with the first episode, so that agents are compared on the same ones.
@@ -59,7 +61,7 @@ class Challenge(Benchmark):
     def __init__(self, eval_remote: bool = False, **options: Any) -> None:
         super().__init__(os.environ.get("CHALLENGE_CONFIG_FILE"), eval_remote, **options)
 
-    def submit(self, agent: Any) -> dict[str, float]:
+    def submit(self, agent: HabitatsAgent) -> dict[str, float]:
         """Evaluates the agent, logs the mean of each metric and returns the means."""
         means = self.evaluate(agent)
         for name, value in means.items():
@@ -67,10 +69,10 @@ class Challenge(Benchmark):
         return means
 
 
-def _flat(metrics: dict[str, Any]) -> dict[str, float]:
+def _flat(metrics: Metrics) -> dict[str, float]:
     """Returns metrics without nesting: `collisions/count` for the entry `count` of `collisions`."""
     flat: dict[str, float] = {}
     for name, value in metrics.items():
-        inner = {f"{name}/{key}": each for key, each in value.items()} if isinstance(value, dict) else {name: value}
-        flat |= {key: float(each) for key, each in inner.items()}
+        inner = {f"{name}/{key}": part for key, part in value.items()} if isinstance(value, dict) else {name: value}
+        flat |= {key: float(number) for key, number in inner.items()}
     return flat

@@ -20,10 +20,10 @@ from sim.core.interface import FORWARD_M, MAX_STEPS, TURN_RAD, Action, CameraMod
 from sim.core.reading import read_bytes
 
 _LOG = logging.getLogger("habitat")
-_MOST_BYTES = 1 << 20
-_MOST_VALUES = 20_000
+_MAX_BYTES = 1 << 20
+_MAX_VALUES = 20_000
 """Largest number of values of a file; a value that aliases repeat counts each time."""
-MOST_NAMED = 6
+MAX_NAMED = 6
 """A warning names so many entries."""
 _OLD, _NEW = "SIMULATOR.{}_SENSOR.{}", "habitat.simulator.agents.main_agent.sim_sensors.{}_sensor.{}"
 
@@ -101,7 +101,7 @@ def make_config(
 
 
 def get_config(
-    config_paths: str | Sequence[str] | None = None, overrides: Sequence[Any] | None = None, *_: Any, **__: Any
+    config_paths: str | Sequence[str] | None = None, overrides: Sequence[object] | None = None, *_: object, **__: Any
 ) -> Config:
     """Returns the configuration of this project's task, changed by files and by overrides.
 
@@ -138,12 +138,12 @@ def with_entries_of(config: Config, file: Path) -> Config:
     Raises:
         ConfigError: the file cannot be read.
     """
-    found = config.clone()
-    add(found, _read_yaml(file))
-    return found
+    merged = config.clone()
+    add(merged, _read_yaml(file))
+    return merged
 
 
-def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
+def settings_of(config: Mapping[str, object]) -> dict[str, Any]:
     """Returns the entries of `SETTINGS` whose values differ from those of this project's task.
 
     The tree under `habitat`, which scripts of the new layout also give, will do.
@@ -152,20 +152,20 @@ def settings_of(config: Mapping[str, Any]) -> dict[str, Any]:
         ConfigError: two paths of one setting have different values, such as the widths of RGB and depth, or the
             configuration has no section of either layout.
     """
-    default, found = make_config(), dict[str, Any]()
+    default, settings = make_config(), dict[str, Any]()
     config = _whole(config, default)
     for name, paths in SETTINGS.items():
         values = {path: _at(config, path) for path in paths}
         changed = {path: value for path, value in values.items() if value not in (None, _at(default, path))}
         for path, value in changed.items():
-            if found.setdefault(name, value) != value:
+            if settings.setdefault(name, value) != value:
                 first = next(iter(changed))
                 why = "all images have one camera" if "sensor" in path.lower() else "both layouts must agree"
-                raise ConfigError(f"The configuration has {first}={found[name]!r} and {path}={value!r}; {why}.")
-    return found
+                raise ConfigError(f"The configuration has {first}={settings[name]!r} and {path}={value!r}; {why}.")
+    return settings
 
 
-def log_ignored(config: Mapping[str, Any]) -> None:
+def log_ignored(config: Mapping[str, object]) -> None:
     """Logs the entries that change nothing: those with another value than this project's task, and unknown ones."""
     default = make_config()
     taken = {path for paths in SETTINGS.values() for path in paths}
@@ -178,10 +178,10 @@ def log_ignored(config: Mapping[str, Any]) -> None:
             unknown.append(path)
         else:
             others.append(f"{path}={value!r} (here {here!r})")
-    for what, found in (("have no effect", others), ("are unknown here", unknown)):
-        if found:
-            more = f" and {len(found) - MOST_NAMED} more" if len(found) > MOST_NAMED else ""
-            _warn_once(f"These entries of the configuration {what}: {', '.join(found[:MOST_NAMED])}{more}.")
+    for what, entries in (("have no effect", others), ("are unknown here", unknown)):
+        if entries:
+            more = f" and {len(entries) - MAX_NAMED} more" if len(entries) > MAX_NAMED else ""
+            _warn_once(f"These entries of the configuration {what}: {', '.join(entries[:MAX_NAMED])}{more}.")
 
 
 @functools.cache
@@ -189,7 +189,7 @@ def _warn_once(text: str) -> None:
     _LOG.warning("%s", text)
 
 
-def _whole(config: Mapping[str, Any], default: Config) -> Mapping[str, Any]:
+def _whole(config: Mapping[str, object], default: Config) -> Mapping[str, object]:
     """Returns a configuration, or that whose tree under `habitat` is given.
 
     Raises:
@@ -205,11 +205,11 @@ def _whole(config: Mapping[str, Any], default: Config) -> Mapping[str, Any]:
     return {"habitat": config}
 
 
-def _upper(tree: Mapping[str, Any]) -> dict[str, Any]:
+def _upper(tree: Mapping[str, object]) -> dict[str, object]:
     return {name.upper(): value for name, value in tree.items()}
 
 
-def _at(config: Mapping[str, Any], path: str) -> Any:
+def _at(config: Mapping[str, object], path: str) -> Any:
     """Returns the value at a dotted path; None if the configuration has no such path."""
     value: Any = config
     for name in path.split("."):
@@ -217,7 +217,7 @@ def _at(config: Mapping[str, Any], path: str) -> Any:
     return value
 
 
-def _read_yaml(file: Path) -> Mapping[str, Any]:
+def _read_yaml(file: Path) -> Mapping[str, object]:
     """Returns the content of a YAML file.
 
     Raises:
@@ -227,7 +227,7 @@ def _read_yaml(file: Path) -> Mapping[str, Any]:
         import yaml
     except ImportError:
         raise ConfigError(f"Configuration '{file}': reading YAML needs the package pyyaml (extra `habitat`).") from None
-    content = read_bytes(file, what="Configuration", most=_MOST_BYTES)
+    content = read_bytes(file, what="Configuration", most=_MAX_BYTES)
     try:
         tree = yaml.safe_load(content)
         values = 0
@@ -235,8 +235,8 @@ def _read_yaml(file: Path) -> Mapping[str, Any]:
         while stack:
             value = stack.pop()
             values += 1
-            if values > _MOST_VALUES:
-                raise ConfigError(f"Configuration '{file}' has more than {_MOST_VALUES} values.")
+            if values > _MAX_VALUES:
+                raise ConfigError(f"Configuration '{file}' has more than {_MAX_VALUES} values.")
             stack += value.values() if isinstance(value, Mapping) else value if isinstance(value, list) else ()
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         if isinstance(error, ConfigError):

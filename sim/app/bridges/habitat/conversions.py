@@ -20,7 +20,7 @@ import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from gymnasium import spaces
@@ -46,6 +46,13 @@ class Observations(_Observation):
 
 HabitatSimActions = HabitatActions()
 """`HabitatSimActions.MOVE_FORWARD` or `.move_forward` is 1, as in Habitat."""
+
+
+class HabitatsAgent(Protocol):
+    """An agent with Habitat's interface."""
+
+    def reset(self) -> None: ...  # noqa: D102
+    def act(self, observations: Observations) -> object: ...  # noqa: D102
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,29 +90,31 @@ class Conversion:
 
     def observations(self, observation: Observation) -> Observations:
         """Returns an observation in Habitat's form; it shares no memory with the given one."""
-        found = Observations({name: np.array(value) for name, value in observation.items()})
-        if "depth" in found:
-            found["depth"] = self._depth(found["depth"])[:, :, None]
-        if "semantic" in found:
-            found["semantic"] = found["semantic"].astype(np.int32)[:, :, None]
+        converted = Observations({name: np.array(value) for name, value in observation.items()})
+        if "depth" in converted:
+            converted["depth"] = self._depth(converted["depth"])[:, :, None]
+        if "semantic" in converted:
+            converted["semantic"] = converted["semantic"].astype(np.int32)[:, :, None]
         forward_m, left_m = observation["gps"]
-        found["gps"] = np.array([forward_m, 0.0 - left_m], np.float32)
-        found["compass"] = (np.round(observation["compass"] / COMPASS_STEP_RAD) * COMPASS_STEP_RAD).astype(np.float32)
+        converted["gps"] = np.array([forward_m, 0.0 - left_m], np.float32)
+        converted["compass"] = (np.round(observation["compass"] / COMPASS_STEP_RAD) * COMPASS_STEP_RAD).astype(
+            np.float32
+        )
         number = self.goal_number(GOAL_CATEGORIES[int(observation["objectgoal"][0])])
-        found["objectgoal"] = np.array([number], np.int64)
-        return found
+        converted["objectgoal"] = np.array([number], np.int64)
+        return converted
 
     def space(self, own: Mapping[str, spaces.Space[Any]]) -> spaces.Dict:
         """Returns the space of the observations in Habitat's form, from the spaces of this project's sensors."""
-        found = dict(own)
+        spaces_by_name = dict(own)
         height_px, width_px = self.camera.height_px, self.camera.width_px
-        found["objectgoal"] = spaces.Box(0, len(self.goals) - 1, (1,), np.int64)
-        if "depth" in found:
+        spaces_by_name["objectgoal"] = spaces.Box(0, len(self.goals) - 1, (1,), np.int64)
+        if "depth" in spaces_by_name:
             deepest = 1.0 if self.normalize_depth else self.camera.max_depth_m
-            found["depth"] = spaces.Box(0.0, deepest, (height_px, width_px, 1), np.float32)
-        if "semantic" in found:
-            found["semantic"] = spaces.Box(0, len(MPCAT40) - 1, (height_px, width_px, 1), np.int32)
-        return spaces.Dict(found)
+            spaces_by_name["depth"] = spaces.Box(0.0, deepest, (height_px, width_px, 1), np.float32)
+        if "semantic" in spaces_by_name:
+            spaces_by_name["semantic"] = spaces.Box(0, len(MPCAT40) - 1, (height_px, width_px, 1), np.int32)
+        return spaces.Dict(spaces_by_name)
 
     def _depth(self, depth_m: np.ndarray) -> np.ndarray:
         """Returns depth clipped to the camera's range and scaled, float32 (h, w)."""
@@ -114,7 +123,7 @@ class Conversion:
         return ((clipped - near_m) / (far_m - near_m) if self.normalize_depth else clipped).astype(np.float32)
 
 
-def to_action(given: Any) -> Action:
+def to_action(chosen: object) -> Action:
     """Returns the action that a Habitat agent gave: a number, a name, or a dict with the key `action`.
 
     A number may be an integer of Python or NumPy, or a tensor or array of one element; a name may be in upper case.
@@ -123,15 +132,15 @@ def to_action(given: Any) -> Action:
         AgentError: it is not one of the four actions.
     """
     try:
-        inner = from_habitat(given)
+        inner = from_habitat(chosen)
         number = ACTION_IDS.get(inner.lower()) if isinstance(inner, str) else operator.index(inner)
     except Exception:  # that of the user's class too
         number = None
     if number in (ACTION_IDS["look_up"], ACTION_IDS["look_down"]):
-        raise AgentError(f"Action {reprlib.repr(given)}: the camera of this robot does not tilt.")
+        raise AgentError(f"Action {reprlib.repr(chosen)}: the camera of this robot does not tilt.")
     if number is None or number not in tuple(Action):
         names = ", ".join(f"{number} {name}" for name, number in ACTION_IDS.items() if number < len(Action))
         raise AgentError(
-            f'{reprlib.repr(given)} is no action. An action is one of {names}, or a dict {{"action": one of these}}.'
+            f'Unknown action {reprlib.repr(chosen)}. An action is one of {names}, or a dict {{"action": one of these}}.'
         )
     return Action(number)

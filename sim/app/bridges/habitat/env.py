@@ -28,6 +28,10 @@ DRAWN_EPISODES = 5
 _defaults: dict[str, Any] = {}
 
 
+Metrics = dict[str, float | dict[str, float]]
+"""The metrics of an episode by Habitat's names; `collisions` has two numbers."""
+
+
 @contextlib.contextmanager
 def default_options(**options: Any) -> Iterator[None]:
     """Sets default options of each `Env` that is made inside the `with` block; `stubborn habitat` uses it for scripts.
@@ -64,22 +68,22 @@ class Env:
         ConfigError, EpisodeError, HouseError: an option or value of the configuration is not allowed.
     """
 
-    def __init__(self, config: Mapping[str, Any] | None = None, dataset: None = None, **options: Any) -> None:
+    def __init__(self, config: Mapping[str, object] | None = None, dataset: None = None, **options: Any) -> None:
         if dataset is not None:
             raise ConfigError("Env takes no dataset: split= names a split, house= an MJCF file.")
         log_ignored(config or {})
-        given = settings_of(config or {}) | _defaults | {k: v for k, v in options.items() if v is not None}
-        _check_types(given)
-        if "house" in given:
-            given.pop("split", None)
-        self._seed = int(given.pop("seed", 0))
-        count = given.pop("episodes", None)
-        normalize_depth = bool(given.pop("normalize_depth", True))
-        camera = _camera(given)
-        categories = given.pop("categories", "mp3d")
+        options = settings_of(config or {}) | _defaults | {k: v for k, v in options.items() if v is not None}
+        _check_types(options)
+        if "house" in options:
+            options.pop("split", None)
+        self._seed = int(options.pop("seed", 0))
+        count = options.pop("episodes", None)
+        normalize_depth = bool(options.pop("normalize_depth", True))
+        camera = _camera(options)
+        categories = options.pop("categories", "mp3d")
         self._conversion = Conversion(camera=camera, categories=categories, normalize_depth=normalize_depth)
-        given.setdefault("sensors", ("rgb", "depth"))
-        self._env = ObjectNavEnv(camera=camera, **given)
+        options.setdefault("sensors", ("rgb", "depth"))
+        self._env = ObjectNavEnv(camera=camera, **options)
         self._listed = self._first_episodes(count)
         self._number = -1
         self._episode = self._listed[0]
@@ -88,7 +92,9 @@ class Env:
         self.sim = Simulator(self._env)
         self.config = config if config is not None else self._own_config()
         self.action_space = spaces.Discrete(len(Action))
-        self.observation_space = self._conversion.space({each.name: each.space(camera) for each in self._env.sensors})
+        self.observation_space = self._conversion.space(
+            {sensor.name: sensor.space(camera) for sensor in self._env.sensors}
+        )
 
     @property
     def episodes(self) -> list[ObjectGoalNavEpisode]:
@@ -98,14 +104,14 @@ class Env:
     @episodes.setter
     def episodes(self, chosen: Iterable[ObjectGoalNavEpisode]) -> None:
         """Chooses some of these episodes, and their order; the next `reset` starts the first one."""
-        known = {each.episode_id: each for each in self._listed}
-        ids = [each.episode_id for each in chosen]
-        other = next((each for each in ids if each not in known), None)
+        known = {episode.episode_id: episode for episode in self._listed}
+        ids = [episode.episode_id for episode in chosen]
+        other = next((episode_id for episode_id in ids if episode_id not in known), None)
         if other is not None or not ids:
             raise ConfigError(
                 f"episodes must be one or more of env.episodes, got {'none' if other is None else other}."
             )
-        self._listed = [known[each] for each in ids]
+        self._listed = [known[episode_id] for episode_id in ids]
         self.rewind()
 
     @property
@@ -136,7 +142,7 @@ class Env:
         self._over = False
         return self._conversion.observations(observation)
 
-    def step(self, action: Any, **others: Any) -> Observations:
+    def step(self, action: object, **others: object) -> Observations:
         """Carries out an action (a number, a name, or a dict with the key `action`) and returns the observations.
 
         Raises:
@@ -147,7 +153,7 @@ class Env:
         self._over = terminated or truncated
         return self._conversion.observations(observation)
 
-    def get_metrics(self) -> dict[str, Any]:
+    def get_metrics(self) -> Metrics:
         """Returns the metrics so far, with Habitat's names (see the class).
 
         Raises:
@@ -175,7 +181,7 @@ class Env:
         """Frees the renderers; the environment cannot be used any more."""
         self._env.close()
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> object:
         raise _lacks(self, "Env", name)
 
     def __enter__(self) -> Env:
@@ -194,7 +200,9 @@ class Env:
             names = ",".join(env.split.houses)
             drawn = [env.draw_episode(rng, episode_id=f"{names}_{i:04d}") for i, rng in enumerate(rngs)]
             return [self._known(episode) for episode in drawn]
-        known = [each for each in env.split.episodes if each.goal in goals and env.goal in (None, each.goal)]
+        known = [
+            episode for episode in env.split.episodes if episode.goal in goals and env.goal in (None, episode.goal)
+        ]
         if not known:
             raise ConfigError(f"Split '{env.split.name}' has no episode with a goal of {', '.join(goals)}.")
         if count is not None and count > len(known):
@@ -252,7 +260,7 @@ class Simulator:
         """
         return self.paths.distance_m(position_a, position_b)
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> object:
         raise _lacks(self, "Env.sim", name)
 
 
@@ -266,13 +274,13 @@ class AgentState:
         """A quaternion xyzw, float32 (4,)."""
 
 
-def _lacks(thing: object, what: str, name: str) -> AttributeError:
+def _lacks(owner: object, what: str, name: str) -> AttributeError:
     """Returns the error for an attribute that Habitat's class has and ours does not."""
-    names = sorted({n for n in (*dir(type(thing)), *vars(thing)) if not n.startswith("_")})
+    names = sorted({n for n in (*dir(type(owner)), *vars(owner)) if not n.startswith("_")})
     return AttributeError(f"{what} of this project has no '{name}'. It has: {', '.join(names)}.")
 
 
-_TYPES: Mapping[str, tuple[Any, str]] = {
+_TYPES: Mapping[str, tuple[type | tuple[type, ...], str]] = {
     **dict.fromkeys(("episodes", "seed", "max_steps", "width_px", "height_px"), (numbers.Integral, "an integer")),
     **dict.fromkeys(("hfov_deg", "min_depth_m", "max_depth_m"), (numbers.Real, "a number")),
     "normalize_depth": (bool, "True or False"),
@@ -281,31 +289,31 @@ _TYPES: Mapping[str, tuple[Any, str]] = {
 """Types of options, and their names in messages."""
 
 
-def _check_types(given: Mapping[str, Any]) -> None:
+def _check_types(options: Mapping[str, object]) -> None:
     """Raises ConfigError for an option of another type than `_TYPES` says."""
     for name, (kind, words) in _TYPES.items():
-        value = given.get(name)
+        value = options.get(name)
         if value is not None and (not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool)):
             raise ConfigError(f"{name} must be {words}, got {value!r:.100}.")
 
 
-def _camera(given: dict[str, Any]) -> CameraModel:
+def _camera(options: dict[str, Any]) -> CameraModel:
     """Returns the camera that the options describe, and removes its settings from the options."""
     fields: dict[str, Any] = {}
     for name in ("width_px", "height_px", "min_depth_m", "max_depth_m"):
-        if name in given:
-            fields[name] = given.pop(name)
-    if "hfov_deg" in given:
-        fields["hfov_rad"] = math.radians(given.pop("hfov_deg"))
-    if "position" in given:
-        fields["height_m"] = _height_m(given.pop("position"))
-    camera = given.pop("camera", None)
+        if name in options:
+            fields[name] = options.pop(name)
+    if "hfov_deg" in options:
+        fields["hfov_rad"] = math.radians(options.pop("hfov_deg"))
+    if "position" in options:
+        fields["height_m"] = _height_m(options.pop("position"))
+    camera = options.pop("camera", None)
     if isinstance(camera, CameraModel):
         return camera
     return CameraModel(**fields | dict(camera or {}))
 
 
-def _height_m(position: Any) -> float:
+def _height_m(position: Iterable[float]) -> float:
     """Returns the height of a camera of Habitat's from its position: right, up and back, metres.
 
     Raises:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import msgspec
 
@@ -42,7 +41,7 @@ class ObjectGoalNavEpisode:
     start_position: list[float]
     start_rotation: list[float]
     object_category: str
-    info: dict[str, Any]
+    info: dict[str, object]
     """`geodesic_distance`: recorded length of the shortest path, metres; None: unknown."""
     goals_file: Path
     """The file of the house's episodes and goals; it does not exist for episodes that are drawn in a house file."""
@@ -64,12 +63,12 @@ class ObjectGoalNavEpisode:
         content = read_gzip_json(self.goals_file, _GoalsFile, what="Episode file")
         return [
             ObjectGoal(
-                object_id=str(each.object_id),
-                object_category=each.object_category,
-                position=each.position,
-                view_points=[to_config(place) for place in each.view_points],
+                object_id=str(goal.object_id),
+                object_category=goal.object_category,
+                position=goal.position,
+                view_points=[to_config(place) for place in goal.view_points],
             )
-            for each in content.goals_by_category.get(self.goals_key, [])
+            for goal in content.goals_by_category.get(self.goals_key, [])
         ]
 
 
@@ -79,7 +78,7 @@ class _GoalEntry(msgspec.Struct):
     object_id: str | int
     object_category: str
     position: list[float]
-    view_points: list[dict[str, Any]] = msgspec.field(default_factory=list)
+    view_points: list[dict[str, object]] = msgspec.field(default_factory=list)
 
 
 class _GoalsFile(msgspec.Struct):

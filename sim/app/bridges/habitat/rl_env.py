@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from gymnasium import spaces
-
 from sim.app.bridges.habitat.config import Config
 from sim.app.bridges.habitat.conversions import Observations
 from sim.app.bridges.habitat.env import Env
@@ -22,10 +20,10 @@ class RLEnv:
         config, dataset, options: arguments of `Env`.
     """
 
-    def __init__(self, config: Mapping[str, Any] | None = None, dataset: None = None, **options: Any) -> None:
+    def __init__(self, config: Mapping[str, object] | None = None, dataset: None = None, **options: Any) -> None:
         self._env = Env(config, dataset, **options)
-        self.action_space: spaces.Space[Any] = self._env.action_space
-        self.observation_space: spaces.Space[Any] = self._env.observation_space
+        self.action_space = self._env.action_space
+        self.observation_space = self._env.observation_space
         self.number_of_episodes = self._env.number_of_episodes
 
     @property
@@ -34,7 +32,7 @@ class RLEnv:
         return self._env
 
     @property
-    def config(self) -> Mapping[str, Any] | Config:
+    def config(self) -> Mapping[str, object] | Config:
         """The configuration."""
         return self._env.config
 
@@ -52,16 +50,16 @@ class RLEnv:
         """Starts the next episode and returns its observations."""
         return self._env.reset()
 
-    def step(self, *arguments: Any, **named: Any) -> tuple[Observations, Any, bool, Any]:
+    def step(self, *arguments: object, **named: object) -> tuple[Observations, object, bool, Any]:
         """Carries out an action (see `Env.step`) and returns observations, reward, end and further values."""
         observations = self._env.step(*arguments, **named)
         return observations, self.get_reward(observations), self.get_done(observations), self.get_info(observations)
 
-    def get_reward_range(self) -> Any:
+    def get_reward_range(self) -> object:
         """Returns the smallest and the largest reward."""
         raise NotImplementedError
 
-    def get_reward(self, observations: Observations) -> Any:
+    def get_reward(self, observations: Observations) -> object:
         """Returns the reward of the last action."""
         raise NotImplementedError
 

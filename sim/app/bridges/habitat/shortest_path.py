@@ -76,8 +76,8 @@ class ShortestPaths:
     def _on_storey(self, places: Places) -> list[tuple[float, float]]:
         """Returns x and y, in the project's frame, of the places that are on the storey."""
         truth, floor_z_m = self.storey
-        found = (from_position(place) for place in places)
-        return [(x_m, y_m) for x_m, y_m, z_m in found if abs(z_m - floor_z_m) < truth.success.same_storey_m]
+        points = (from_position(place) for place in places)
+        return [(x_m, y_m) for x_m, y_m, z_m in points if abs(z_m - floor_z_m) < truth.success.same_storey_m]
 
 
 def places_of(positions: ArrayLike) -> Places:
@@ -87,9 +87,9 @@ def places_of(positions: ArrayLike) -> Places:
         ConfigError: they are something else.
     """
     try:
-        given = np.asarray(positions, np.float64).reshape(-1, 3)
+        points = np.asarray(positions, np.float64).reshape(-1, 3)
     except (TypeError, ValueError):
-        given = np.full((1, 3), math.nan)
-    if not given.size or not np.isfinite(given).all():
+        points = np.full((1, 3), math.nan)
+    if not points.size or not np.isfinite(points).all():
         raise ConfigError(f"Positions are (3,) or (n, 3) finite numbers, in metres, got {positions!r:.80}.")
-    return tuple((right, up, back) for right, up, back in given.tolist())
+    return tuple((right, up, back) for right, up, back in points.tolist())

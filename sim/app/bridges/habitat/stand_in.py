@@ -63,13 +63,13 @@ def lacking(error: BaseException) -> str | None:
     """Returns a sentence that names what the stand-in lacks if an import failed for this reason; else None."""
     if not installed() or not isinstance(error, ImportError) or (error.name or "").partition(".")[0] != "habitat":
         return None
-    found = re.match(r"cannot import name '(\w+)'", str(error))
-    return f"'{error.name}{f'.{found[1]}' if found else ''}' {NOT_IN_THE_STAND_IN}."
+    match = re.match(r"cannot import name '(\w+)'", str(error))
+    return f"'{error.name}{f'.{match[1]}' if match else ''}' {NOT_IN_THE_STAND_IN}."
 
 
 def _is_there() -> bool:
     """Returns whether a package `habitat` can be imported; a folder without `__init__.py` does not count."""
     if "habitat" in sys.modules:
         return True
-    found = importlib.util.find_spec("habitat")
-    return found is not None and found.origin is not None
+    spec = importlib.util.find_spec("habitat")
+    return spec is not None and spec.origin is not None

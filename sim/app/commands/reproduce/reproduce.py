@@ -244,7 +244,7 @@ def with_cause(of: Run, result: EpisodeResult) -> EpisodeResult:
 def notes_of(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequence[str]) -> list[str]:
     """Returns the notes of a table: episodes, split, how intervals are made, the command, errors and code."""
     some = next(iter(runs.values()))
-    config, split, versions = some.config, some.config["split_identity"], some.config["versions"]
+    config, split, versions = some.config, some.recorded("split_identity"), some.config["versions"]
     houses = len({some.results[i].house for i in common})
     errors = sum(of.results[i].is_error for of in runs.values() for i in common)
     codes = Counter(code_of(of, i) for of in runs.values() for i in common)

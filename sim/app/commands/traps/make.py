@@ -86,7 +86,7 @@ def main(args: Args) -> int:
 def write_family_traps(args: Args, keys: Sequence[TrapKey]) -> int:
     """Writes traps, each with one episode."""
     episodes: list[Episode] = []
-    goals: dict[str, dict[str, list[habitat.Json]]] = {}
+    goals: dict[str, dict[str, list[habitat.Goal]]] = {}
     write = functools.partial(write_family_trap, args.out)
     for episode, listed, line in ordered_map(write, keys, workers=args.workers):
         episodes.append(episode)
@@ -96,7 +96,7 @@ def write_family_traps(args: Args, keys: Sequence[TrapKey]) -> int:
     return 0
 
 
-def write_family_trap(folder: Path, key: TrapKey) -> tuple[Episode, dict[str, list[habitat.Json]], str]:
+def write_family_trap(folder: Path, key: TrapKey) -> tuple[Episode, dict[str, list[habitat.Goal]], str]:
     """Writes one trap; returns its episode, its goals in Habitat's form, and a line about it."""
     made = draw_trap(*key)
     facts, trap = made.facts, made.trap

@@ -95,15 +95,15 @@ def definition(name: str) -> str:
         name: a key of `FIELDS`.
     """
     parts = ["\n".join(FIELDS[name])]
-    parts += [f"MSG: {each}\n" + "\n".join(FIELDS[each]) for each in _contained(name)]
+    parts += [f"MSG: {kind}\n" + "\n".join(FIELDS[kind]) for kind in _contained(name)]
     return f"\n{_SEPARATOR}\n".join(parts) + "\n"
 
 
 def _contained(name: str) -> list[str]:
     """Returns the types that a type contains, at any depth, each once."""
-    found: dict[str, None] = {}
+    kinds: dict[str, None] = {}
     for field in FIELDS[name]:
         kind = field.split()[0].partition("[")[0]
         if kind in FIELDS:
-            found |= dict.fromkeys([kind, *_contained(kind)])
-    return list(found)
+            kinds |= dict.fromkeys([kind, *_contained(kind)])
+    return list(kinds)

@@ -8,7 +8,6 @@ y down. The frames are those of REP-105: `map` (the house) -> `odom` (the start 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import CameraModel
 from sim.sensors.scan import ScanConfig
 
-Message = dict[str, Any]
+Message = dict[str, object]
 MAP, ODOM, BASE, CAMERA, OPTICAL, LASER = (
     "map", "odom", "base_link", "camera_link", "camera_optical_frame", "laser",
 )  # fmt: skip
@@ -57,7 +56,7 @@ def depth_image(time_s: float, depth_m: NDArray[np.float32], camera: CameraModel
     return _image(time_s, np.rint(seen_m * np.float32(1000.0)).astype("<u2"), "16UC1")
 
 
-def _image(time_s: float, image: NDArray[Any], encoding: str) -> Message:
+def _image(time_s: float, image: NDArray, encoding: str) -> Message:
     height, width = image.shape[:2]
     content = np.ascontiguousarray(image).tobytes()
     return {

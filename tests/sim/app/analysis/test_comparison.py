@@ -34,8 +34,8 @@ def houses(count: int) -> list[str]:
 
 def test_two_pairs_that_differ_by_nothing_and_by_one() -> None:
     half = 12.7062 * 0.5  # Student's t of 1, standard error of (0, 1)
-    found = paired_difference([1.0, 0.0], [1.0, 1.0], houses(2))
-    assert (found.mean, found.low, found.high) == pytest.approx((0.5, 0.5 - half, 0.5 + half), abs=1e-4)
+    difference = paired_difference([1.0, 0.0], [1.0, 1.0], houses(2))
+    assert (difference.mean, difference.low, difference.high) == pytest.approx((0.5, 0.5 - half, 0.5 + half), abs=1e-4)
 
 
 def test_a_fifth_of_a_hundred_pairs_gained() -> None:

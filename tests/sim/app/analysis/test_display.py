@@ -19,8 +19,8 @@ from tests.helpers.results import a_result
 def printed(*objects: object, terminal: bool = False) -> str:
     stream = io.StringIO()
     console = PlainConsole(file=stream, width=100, force_terminal=terminal, color_system=None)
-    for each in objects:
-        console.print(each, highlight=False)
+    for item in objects:
+        console.print(item, highlight=False)
     return stream.getvalue()
 
 

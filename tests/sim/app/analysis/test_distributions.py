@@ -46,10 +46,10 @@ def test_groups_hold_each_episode_once_and_differences_are_from_the_first_run() 
     first = [line(success=float(i % 2)) for i in range(6)]
     second, third = [line(success=1.0)] * 6, [line(success=0.0)] * 6
     names = ["a", "b", "a", "c", "c", "c"]
-    found = grouped([first, second, third], names, ["c", "b", "nothing", "a"])
-    assert [group.name for group in found] == ["c", "b", "a"]
-    assert [share.of for group in found for share in group.shares] == [3, 3, 3, 1, 1, 1, 2, 2, 2]
-    assert [[cell.estimate.mean for cell in group.differences] for group in found] == [
+    groups = grouped([first, second, third], names, ["c", "b", "nothing", "a"])
+    assert [group.name for group in groups] == ["c", "b", "a"]
+    assert [share.of for group in groups for share in group.shares] == [3, 3, 3, 1, 1, 1, 2, 2, 2]
+    assert [[cell.estimate.mean for cell in group.differences] for group in groups] == [
         [pytest.approx(1 / 3), pytest.approx(-2 / 3)], [0.0, -1.0], [1.0, 0.0]
     ]  # fmt: skip
 
@@ -61,7 +61,7 @@ def counts_of(labels: Sequence[str], histogram: Histogram) -> dict[str, int]:
 
 def test_replicates_of_an_episode_do_not_make_the_interval_narrower() -> None:
     once = [line(episode_id=f"e{i}", house=f"h{i}", spl=i / 10, stop_confidence=0.5) for i in range(8)]
-    often = [replace(each, episode_id=f"{each.episode_id}~{k}") for each in once for k in range(1, 6)]
+    often = [replace(line, episode_id=f"{line.episode_id}~{k}") for line in once for k in range(1, 6)]
     for few, many in zip(spl_histogram([once]).shares[0], spl_histogram([often]).shares[0], strict=True):
         assert many.count == 5 * few.count
         assert many.interval == pytest.approx(few.interval)
@@ -71,7 +71,7 @@ def test_replicates_of_an_episode_do_not_make_the_interval_narrower() -> None:
 def test_spl_counts_failures_apart_and_each_tenth_from_its_lower_edge() -> None:
     lines = [line(spl=value) for value in (0.0999, 0.1, 0.95, 1.0)]
     lines.append(line(spl=0.0, success=0.0))
-    lines = [replace(each, episode_id=f"e{i}", house=f"h{i}") for i, each in enumerate(lines)]
+    lines = [replace(line, episode_id=f"e{i}", house=f"h{i}") for i, line in enumerate(lines)]
     histogram = spl_histogram([lines, []])
     assert counts_of(SPL_LABELS, histogram) == {"failed": 1, "0-0.1": 1, "0.1-0.2": 1, "0.9-1": 2}
     assert [{share.of for share in shares} for shares in histogram.shares] == [{5}, {0}]
@@ -113,11 +113,11 @@ def test_confidence_that_equals_the_share_of_correct_stops_has_no_calibration_er
 def test_calibration_counts_stops_with_a_confidence_in_tenths() -> None:
     lines = [*stops((0.0, 0), (0.31, 0), (0.39, 1), (1.0, 1)), line(stop_confidence=None)]
     lines.append(line(end_reason="max_steps", success=0.0, stop_confidence=0.9))
-    found = calibration(lines)
-    assert found.stops == 5
-    assert found.correct.of == 4
-    assert [(b.low, b.correct.count, b.correct.of) for b in found.bins] == [(0.0, 0, 1), (0.3, 1, 2), (0.9, 1, 1)]
-    assert found.bins[1].confidence == pytest.approx(0.35)
+    curve = calibration(lines)
+    assert curve.stops == 5
+    assert curve.correct.of == 4
+    assert [(b.low, b.correct.count, b.correct.of) for b in curve.bins] == [(0.0, 0, 1), (0.3, 1, 2), (0.9, 1, 1)]
+    assert curve.bins[1].confidence == pytest.approx(0.35)
     assert calibration([line()]).bins == []
 
 
@@ -145,6 +145,6 @@ def test_two_runs_are_no_trend_and_a_number_that_no_run_has_is_left_out() -> Non
 
 def test_a_proportion_is_over_episodes_whatever_their_number_of_replicates() -> None:
     lines = [line(episode_id=name) for name in ("x", "x~1", "x~2", "y")]
-    found = proportion_of([True, True, True, False], lines)
-    assert (found.count, found.of, found.percent) == (3, 4, 50.0)
+    proportion = proportion_of([True, True, True, False], lines)
+    assert (proportion.count, proportion.of, proportion.percent) == (3, 4, 50.0)
     assert proportion_of([], []).percent == 0.0

@@ -62,7 +62,7 @@ def test_a_pipe_gets_a_line_when_an_episode_begins_while_it_runs_and_when_it_end
     assert first == "e0 begins: looking for tv monitor in house val_00"
     assert running
     pace = r"\d+\.\d steps/s, at most \d+ (s|min) left"
-    assert all(re.fullmatch(rf"\[0/1\] running: e0, step \d+ of 500(; {pace})?", each) for each in running)
+    assert all(re.fullmatch(rf"\[0/1\] running: e0, step \d+ of 500(; {pace})?", line) for line in running)
     assert re.search(pace, running[-1])
     assert last == "[1/1] e0: tv monitor found after 3 steps, 1 s"
 
@@ -81,20 +81,20 @@ def test_silences_grow_so_that_the_log_of_a_long_episode_stays_short() -> None:
 
 
 def test_the_time_left_follows_from_the_steps_of_ended_episodes() -> None:
-    running = [each for each in report(("b0", itertools.count(10).__next__), ended=4) if "running" in each]
-    found = re.findall(r"step (\d+) of 500; ([\d.]+) steps/s, about ([\d.]+) s left", running[-1])[0]
-    step, rate, left_s = map(float, found)
+    running = [line for line in report(("b0", itertools.count(10).__next__), ended=4) if "running" in line]
+    numbers = re.findall(r"step (\d+) of 500; ([\d.]+) steps/s, about ([\d.]+) s left", running[-1])[0]
+    step, rate, left_s = map(float, numbers)
     assert left_s == pytest.approx((5 * 40 + 40 - step) / rate, abs=1.0)
 
 
 def test_no_time_left_is_named_where_the_last_episode_is_longer_than_those_before() -> None:
-    running = [each for each in report(("b0", itertools.count(60).__next__), ended=4, total=5) if "running" in each]
+    running = [line for line in report(("b0", itertools.count(60).__next__), ended=4, total=5) if "running" in line]
     assert running
-    assert not any("left" in each for each in running)
+    assert not any("left" in line for line in running)
 
 
 def test_many_running_episodes_are_counted_and_workers_elsewhere_have_no_steps() -> None:
-    many = [each for each in report(*((f"b{i}", lambda: 1) for i in range(5))) if "running" in each]
+    many = [line for line in report(*((f"b{i}", lambda: 1) for i in range(5))) if "running" in line]
     assert "b2, step 1 of 500 and 2 more" in many[-1]
-    unknown = [each for each in report(("b0", lambda: None)) if "running" in each]
+    unknown = [line for line in report(("b0", lambda: None)) if "running" in line]
     assert re.search(r"running: b0 for \d+ s$", unknown[-1])

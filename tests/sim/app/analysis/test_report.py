@@ -154,9 +154,9 @@ def test_the_plan_shows_objects_at_their_positions_and_leaves_doorways_open() ->
 
 def test_a_plan_shows_one_storey() -> None:
     truth = GroundTruth(World(two_storeys()))
-    for floor_z_m, there in ((0.0, "bed"), (3.0, "sofa")):
+    for floor_z_m, category_of_storey in ((0.0, "bed"), (3.0, "sofa")):
         plan = draw_plan(truth, floor_z_m)
-        assert {category for category, _, _ in plan["shapes"]} == {there, "wall"}
+        assert {category for category, _, _ in plan["shapes"]} == {category_of_storey, "wall"}
         assert [name for name, *_ in plan["rooms"]] == ["living" if floor_z_m == 0.0 else "bedroom"]
 
 

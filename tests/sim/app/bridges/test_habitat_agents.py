@@ -80,9 +80,9 @@ def observation(goal: str = "bed") -> dict[str, Any]:
     }
 
 
-def build(found: Any, **config: Any) -> HabitatAgent:
+def build(declared: Any, **config: Any) -> HabitatAgent:
     """Returns the agent of a class, with some fields of its configuration."""
-    spec = spec_of("habitat:mine:X", found)
+    spec = spec_of("habitat:mine:X", declared)
     parts = {"camera": CAMERA, "robot": RobotModel(), "success": SuccessRule(), "segmenter": None, "verifier": None}
     agent = spec.build("mine", max_steps=77, config=with_fields(spec.config, config), **parts)
     assert isinstance(agent, HabitatAgent)
@@ -90,37 +90,37 @@ def build(found: Any, **config: Any) -> HabitatAgent:
 
 
 def test_observations_have_habitats_form() -> None:
-    given = observation()
-    found = Conversion(camera=CAMERA).observations(given)
-    assert found["depth"].shape == (3, 4, 1)
-    assert found["depth"].dtype == np.float32
-    np.testing.assert_allclose(found["depth"][0, :, 0], [0.0, 0.0, 0.5, 1.0])
-    np.testing.assert_array_equal(found["gps"], np.array([1.0, -2.0], np.float32))
-    np.testing.assert_allclose(np.degrees(found["compass"]), [28.6], atol=1e-4)  # of 28.648 degrees
-    assert found["objectgoal"].tolist() == [GOAL_CATEGORIES.index("bed")]
-    assert not any(np.shares_memory(found[name], given[name]) for name in given)
+    ours = observation()
+    converted = Conversion(camera=CAMERA).observations(ours)
+    assert converted["depth"].shape == (3, 4, 1)
+    assert converted["depth"].dtype == np.float32
+    np.testing.assert_allclose(converted["depth"][0, :, 0], [0.0, 0.0, 0.5, 1.0])
+    np.testing.assert_array_equal(converted["gps"], np.array([1.0, -2.0], np.float32))
+    np.testing.assert_allclose(np.degrees(converted["compass"]), [28.6], atol=1e-4)  # of 28.648 degrees
+    assert converted["objectgoal"].tolist() == [GOAL_CATEGORIES.index("bed")]
+    assert not any(np.shares_memory(converted[name], ours[name]) for name in ours)
 
 
 def test_depth_may_stay_in_metres_and_goals_may_have_the_numbers_of_hm3d() -> None:
-    found = Conversion(camera=CAMERA, categories="hm3d", normalize_depth=False).observations(observation("sofa"))
-    np.testing.assert_allclose(found["depth"][0, :, 0], [0.5, 0.5, 2.75, 5.0])
-    assert found["objectgoal"].tolist() == [5]
+    converted = Conversion(camera=CAMERA, categories="hm3d", normalize_depth=False).observations(observation("sofa"))
+    np.testing.assert_allclose(converted["depth"][0, :, 0], [0.5, 0.5, 2.75, 5.0])
+    assert converted["objectgoal"].tolist() == [5]
 
 
 @pytest.mark.parametrize(
-    "given",
+    "chosen",
     [
         1, np.int64(1), np.array([1]), np.array(1), "move_forward", "MOVE_FORWARD", np.str_("MOVE_FORWARD"),
         {"action": 1}, {"action": "move_forward", "action_args": {}}, {"action": {"action": np.int32(1)}},
         {"action": ("move_forward",)}, HabitatSimActions.MOVE_FORWARD, HabitatSimActions["move_forward"],
     ],
 )  # fmt: skip
-def test_an_action_is_understood_in_all_of_habitats_forms(given: Any) -> None:
-    assert to_action(given) is Action.MOVE_FORWARD
+def test_an_action_is_understood_in_all_of_habitats_forms(chosen: Any) -> None:
+    assert to_action(chosen) is Action.MOVE_FORWARD
 
 
 @pytest.mark.parametrize(
-    "given",
+    "chosen",
     [
         None, True, np.array([True]), torch.tensor(True), 1.0, math.nan, 6, -1, "forward", "", [], [1, 2], {},
         {"act": 1}, {"action": None},
@@ -128,15 +128,15 @@ def test_an_action_is_understood_in_all_of_habitats_forms(given: Any) -> None:
         {"action": ("velocity_control", "velocity_stop"), "action_args": {}}, b"\x01",
     ],
 )  # fmt: skip
-def test_anything_else_is_refused_in_a_line_that_lists_the_actions(given: Any) -> None:
+def test_anything_else_is_refused_in_a_line_that_lists_the_actions(chosen: Any) -> None:
     with pytest.raises(AgentError, match="An action is one of 0 stop, 1 move_forward, 2 turn_left, 3 turn_right"):
-        to_action(given)
+        to_action(chosen)
 
 
-@pytest.mark.parametrize("given", [4, "LOOK_DOWN", {"action": "look_up"}])
-def test_a_look_up_or_down_is_refused_with_its_reason(given: Any) -> None:
+@pytest.mark.parametrize("chosen", [4, "LOOK_DOWN", {"action": "look_up"}])
+def test_a_look_up_or_down_is_refused_with_its_reason(chosen: Any) -> None:
     with pytest.raises(AgentError, match="the camera of this robot does not tilt"):
-        to_action(given)
+        to_action(chosen)
 
 
 def test_arguments_of_the_constructor_are_fields_of_the_configuration() -> None:
@@ -167,8 +167,8 @@ def test_a_configuration_has_the_entries_of_a_file_and_keeps_those_of_the_run(
 ) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text("MINE: {KEEP: 0.5}\nENVIRONMENT: {MAX_EPISODE_STEPS: 7}\n")
-    found = build(Configured, distance=2, task_config=str(file)).agent.task_config
-    assert (found.MINE.KEEP, found.ENVIRONMENT.MAX_EPISODE_STEPS) == (0.5, 77)
+    config = build(Configured, distance=2, task_config=str(file)).agent.task_config
+    assert (config.MINE.KEEP, config.ENVIRONMENT.MAX_EPISODE_STEPS) == (0.5, 77)
     assert "The run determines ENVIRONMENT.MAX_EPISODE_STEPS=77, not 7." in caplog.text
     with pytest.raises(ConfigError, match=r"none\.yaml"):
         build(Configured, distance=2, task_config=str(tmp_path / "none.yaml"))
@@ -185,22 +185,22 @@ def test_an_agent_specification_may_declare_ground_truth() -> None:
     spec = AgentSpec(make=make, sensors=("semantic",), uses_ground_truth=True)
     wrapped = spec_of("habitat:mine:X", spec)
     assert (wrapped.sensors, wrapped.uses_ground_truth) == (("semantic",), True)
-    found = Conversion(camera=CAMERA).observations(observation() | {"semantic": np.full((3, 4), 11, np.uint8)})
-    assert found["semantic"].shape == (3, 4, 1)
-    assert found["semantic"].dtype == np.int32
+    converted = Conversion(camera=CAMERA).observations(observation() | {"semantic": np.full((3, 4), 11, np.uint8)})
+    assert converted["semantic"].shape == (3, 4, 1)
+    assert converted["semantic"].dtype == np.int32
 
 
 @pytest.mark.parametrize(
-    ("found", "message"),
+    ("declared", "message"),
     [
         (3, "must be a class, a factory or an AgentSpec, got int"),
         (NoAgent, "a NoAgent has no method act"),
         (lambda categories: Wanderer(), "has an argument 'categories', which is also a field of the bridge"),
     ],
 )
-def test_something_else_is_refused(found: Any, message: str) -> None:
+def test_something_else_is_refused(declared: Any, message: str) -> None:
     with pytest.raises(ConfigError, match=message):
-        build(found)
+        build(declared)
 
 
 def test_the_seed_fixes_the_draws_of_the_global_generators() -> None:

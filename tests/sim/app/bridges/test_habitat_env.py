@@ -121,7 +121,7 @@ def test_a_loop_gives_the_metrics_of_a_run_with_habitats_names(split: Path) -> N
             assert not env.episode_over
             observations = env.step({"action": int(action)})
         assert env.episode_over
-        found, episode = env.get_metrics(), env.current_episode
+        metrics, episode = env.get_metrics(), env.current_episode
         with pytest.raises(EpisodeError, match="has ended"):
             env.step(0)
     own = ObjectNavEnv(split=split, camera=SMALL, sensors=("depth",))
@@ -132,10 +132,10 @@ def test_a_loop_gives_the_metrics_of_a_run_with_habitats_names(split: Path) -> N
         seed=episode_seeds(0, episode.episode_id).environment,
     )
     own.close()
-    assert (found["spl"], found["success"], found["num_steps"]) == (line.spl, line.success, line.num_steps)
-    assert found["distance_to_goal"] == pytest.approx(line.distance_to_goal)
-    assert found["softspl"] == found["soft_spl"] == pytest.approx(line.soft_spl)
-    assert found["collisions"] == {"count": line.collisions, "is_collision": False}
+    assert (metrics["spl"], metrics["success"], metrics["num_steps"]) == (line.spl, line.success, line.num_steps)
+    assert metrics["distance_to_goal"] == pytest.approx(line.distance_to_goal)
+    assert metrics["softspl"] == metrics["soft_spl"] == pytest.approx(line.soft_spl)
+    assert metrics["collisions"] == {"count": line.collisions, "is_collision": False}
     assert observations["gps"].shape == (2,)
 
 
@@ -162,7 +162,7 @@ def test_an_environment_with_rewards_extends_the_base_class(house: Path) -> None
 def test_episodes_have_habitats_fields_and_come_in_the_order_of_the_split(split: Path) -> None:
     with Env(split=split, camera=SMALL, categories="hm3d") as env:
         assert env.number_of_episodes == 2
-        assert [each.episode_id for each in env.episodes] == ["mine_0", "mine_2"]
+        assert [episode.episode_id for episode in env.episodes] == ["mine_0", "mine_2"]
         assert env.current_episode.episode_id == "mine_0"
         assert env.reset()["objectgoal"].tolist() == [5]
         episode = env.current_episode
@@ -258,7 +258,7 @@ def test_what_habitats_environment_has_and_this_one_lacks_is_said_with_what_ther
         with pytest.raises(AttributeError, match=r"^Env\.sim of this .* no 'pathfinder'\. It has: env, geodesic"):
             _ = env.sim.pathfinder
         assert not hasattr(env, "task")
-        with pytest.raises(AgentError, match=r"^'fly' is no action\. An action is one of 0 stop, "):
+        with pytest.raises(AgentError, match=r"^Unknown action 'fly'\. An action is one of 0 stop, "):
             env.step("fly")
 
 

@@ -261,7 +261,7 @@ serve(lambda setup: Agent() if setup.camera.width_px == 640 and setup.goals[0] =
         "gps": np.array([1.5, np.nan], np.float32),
         "objectgoal": np.array([7], np.int64),
     }
-    expected = np.concatenate([np.frombuffer(each.tobytes(), np.uint8) for each in observation.values()])
+    expected = np.concatenate([np.frombuffer(array.tobytes(), np.uint8) for array in observation.values()])
     for shared in (True, False):
         agent.reset("chair", 0)
         if not shared:
@@ -274,7 +274,7 @@ serve(lambda setup: Agent() if setup.camera.width_px == 640 and setup.goals[0] =
             assert agent._process is not None
             assert agent._process.memory is None
         agent.act(observation)
-        agent.act({name: np.zeros_like(each) for name, each in observation.items()})
+        agent.act({name: np.zeros_like(array) for name, array in observation.items()})
         image, words = agent.map_image()
         np.testing.assert_array_equal(image[:, 0, 1], expected)
         assert words == "rgb depth gps objectgoal chair"
@@ -308,8 +308,8 @@ def test_the_files_of_a_command_are_those_that_it_names(tmp_path: Path, monkeypa
     for name in ("agent.py", "weights.pt", "package/run.py"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("")
-    found = files_of("process:python agent.py --weights weights.pt --out package")
-    assert found == [Path("agent.py"), Path("weights.pt")]
+    files = files_of("process:python agent.py --weights weights.pt --out package")
+    assert files == [Path("agent.py"), Path("weights.pt")]
     assert files_of("process:conda run -n old python -m package.run") == [Path("package/run.py")]
     monkeypatch.setenv("PYTHONPATH", "package")
     assert files_of("process:python client.py run:Agent args=other:get()") == [Path("package/run.py")]

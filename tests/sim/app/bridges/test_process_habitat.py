@@ -69,9 +69,9 @@ def test_the_same_agent_gives_the_same_lines_in_this_process_and_in_its_own(
     own = write_agent(tmp_path, 5)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "own_of_habitat", raising=False)
-    there = results(tmp_path / "there", house, own, "agent.interface=habitat", "agent.categories=hm3d")
+    remote = results(tmp_path / "there", house, own, "agent.interface=habitat", "agent.categories=hm3d")
     here = results(tmp_path / "here", house, "habitat:own_of_habitat:Own", "agent.categories=hm3d")
-    assert here == there
+    assert here == remote
     assert {line["end_reason"] for line in here} <= {"stop", "max_steps"}
     assert any(line["path_length"] > 0.5 for line in here)
 
@@ -82,9 +82,9 @@ FORMS: list[Any] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("given", FORMS, ids=repr)
-def test_the_client_understands_an_action_as_the_bridge_does(given: Any) -> None:
-    assert int(from_habitat(given)) == to_action(given)
+@pytest.mark.parametrize("chosen", FORMS, ids=repr)
+def test_the_client_understands_an_action_as_the_bridge_does(chosen: Any) -> None:
+    assert int(from_habitat(chosen)) == to_action(chosen)
 
 
 def test_a_truth_value_is_no_action() -> None:

@@ -54,7 +54,7 @@ def test_a_row_an_episode_shows_the_picture_of_the_stop(recorded: Path, capsys: 
     trajectory = read_trajectory(trajectory_file(recorded / "run", "lounge_0000"))
     house = read_run(recorded / "run").config["house"]
     images = show_mistakes.render_at(
-        show_mistakes.World(show_mistakes.split_of(read_run(recorded / "run")).load_house(Path(house).stem)),
+        show_mistakes.World(show_mistakes.split_of(read_run(recorded / "run")).load_house(Path(str(house)).stem)),
         trajectory.poses[-1],
     )
     ahead = images["semantic"][270, 320]

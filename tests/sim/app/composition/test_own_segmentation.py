@@ -24,17 +24,17 @@ FLAT = "tests.helpers.segmentations:FLAT"
 
 
 def run(house: Path, out: Path, *options: str) -> int:
-    given = ["--house", str(house), "--goal", "sofa", "--episodes", "1", "--out", str(out), *options]
-    return entry([*given, "--config", *SMALL])
+    command = ["--house", str(house), "--goal", "sofa", "--episodes", "1", "--out", str(out), *options]
+    return entry([*command, "--config", *SMALL])
 
 
 def test_a_segmentation_of_ones_own_is_run_recorded_and_named(
     house: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     segmentations.ASKED.clear()
-    given = ["--house", str(house), "--goal", "sofa", "--episodes", "1", "--out", str(tmp_path), "--semantics", FLAT]
-    given += ["--step-timeout", "0"]  # in this process
-    assert entry([*given, "--config", *SMALL, "detector.level=0.125"]) == 0
+    command = ["--house", str(house), "--goal", "sofa", "--episodes", "1", "--out", str(tmp_path), "--semantics", FLAT]
+    command += ["--step-timeout", "0"]  # in this process
+    assert entry([*command, "--config", *SMALL, "detector.level=0.125"]) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert f"with segmentation by {FLAT}" in printed
     assert "No parameters are fitted to segmentation of kind 'flat'" in printed

@@ -69,7 +69,7 @@ def test_a_setup_travels_by_value_and_only_code_of_users_is_imported_again(
 
     def count(module: ModuleType, name: str) -> None:
         original = getattr(module, name)
-        monkeypatch.setattr(module, name, lambda *given: (calls.append(name), original(*given))[1])
+        monkeypatch.setattr(module, name, lambda *arguments: (calls.append(name), original(*arguments))[1])
 
     for name in ("find_agent", "find_explorer", "find_segmentation"):
         count(composition, name)

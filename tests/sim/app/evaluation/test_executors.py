@@ -239,15 +239,15 @@ def test_processes_are_an_executor_of_their_own_number() -> None:
     assert make_executor("local", workers=3) == Processes(3)
 
 
-@pytest.mark.parametrize(("given", "expected"), [(None, "4"), ("3", "3")])
+@pytest.mark.parametrize(("threads", "expected"), [(None, "4"), ("3", "3")])
 def test_workers_share_the_processors_unless_the_user_says_how_many_threads(
-    monkeypatch: pytest.MonkeyPatch, given: str | None, expected: str
+    monkeypatch: pytest.MonkeyPatch, threads: str | None, expected: str
 ) -> None:
     name = "OMP_NUM_THREADS"
-    monkeypatch.delenv(name, raising=False) if given is None else monkeypatch.setenv(name, given)
+    monkeypatch.delenv(name, raising=False) if threads is None else monkeypatch.setenv(name, threads)
     monkeypatch.setattr(processes, "_processors", lambda: 8)
     assert list(ordered_map(os.getenv, [name, name], workers=2)) == [expected, expected]
-    assert os.environ.get(name) == given, "this process keeps its own setting"
+    assert os.environ.get(name) == threads, "this process keeps its own setting"
 
 
 @pytest.mark.parametrize("how", ["loop", "kernel", "stop"])

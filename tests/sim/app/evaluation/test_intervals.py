@@ -16,10 +16,10 @@ def houses_of(count: int, episodes: int) -> list[str]:
     return [f"house_{i // episodes}" for i in range(count * episodes)]
 
 
-def interval(found: Estimate) -> tuple[float, float]:
-    assert found.low is not None
-    assert found.high is not None
-    return found.low, found.high
+def interval(value: Estimate) -> tuple[float, float]:
+    assert value.low is not None
+    assert value.high is not None
+    return value.low, value.high
 
 
 def of_differences(values: np.ndarray, houses: list[str], most: float = math.inf) -> Estimate:
@@ -28,27 +28,27 @@ def of_differences(values: np.ndarray, houses: list[str], most: float = math.inf
 
 def test_the_interval_of_a_difference_is_students_over_the_means_of_equal_houses() -> None:
     means = np.random.default_rng(0).normal(1.0, 1.0, 20)
-    found = of_differences(np.repeat(means, 30), houses_of(20, 30))
+    difference = of_differences(np.repeat(means, 30), houses_of(20, 30))
     expected = stats.ttest_1samp(means, 0.0)
-    assert interval(found) == pytest.approx(tuple(expected.confidence_interval(0.95)))
-    assert found.p == pytest.approx(expected[1])
-    assert (found.count, found.houses) == (600, 20)
+    assert interval(difference) == pytest.approx(tuple(expected.confidence_interval(0.95)))
+    assert difference.p == pytest.approx(expected[1])
+    assert (difference.count, difference.houses) == (600, 20)
 
 
 def test_houses_with_more_episodes_weigh_more_as_in_a_ratio_estimator() -> None:
     values, names = np.array([2.0] * 6 + [0.0] * 3 + [1.0] * 3), ["a"] * 6 + ["b"] * 3 + ["c"] * 3
-    found = of_differences(values, names)
+    difference = of_differences(values, names)
     sums = np.array([(2.0 - 1.25) * 6, -1.25 * 3, -0.25 * 3])
     half = stats.t.ppf(0.975, 2) * math.sqrt(3 / 2 * (sums @ sums)) / 12
-    assert found.mean == pytest.approx(1.25)
-    assert interval(found) == pytest.approx((1.25 - half, 1.25 + half))
+    assert difference.mean == pytest.approx(1.25)
+    assert interval(difference) == pytest.approx((1.25 - half, 1.25 + half))
 
 
 def test_the_interval_of_a_rate_is_wilsons_for_one_episode_in_each_of_many_houses() -> None:
     values = np.repeat([0.0, 1.0], [40, 360]).tolist()
     expected = stats.binomtest(360, 400).proportion_ci(method="wilson")
-    found = interval(estimate(values, houses_of(400, 1), most=1.0))
-    assert found == pytest.approx((expected.low, expected.high), abs=0.001)
+    bounds = interval(estimate(values, houses_of(400, 1), most=1.0))
+    assert bounds == pytest.approx((expected.low, expected.high), abs=0.001)
 
 
 @pytest.mark.parametrize("value", [0.0, 1.0])
@@ -76,9 +76,9 @@ def test_a_difference_of_shares_is_at_least_as_uncertain_as_one_episode() -> Non
 
 def test_the_interval_of_an_amount_is_above_0_and_longer_above_the_mean() -> None:
     values = [0.0] * 90 + [40.0] * 10
-    found = estimate(values, houses_of(100, 1))
-    low, high = interval(found)
-    assert found.mean == pytest.approx(4.0)
+    value = estimate(values, houses_of(100, 1))
+    low, high = interval(value)
+    assert value.mean == pytest.approx(4.0)
     assert 0.0 < low < 4.0 < high
     assert low * high == pytest.approx(16.0)
 
@@ -120,11 +120,11 @@ def test_a_difference_becomes_significant_with_about_the_number_of_pairs_that_it
 
 
 def test_what_is_significant_equal_or_of_one_house_needs_no_more_pairs() -> None:
-    for each in (
+    for case in (
         Estimate(0.2, 0.1, 0.3, 50, 10), Estimate(0.0, -0.1, 0.1, 50, 10), Estimate(0.1, -0.1, 0.3, 50, 1),
         Estimate(None, None, None, 0, 0), Estimate(1.0, None, None, 50, 10),
     ):  # fmt: skip
-        assert each.pairs_needed is None
+        assert case.pairs_needed is None
     assert Estimate(0.1, -0.1, 0.3, 5000, 1000).pairs_needed == pytest.approx(20_000, rel=0.01)
     assert Estimate(0.1, -0.1, 0.3, 50, 10).pairs_needed == pytest.approx(200 * (2.03 / 2.262) ** 2, abs=6)
 
@@ -138,8 +138,8 @@ def test_one_house_leaves_its_episodes_and_says_so() -> None:
 def test_the_interval_does_not_depend_on_the_order_of_episodes() -> None:
     rng = np.random.default_rng(0)
     values, names, order = rng.random(40), np.array(houses_of(8, 5)), rng.permutation(40)
-    found = [estimate(v.tolist(), n.tolist(), most=1.0) for v, n in ((values, names), (values[order], names[order]))]
-    assert found[0] == found[1]
+    both = [estimate(v.tolist(), n.tolist(), most=1.0) for v, n in ((values, names), (values[order], names[order]))]
+    assert both[0] == both[1]
 
 
 def test_missing_values_and_houses_without_values_do_not_count() -> None:
@@ -172,8 +172,8 @@ def test_the_spread_of_replicates_is_that_of_repeated_means() -> None:
     rates = rng.random(100)
     draws = rng.random((450, 100)) < rates  # each row: one replicate of 100 episodes
     ids = [str(i) for i in range(100)] * 3
-    found = [replicate_spread(rows.ravel().tolist(), ids) for rows in draws.reshape(-1, 3, 100)]
-    assert np.mean([each or 0.0 for each in found]) == pytest.approx(
+    spreads = [replicate_spread(rows.ravel().tolist(), ids) for rows in draws.reshape(-1, 3, 100)]
+    assert np.mean([spread or 0.0 for spread in spreads]) == pytest.approx(
         math.sqrt((rates * (1.0 - rates)).sum()) / 100, rel=0.03
     )
     assert replicate_spread([1.0, 0.0, None], ["a", "b", "a"]) is None

@@ -210,7 +210,7 @@ def test_an_option_that_a_run_does_not_have_is_the_same_as_null(tmp_path: Path) 
 def write_lines(folder: Path, *lines: Mapping[str, object] | str) -> None:
     """Starts a run whose file of results has these lines."""
     opened(folder, CONFIG | {"seed": 0}).close()
-    text = "".join((each if isinstance(each, str) else json.dumps(each)) + "\n" for each in lines)
+    text = "".join((line if isinstance(line, str) else json.dumps(line)) + "\n" for line in lines)
     (folder / "results.jsonl").write_text(text)
 
 
@@ -316,8 +316,8 @@ def test_an_error_stays_until_the_line_of_its_next_run_replaces_it(tmp_path: Pat
     run.append(line(3))
     run.write_summary({})
     run.close()
-    found = read_results(tmp_path / "results.jsonl").values
-    assert [(each.episode_id, each.end_reason) for each in found] == [
+    results = read_results(tmp_path / "results.jsonl").values
+    assert [(result.episode_id, result.end_reason) for result in results] == [
         ("e0", "stop"), ("e1", "stop"), ("e2", "error"), ("e3", "stop"),
     ]  # fmt: skip
 

@@ -72,9 +72,9 @@ def test_a_line_records_how_sure_the_agent_was_when_it_stopped(env: ObjectNavEnv
     assert play_episode(env, agent, EPISODE, seed=0).stop_confidence == recorded
 
 
-@pytest.mark.parametrize("given", [1.5, -0.1, math.nan, "high"])
-def test_a_confidence_that_is_no_share_ends_the_episode_as_an_error(env: ObjectNavEnv, given: Any) -> None:
-    line = play_episode(env, Sure([Action.STOP], given), EPISODE, seed=0, name="x:mine")
+@pytest.mark.parametrize("stated", [1.5, -0.1, math.nan, "high"])
+def test_a_confidence_that_is_no_share_ends_the_episode_as_an_error(env: ObjectNavEnv, stated: Any) -> None:
+    line = play_episode(env, Sure([Action.STOP], stated), EPISODE, seed=0, name="x:mine")
     assert line.end_reason == "error"
     assert "'x:mine', step 1: stop_confidence() returned" in str(line.error)
 
@@ -99,10 +99,10 @@ class Aimed(Script):
 AHEAD_AND_STOP = [Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP]
 
 
-@pytest.mark.parametrize("given", [(1.5, 0.5), [1.5, 0.5], np.array([1.5, 0.5], np.float32)])
-def test_a_line_has_the_place_for_which_the_agent_stops_in_the_world(env: ObjectNavEnv, given: Any) -> None:
+@pytest.mark.parametrize("stated", [(1.5, 0.5), [1.5, 0.5], np.array([1.5, 0.5], np.float32)])
+def test_a_line_has_the_place_for_which_the_agent_stops_in_the_world(env: ObjectNavEnv, stated: Any) -> None:
     episode = replace(EPISODE, start=Pose(-1.0, 1.0, math.pi / 2))
-    line = play_episode(env, Aimed(AHEAD_AND_STOP, given), episode, seed=0)
+    line = play_episode(env, Aimed(AHEAD_AND_STOP, stated), episode, seed=0)
     assert line.stop_target_xy_m == pytest.approx([-1.5, 2.5], abs=1e-5)  # 1.5 m along y, 0.5 m to the left
     assert line.stop_target_to_goal_m == pytest.approx(math.hypot(3.6, 1.7), abs=1e-3)  # corner at (2.1, 0.8)
     assert line.failure == "false_detection"
@@ -150,10 +150,10 @@ def test_a_place_that_is_a_tensor_with_a_gradient_ends_the_episode_as_an_error(e
 
 
 @pytest.mark.parametrize(
-    "given", [1.5, "12", (1.0,), (1.0, 2.0, 3.0), (math.nan, 0.0), (0.0, 2e4), (None, 1.0), {1: 2}]
+    "stated", [1.5, "12", (1.0,), (1.0, 2.0, 3.0), (math.nan, 0.0), (0.0, 2e4), (None, 1.0), {1: 2}]
 )
-def test_a_place_that_is_no_pair_of_numbers_ends_the_episode_as_an_error(env: ObjectNavEnv, given: Any) -> None:
-    line = play_episode(env, Aimed([Action.STOP], given), EPISODE, seed=0, name="x:mine")
+def test_a_place_that_is_no_pair_of_numbers_ends_the_episode_as_an_error(env: ObjectNavEnv, stated: Any) -> None:
+    line = play_episode(env, Aimed([Action.STOP], stated), EPISODE, seed=0, name="x:mine")
     assert line.end_reason == "error"
     assert "'x:mine', step 1: stop_target_xy_m() returned" in str(line.error)
     assert line.stop_target_xy_m is None
@@ -243,7 +243,7 @@ class Signature:
         (Answers(lambda: sys.exit(3)), "step 2: SystemExit: 3"),
         (Answers(lambda: fail(GeneratorExit())), "step 2: GeneratorExit: no message"),
         (Answers(lambda: fail(asyncio.CancelledError("late"))), "step 2: CancelledError: late"),
-        (Answers(lambda: fail(RuntimeError("x" * 10_000_000))), "xxx ... (10000000 letters)"),
+        (Answers(lambda: fail(RuntimeError("x" * 10_000_000))), "xxx ... (10000000 characters)"),
         (Answers(lambda: fail(RuntimeError("a\udcffb\x1b"))), r"RuntimeError: a\udcffb\x1b"),
         (Answers(lambda: fail(Mute())), "step 2: Mute: its message cannot be read (ValueError)"),
         (Answers(lambda: {}["sofa"]), "step 2: KeyError: 'sofa'"),

@@ -147,9 +147,9 @@ def _deep(good: bytes) -> bytes:
 def _deep_robot(good: bytes) -> bytes:
     """Nested less than msgspec refuses, and more than functions can call themselves."""
     nested = b'"robot":{"deep":' + b'{"a":' * 980 + b"1" + b"}" * 980 + b","
-    found = gzip.decompress(good).replace(b'"robot": {', nested, 1)
-    assert nested in found
-    return gzip.compress(found)
+    changed = gzip.decompress(good).replace(b'"robot": {', nested, 1)
+    assert nested in changed
+    return gzip.compress(changed)
 
 
 DAMAGED: dict[str, tuple[Callable[[bytes], bytes], str]] = {

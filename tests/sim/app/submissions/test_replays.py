@@ -38,9 +38,9 @@ from tests.helpers.submissions import (
 
 @pytest.mark.parametrize("name", RUNS)
 def test_a_recorded_run_is_verified_equal_with_its_frames(folder: Path, name: str) -> None:
-    found = judged(folder, folder / f"{name}.json.gz", frames=1.0)
-    assert [(each.judgement, each.framed, each.text) for each in found] == [("equal", True, "")] * 3
-    assert {each.result.end_reason for each in read_submission(folder / f"{name}.json.gz").episodes} <= {
+    verdicts = judged(folder, folder / f"{name}.json.gz", frames=1.0)
+    assert [(verdict.judgement, verdict.framed, verdict.text) for verdict in verdicts] == [("equal", True, "")] * 3
+    assert {entry.result.end_reason for entry in read_submission(folder / f"{name}.json.gz").episodes} <= {
         "stop", "max_steps",
     }  # fmt: skip
 
@@ -49,7 +49,7 @@ def test_replicates_are_verified_equal_and_cover_the_split(folder: Path, tmp_pat
     run = recorded(folder / "tiny", tmp_path / "run", "oracle", "--replicates", "2", "--seed-key", "key")
     assert submit.main(submit.Args(run=run, name="Replicates", authors=("A. Author",))) == 0
     file = run.with_name("run.json.gz")
-    assert [each.judgement for each in judged(folder, file)] == ["equal"] * 6
+    assert [verdict.judgement for verdict in judged(folder, file)] == ["equal"] * 6
     assert checked(folder, file)[0].covers == "all 3 episodes, 2 replicates of each"
     content = content_of(file)
     content["episodes"].pop(0)
@@ -58,9 +58,9 @@ def test_replicates_are_verified_equal_and_cover_the_split(folder: Path, tmp_pat
 
 def test_the_runs_have_successes_failures_and_collisions(folder: Path) -> None:
     """Else equal numbers would say little."""
-    results = [each.result for name in RUNS for each in read_submission(folder / f"{name}.json.gz").episodes]
-    assert {bool(each.success) for each in results} == {True, False}
-    assert sum(float(each.collisions or 0) for each in results) > 0
+    results = [entry.result for name in RUNS for entry in read_submission(folder / f"{name}.json.gz").episodes]
+    assert {bool(result.success) for result in results} == {True, False}
+    assert sum(float(result.collisions or 0) for result in results) > 0
 
 
 def test_a_submission_is_small_and_names_no_folder_of_the_user(folder: Path) -> None:
@@ -78,8 +78,8 @@ def _swapped(content: dict[str, Any]) -> None:
     first, second = content["episodes"][:2]
     for name in ("actions", "places_m"):
         first[name], second[name] = second[name], first[name]
-    for each in (first, second):
-        each["result"]["num_steps"] = len(each["actions"])
+    for episode in (first, second):
+        episode["result"]["num_steps"] = len(episode["actions"])
 
 
 def _without_noise(content: dict[str, Any]) -> None:
@@ -165,9 +165,9 @@ def test_lengths_may_differ_by_the_tolerance(folder: Path, tmp_path: Path, off_m
     content = content_of(folder / "random.json.gz")
     content["episodes"] = content["episodes"][:1]
     content["episodes"][0]["result"]["path_length"] += off_m
-    (found,) = judged(folder, written(tmp_path / "near.json.gz", content))
-    assert found.judgement == judgement
-    assert found.largest == pytest.approx(off_m)
+    (verdict,) = judged(folder, written(tmp_path / "near.json.gz", content))
+    assert verdict.judgement == judgement
+    assert verdict.largest == pytest.approx(off_m)
 
 
 @pytest.mark.parametrize(
@@ -180,12 +180,12 @@ def test_what_was_seen_is_checked_where_frames_are_rendered(
     content["episodes"] = content["episodes"][:1]
     in_first_result(**change)(content)
     file = written(tmp_path / "forged.json.gz", content)
-    assert [each.judgement for each in judged(folder, file, frames=1.0)] == ["different"]
-    assert [each.judgement for each in judged(folder, file, frames=0.0)] == ["equal"]
+    assert [verdict.judgement for verdict in judged(folder, file, frames=1.0)] == ["different"]
+    assert [verdict.judgement for verdict in judged(folder, file, frames=0.0)] == ["equal"]
 
 
 def test_an_episode_that_ended_with_an_error_is_a_failure_and_is_not_replayed(folder: Path, tmp_path: Path) -> None:
     content = content_of(folder / "random.json.gz")
     content["episodes"] = content["episodes"][:1]
     together(in_first_result(end_reason="error", success=0.0, spl=0.0, soft_spl=0.0), in_actions(lambda a: ""))(content)
-    assert [each.judgement for each in judged(folder, written(tmp_path / "e.json.gz", content))] == ["error"]
+    assert [verdict.judgement for verdict in judged(folder, written(tmp_path / "e.json.gz", content))] == ["error"]

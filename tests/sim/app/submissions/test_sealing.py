@@ -95,7 +95,7 @@ def test_another_secret_or_another_name_is_refused_before_houses_are_made(tmp_pa
 def test_houses_of_different_secrets_differ_and_are_no_shipped_ones() -> None:
     seeds = {next(sealing.recipes(secret, "s", house)).seed for secret in ("a", "b") for house in range(10)}
     assert len(seeds) == 20
-    assert min(seeds) >= sealing.FIRST_SEED > max(each.seed for of in sealing.SPLITS.values() for each in of)
+    assert min(seeds) >= sealing.FIRST_SEED > max(sealed.seed for of in sealing.SPLITS.values() for sealed in of)
 
 
 @pytest.mark.slow

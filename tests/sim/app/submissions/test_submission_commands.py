@@ -82,7 +82,7 @@ def test_the_leaderboard_has_the_rows_that_hold(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("sim.app.submissions.setting.Setting.changes", lambda setting: [])  # the images are small
-    monkeypatch.setattr("sim.app.submissions.leaderboard.LEAST_EPISODES", 3)
+    monkeypatch.setattr("sim.app.submissions.leaderboard.MIN_EPISODES", 3)
     (tmp_path / "submissions").mkdir()
     content = content_of(folder / "random.json.gz")
     content["manifest"] |= {"name": "Our <b>agent</b> [x](y) | z", "authors": ["A. *Author*"]}

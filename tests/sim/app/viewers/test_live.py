@@ -144,24 +144,24 @@ def test_view_without_a_display_gives_one_clear_line(monkeypatch: pytest.MonkeyP
         live.require_display()
 
 
-def options(**given: Any) -> Any:
+def options(**changes: Any) -> Any:
     return SimpleNamespace(
         **{"out": None, "workers": 1, "video": False, "view": False, "rerun": False, "rerun_save": False, "mcap": False}
-        | given
+        | changes
     )
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ("changes", "message"),
     [
         ({"view": True, "workers": 2}, "--workers 1"),
         ({"rerun": True, "workers": 2}, "--workers 1"),
         ({"rerun": True, "rerun_save": True}, "only one of them"),
     ],
 )
-def test_options_that_exclude_each_other_are_reported(given: dict[str, Any], message: str) -> None:
+def test_options_that_exclude_each_other_are_reported(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(ConfigError, match=message):
-        selection.check(options(**given))
+        selection.check(options(**changes))
 
 
 def test_without_rerun_the_message_names_the_package_to_install(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -47,8 +47,10 @@ class Scripted:
 
 
 def make_env(house: Path, **options: Any) -> ObjectNavEnv:
-    given = {"sensors": ("rgb", "depth", "scan"), "noise": "realsense", "scan": ScanConfig(rays=90)}
-    return ObjectNavEnv(house=house, goal="sofa", camera=CAMERA, truth=("rgb", "depth", "semantic"), **given | options)
+    settings = {"sensors": ("rgb", "depth", "scan"), "noise": "realsense", "scan": ScanConfig(rays=90)}
+    return ObjectNavEnv(
+        house=house, goal="sofa", camera=CAMERA, truth=("rgb", "depth", "semantic"), **settings | options
+    )
 
 
 @pytest.fixture(scope="module")
@@ -68,11 +70,11 @@ def recorded(house: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Pat
 @pytest.fixture(scope="module")
 def read(recorded: tuple) -> dict[str, list[tuple[int, Any]]]:
     """Time and message of each topic, as the standard types."""
-    found: dict[str, list[tuple[int, Any]]] = defaultdict(list)
+    by_topic: dict[str, list[tuple[int, Any]]] = defaultdict(list)
     with AnyReader([recorded[0]]) as reader:
         for connection, time_ns, raw in reader.messages():
-            found[connection.topic].append((time_ns, STANDARD.deserialize_cdr(raw, connection.msgtype)))
-    return found
+            by_topic[connection.topic].append((time_ns, STANDARD.deserialize_cdr(raw, connection.msgtype)))
+    return by_topic
 
 
 def yaw_of(rotation: Any) -> float:
@@ -89,11 +91,13 @@ def test_a_definition_is_that_of_ros(name: str) -> None:
 
 def test_every_topic_has_a_message_for_each_action_in_order_of_time(read: dict[str, list]) -> None:
     assert set(read) == set(TOPICS)
-    assert {topic: len(found) for topic, found in read.items()} == dict.fromkeys(TOPICS, len(ACTIONS)) | {"/map": 1}
-    for found in read.values():
-        times = [time_ns for time_ns, _ in found]
+    assert {topic: len(of_topic) for topic, of_topic in read.items()} == dict.fromkeys(TOPICS, len(ACTIONS)) | {
+        "/map": 1
+    }
+    for of_topic in read.values():
+        times = [time_ns for time_ns, _ in of_topic]
         assert times == sorted(times)
-        for time_ns, message in found:
+        for time_ns, message in of_topic:
             if hasattr(message, "header"):
                 assert message.header.stamp.sec * 10**9 + message.header.stamp.nanosec == time_ns
 
@@ -123,8 +127,8 @@ def test_frames_lead_from_the_map_to_the_true_pose_and_odometry_is_what_was_beli
 ) -> None:
     _, agent, _, poses = recorded
     for (_, tree), (_, odometry), seen, pose in zip(read["/tf"], read["/odom"], agent.seen, poses, strict=False):
-        frames = {each.child_frame_id: each for each in tree.transforms}
-        parents = {each.child_frame_id: each.header.frame_id for each in tree.transforms}
+        frames = {transform.child_frame_id: transform for transform in tree.transforms}
+        parents = {transform.child_frame_id: transform.header.frame_id for transform in tree.transforms}
         assert parents == {
             "odom": "map", "base_link": "odom", "camera_link": "base_link", "laser": "base_link",
             "camera_optical_frame": "camera_link",
@@ -172,7 +176,7 @@ def test_metadata_has_the_episode_and_its_result(recorded: tuple) -> None:
 
     file, _, line, _ = recorded
     with file.open("rb") as stream:
-        metadata = {each.name: each.metadata for each in make_reader(stream).iter_metadata()}
+        metadata = {record.name: record.metadata for record in make_reader(stream).iter_metadata()}
     assert metadata["episode"]["episode_id"] == '"an episode/1"'
     result = {key: json.loads(value) for key, value in metadata["result"].items()}
     assert result == json.loads(json.dumps(entries_of(line)))
@@ -189,7 +193,7 @@ def test_recording_changes_no_result_and_needs_no_sensor_of_the_agent(house: Pat
         env.close()
     assert lines[0].without_times() == lines[1].without_times()
     with AnyReader([mcap_file(tmp_path, "a")]) as reader:
-        assert {each.topic for each in reader.connections} == set(TOPICS)
+        assert {connection.topic for connection in reader.connections} == set(TOPICS)
 
 
 def test_an_unfinished_recording_is_discarded(house: Path, tmp_path: Path) -> None:

@@ -96,11 +96,11 @@ def test_a_run_resumed_with_two_workers_records_the_remaining_episodes(house: Pa
     assert entry([*options, "--episodes", "1"]) == 0
     assert not (tmp_path / "videos").exists()
     assert entry([*options, "--episodes", "3", "--video", "--workers", "2"]) == 0
-    first, *left = lines_of(tmp_path)
-    filmed = {video_file(tmp_path, line["episode_id"]) for line in left}
+    first, *others = lines_of(tmp_path)
+    filmed = {video_file(tmp_path, line["episode_id"]) for line in others}
     assert set((tmp_path / "videos").iterdir()) == filmed
     assert all(len(frames_of(file)) == 1 + WHOLE_END_FRAMES for file in filmed)
-    assert first["episode_id"] not in {line["episode_id"] for line in left}
+    assert first["episode_id"] not in {line["episode_id"] for line in others}
     viewers = {name for name, option in meanings(RunOptions).items() if option.viewer}
     assert viewers <= set(json.loads((tmp_path / "config.json").read_text()))
 

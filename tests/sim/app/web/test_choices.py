@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
 from sim.app.commands import run as sim_run
-from sim.app.evaluation.results import read_record, read_results
+from sim.app.evaluation.results import RunRecord, read_record, read_results
 from sim.app.options import RunOptions
 from sim.app.web.choices import Choices, Offer
 from sim.app.web.controls import EpisodeRequest
@@ -72,7 +72,7 @@ def play(request: EpisodeRequest, runs: Path, prepare: Callable[[Session], None]
 
 
 def test_what_the_server_was_started_with_is_offered_and_comes_first(own: Choices, house: Path) -> None:
-    offered = own.as_json()
+    offered: Any = own.as_json()
     assert offered["splits"][str(house)] == {"sofa_room": {"sofa": []}}
     assert offered["first"] == {
         "split": str(house),
@@ -111,22 +111,23 @@ def test_nothing_else_can_be_started(choices: Choices, part: str, value: object)
 
 
 def test_an_episode_of_a_run_has_its_options_but_no_file_or_code_that_is_not_offered(choices: Choices) -> None:
-    first = choices.as_json()["splits"]["traps"]["wedged_spawn"]["bed"][0]
+    offered: Any = choices.as_json()
+    first = offered["splits"]["traps"]["wedged_spawn"]["bed"][0]
     line = a_result(episode_id=first, house="wedged_spawn", goal="bed")
     settings = {"task.max_steps": 30, "agent.weights": "/etc/passwd", "agent.name": "plain", "agent.list": ["../x"]}
-    record = {"agent": "random", "semantics": "noisy", "split": "traps", "seed": 7, "noise": "harsh"}
-    request = choices.again(record | {"settings": settings}, line, "person")
+    record: RunRecord = {"agent": "random", "semantics": "noisy", "split": "traps", "seed": 7, "noise": "harsh"}
+    request = choices.again({**record, "settings": settings}, line, "person")
     assert (request.options.seed, request.options.noise, request.driver) == (7, "harsh", "person")
     assert request.options.config == ("task.max_steps=30", 'agent.name="plain"')
     for part, name in (("agent", OWN_AGENT), ("explorer", "mine:EXPLORER"), ("split", "/my/split")):
         with pytest.raises(ConfigError, match=rf"--{part} '?{name}"):
-            choices.again(record | {part: name}, line, "agent")
+            choices.again(cast(RunRecord, {**record, part: name}), line, "agent")
     with pytest.raises(ConfigError, match=r"web --house /my/house\.xml"):
-        choices.again(record | {"house": "/my/house.xml"}, line, "agent")
+        choices.again({**record, "house": "/my/house.xml"}, line, "agent")
 
 
 def test_a_run_in_one_house_without_its_number_of_episodes_is_refused(own: Choices, house: Path) -> None:
-    record = {"agent": "random", "semantics": "gt", "house": str(house), "seed": 7}
+    record: RunRecord = {"agent": "random", "semantics": "gt", "house": str(house), "seed": 7}
     line = a_result(episode_id=f"{house.stem}_0000", house=house.stem, goal="sofa")
     with pytest.raises(ConfigError, match="episodes"):
         own.again(record, line, "agent")
@@ -153,7 +154,7 @@ def test_an_episode_of_a_run_without_noise_in_a_house_with_two_goals_begins_wher
     options = ["--house", str(tmp_path / "two.xml"), "--agent", "oracle", "--semantics", "gt", "--seed", "3"]
     assert sim_run.entry([*options, "--episodes", "3", "--out", str(tmp_path / "run")]) == 0
     line = read_results(tmp_path / "run" / "results.jsonl").values[2]
-    offered = Choices(Offer(houses=(tmp_path / "two.xml",), options=RunOptions(weights=None, profile="fast")))
+    offered: Any = Choices(Offer(houses=(tmp_path / "two.xml",), options=RunOptions(weights=None, profile="fast")))
     request = offered.again(read_record(tmp_path / "run" / "config.json"), line, "agent")
     last = play(request, tmp_path).frames[-1].facts
     assert (last["step"], last["driven_m"]) == (line.num_steps, line.path_length)
@@ -193,9 +194,10 @@ def test_hints_lead_to_the_goal_also_after_a_detour(own: Choices, house: Path, t
     class Follower(Display):
         def show(self, frame: Frame) -> None:
             super().show(frame)
-            if frame.facts["hint"] is not None:
+            hint: Any = frame.facts["hint"]
+            if hint is not None:
                 detour = len(self.frames) in (1, 3)
-                controls.obey({"do": "act", "action": 3 if detour else frame.facts["hint"]["action"]})
+                controls.obey({"do": "act", "action": 3 if detour else hint["action"]})
 
     display = Follower()
     session = Session(display, DrivenRuns(tmp_path))

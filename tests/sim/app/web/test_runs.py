@@ -68,7 +68,7 @@ def test_a_run_that_cannot_be_read_is_listed_with_the_reason(tmp_path: Path, con
     write_run(tmp_path / "broken", config=config)
     write_run(tmp_path / "whole")
     listed = {run["name"]: run for run in Runs(tmp_path).as_json()}
-    assert "config.json" in listed["broken"]["broken"]
+    assert "config.json" in str(listed["broken"]["broken"])
     assert listed["whole"]["agent"] == "mine"
     with pytest.raises(ConfigError):
         Runs(tmp_path).episodes("broken")
@@ -87,7 +87,7 @@ def test_a_folder_of_any_name_is_listed_and_opened(tmp_path: Path, name: bytes) 
     write_run(tmp_path / os.fsdecode(name))
     (run,) = Runs(tmp_path).as_json()
     assert json.loads(as_ascii(run))["agent"] == "mine"
-    assert Runs(tmp_path).episodes(run["name"])[0]["episode_id"] == "e/0"
+    assert Runs(tmp_path).episodes(str(run["name"]))[0]["episode_id"] == "e/0"
 
 
 def test_a_run_that_goes_on_is_read_again_and_an_unchanged_one_is_not(tmp_path: Path) -> None:

@@ -33,7 +33,7 @@ def answer_to(
     asyncio.run(app(scope, receive, send))
     if sent[0]["type"] == "websocket.close":
         return 403, {}, b""
-    return sent[0]["status"], dict(sent[0]["headers"]), b"".join(each.get("body", b"") for each in sent[1:])
+    return sent[0]["status"], dict(sent[0]["headers"]), b"".join(message.get("body", b"") for message in sent[1:])
 
 
 async def let_through(scope: Any, receive: Any, send: Any) -> None:

@@ -44,9 +44,9 @@ class Server:
         self.log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - it is there as long as the server
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self.log, text=True)
         assert self.process.stdout is not None
-        found = re.search(r"http://127\.0\.0\.1:(\d+)", self.process.stdout.readline())
-        assert found
-        self.port = int(found[1])
+        match = re.search(r"http://127\.0\.0\.1:(\d+)", self.process.stdout.readline())
+        assert match
+        self.port = int(match[1])
         self.address = f"http://127.0.0.1:{self.port}"
 
     def get(self, path: str, host: str | None = None, **headers: str) -> tuple[int, dict[str, str], bytes]:
