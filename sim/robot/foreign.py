@@ -28,9 +28,10 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TypedDict, TypeGuard, cast
 
 from sim.core.interface import CLIMB_M, CameraModel, ConfigError
 from sim.core.reading import read_bytes, read_json, sha256_of
@@ -99,8 +100,16 @@ def _files_of(robot: Path | str) -> tuple[Path, Path]:
     return path, path.parent / f"{path.stem}.json"
 
 
-def _robot_config(path: Path, sidecar: dict[str, Any]) -> RobotConfig:
-    joints, casters = sidecar["wheel_joints"], sidecar.get("casters", [])
+class _Sidecar(TypedDict, total=False):
+    """The content of a sidecar; `KEYS` and `CAMERA_KEYS` explain it."""
+
+    wheel_joints: list[str]
+    casters: list[str]
+    joints: dict[str, float]
+
+
+def _robot_config(path: Path, sidecar: _Sidecar) -> RobotConfig:
+    joints, casters = sidecar.get("wheel_joints", []), sidecar.get("casters", [])
     wheel_radius_m = _positive(sidecar, "wheel_radius_m")
     file = RobotFile(
         path,
@@ -140,7 +149,7 @@ def _wheels(measured: RobotMeasurements, radius_m: float, body: BodyConfig) -> W
     )
 
 
-def _body(sidecar: dict[str, Any], measured: RobotMeasurements) -> BodyConfig:
+def _body(sidecar: Mapping[str, object], measured: RobotMeasurements) -> BodyConfig:
     """Returns the upright cylinder around the body and its skin."""
     if measured.bottom_m - SKIN_M < MIN_CLEARANCE_M - 1e-6:
         raise ConfigError(
@@ -167,7 +176,7 @@ def _body(sidecar: dict[str, Any], measured: RobotMeasurements) -> BodyConfig:
     )
 
 
-def _drive(sidecar: dict[str, Any]) -> DriveConfig:
+def _drive(sidecar: Mapping[str, object]) -> DriveConfig:
     """Returns the controller, with the limits of the robot's base."""
     default = DriveConfig()
     return replace(
@@ -182,14 +191,14 @@ def _climb_m(body: BodyConfig, wheels: WheelConfig) -> float:
     return min(CLIMB_M, CLIMBED_SHARE * wheels.radius_m, body.clearance_m)
 
 
-def _camera(sidecar: dict[str, Any]) -> CameraModel:
+def _camera(sidecar: Mapping[str, object]) -> CameraModel:
     return CameraModel(
         height_m=_positive(sidecar, "camera_height_m", CameraModel().height_m),
         hfov_rad=math.radians(_positive(sidecar, "camera_hfov_deg", math.degrees(CameraModel().hfov_rad))),
     )
 
 
-def _number(sidecar: dict[str, Any], key: str, unit: str) -> float:
+def _number(sidecar: Mapping[str, object], key: str, unit: str) -> float:
     """Returns a number that may be negative; 0 when it is not given."""
     value = sidecar.get(key, 0.0)
     if not _is_number(value):
@@ -197,9 +206,9 @@ def _number(sidecar: dict[str, Any], key: str, unit: str) -> float:
     return float(value)
 
 
-def _read_sidecar(file: Path) -> dict[str, Any]:
+def _read_sidecar(file: Path) -> _Sidecar:
     try:
-        content = read_json(file, dict[str, Any], what="its sidecar")
+        content = read_json(file, dict[str, object], what="its sidecar")
     except ConfigError as error:
         raise ConfigError(f"{error} It must be one JSON object.") from None
     unknown = [key for key in content if key not in (*KEYS, *CAMERA_KEYS)]
@@ -216,18 +225,18 @@ def _read_sidecar(file: Path) -> dict[str, Any]:
         raise ConfigError('"joints" in its sidecar must be an object with a position, rad or m, for each joint.')
     if moved := [name for name in joints if name in pose]:
         raise ConfigError(f"\"joints\" in its sidecar must not name the wheel joint '{moved[0]}'.")
-    return content
+    return cast(_Sidecar, content)
 
 
-def _is_number(value: Any) -> bool:
+def _is_number(value: object) -> TypeGuard[float]:
     return not isinstance(value, bool) and isinstance(value, int | float) and abs(value) <= LARGEST_M
 
 
-def _are_names(values: list[Any]) -> bool:
+def _are_names(values: Sequence[object]) -> bool:
     return all(isinstance(value, str) and value for value in values)
 
 
-def _positive(sidecar: dict[str, Any], key: str, default: float | None = None) -> float:
+def _positive(sidecar: Mapping[str, object], key: str, default: float | None = None) -> float:
     value = sidecar.get(key, default)
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value <= LARGEST_M:
         raise ConfigError(

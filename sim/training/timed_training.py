@@ -18,7 +18,15 @@ from torch.optim.swa_utils import AveragedModel
 
 from sim.core.reading import Count, Number
 from sim.training.segmentation.steps import exponential_average
-from sim.training.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
+from sim.training.training_files import (
+    HasState,
+    append_row,
+    cut_rows,
+    load_state,
+    options_of,
+    require_options,
+    save_state,
+)
 from stubborn.network_files import Family
 
 LOG_EVERY_STEPS = 20
@@ -100,11 +108,11 @@ class TimedTraining(ABC):
         """Returns the loss of the next step, with its gradient, and the parts of it for `train.csv`."""
 
     @abstractmethod
-    def evaluate(self, model: nn.Module) -> tuple[float, dict[str, object], str]:
+    def evaluate(self, model: nn.Module) -> tuple[float, Mapping[str, object], str]:
         """Returns the loss of the averaged network, a row for `val.csv`, and the words to print."""
 
     @abstractmethod
-    def about(self) -> dict[str, object]:
+    def about(self) -> Mapping[str, object]:
         """Returns the description of the data in the file of weights."""
 
     def run(self) -> None:
@@ -160,7 +168,7 @@ class TimedTraining(ABC):
         progress.evaluated_s = progress.spent_s
         model: Any = self.average.module.eval()
         loss, result, message = self.evaluate(model)
-        row = {"step": progress.step, "minutes": round(progress.spent_s / 60, 2)} | result
+        row = {"step": progress.step, "minutes": round(progress.spent_s / 60, 2), **result}
         row = {key: round(value, 4) if isinstance(value, float) else value for key, value in row.items()}
         append_row(self.out / "val.csv", row)
         print(f"held back, step {progress.step}: {message}", flush=True)
@@ -196,7 +204,7 @@ class TimedTraining(ABC):
         for name in ("train.csv", "val.csv"):  # also of a run that was killed before it wrote a state
             cut_rows(self.out / name, "step", self.progress.step)
 
-    def _parts(self) -> dict[str, object]:
+    def _parts(self) -> dict[str, HasState]:
         """Returns the content of `state.pt` apart from the progress."""
         return {"model": self.model, "average": self.average, "optimiser": self.optimiser}
 

@@ -8,7 +8,7 @@ import io
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import torch
 
@@ -20,7 +20,7 @@ from stubborn.network_files import read_checkpoint
 ProgressT = TypeVar("ProgressT")
 
 
-def append_row(file: Path, row: Mapping[str, Any]) -> None:
+def append_row(file: Path, row: Mapping[str, object]) -> None:
     """Appends a row to a CSV file; the keys of the first row are its heading, and other keys are left out."""
     heading: list[str] = []
     if file.exists():
@@ -125,7 +125,14 @@ def _text_of(file: Path) -> str:
     return read_bytes(file, what="Curve").decode("utf-8", errors="replace")
 
 
-def save_state(file: Path, parts: Mapping[str, Any], progress: Mapping[str, Any]) -> None:
+class HasState(Protocol):
+    """A network or an optimiser of PyTorch."""
+
+    def state_dict(self) -> dict[str, Any]: ...  # noqa: D102
+    def load_state_dict(self, state_dict: dict[str, Any], /) -> object: ...  # noqa: D102
+
+
+def save_state(file: Path, parts: Mapping[str, HasState], progress: Mapping[str, object]) -> None:
     """Writes the state of a run; the file is replaced in one step.
 
     Args:
@@ -140,7 +147,7 @@ def save_state(file: Path, parts: Mapping[str, Any], progress: Mapping[str, Any]
 
 def load_state(
     file: Path,
-    parts: Mapping[str, Any],
+    parts: Mapping[str, HasState],
     progress: type[ProgressT],
     *,
     device: torch.device | str = "cpu",

@@ -14,7 +14,7 @@ import struct
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import cv2
 import numpy as np
@@ -113,7 +113,7 @@ class MeshHouse:
 
     files: Mapping[str, bytes | str]
     """Content by name in the folder of the split."""
-    report: Mapping[str, object]
+    report: Mapping[str, Any]
 
 
 def build_house(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -52,7 +52,7 @@ class Imported:
     """A house with the report of its import."""
 
     spec: mujoco.MjSpec
-    report: Mapping[str, object]
+    report: Mapping[str, Any]
 
 
 @dataclass(frozen=True, kw_only=True)

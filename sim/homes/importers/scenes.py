@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +31,7 @@ class Scene:
     files: Mapping[str, PackedFile]
     rules: Mapping[str, str]
     """Label rules."""
-    report: Mapping[str, object]
+    report: Mapping[str, Any]
 
 
 def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:

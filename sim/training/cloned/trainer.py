@@ -7,7 +7,6 @@ import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import torch
@@ -131,7 +130,7 @@ class Trainer(TimedTraining):
         loss = (losses * weight).sum() / weight.sum()
         return loss, {"cross_entropy": loss}
 
-    def evaluate(self, model: torch.nn.Module) -> tuple[float, dict[str, Any], str]:
+    def evaluate(self, model: torch.nn.Module) -> tuple[float, Mapping[str, object], str]:
         """See `TimedTraining.evaluate`."""
         predicted, true, changes, losses = [], [], [], []
         for one in self.val:
@@ -146,7 +145,7 @@ class Trainer(TimedTraining):
         assert loss is not None
         return loss, row, ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in row.items())
 
-    def about(self) -> dict[str, Any]:
+    def about(self) -> Mapping[str, object]:
         """See `TimedTraining.about`."""
         return self.counts
 

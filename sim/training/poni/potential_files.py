@@ -11,7 +11,6 @@ import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 import msgspec
 import numpy as np
@@ -73,7 +72,8 @@ def held_back(file: Path) -> bool:
 def plan_of(file: Path) -> str | None:
     """Returns the checksum of the plan that a file of samples was made from; None if the file does not have it."""
     arrays = read_npz(file, what=_WHAT, most_bytes=MAX_FILE_BYTES)
-    return _header(file, arrays).about.get("plan_sha256")
+    found_sum = _header(file, arrays).about.get("plan_sha256")
+    return found_sum if isinstance(found_sum, str) else None
 
 
 def write_samples(file: Path, samples: Iterable[Sample], config: SampleConfig, about: dict[str, object]) -> int:
@@ -109,11 +109,11 @@ def write_samples(file: Path, samples: Iterable[Sample], config: SampleConfig, a
         ends["goal_start"].append(ends["goal_start"][-1] + goal_cell.size)
         ends["start"].append(ends["start"][-1] + potentials.rows.size)
         number += 1
-    arrays: dict[str, Any] = {name: np.concatenate(parts) for name, parts in rows.items() if parts}
+    arrays: dict[str, object] = {name: np.concatenate(parts) for name, parts in rows.items() if parts}
     arrays |= {name: np.array(values, np.int64) for name, values in ends.items()}
     header = json.dumps({"config": asdict(config), "about": about})
     content = io.BytesIO()
-    np.savez_compressed(content, header=np.array(header), **arrays)
+    np.savez_compressed(content, header=np.array(header), **arrays)  # pyright: ignore[reportArgumentType] - arrays only
     write_atomically(file, content.getvalue())
     return number
 
@@ -205,7 +205,7 @@ class _Header(msgspec.Struct):
     """The JSON in `header`."""
 
     config: SampleConfig
-    about: dict[str, Any] = {}
+    about: dict[str, object] = {}
 
 
 def _read(file: Path) -> tuple[SampleConfig, dict[str, NDArray]]:

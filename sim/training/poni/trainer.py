@@ -133,7 +133,7 @@ class Trainer(TimedTraining):
         area, objects = loss_of(self._logits(self.model, batch), *_targets(batch))
         return area + OBJECT_WEIGHT * objects, {"area": area, "objects": objects}
 
-    def evaluate(self, model: torch.nn.Module) -> tuple[float, dict[str, object], str]:
+    def evaluate(self, model: torch.nn.Module) -> tuple[float, Mapping[str, object], str]:
         """See `TimedTraining.evaluate`."""
         numbers = range(len(self.val))[:: stride(len(self.val), self.args.val_count)]
         area, objects, losses = Choices(), Choices(), []
@@ -154,7 +154,7 @@ class Trainer(TimedTraining):
         )
         return float(mean[0] + OBJECT_WEIGHT * mean[1]), row, message
 
-    def about(self) -> dict[str, object]:
+    def about(self) -> Mapping[str, object]:
         """See `TimedTraining.about`."""
         return {"plans": self.plans}
 

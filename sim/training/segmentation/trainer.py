@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 import msgspec
 import numpy as np
@@ -29,7 +28,15 @@ from sim.training.segmentation.recipe import PROGRESSIVE
 from sim.training.segmentation.samples import Augmentation, Sampler, Samples
 from sim.training.segmentation.steps import exponential_average, pyramid_loss, root_class_weights, set_normalisation
 from sim.training.segmentation.trained_network import device_of, parameter_groups, precision_of, start_network
-from sim.training.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
+from sim.training.training_files import (
+    HasState,
+    append_row,
+    cut_rows,
+    load_state,
+    options_of,
+    require_options,
+    save_state,
+)
 from stubborn.segmentation.checkpoints import save_network
 from stubborn.segmentation.networks import Network
 from stubborn.segmentation.rednet import RedNet
@@ -268,9 +275,9 @@ class Trainer:
         set_normalisation(network, ((rgb.to(self.device), second.to(self.device)) for rgb, second, _ in loader))
         return network
 
-    def _card(self, iou: Iou, calibrated: Iou) -> dict[str, Any]:
+    def _card(self, iou: Iou, calibrated: Iou) -> Mapping[str, object]:
         """Returns the metadata of the file of weights."""
-        options: dict[str, Any] = {
+        options: dict[str, object] = {
             key: None if value is None else str(value) for key, value in asdict(self.args).items()
         }
         options |= {key: [str(folder) for folder in getattr(self.args, key)] for key in ("views", "val_views")}
@@ -301,7 +308,7 @@ class Trainer:
         left = f"{max(0.0, self._left_s()) / 60:.1f} min left"
         print(f"step {self.step} of {self.total}: loss {loss:.3f}, {rate:.2f} steps/s, {left}", flush=True)
 
-    def _parts(self) -> dict[str, Any]:
+    def _parts(self) -> dict[str, HasState]:
         """Returns the content of `state.pt` apart from the progress."""
         return {"model": self.model, "average": self.average, "optimiser": self.optimiser}
 

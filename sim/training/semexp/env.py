@@ -95,7 +95,7 @@ class SemExpEnv(PlanEnv):
         self.action_space = spaces.Box(-10.0, 10.0, (2,), np.float32)
         self._given: PolicyInput | None = None
 
-    def step(self, action: Any) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, object]]:
+    def step(self, action: Any) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
         """Drives towards a goal cell; see the class."""
         before_m2, before_steps = self.episode.camera.area_seen_m2, self.episode.num_steps
         observation, progress_m, terminated, truncated, info = super().step(action)

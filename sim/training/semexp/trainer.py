@@ -25,6 +25,7 @@ from sim.training.semexp.env import SemExpEnv
 from sim.training.semexp.options import Args
 from sim.training.semexp.policy import SemExpPolicy
 from sim.training.training_files import (
+    HasState,
     append_row,
     cut_rows,
     load_state,
@@ -113,7 +114,7 @@ class Run:
         }
         FILES.save(self.args.out / "semexp.safetensors", self.policy.net, card)
 
-    def _parts(self) -> dict[str, object]:
+    def _parts(self) -> dict[str, HasState]:
         """Returns the content of `state.pt` apart from the progress."""
         return {"net": self.policy.net, "optimiser": self.policy.optimizer}
 

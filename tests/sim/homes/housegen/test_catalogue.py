@@ -121,4 +121,4 @@ def test_unknown_requests_name_the_allowed_values():
     with pytest.raises(ConfigError, match="office"):
         CATALOGUE.make_item("chair", rng, pool="train", use="throne")
     with pytest.raises(ConfigError, match="width_m"):
-        CATALOGUE.make_item("chair", rng, pool="train", widht_m=0.4)
+        CATALOGUE.make_item("chair", rng, pool="train", widht_m=0.4)  # type: ignore[call-arg]
