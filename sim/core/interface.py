@@ -435,8 +435,8 @@ class AgentSpec:
     config: Any = None
     """Default configuration, a frozen dataclass, or None; `--config agent.FIELD=VALUE` sets its fields."""
     sensors: tuple[Any, ...] = ("rgb", "depth")
-    """Sensors that the agent reads: names of `SENSORS`, or its own objects (`sim.sensors.sensor.Sensor`). Those of its
-    segmenter are added."""
+    """Sensors that the agent reads: names of `SENSORS` or `ROBOT_SENSORS`, or its own objects
+    (`sim.sensors.sensor.Sensor`). Those of its segmenter are added."""
     uses_segmentation: bool = True
     """False: its results do not depend on `--semantics`."""
     own_segmentation: str = ""

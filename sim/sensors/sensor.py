@@ -26,6 +26,8 @@ from sim.robot.drive import Motion
 class SensorContext:
     """The state from which one sensor is read after a reset or an action: only the fields that the sensor declares.
 
+    Sensors are read before the task counts the action: its number of steps is still that before the action.
+
     | field | declared in | meaning |
     |---|---|---|
     | images | `images` | rendered images by name, without noise |

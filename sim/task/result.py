@@ -2,8 +2,10 @@
 
 `EpisodeMetrics` is what the task measures, `RolloutResult` adds what the run of the episode gives, and `EpisodeResult`
 adds the episode and the agent: it is a line of `results.jsonl`. A metric is a field with a `Metric` in its type;
-summaries, comparisons, reports and tables read `METRICS`. To add one, declare its field here and compute it in
-`sim.task.objectnav`.
+summaries, comparisons, reports and tables read `METRICS`. To add one, declare its field here with `| None = None`, so
+that earlier runs, recordings and submissions are still read, compute it in `sim.task.objectnav`, and name it in
+docs/task.md. Three places choose among the metrics: the table of episodes (`sim.app.analysis.display`), the comparison
+of replays (`sim.app.submissions.verdicts`) and the leaderboard.
 """
 
 from __future__ import annotations

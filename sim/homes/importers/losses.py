@@ -23,7 +23,7 @@ class Losses:
     moved_m: float = 0.0
     """Largest distance in plan by which an object was moved, out of a wall or onto a surface."""
 
-    def as_json(self) -> dict[str, Any]:
+    def as_json(self) -> dict[str, object]:
         """Returns the counts for a JSON file, the most frequent first."""
         return {
             "furniture": dict(self.furniture.most_common()),

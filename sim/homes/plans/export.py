@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Mapping
 
 import cv2
 import numpy as np
@@ -34,7 +33,7 @@ _MIN_CEILING_M = 1.5
 """A lower ceiling does not belong to the storey."""
 
 
-def export_plans(house: House, source: dict[str, Any]) -> Iterator[Plan]:
+def export_plans(house: House, source: Mapping[str, object]) -> Iterator[Plan]:
     """Yields the plan of each storey of a house, the lowest first; a storey without free space has none.
 
     Args:
@@ -56,7 +55,7 @@ def export_plans(house: House, source: dict[str, Any]) -> Iterator[Plan]:
 
 
 def _storey(
-    name: str, world: World, truth: GroundTruth, at_rest: mujoco.MjData, floor_z_m: float, source: dict[str, Any]
+    name: str, world: World, truth: GroundTruth, at_rest: mujoco.MjData, floor_z_m: float, source: Mapping[str, object]
 ) -> Plan:
     """Returns the plan of one storey."""
     space = truth.space(floor_z_m)

@@ -72,7 +72,7 @@ class Plan:
     """Names of the instances."""
     categories: NDArray[np.uint8]
     """(instances,) mpcat40 id of each instance."""
-    source: dict[str, Any] = field(default_factory=dict)
+    source: Mapping[str, object] = field(default_factory=dict)
     """Origin of the house: JSON types."""
     _distance_m: dict[str, NDArray[np.float32]] = field(default_factory=dict, repr=False, init=False)
 
@@ -195,7 +195,7 @@ class _About(msgspec.Struct):
     radius_m: Annotated[float, msgspec.Meta(gt=0.0, le=10.0)]
     rooms: tuple[Name, ...]
     instances: tuple[Name, ...]
-    source: dict[str, Any]
+    source: Mapping[str, object]
 
 
 def _check(about: _About, arrays: Mapping[str, NDArray]) -> None:

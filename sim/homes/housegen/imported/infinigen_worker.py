@@ -19,6 +19,7 @@ import json
 import os
 import sys
 import traceback
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -45,7 +46,7 @@ def main() -> int:
     return 0
 
 
-def make(bpy: Any, request: dict[str, Any]) -> dict[str, Any]:
+def make(bpy: Any, request: Mapping[str, Any]) -> dict[str, object]:
     """Makes and writes one asset; returns the answer."""
     butil = importlib.import_module("infinigen.core.util.blender")
     fixed_seed = importlib.import_module("infinigen.core.util.math").FixedSeed

@@ -86,9 +86,9 @@ class Recipe:
 
         return house_text(self.make().spec).encode("utf-8")
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> dict[str, object]:
         """Returns the recipe as a JSON object."""
-        return asdict(self) | {"rooms": list(self.rooms), "hazards": list(self.hazards)}
+        return {**asdict(self), "rooms": list(self.rooms), "hazards": list(self.hazards)}
 
     @classmethod
     def from_json(cls, entry: Mapping[str, Any]) -> Recipe:

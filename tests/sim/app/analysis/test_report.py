@@ -29,7 +29,7 @@ from sim.core.interface import ConfigError
 from sim.core.reading import image_size_px
 from sim.task.explanations import explain, marks
 from sim.task.ground_truth import GroundTruth
-from sim.task.result import EpisodeResult, StopTarget
+from sim.task.result import METRICS, EpisodeResult, StopTarget
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file, write_trajectory
 from sim.world.world import World
 from tests.helpers.browser import ENTER, Browser, missing
@@ -360,7 +360,7 @@ def test_several_runs_are_columns_with_differences_from_the_first_and_a_trend(pa
     page = _page(pair[0], pair[1], pair[0])
     data = _data(page)
     assert data["runs"] == ["A", "B", "C"]
-    assert page.count(f"B {MINUS} A") == page.count(f"C {MINUS} A") == 13 + 6  # metrics, rows of groups
+    assert page.count(f"B {MINUS} A") == page.count(f"C {MINUS} A") == len(METRICS) + 6  # rows of groups
     assert "Trend of the runs in their order" in page
     assert "Trend of the runs in their order" not in _page(*pair)
     assert page.count('data-outcome="some ') == 2
