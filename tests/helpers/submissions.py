@@ -13,8 +13,8 @@ from typing import Any
 
 from sim.app.commands import verify
 from sim.app.commands.run import entry
+from sim.app.submissions.audit import Checked, Choices, check, verdicts
 from sim.app.submissions.verdicts import Verdict
-from sim.app.submissions.verification import Checked, Choices, check, verdicts
 from sim.core.geometry.pose import Pose
 from sim.episodes.episode import Episode
 from sim.episodes.splits import write_split

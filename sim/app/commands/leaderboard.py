@@ -18,11 +18,11 @@ import tyro
 
 from sim.app import cli
 from sim.app.analysis.tables import to_markdown
-from sim.app.commands.verify import verify
+from sim.app.commands.verify import audit
+from sim.app.submissions.audit import Choices
 from sim.app.submissions.contents import read_submission
 from sim.app.submissions.leaderboard import Row, csv_of, is_current, report_file, submission_files, tables
 from sim.app.submissions.report import Report, read_report
-from sim.app.submissions.verification import Choices
 from sim.core.errors import ConfigError, ObjectNavError
 from sim.core.files import write_atomically, write_together
 from sim.core.reading import printable, sha256_of
@@ -75,5 +75,5 @@ def _report(args: Args, file: Path) -> Report:
     folder = next((split for split in args.splits if split.resolve().name == name), None)
     print(f"Verifying {file.name}.")
     choices = Choices(split=folder, draw_seed=secrets.randbits(32), workers=args.workers)
-    write_atomically(kept, json.dumps(verify(file, choices), indent=2) + "\n")
+    write_atomically(kept, json.dumps(audit(file, choices), indent=2) + "\n")
     return read_report(kept)

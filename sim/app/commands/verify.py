@@ -29,11 +29,11 @@ import tyro
 from sim.app import cli
 from sim.app.analysis.metrics import SPL, SUCCESS, mean_cell
 from sim.app.composition.agents import SPECS
+from sim.app.submissions.audit import FRAMES, Checked, Choices, check, counts, verdicts
 from sim.app.submissions.checks import truth_of
 from sim.app.submissions.leaderboard import results_of
 from sim.app.submissions.report import report_of
 from sim.app.submissions.verdicts import TOLERANCE_M, Verdict
-from sim.app.submissions.verification import FRAMES, Checked, Choices, check, counts, verdicts
 from sim.core.files import write_atomically
 from sim.core.paths import processor
 from sim.core.reading import printable
@@ -71,13 +71,13 @@ def main(args: Args) -> int:
         workers=args.workers,
         nonstandard=args.nonstandard,
     )
-    report = verify(args.file, choices)
+    report = audit(args.file, choices)
     if args.report is not None:
         write_atomically(args.report, json.dumps(report, indent=2) + "\n")
     return int(report["different"] != 0)
 
 
-def verify(file: Path, choices: Choices) -> Mapping[str, object]:
+def audit(file: Path, choices: Choices) -> Mapping[str, object]:
     """Verifies a submission, prints the outcome, and returns it as JSON (`sim.app.submissions.report`)."""
     checked = check(file, choices, truth_of_agents())
     for line in _head(checked):

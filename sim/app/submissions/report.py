@@ -8,8 +8,8 @@ from typing import Annotated
 
 import msgspec
 
+from sim.app.submissions.audit import Checked, Choices, counts
 from sim.app.submissions.verdicts import Verdict
-from sim.app.submissions.verification import Checked, Choices, counts
 from sim.core.paths import processor
 from sim.core.reading import Count, Number, read_json
 from sim.robot.config import PHYSICS_VERSION

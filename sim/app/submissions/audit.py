@@ -1,4 +1,4 @@
-"""Verifies a submission: checks it, replays its actions, and judges every episode."""
+"""Audits a submission, as `stubborn verify` does: checks it, replays its actions, and judges every episode."""
 
 from __future__ import annotations
 
