@@ -302,7 +302,7 @@ def test_replicates_of_an_episode_count_once_in_a_comparison_which_states_their_
     (note,) = (note for note in table.notes if "Chance alone" in note)
     # differences of the replicates: a 0, 0; b 0, -1; c 0, 1; d 0, 1; variances 0, 1/2, 1/2, 1/2, mean 3/8
     assert note == (
-        "8 replicates of 4 episodes, each of which counts once. Chance alone gives the difference over one replicate "
+        "8 replicates of 4 episodes; each episode counts once. Chance alone gives the difference over one replicate "
         f"of each a standard deviation of {100 * (3 / 8 / 4) ** 0.5:.1f} points of success and 0.000 of SPL."
     )
     assert replicate_note([result for i, result in first.results.items() if "~" not in i]) == ""
