@@ -123,8 +123,8 @@ def draw_goal_and_start(plan: Plan, rng: np.random.Generator, goal: str | None =
         EpisodeError: no goal of the plan can be reached, or not the given one.
     """
     goals = rng.permutation(np.array(plan.goals(), np.str_)).tolist() if goal is None else [require_goal(plan, goal)]
-    for each in goals:
-        distance_m = np.where(plan.slack_m > 0.02, plan.distance_m(each), np.inf)
+    for category in goals:
+        distance_m = np.where(plan.slack_m > 0.02, plan.distance_m(category), np.inf)
         reachable = np.isfinite(distance_m)
         far = reachable & (distance_m >= MIN_DISTANCE_M)
         if not far.any() and reachable.any():
@@ -132,7 +132,7 @@ def draw_goal_and_start(plan: Plan, rng: np.random.Generator, goal: str | None =
         cells = np.argwhere(far)
         if len(cells):
             x_m, y_m = plan.frame.to_metres(cells[rng.integers(len(cells))])
-            return each, Pose(float(x_m), float(y_m), float(rng.uniform(-math.pi, math.pi)), plan.floor_z_m)
+            return category, Pose(float(x_m), float(y_m), float(rng.uniform(-math.pi, math.pi)), plan.floor_z_m)
     raise EpisodeError(f"Plan '{plan.name}': {'no goal' if goal is None else f'no {goal}'} can be reached.")
 
 

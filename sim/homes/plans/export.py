@@ -62,7 +62,7 @@ def _storey(
     frame = _coarse(space.frame)
     start, low_m, high_m, instance = occupied_spans(world.model, at_rest, world.labels, frame, floor_z_m)
     labels = world.labels
-    categories = [MPCAT40_ID[each.category] for each in labels.instances]
+    categories = [MPCAT40_ID[instance.category] for instance in labels.instances]
     return Plan(
         name=name,
         frame=frame,
@@ -78,7 +78,7 @@ def _storey(
         span_low_m=low_m,
         span_high_m=high_m,
         span_instance=instance,
-        instances=(*(each.name for each in labels.instances), "void"),
+        instances=(*(instance.name for instance in labels.instances), "void"),
         categories=np.array([*categories, MPCAT40_ID["void"]], np.uint8),
         source=source,
     )

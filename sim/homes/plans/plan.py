@@ -13,7 +13,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import msgspec
 import numpy as np
@@ -131,7 +131,7 @@ def house_of(name: str) -> str:
 
 def write_plan(path: Path, plan: Plan) -> None:
     """Writes a plan as a compressed npz file; heights are rounded to `HEIGHT_UNIT_M`."""
-    arrays: dict[str, Any] = {name: getattr(plan, name) for name in _ARRAYS} | {"categories": plan.categories}
+    arrays: dict[str, NDArray] = {name: getattr(plan, name) for name in _ARRAYS} | {"categories": plan.categories}
     arrays["slack_m"] = plan.slack_m.astype(np.float16)
     for name in ("span_low_m", "span_high_m"):
         arrays[name] = np.clip(np.rint(arrays[name] / HEIGHT_UNIT_M), 0, 255).astype(np.uint8)
@@ -148,7 +148,7 @@ def write_plan(path: Path, plan: Plan) -> None:
         "source": plan.source,
     }
     content = io.BytesIO()
-    np.savez_compressed(content, about=np.array(json.dumps(about)), **arrays)
+    np.savez_compressed(content, about=np.array(json.dumps(about)), **arrays)  # pyright: ignore[reportArgumentType] - arrays only
     write_atomically(path, content.getvalue())
 
 

@@ -226,7 +226,7 @@ def enter_frame(
         (n,) the row-major cells that show the target; and the first and last row and column of the touched cells.
     """
     cols = flags.shape[1]
-    targets, found = np.empty(count, np.int32), 0
+    targets, target_count = np.empty(count, np.int32), 0
     row_0, row_1, col_0, col_1 = flags.shape[0], -1, cols, -1
     for i in range(count):
         row, col = touched[i] // cols, touched[i] % cols
@@ -245,8 +245,8 @@ def enter_frame(
                 found_step[row, col] = step
             score_sum[row, col] += 1.0
             score_max[row, col] = 1.0
-            targets[found] = touched[i]
-            found += 1
+            targets[target_count] = touched[i]
+            target_count += 1
         elif flag & IN_VIEW:
             other_max[row, col] = 1.0
-    return targets[:found].copy(), row_0, row_1, col_0, col_1
+    return targets[:target_count].copy(), row_0, row_1, col_0, col_1

@@ -22,7 +22,7 @@ DISTANCES_M = (1.0, 2.0, 3.0, 4.0, 5.0)
 """Edges of the bins of depth. Pixels that are nearer, at the largest depth or without one belong to no bin."""
 EDGES_PX = (0, 16, 32, 64, 128, 640)
 """Edges of the bins of size: the square root of an object's area, in pixels of the 640 x 480 image."""
-FEWEST_PIXELS = 4
+MIN_PIXELS = 4
 """Objects with fewer pixels at the network's resolution are not counted."""
 FOUND_SHARE = 0.5
 
@@ -110,6 +110,6 @@ def _objects(
         area_px = np.bincount(regions.reshape(-1), minlength=count)[1:]
         right_px = np.bincount(regions[predicted == category - 1], minlength=count)[1:]
         for area, right in zip(area_px, right_px, strict=True):
-            if area >= FEWEST_PIXELS:
+            if area >= MIN_PIXELS:
                 objects.append(SeenObject(name, float(np.sqrt(area)) * block_px, float(right / area)))
     return objects

@@ -30,7 +30,7 @@ DISTANCE_M = (1.0, 3.5)
 """Horizontal distance of the camera from the point of the object that it is aimed at."""
 OFF_AXIS_RAD = 0.45
 """Largest angle between the optical axis and the direction of that point, seen from above."""
-FEWEST_PIXELS = 100
+MIN_PIXELS = 100
 """Visible pixels of the object, of 640 x 480, below which a view is rejected: it may be partly hidden."""
 _DRAWS = 12
 
@@ -71,7 +71,7 @@ def shows(geom: NDArray[np.int32], labels: Labels, name: str, camera: CameraMode
     """Returns whether enough of an instance is visible in an image (h, w) of geoms."""
     number = next(i for i, instance in enumerate(labels.instances) if instance.name == name)
     owner = np.append(labels.geom_instance, -1)  # geom -1 takes the last
-    fewest = FEWEST_PIXELS * camera.width_px * camera.height_px / (640 * 480)
+    fewest = MIN_PIXELS * camera.width_px * camera.height_px / (640 * 480)
     return bool((owner[geom] == number).sum() >= fewest)
 
 

@@ -17,7 +17,7 @@ SPLITS = {
     "large-test": (20, 600), "hazards-test": (15, 450),
 }  # fmt: skip
 """Number of houses and episodes of each split."""
-LEAST_HOUSES = 5
+MIN_HOUSES = 5
 """Smallest number of houses with episodes of a category."""
 TURNS_AT_START = 6
 
@@ -64,7 +64,7 @@ def test_each_goal_is_asked_for_in_several_houses(split: str) -> None:
     houses = collections.defaultdict[str, set[str]](set)
     for episode in load(split).episodes:
         houses[episode.goal].add(episode.house)
-    assert min(len(houses[goal]) for goal in GOAL_CATEGORIES) >= LEAST_HOUSES
+    assert min(len(houses[goal]) for goal in GOAL_CATEGORIES) >= MIN_HOUSES
 
 
 @every_split

@@ -143,7 +143,7 @@ def with_entries_of(config: Config, file: Path) -> Config:
     return merged
 
 
-def settings_of(config: Mapping[str, object]) -> dict[str, Any]:
+def settings_of(config: Mapping[str, object]) -> dict[str, object]:
     """Returns the entries of `SETTINGS` whose values differ from those of this project's task.
 
     The tree under `habitat`, which scripts of the new layout also give, will do.
@@ -152,7 +152,7 @@ def settings_of(config: Mapping[str, object]) -> dict[str, Any]:
         ConfigError: two paths of one setting have different values, such as the widths of RGB and depth, or the
             configuration has no section of either layout.
     """
-    default, settings = make_config(), dict[str, Any]()
+    default, settings = make_config(), dict[str, object]()
     config = _whole(config, default)
     for name, paths in SETTINGS.items():
         values = {path: _at(config, path) for path in paths}

@@ -11,7 +11,7 @@ from sim.core.errors import HouseError
 from sim.core.interface import MPCAT40_ID, CameraModel
 from sim.env.scene import Scene
 from sim.robot.config import RobotConfig
-from sim.training.views.aimed import DISTANCE_M, FEWEST_PIXELS, RARE
+from sim.training.views.aimed import DISTANCE_M, MIN_PIXELS, RARE
 from sim.training.views.views import sample_views
 from tests.helpers import wording
 from tests.helpers.worlds import room, with_box
@@ -40,7 +40,7 @@ def test_aimed_views_show_a_rare_object_from_near_by_and_name_it(scene: Scene) -
     assert stools > 24 / 2  # RARE draws stools four times as often as sofas
     for view, aim in zip(views, aims, strict=True):
         seen = (view.semantic == MPCAT40_ID[aim["category"]]).sum()
-        assert seen >= FEWEST_PIXELS / 16
+        assert seen >= MIN_PIXELS / 16
         assert aim["instance"] in {each["name"] for each in view.annotations or []}
         pose = view.record["pose"]
         if aim["category"] == "stool":
