@@ -35,7 +35,7 @@ def test_a_missing_library_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(gl, "BACKEND", "osmesa")
     monkeypatch.setattr(gl, "_loads", lambda library: False)
-    with pytest.raises(gl.RenderError, match=r"MUJOCO_GL=osmesa needs libOSMesa\.so\.8, which is not installed"):
+    with pytest.raises(gl.RenderError, match=r"MUJOCO_GL=osmesa.*libOSMesa\.so\.8"):
         gl.make_context(8, 8)
 
 

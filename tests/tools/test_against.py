@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from sim.core.interface import ConfigError
+from tests.helpers import wording
 from tools.benchmarks import against
 from tools.benchmarks.against import Args, in_turns, line, main, worker
 
@@ -14,7 +15,7 @@ from tools.benchmarks.against import Args, in_turns, line, main, worker
 @pytest.mark.skipif(not (against.ROOT / ".git").exists(), reason="needs a git checkout")
 @pytest.mark.parametrize("ref", ["", "--all", "HEAD:README.md", "no-such-release"])
 def test_a_reference_without_a_commit_is_refused(ref: str) -> None:
-    with pytest.raises(ConfigError, match="names no commit"):
+    with pytest.raises(ConfigError, match=wording.NAMES_NO_COMMIT):
         main(Args(against=ref))
 
 

@@ -39,5 +39,5 @@ def test_an_episode_that_failed_at_its_first_action_is_left_out(
     assert len(read_demonstration(file).actions) == 2
     assert "wrote 1 episodes with 2 frames" in (printed := capsys.readouterr().out)
     assert "1 without an action were left out" in printed
-    with pytest.raises(ConfigError, match=r"e2.npz' has images of 16 x 12 pixels; take another --out"):
+    with pytest.raises(ConfigError, match=r"e2.npz.*16.*12.*--out"):
         render_demonstrations.main(replace(args, width_px=32, height_px=24))

@@ -25,6 +25,7 @@ from sim.houses.geoms import geom_polytope
 from sim.houses.labels import collidable_geoms, read_labels
 from sim.task.objectnav import Task
 from sim.world.world import World
+from tests.helpers import wording
 from tests.helpers.sampling import sample
 
 SHIPPED = [(split, key) for split, keys in CONTACT_SPLITS.items() for key in keys]
@@ -146,7 +147,7 @@ def test_the_command_writes_the_traps_of_a_family_as_a_split(tmp_path, capsys):
 def test_an_unknown_family_or_difficulty_is_an_error(tmp_path):
     with pytest.raises(ConfigError, match=r"'glass'\. Available: pane_gap"):
         main(Args(out=tmp_path / "mine", family="glass"))
-    with pytest.raises(ConfigError, match="easy, medium, hard"):
+    with pytest.raises(ConfigError, match=wording.EASY_MEDIUM_HARD):
         draw_trap("pane_gap", "harder", 0)  # pyright: ignore[reportArgumentType]
 
 

@@ -84,16 +84,16 @@ def test_a_report_has_results_of_one_split_and_physics_and_of_the_wanted_episode
     assert main(replace(args, traps=("scan_artifact",))) == 0
     assert len((tmp_path / "results.jsonl").read_text().splitlines()) == 2
     assert "glass_pane" not in (tmp_path / "traps.csv").read_text() + (tmp_path / "traps.md").read_text()
-    with pytest.raises(ConfigError, match="holds results with max_steps = 500, this command has 9; choose another"):
+    with pytest.raises(ConfigError, match=r"max_steps.*500.*9"):
         main(replace(args, max_steps=9))
-    with pytest.raises(ConfigError, match=r'split_identity\.name = "traps", this command has "contact-val"; choose'):
+    with pytest.raises(ConfigError, match=r'split_identity\.name.*"traps".*"contact-val"'):
         main(replace(args, split="contact-val", traps=()))
     file = tmp_path / "config.json"
     file.write_text(json.dumps(json.loads(file.read_text()) | {"physics": 1}))
     with pytest.raises(ConfigError, match=f"holds results with physics = 1, this command has {PHYSICS_VERSION}"):
         main(args)
     file.unlink()
-    with pytest.raises(ConfigError, match=r"holds results with max_steps = \(absent\)"):
+    with pytest.raises(ConfigError, match=r"max_steps.*\(absent\)"):
         main(args)
 
 

@@ -200,7 +200,7 @@ def left_out(samples: Sequence[Sample]) -> Float32[np.ndarray, "n classes"]:
 
 def judge(
     p: Float[np.ndarray, "n classes"], samples: Sequence[Sample], among: Bool[np.ndarray, "n goals"] | None = None
-) -> dict[str, object]:
+) -> dict[str, Any]:
     """Returns the quality of the probabilities of goal categories: calibration and ranking.
 
     Args:

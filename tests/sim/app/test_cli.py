@@ -183,5 +183,5 @@ def test_a_signal_ends_a_command_in_order(number: int, status: int, capsys: pyte
 def test_names_of_an_option_come_in_their_order_and_unknown_ones_are_refused() -> None:
     assert cli.chosen("d, a", "abcd", option="--parts") == ["a", "d"]
     for text in ("z", "", "a,z"):
-        with pytest.raises(ConfigError, match="--parts must be some of a,b,c,d, got"):
+        with pytest.raises(ConfigError, match="--parts"):
             cli.chosen(text, "abcd", option="--parts")

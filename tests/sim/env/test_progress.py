@@ -73,9 +73,9 @@ def test_vectors_of_dense_rewards_are_made_by_gymnasium(options: dict[str, Any])
 
 
 def test_an_environment_without_distances_and_weights_that_are_no_numbers_are_refused() -> None:
-    with pytest.raises(ConfigError, match="needs an environment whose info has 'distance_to_goal'"):
+    with pytest.raises(ConfigError, match="'distance_to_goal'"):
         ProgressReward(gymnasium.make("CartPole-v1")).reset()
-    with pytest.raises(ConfigError, match=r"ProgressReward\(per_metre=...\) must be a finite number, got nan"):
+    with pytest.raises(ConfigError, match=r"ProgressReward\(per_metre=...\)"):
         ProgressReward(gymnasium.make("CartPole-v1"), per_metre=math.nan)
 
 

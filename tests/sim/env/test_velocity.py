@@ -26,6 +26,7 @@ from sim.task.metrics import TRAPPED_WINDOW_STEPS, stayed_near
 from sim.task.trajectory import by_action
 from sim.world.world import World
 from stubborn import GroundTruthSegmenter
+from tests.helpers import wording
 from tests.helpers.worlds import sofa_room, with_box, with_movable
 
 SMALL = CameraModel(width_px=64, height_px=48)
@@ -181,7 +182,7 @@ def test_what_is_not_allowed_is_refused(env: ObjectNavVelocityEnv, tmp_path: Pat
         with pytest.raises(ConfigError, match=r"period_s|time_limit_s"):
             make(tmp_path, **wrong)
     for action in ((0.1, 0.0), (np.nan, 0.0, 0.0)):
-        with pytest.raises(ConfigError, match="An action is three finite numbers"):
+        with pytest.raises(ConfigError, match=wording.AN_ACTION_IS_THREE_FINITE_NUMBERS):
             env.step(np.array(action))
     with pytest.raises(ConfigError, match="needs an ObjectNavVelocityEnv, got ObjectNavEnv"):
         DiscreteActions(ObjectNavEnv())

@@ -17,6 +17,7 @@ from sim.task.ground_truth import GroundTruth
 from sim.task.objectnav import Task
 from sim.task.result import NO_STOP_TARGET, EpisodeMetrics, StopTarget
 from sim.world.world import World
+from tests.helpers import wording
 from tests.helpers.worlds import room, two_storeys, with_box, with_movable
 
 FORWARD, LEFT, STOP = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP
@@ -170,7 +171,7 @@ def test_an_impossible_goal_is_refused_with_the_goals_that_exist(goal, message):
 def test_a_goal_without_a_path_to_it_is_refused():
     house = with_box(room(8, 4), "bed_00", centre_m=(3.0, 0, 0.25), half_m=(0.5, 1.0, 0.25))
     house = with_box(house, "wall_10", centre_m=(0, 0, 1.25), half_m=(0.05, 2.0, 1.25))
-    with pytest.raises(EpisodeError, match="no path from"):
+    with pytest.raises(EpisodeError, match=wording.NO_PATH_FROM):
         begin(World(house), "bed", Pose(-1.0, 0.0, 0.0))
 
 
@@ -212,7 +213,7 @@ def test_a_goal_on_the_other_storey_is_not_found():
 
 def test_no_sampled_episode_has_its_goal_on_another_storey():
     with_sofa = World(two_storeys())
-    with pytest.raises(EpisodeError, match="on another storey only"):
+    with pytest.raises(EpisodeError, match=wording.ON_ANOTHER_STOREY_ONLY):
         draw_start(Task(with_sofa), "sofa", np.random.default_rng(0))
 
 

@@ -24,6 +24,7 @@ from sim.app.commands.compare import Args, compare, main, verdict
 from sim.app.evaluation.config_fields import ABSENT, run_differences
 from sim.app.evaluation.intervals import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.core.interface import ConfigError
+from tests.helpers import wording
 from tests.helpers.results import write_lines
 
 
@@ -122,7 +123,7 @@ def test_runs_that_cannot_be_compared_are_named(tmp_path: Path) -> None:
         read_run(run_folder(tmp_path / name, ids, split=split))
         for name, ids, split in (("a", "ab", "val"), ("b", "cd", "val"), ("c", "ab", "test"))
     )
-    with pytest.raises(ConfigError, match="no episode in common"):
+    with pytest.raises(ConfigError, match=wording.NO_EPISODE_IN_COMMON):
         require_same_episodes(first, other)
     with pytest.raises(ConfigError, match=r"val 1 \(abc\) and test 1 \(abc\)"):
         require_same_episodes(first, foreign)
@@ -153,13 +154,13 @@ def test_an_episode_that_broke_or_whose_path_was_measured_again_is_still_the_sam
 
 
 def test_a_folder_that_is_not_a_run_is_reported(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"it has no config\.json"):
+    with pytest.raises(ConfigError, match=r"config\.json"):
         read_run(tmp_path)
     (tmp_path / "config.json").write_text("{}")
-    with pytest.raises(ConfigError, match=r"it has no results\.jsonl"):
+    with pytest.raises(ConfigError, match=r"results\.jsonl"):
         read_run(tmp_path)
     (tmp_path / "results.jsonl").write_text("[]\n")
-    with pytest.raises(ConfigError, match="is not a run"):
+    with pytest.raises(ConfigError, match=wording.IS_NOT_A_RUN):
         read_run(tmp_path)
 
 

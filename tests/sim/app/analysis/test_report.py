@@ -32,6 +32,7 @@ from sim.task.ground_truth import GroundTruth
 from sim.task.result import METRICS, EpisodeResult, StopTarget
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file, write_trajectory
 from sim.world.world import World
+from tests.helpers import wording
 from tests.helpers.browser import ENTER, Browser, missing
 from tests.helpers.worlds import room, two_storeys, with_box
 
@@ -311,9 +312,9 @@ def test_a_run_without_the_identity_of_its_split_is_shown_without_houses(
 @pytest.mark.parametrize(
     ("broken", "sentence"),
     [
-        (lambda folder: shutil.rmtree(folder), "is not a run: it has no config.json"),
-        (lambda folder: (folder / "results.jsonl").write_text(""), "has no result yet"),
-        (lambda folder: (folder / "results.jsonl").write_text('{"a": 1}\n{}\n'), "is not a run"),
+        (lambda folder: shutil.rmtree(folder), "config.json"),
+        (lambda folder: (folder / "results.jsonl").write_text(""), wording.HAS_NO_RESULT_YET),
+        (lambda folder: (folder / "results.jsonl").write_text('{"a": 1}\n{}\n'), wording.IS_NOT_A_RUN),
     ],
 )
 def test_a_folder_that_is_not_a_run_gives_one_sentence(
@@ -378,7 +379,7 @@ def test_the_page_states_over_what_its_intervals_are(pair: tuple[Path, Path]) ->
 def test_runs_of_other_episodes_are_refused(recorded_run: Path, pair: tuple[Path, Path]) -> None:
     _, folder = pair
     _write_lines(folder, [line | {"shortest_path": 99.0} for line in _lines(folder)[2:]])
-    with pytest.raises(ConfigError, match="not run on the same episodes"):
+    with pytest.raises(ConfigError, match=wording.NOT_RUN_ON_THE_SAME_EPISODES):
         main(Args(runs=(recorded_run / "found", folder)))
 
 

@@ -23,6 +23,7 @@ from sim.app.options import RunOptions
 from sim.core.configuration import with_fields
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import GOAL_CATEGORIES, Action, AgentSpec, CameraModel, RobotModel, SuccessRule
+from tests.helpers import wording
 from tests.helpers.habitat_agents import Configured, NoAgent, Placed, Wanderer, arguments
 
 CAMERA = CameraModel(width_px=4, height_px=3)
@@ -129,13 +130,13 @@ def test_an_action_is_understood_in_all_of_habitats_forms(chosen: Any) -> None:
     ],
 )  # fmt: skip
 def test_anything_else_is_refused_in_a_line_that_lists_the_actions(chosen: Any) -> None:
-    with pytest.raises(AgentError, match="An action is one of 0 stop, 1 move_forward, 2 turn_left, 3 turn_right"):
+    with pytest.raises(AgentError, match=r"0.*1.*move_forward.*2.*turn_left.*3.*turn_right"):
         to_action(chosen)
 
 
 @pytest.mark.parametrize("chosen", [4, "LOOK_DOWN", {"action": "look_up"}])
 def test_a_look_up_or_down_is_refused_with_its_reason(chosen: Any) -> None:
-    with pytest.raises(AgentError, match="the camera of this robot does not tilt"):
+    with pytest.raises(AgentError, match=wording.THE_CAMERA_OF_THIS_ROBOT_DOES_NOT_TILT):
         to_action(chosen)
 
 
@@ -158,7 +159,7 @@ def test_a_required_configuration_is_that_of_the_run_and_other_required_argument
     assert agent.distance == 2.0
     assert agent.task_config.ENVIRONMENT.MAX_EPISODE_STEPS == 77
     assert agent.task_config.habitat.simulator.agents.main_agent.sim_sensors.rgb_sensor.width == 4
-    with pytest.raises(ConfigError, match=r"needs the argument distance: give --config agent\.distance=VALUE"):
+    with pytest.raises(ConfigError, match=r"--config.*agent\.distance=VALUE"):
         build(Configured)
 
 
@@ -193,9 +194,9 @@ def test_an_agent_specification_may_declare_ground_truth() -> None:
 @pytest.mark.parametrize(
     ("declared", "message"),
     [
-        (3, "must be a class, a factory or an AgentSpec, got int"),
-        (NoAgent, "a NoAgent has no method act"),
-        (lambda categories: Wanderer(), "has an argument 'categories', which is also a field of the bridge"),
+        (3, "AgentSpec"),
+        (NoAgent, "NoAgent"),
+        (lambda categories: Wanderer(), "'categories'"),
     ],
 )
 def test_something_else_is_refused(declared: Any, message: str) -> None:
@@ -222,7 +223,7 @@ def test_the_stand_in_has_the_names_and_goes_away(published: str) -> None:
     assert habitat.core.agent.Agent is habitat.Agent
     with habitat.config.read_write(habitat.get_config()) as config:
         config.habitat.dataset.split = "test"
-    with pytest.raises(AttributeError, match=r"'habitat\.Dataset' is not part of the stand-in"):
+    with pytest.raises(AttributeError, match=r"'habitat\.Dataset'"):
         _ = habitat.Dataset
     stand_in.remove()
     assert "habitat" not in sys.modules
@@ -242,10 +243,10 @@ def test_an_installed_habitat_has_priority_and_a_mere_folder_has_not(
 @pytest.mark.parametrize(
     ("line", "named"),
     [
-        ("from habitat.core.simulator import Sensor", r"'habitat\.core\.simulator\.Sensor' is not part of"),
-        ("import habitat.datasets", r"'habitat\.datasets' is not part of"),
-        ("import habitat\nx = habitat.Dataset", r"'habitat\.Dataset' is not part of"),
-        ("import habitat_sim", "it imports 'habitat_sim', which is not installed"),
+        ("from habitat.core.simulator import Sensor", r"'habitat\.core\.simulator\.Sensor'"),
+        ("import habitat.datasets", r"'habitat\.datasets'"),
+        ("import habitat\nx = habitat.Dataset", r"'habitat\.Dataset'"),
+        ("import habitat_sim", "'habitat_sim'"),
         ("import argparse\nargparse.ArgumentParser().parse_args(['x'])", "SystemExit"),
     ],
 )
@@ -257,7 +258,7 @@ def test_what_the_stand_in_lacks_is_named(published: str, tmp_path: Path, line: 
 
 def test_the_modules_of_the_user_do_not_include_the_prefix() -> None:
     assert RunOptions(agent="habitat:pack.mod:X").own_modules == ["pack.mod"]
-    with pytest.raises(ConfigError, match="must have the form habitat:package"):
+    with pytest.raises(ConfigError, match=wording.MUST_HAVE_THE_FORM_HABITAT_PACKAGE):
         find_agent("habitat:mod")
 
 
@@ -306,5 +307,5 @@ def test_an_error_of_the_agent_is_one_line_of_its_episode(house: Path, tmp_path:
 
 def test_a_goal_that_the_data_set_lacks_is_named() -> None:
     agent = build(Wanderer, categories="hm3d")
-    with pytest.raises(AgentError, match="'table' is not one of the categories of hm3d"):
+    with pytest.raises(AgentError, match=r"'table'.*hm3d"):
         agent.reset("table", 0)

@@ -19,6 +19,7 @@ from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import Action, CameraModel, RobotModel, SuccessRule
+from tests.helpers import wording
 from tests.helpers.habitat_agents import Wanderer
 
 OBSERVATION = {
@@ -119,7 +120,7 @@ def test_an_evaluation_script_and_a_class_run_unchanged() -> None:
 def test_a_use_of_a_package_that_is_not_installed_is_an_error_that_names_it() -> None:
     agent = start("published.py --break-at 1")
     agent.reset("chair", 0)
-    with pytest.raises(AgentError, match=r"'detectron2\.data\.transforms\.Resize' is used, but detectron2 is not inst"):
+    with pytest.raises(AgentError, match=r"'detectron2\.data\.transforms\.Resize'.*detectron2"):
         agent.act(OBSERVATION)
     agent.close()
 
@@ -127,13 +128,13 @@ def test_a_use_of_a_package_that_is_not_installed_is_an_error_that_names_it() ->
 @pytest.mark.parametrize(
     ("words", "script", "reason"),
     [
-        ("own.py", "import habitat.utils.visualizations", r"'habitat\.utils' is not part of the stand-in for Habitat"),
-        ("own.py", "from habitat import make_dataset", "cannot import name 'make_dataset' from 'habitat'"),
-        ("own.py", "import habitat\nhabitat.Env()", "Episodes and shortest paths are in the simulator's process"),
-        ("own.py", "import habitat\nhabitat.Challenge(eval_remote=True)", "there is no evaluation server"),
-        ("own.py", "print('nothing')", r"'own\.py' has given no agent to habitat\.Benchmark, habitat\.Challenge or"),
-        ("published:Own", "", "missing 1 required positional argument: 'args'"),
-        ("", "", r"needs a script, or package\.module:CLASS"),
+        ("own.py", "import habitat.utils.visualizations", r"'habitat\.utils'"),
+        ("own.py", "from habitat import make_dataset", r"'make_dataset'.*'habitat'"),
+        ("own.py", "import habitat\nhabitat.Env()", wording.EPISODES_AND_SHORTEST_PATHS_ARE_IN_THE_SIMULATOR),
+        ("own.py", "import habitat\nhabitat.Challenge(eval_remote=True)", wording.THERE_IS_NO_EVALUATION_SERVER),
+        ("own.py", "print('nothing')", r"'own\.py'.*habitat\.Benchmark.*habitat\.Challenge"),
+        ("published:Own", "", r"1.*'args'"),
+        ("", "", r"package\.module.*CLASS"),
     ],
 )
 def test_what_cannot_run_ends_with_one_line(folder: Path, words: str, script: str, reason: str) -> None:

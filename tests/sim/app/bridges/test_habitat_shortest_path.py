@@ -91,7 +91,7 @@ def test_actions_can_be_one_hot_and_a_place_without_a_path_stops_or_is_an_error(
     assert np.array_equal(one_hot.get_next_action(env.sim.get_agent_state().position), [1, 0, 0, 0])
     assert np.array_equal(one_hot.get_next_action([-1.0, 0.0, 2.0]), [0, 1, 0, 0])
     assert ShortestPathFollower(env.sim, 0.5).get_next_action([30.0, 0.0, 0.0]) == 0
-    with pytest.raises(EpisodeError, match=r"No path leads to \[30.0, 0.0, 0.0\]"):
+    with pytest.raises(EpisodeError, match=r"\[30.0.*0.0.*0.0\]"):
         ShortestPathFollower(env.sim, 0.5, stop_on_error=False).get_next_action([30.0, 0.0, 0.0])
 
 

@@ -95,7 +95,7 @@ def test_a_truth_value_is_no_action() -> None:
 def test_options_of_habitat_need_its_interface_and_choose_the_goals() -> None:
     with pytest.raises(ConfigError, match=r"need agent\.interface=habitat"):
         ProcessConfig(categories="hm3d")
-    with pytest.raises(ConfigError, match="interface must be one of stubborn, habitat, got 'gym'"):
+    with pytest.raises(ConfigError, match="'gym'"):
         ProcessConfig(interface="gym")  # type: ignore[arg-type]
     setup = resolve(RunOptions(agent="process:true", config=("agent.interface=habitat", "agent.categories=hm3d")))
     assert setup.spec.goals is not None
@@ -106,7 +106,7 @@ def test_a_client_file_that_does_not_know_the_interface_is_named(tmp_path: Path)
     old = CLIENT.read_text().replace("return dict(ready, interface=self.interface)", "return ready")
     command = shlex.split(write_agent(tmp_path, 0, old).removeprefix("process:"))
     parts: dict[str, Any] = {"camera": CameraModel(), "robot": RobotModel(), "success": SuccessRule(), "max_steps": 5}
-    with pytest.raises(ConfigError, match=r"does not know agent\.interface=habitat: copy the file anew"):
+    with pytest.raises(ConfigError, match=r"agent\.interface=habitat"):
         ProcessAgent(command, **parts, config=ProcessConfig(interface="habitat"))
 
 
@@ -114,7 +114,7 @@ def test_a_goal_that_the_data_set_lacks_is_an_error_of_the_episode(tmp_path: Pat
     command = shlex.split(write_agent(tmp_path, 0).removeprefix("process:"))
     parts: dict[str, Any] = {"camera": CameraModel(), "robot": RobotModel(), "success": SuccessRule(), "max_steps": 5}
     agent = ProcessAgent(command, **parts, config=ProcessConfig(interface="habitat", categories="hm3d"))
-    with pytest.raises(AgentError, match="'towel' is not one of the categories of hm3d"):
+    with pytest.raises(AgentError, match=r"'towel'.*hm3d"):
         agent.reset("towel", 0)
     agent.reset("bed", 0)
     agent.close()

@@ -19,6 +19,7 @@ from sim.app.viewers.palette import PALETTE
 from sim.core.interface import MPCAT40_ID, ConfigError
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 from stubborn.segmentation.network import NetworkSegmenter
+from tests.helpers import wording
 from tests.helpers.worlds import room, with_box
 
 
@@ -121,8 +122,8 @@ def test_runs_of_other_segmentation_and_without_such_failures_are_reported(
     ("changes", "message"),
     [
         ({"robot": "robots/mine.xml"}, "another robot"),
-        ({"config": {"camera": {"height_m": 0.5}}}, "another camera than ours"),
-        ({"config": {"robot": {"camera_forward_m": 0.1}}}, "another robot than ours"),
+        ({"config": {"camera": {"height_m": 0.5}}}, wording.ANOTHER_CAMERA_THAN_OURS),
+        ({"config": {"robot": {"camera_forward_m": 0.1}}}, wording.ANOTHER_ROBOT_THAN_OURS),
         ({"settings": {"detector.weights": "gone.safetensors"}}, "gone.safetensors"),
         ({"files_sha256": {"weights": "0" * 64}}, "other weights"),
     ],

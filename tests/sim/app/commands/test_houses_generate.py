@@ -60,11 +60,11 @@ def test_houses_of_withheld_styles_show_what_training_leaves_out(
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"split": "val", "area_m2": 80.0}, "--area-m2 has no effect with --split val"),
-        ({"split": "train", "first_seed": 3}, "--first-seed has no effect with --split train"),
+        ({"split": "val", "area_m2": 80.0}, r"--area-m2.*--split"),
+        ({"split": "train", "first_seed": 3}, r"--first-seed.*--split"),
         (
             {"transfer_test": True, "furniture": Path("models"), "withheld": "only"},
-            "--withheld has no effect with --tra",
+            r"--withheld.*--tra",
         ),
     ],
 )

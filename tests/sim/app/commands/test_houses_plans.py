@@ -27,7 +27,7 @@ def test_a_plan_that_exists_is_kept_and_one_of_other_options_is_refused(
     plan = read_plan(file)
     write_plan(file, replace(plan, source={key: plan.source[key] for key in ("pool", "kind", "area_m2", "seed")}))
     assert export_plans.main(args) == 0  # an older version did not name the generator
-    with pytest.raises(ConfigError, match=r"was made with other options .*take another --out"):
+    with pytest.raises(ConfigError, match="--out"):
         export_plans.main(replace(args, area_m2=55.0))
 
 

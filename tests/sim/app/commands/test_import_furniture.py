@@ -11,6 +11,7 @@ from sim.app.commands.houses import generate as generate_houses
 from sim.app.commands.importing import furniture as import_furniture
 from sim.app.commands.views import generate as generate_views
 from sim.core.errors import ConfigError
+from tests.helpers import wording
 from tests.helpers.models import CHAIR, obj_text, properties, write_catalogue, write_folder
 
 pytest.importorskip("trimesh")
@@ -44,7 +45,7 @@ def test_options_that_do_not_fit_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="--split train"):
         generate_views.main(generate_views.Args(out=tmp_path, split="val", furniture=tmp_path))
     (tmp_path / "file").write_text("")
-    with pytest.raises(ConfigError, match="not a folder"):
+    with pytest.raises(ConfigError, match=wording.NOT_A_FOLDER):
         import_furniture.main(import_furniture.Args(source=(tmp_path,), out=tmp_path / "file"))
 
 

@@ -10,6 +10,7 @@ from sim.app.commands.reproduce.runs import AgentSetup
 from sim.core.interface import ConfigError
 from sim.task.failures import CAUSES
 from sim.task.result import EpisodeResult
+from tests.helpers import wording
 from tests.helpers.results import a_result
 
 GOALS = ("bed", "sofa")
@@ -150,13 +151,13 @@ def test_a_setup_is_written_as_on_the_command_line(name: str, setup: AgentSetup,
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("stubborn --explore tour", r"has the option --explore; an agent is given as AGENT \[--semantics SOURCE\]"),
-        ("stubborn --explorer", "needs one name for explorer"),
-        ("stubborn --noise harsh", "has the option --noise"),
-        ("stubborn frontier", "needs one name for agent"),
-        ("--explorer tour", "needs one name for agent"),
-        ("stubborn --config", "needs at least one FIELD=VALUE for config"),
-        ("stubborn 'tour", "cannot be read: No closing quotation"),
+        ("stubborn --explore tour", r"--explore.*AGENT.*\[--semantics.*SOURCE\]"),
+        ("stubborn --explorer", wording.NEEDS_ONE_NAME_FOR_EXPLORER),
+        ("stubborn --noise harsh", "--noise"),
+        ("stubborn frontier", wording.NEEDS_ONE_NAME_FOR_AGENT),
+        ("--explorer tour", wording.NEEDS_ONE_NAME_FOR_AGENT),
+        ("stubborn --config", "FIELD=VALUE"),
+        ("stubborn 'tour", wording.CANNOT_BE_READ_NO_CLOSING_QUOTATION),
     ],
 )
 def test_a_setup_of_another_form_is_refused(name: str, message: str) -> None:
@@ -170,7 +171,7 @@ def test_the_table_of_verification_has_all_methods() -> None:
 
 
 def test_an_unknown_table_is_refused_with_the_tables_that_exist() -> None:
-    with pytest.raises(ConfigError, match="failures, ablation, exploration, controls, categories, overall"):
+    with pytest.raises(ConfigError, match=wording.FAILURES_ABLATION_EXPLORATION_CONTROLS_CATEGORIE):
         table_named("failure")
 
 

@@ -24,6 +24,7 @@ from sim.episodes.episode import Episode
 from sim.episodes.splits import write_split
 from sim.task.result import EpisodeResult
 from sim.task.trajectory import FOLDER
+from tests.helpers import wording
 from tests.helpers.worlds import room, with_box
 
 AGENTS = ("oracle", "examples.my_agent:make")
@@ -171,7 +172,7 @@ def test_two_versions_of_the_shipped_network_get_into_no_table(
         reproduce.require_same_conditions(runs)
         return
     without = replace(runs[0], config={**runs[0].config, "files_sha256": {}})
-    with pytest.raises(ConfigError, match="two versions of the shipped network"):
+    with pytest.raises(ConfigError, match=wording.TWO_VERSIONS_OF_THE_SHIPPED_NETWORK):
         reproduce.require_same_conditions([without, *runs])
 
 
@@ -204,7 +205,7 @@ def test_runs_of_one_agent_with_other_options_have_folders_of_their_own(args: re
     (args.out / "examples.my_agent_AGENT_gt_none_tiny").rename(args.out / "other")
     written.rename(args.out / "examples.my_agent_AGENT_gt_none_tiny")
     (args.out / "other").rename(written)
-    with pytest.raises(ConfigError, match=r"holds a run of"):
+    with pytest.raises(ConfigError, match=wording.HOLDS_A_RUN_OF):
         reproduce.main(replace(agents, minutes=0.0))
 
 
@@ -251,7 +252,7 @@ def test_each_option_that_makes_another_table_has_its_place_in_the_name(split: P
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"table": "everything"}, "There is no table 'everything'"),
+        ({"table": "everything"}, "'everything'"),
         ({"agents": ("stuborn",)}, "stuborn"),
         ({"semantics": "psychic", "agents": ("stubborn",)}, "psychic"),
         ({"episodes": 5}, "has 4 episodes"),

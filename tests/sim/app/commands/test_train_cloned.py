@@ -20,6 +20,7 @@ from sim.training.cloned.demonstrations import (
     write_demonstration,
 )
 from stubborn.baselines.cloned_net import FILES
+from tests.helpers import wording
 from tools.training import plan_demonstrations, render_demonstrations
 
 
@@ -103,26 +104,24 @@ def test_other_options_and_other_demonstrations_do_not_continue_a_run(tmp_path: 
     )
     assert train_cloned.main(args) == 0
     assert train_cloned.main(replace(args, minutes=2e-4, threads=2)) == 0
-    with pytest.raises(
-        ConfigError, match=r"out' holds a run with --rate = 0\.0015, this command has 0\.003; take another"
-    ):
+    with pytest.raises(ConfigError, match=r"--rate.*0\.0015.*0\.003"):
         train_cloned.main(replace(args, rate=3e-3))
     write_demonstration(tmp_path / "shown" / "9.npz", rule("house_0", seed=9))
-    with pytest.raises(ConfigError, match=r"--demonstrations = 8 files \(hash \w+\), this command has 9 files"):
+    with pytest.raises(ConfigError, match=r"--demonstrations.*8.*\(hash.*\w+\).*9"):
         train_cloned.main(args)
 
 
 def test_demonstrations_of_too_few_houses_and_another_size_are_refused(tmp_path: Path):
     args = train_cloned.Args(demonstrations=(tmp_path / "shown",), out=tmp_path / "out")
     write_demonstration(tmp_path / "shown" / "a.npz", rule("house_1", seed=0))
-    with pytest.raises(ConfigError, match="1 demonstrations to train on and 0 held back"):
+    with pytest.raises(ConfigError, match=wording.N_1_DEMONSTRATIONS_TO_TRAIN_ON_AND_0_HELD_BACK):
         train_cloned.main(args)
     small = rule("house_0", seed=0)
     write_demonstration(
         tmp_path / "shown" / "b.npz",
         replace(small, semantic=small.semantic[:, ::2, ::2], depth_mm=small.depth_mm[:, ::2, ::2]),
     )
-    with pytest.raises(ConfigError, match=r"b\.npz' has images of 32 x 24, the policy takes 64 x 48"):
+    with pytest.raises(ConfigError, match=r"b\.npz.*32.*24.*64.*48"):
         train_cloned.main(args)
 
 
@@ -138,7 +137,7 @@ def test_searches_in_plans_are_rendered_once(tmp_path: Path, capsys: pytest.Capt
     times = [file.stat().st_mtime_ns for file in files]
     assert plan_demonstrations.main(args) == 0
     assert [file.stat().st_mtime_ns for file in files] == times
-    with pytest.raises(ConfigError, match="take another folder"):
+    with pytest.raises(ConfigError, match=wording.TAKE_ANOTHER_FOLDER):
         plan_demonstrations.main(replace(args, episodes=3))
 
 
@@ -157,8 +156,8 @@ def test_the_episodes_of_a_run_are_rendered_at_their_poses(tmp_path: Path, capsy
     capsys.readouterr()
     assert render_demonstrations.main(args) == 0
     assert "0 episodes to render" in capsys.readouterr().out
-    with pytest.raises(ConfigError, match="Two runs are named 'oracle'"):
+    with pytest.raises(ConfigError, match="'oracle'"):
         render_demonstrations.main(replace(args, runs=(run, run)))
     (run / "trajectories" / f"{file.stem}.npz").unlink()
-    with pytest.raises(ConfigError, match="has no trajectory of an episode that succeeded"):
+    with pytest.raises(ConfigError, match=wording.HAS_NO_TRAJECTORY_OF_AN_EPISODE_THAT_SUCCEEDED):
         render_demonstrations.main(args)

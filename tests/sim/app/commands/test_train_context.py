@@ -15,6 +15,7 @@ from sim.homes.plans.export import export_plans
 from sim.homes.plans.plan import Plan, write_plan
 from sim.training.plan_split import split_plans
 from stubborn.detection.context import OBJECTS, read_context
+from tests.helpers import wording
 from tests.helpers.worlds import room, with_box
 
 SINK, TOWEL, BED, CLOTHES = (OBJECTS.index(name) for name in ("sink", "towel", "bed", "clothes"))
@@ -71,5 +72,5 @@ def test_without_plans_or_a_file_it_says_what_to_give(tmp_path: Path):
         main(Args(plans=(tmp_path,), out=tmp_path / "x.json"))
     with pytest.raises(ConfigError, match="--out FILE"):
         main(Args(plans=(tmp_path,)))
-    with pytest.raises(ConfigError, match="exclude each other"):
+    with pytest.raises(ConfigError, match=wording.EXCLUDE_EACH_OTHER):
         main(Args(plans=(tmp_path,), out=tmp_path / "x.json", shipped=True))

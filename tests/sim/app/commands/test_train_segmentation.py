@@ -25,6 +25,7 @@ from sim.training.views.views import View
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.networks import NETWORKS, build_network
 from stubborn.segmentation.rednet import COMPACT
+from tests.helpers import wording
 
 
 def write_views(folder: Path, count: int, rows_px: int = 48) -> None:
@@ -182,7 +183,7 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
     assert text == f"1 steps, {last['hours']} h, code {code_hash()}, then averaged with the weights before it"
     folders = [stage.options["out"] for stage in stages]
     assert folders == [str(tmp_path / name) for name in ("out", "finer", "finest")]
-    with pytest.raises(ConfigError, match="is not of size 'lite0'"):
+    with pytest.raises(ConfigError, match="'lite0'"):
         main(options(tmp_path, out=tmp_path / "other", init=first, size="lite0"))
 
 
@@ -209,15 +210,15 @@ def test_a_network_on_depth_is_trained_further_with_geometry_and_then_keeps_it(t
 def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> None:
     write_views(tmp_path / "train", 1)
     write_views(tmp_path / "val", 1)
-    with pytest.raises(ConfigError, match="fewer views than one batch of 2"):
+    with pytest.raises(ConfigError, match=wording.FEWER_VIEWS_THAN_ONE_BATCH_OF_2):
         main(options(tmp_path))
-    with pytest.raises(ConfigError, match=r"--size must be one of compact, compact-geometry, .*, got 'huge'"):
+    with pytest.raises(ConfigError, match=r"--size.*'huge'"):
         main(options(tmp_path, size="huge"))
-    with pytest.raises(ConfigError, match=r"--block-px must divide 640 and 480, got 7"):
+    with pytest.raises(ConfigError, match=r"--block-px.*640.*480.*7"):
         main(options(tmp_path, block_px=7))
-    with pytest.raises(ConfigError, match=r"--views and --val-views are given together"):
+    with pytest.raises(ConfigError, match=r"--views.*--val-views"):
         main(options(tmp_path, val_views=()))
-    with pytest.raises(ConfigError, match=r"--furniture is for the views that this command makes"):
+    with pytest.raises(ConfigError, match="--furniture"):
         main(options(tmp_path, furniture=tmp_path))
     with pytest.raises(ConfigError, match="No shards"):
         main(options(tmp_path, views=(tmp_path / "train", tmp_path / "nothing")))
@@ -248,7 +249,7 @@ def test_views_of_different_sizes_are_refused(tmp_path: Path) -> None:
         for shard in (tmp_path / name).glob("*.tar"):
             note = {"config": {"shrink": shrink}, "pixels": {"wall": 9, "sofa": 9}}
             shard.with_suffix(".json").write_text(json.dumps(note))
-    with pytest.raises(ConfigError, match=r"train', '.*val' were shrunk by different factors: \[1, 2\]"):
+    with pytest.raises(ConfigError, match=r"'.*val'.*\[1.*2\]"):
         main(options(tmp_path))
 
 
@@ -256,7 +257,7 @@ def test_too_few_views_are_refused_before_anything_is_written(tmp_path: Path) ->
     write_views(tmp_path / "train", 3)
     write_views(tmp_path / "val", 2)
     (tmp_path / "train" / "views-000000.json").write_text('{"views": 3, "pixels": {}}')
-    with pytest.raises(ConfigError, match="fewer views than one batch of 4"):
+    with pytest.raises(ConfigError, match=wording.FEWER_VIEWS_THAN_ONE_BATCH_OF_4):
         main(options(tmp_path, batch=4))
     assert not (tmp_path / "out").exists()
 

@@ -40,7 +40,7 @@ def test_a_missing_curve_stays_missing_and_a_foreign_table_is_refused(tmp_path: 
     assert list(tmp_path.iterdir()) == []
     file = tmp_path / "val.csv"
     file.write_text("name,price\nbed,100\n")
-    with pytest.raises(ConfigError, match=r"val\.csv' is not a curve of this command: it has no column 'step'"):
+    with pytest.raises(ConfigError, match=r"val\.csv.*'step'"):
         cut_rows(file, "step", 0)
     assert file.read_text() == "name,price\nbed,100\n"
 
@@ -61,13 +61,11 @@ def test_a_run_is_the_same_in_another_folder_with_the_same_files(tmp_path: Path)
 
     before = kept(tmp_path / "one", "abc")
     require_options(tmp_path, before, kept(tmp_path / "two", "abc", minutes=2.0))
-    with pytest.raises(ConfigError, match=r"holds a run with --views = 1 files \(hash \w+\), this command has 1 files"):
+    with pytest.raises(ConfigError, match=r"--views.*1.*\(hash.*\w+\).*1"):
         require_options(tmp_path, before, kept(tmp_path / "two", "abcd"))
-    with pytest.raises(
-        ConfigError, match=r"holds a run with --rate = 0\.1, this command has 0\.2; take another folder"
-    ):
+    with pytest.raises(ConfigError, match=r"--rate.*0\.1.*0\.2"):
         require_options(tmp_path, before, kept(tmp_path / "one", "abc", rate=0.2))
-    with pytest.raises(ConfigError, match=r"--batch-size = \(absent\), this command has 4"):
+    with pytest.raises(ConfigError, match=r"--batch-size.*\(absent\).*4"):
         require_options(tmp_path, before, before | {"batch_size": "4"})
 
 

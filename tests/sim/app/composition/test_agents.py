@@ -73,12 +73,12 @@ def test_a_sensor_of_its_own_is_no_back_door_to_the_truth() -> None:
     class Peeper(agents.Ahead):
         name, images = "peeper", ("semantic",)
 
-    with pytest.raises(ConfigError, match="sensor 'peeper' reads ground truth"):
+    with pytest.raises(ConfigError, match="'peeper'"):
         AgentSpec(make=agents.make_spy, sensors=(Peeper(),))
 
 
 def test_ground_truth_cannot_be_asked_for_without_declaring_it() -> None:
-    with pytest.raises(ConfigError, match="sensor 'semantic' reads ground truth: declare uses_ground_truth=True"):
+    with pytest.raises(ConfigError, match=r"'semantic'.*uses_ground_truth=True"):
         AgentSpec(make=agents.make_spy, sensors=("semantic",))
 
 
@@ -94,7 +94,7 @@ def test_an_agents_own_option_is_set_from_the_command_line(house: Path, tmp_path
         ("stuborn", "Did you mean 'stubborn'"),
         ("no.such_module:make", "no module 'no'"),
         ("tests.helpers.agents:none", "has no 'none'"),
-        ("tests.helpers.agents:NUMBER", "must be an AgentSpec or a factory, got int"),
+        ("tests.helpers.agents:NUMBER", "AgentSpec"),
     ],
 )
 def test_an_agent_that_does_not_exist_is_refused(name: str, message: str) -> None:
@@ -158,6 +158,6 @@ def test_a_sensor_that_declares_true_fields_needs_an_agent_that_declares_them(fi
     class Bearing(agents.Ahead):
         name, reads = "bearing", (field,)
 
-    with pytest.raises(ConfigError, match="sensor 'bearing' reads ground truth: declare uses_ground_truth=True"):
+    with pytest.raises(ConfigError, match=r"'bearing'.*uses_ground_truth=True"):
         AgentSpec(make=agents.make_spy, sensors=(Bearing(),))
     assert AgentSpec(make=agents.make_spy, sensors=(Bearing(),), uses_ground_truth=True).uses_ground_truth

@@ -26,7 +26,7 @@ def test_an_import_that_does_not_end_is_refused(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(imports, "FACTORY_S", 0.2)
     Path("hanging_module_of_a_test.py").write_text(HANGING)
     before = signal.getsignal(signal.SIGALRM)
-    with pytest.raises(ConfigError, match=r"the import did not end within 0.2 s.*line 5"):
+    with pytest.raises(ConfigError, match=r"0.2.*s.*line.*5"):
         import_attribute("hanging_module_of_a_test:A")
     assert signal.getsignal(signal.SIGALRM) is before
     assert signal.getitimer(signal.ITIMER_REAL)[0] == 0.0

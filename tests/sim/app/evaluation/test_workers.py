@@ -10,6 +10,7 @@ import pytest
 from sim.app.evaluation.processes import Processes
 from sim.app.evaluation.watch import Steps
 from sim.app.evaluation.workers import MAX_TRIES, RunnerSpec
+from tests.helpers import wording
 from tests.helpers.runners import Job
 
 SPEC = RunnerSpec("tests.helpers.runners:make_runner", None)
@@ -69,5 +70,5 @@ def test_an_item_that_kills_every_worker_becomes_an_error_line(tmp_path: Path) -
 @pytest.mark.parametrize("workers", [1, 2])
 def test_an_exception_of_the_runner_reaches_the_caller(workers: int) -> None:
     items = [*jobs(3), Job("bad", "house_0", fail=True)]
-    with pytest.raises(ValueError, match="bad cannot be done"):
+    with pytest.raises(ValueError, match=wording.BAD_CANNOT_BE_DONE):
         list(Processes(workers).run(SPEC, items, on_death=never))

@@ -15,6 +15,7 @@ from sim.app.submissions.contents import MAX_FILE_BYTES, read_submission
 from sim.core.configuration import as_json
 from sim.core.errors import ConfigError
 from sim.sensors.noise import NOISE_PRESETS
+from tests.helpers import wording
 from tests.helpers.submissions import (
     Edit,
     checked,
@@ -180,7 +181,7 @@ def test_a_damaged_file_is_refused_by_one_sentence(
 def test_a_pipe_and_a_folder_are_refused_without_waiting(folder: Path, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.json.gz")
     for name in ("pipe.json.gz", "."):
-        with pytest.raises(ConfigError, match=r"cannot be read"):
+        with pytest.raises(ConfigError, match=wording.CANNOT_BE_READ):
             checked(folder, tmp_path / name)
 
 
@@ -204,10 +205,10 @@ def test_a_split_that_does_not_ship_is_never_a_path_of_the_file(folder: Path, tm
     content = content_of(folder / "oracle.json.gz")
     for name in ("tiny", str(folder / "tiny"), "../../etc"):
         in_split(name=name)(content)
-        with pytest.raises(ConfigError, match="which does not ship; give its folder with --split"):
+        with pytest.raises(ConfigError, match="--split"):
             checked(folder, written(tmp_path / "forged.json.gz", content), split=None)
 
 
 def test_another_robot_or_camera_is_refused_unless_asked_for(folder: Path) -> None:
-    with pytest.raises(ConfigError, match=r"not made with the standard .*: camera.width_px is 96, in the standard 640"):
+    with pytest.raises(ConfigError, match=r"camera.width_px.*96.*640"):
         checked(folder, folder / "oracle.json.gz", nonstandard=False)

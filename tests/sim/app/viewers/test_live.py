@@ -20,6 +20,7 @@ from sim.core.interface import MPCAT40_ID, Action, CameraModel, ConfigError
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.scene import SceneCache
 from sim.episodes.episode import Episode
+from tests.helpers import wording
 from tests.helpers.results import entries_of
 from tests.helpers.runners import Script
 from tests.helpers.worlds import sofa_room, with_box, with_movable
@@ -140,7 +141,7 @@ def test_view_without_a_display_gives_one_clear_line(monkeypatch: pytest.MonkeyP
     import glfw
 
     monkeypatch.setattr(glfw, "init", lambda: False)
-    with pytest.raises(ConfigError, match="needs a display"):
+    with pytest.raises(ConfigError, match=wording.NEEDS_A_DISPLAY):
         live.require_display()
 
 
@@ -156,7 +157,7 @@ def options(**changes: Any) -> Any:
     [
         ({"view": True, "workers": 2}, "--workers 1"),
         ({"rerun": True, "workers": 2}, "--workers 1"),
-        ({"rerun": True, "rerun_save": True}, "only one of them"),
+        ({"rerun": True, "rerun_save": True}, wording.ONLY_ONE_OF_THEM),
     ],
 )
 def test_options_that_exclude_each_other_are_reported(changes: dict[str, Any], message: str) -> None:

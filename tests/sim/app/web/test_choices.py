@@ -94,7 +94,7 @@ def test_what_the_server_was_started_with_is_offered_and_comes_first(own: Choice
 def test_the_id_of_an_episode_says_its_house_and_goal(choices: Choices) -> None:
     request = choices.request(START | {"split": "val", "episode": "val_0018"})
     assert (request.episode_id, request.house != "wedged_spawn") == ("val_0018", True)
-    with pytest.raises(ConfigError, match="Split 'val' has no episode 'val_9999'"):
+    with pytest.raises(ConfigError, match=r"'val'.*'val_9999'"):
         choices.request(START | {"split": "val", "episode": "val_9999"})
 
 
