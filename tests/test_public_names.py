@@ -81,6 +81,10 @@ def test_subpackages_can_be_imported_as_before() -> None:
     assert "gymnasium" in modules_after(code)
 
 
+def test_an_old_module_has_no_other_names() -> None:
+    assert not hasattr(importlib.import_module("sim.errors"), "SofaError")
+
+
 def modules_after(code: str) -> list[str]:
     """Returns those large packages that are imported when a new process has run the code."""
     large = ("gymnasium", "mujoco", "numba", "numpy", "torch")

@@ -22,7 +22,10 @@ def moved_module(old: str, new: str) -> Callable[[str], object]:
         if name.startswith("__"):  # the import system asks for `__path__` and others
             raise AttributeError(f"module {old!r} has no attribute {name!r}")
         package = importlib.import_module(new)
-        value = getattr(package, name) if hasattr(package, name) else importlib.import_module(f"{new}.{name}")
+        try:
+            value = getattr(package, name) if hasattr(package, name) else importlib.import_module(f"{new}.{name}")
+        except ModuleNotFoundError:
+            raise AttributeError(f"module {old!r} has no attribute {name!r}") from None
         _warn(f"'{old}' is now '{new}'")
         return value
 

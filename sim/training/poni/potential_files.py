@@ -72,8 +72,8 @@ def held_back(file: Path) -> bool:
 def plan_of(file: Path) -> str | None:
     """Returns the checksum of the plan that a file of samples was made from; None if the file does not have it."""
     arrays = read_npz(file, what=_WHAT, most_bytes=MAX_FILE_BYTES)
-    found_sum = _header(file, arrays).about.get("plan_sha256")
-    return found_sum if isinstance(found_sum, str) else None
+    checksum = _header(file, arrays).about.get("plan_sha256")
+    return checksum if isinstance(checksum, str) else None
 
 
 def write_samples(file: Path, samples: Iterable[Sample], config: SampleConfig, about: dict[str, object]) -> int:

@@ -89,7 +89,7 @@ def test_an_incomplete_last_line_is_left_out_and_reported(torn: bytes, tmp_path:
 def test_a_file_that_expands_without_end_is_refused_soon(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reading, "MAX_BYTES", 1 << 20)
     (tmp_path / "bomb.gz").write_bytes(gzip.compress(b"[" + b" " * (4 << 20), compresslevel=1))
-    with pytest.raises(ConfigError, match=r"1.*MB"):
+    with pytest.raises(ConfigError, match=r"bomb\.gz.* 1 MB"):
         reading.read_gzip_json(tmp_path / "bomb.gz", list[Any], what="Rows")
     with zipfile.ZipFile(tmp_path / "bomb.npz", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("a.npy", b"\0" * (8 << 20))
