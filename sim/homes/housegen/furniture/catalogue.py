@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import itertools
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Unpack, get_args
 
@@ -14,6 +14,7 @@ import numpy as np
 from sim.core.errors import ConfigError
 from sim.core.interface import MPCAT40_ID
 from sim.homes.housegen.furniture.item import Hints, Item, Mount, Pool
+from sim.homes.housegen.furniture.names import name_of_style
 from sim.homes.housegen.furniture.reshape import may_reshape, reshaped
 from sim.homes.housegen.furniture.uses import fault_of_uses
 from sim.homes.housegen.furniture.workbench import Workbench
@@ -190,6 +191,7 @@ class Catalogue:
         bench = Workbench(rng, pool, hints, functools.partial(self.make_item, reshape=reshape))
         chosen.build(bench)
         item = bench.finish(category, chosen.name, chosen.mount, walk_over=chosen.walk_over)
+        item = replace(item, name=name_of_style(category, chosen.name, chosen.uses))
         if reshape and rng.random() < RESHAPED_SHARE and may_reshape(item):
             return reshaped(item, rng, hints)
         return item

@@ -47,6 +47,8 @@ class Look:
     shininess: float = 0.2
     emission: float = 0.0
     """Share of the colour that the surface emits: lamps, screens, daylight behind a window."""
+    material: str = field(default="", compare=False)
+    """Key of `sim.homes.housegen.surfaces.materials.MATERIALS` from which it was drawn; "" for others."""
 
 
 @dataclass(frozen=True)
@@ -117,3 +119,5 @@ class Item:
     """True: flat on the floor and without collisions; other objects may stand on it (a rug, a yoga mat)."""
     collision_geoms: Sequence[Geom] = field(default_factory=tuple)
     """Geoms that collide and are not rendered, for an item without other solid geoms (an imported model)."""
+    name: str = ""
+    """Everyday name, finer than the category (`furniture/names.py`); "" stands for that of the style."""

@@ -10,6 +10,7 @@ from sim.core.paths import assets_dir
 from sim.gl import mujoco
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.furniture.item import Geom, Item
+from sim.homes.housegen.mjcf.appearance import facts_of
 from sim.homes.housegen.mjcf.assets import MESH_UNIT_M, AssetTable
 from sim.homes.housegen.mjcf.merging import BYTES_PER_GEOM, Assembler, Assembly
 from sim.homes.housegen.mjcf.movables import ROLLING_M, Movable, split_movable
@@ -69,6 +70,7 @@ class HouseBuilder:
         self._assets = AssetTable(self._spec)
         self.styles: dict[str, str] = {}
         """Style of each item by the name of its body, which is the label of its instance."""
+        self._facts: dict[int, tuple[Item, str]] = {}
 
     @property
     def spec(self) -> mujoco.MjSpec:
@@ -163,7 +165,7 @@ class HouseBuilder:
     def add_movable_body(self, movable: Movable, placed: PlacedItem) -> None:
         """Adds a body with a free joint at the pose of the item that it was part of."""
         name = self._label(movable.item.category)
-        self.styles[name] = movable.item.style
+        self._describe(name, movable.item)
         x, y = placed.to_world(*movable.offset_m)
         body = self._spec.worldbody.add_body(
             name=name, pos=[_r(v) for v in (x, y, placed.z_m)], quat=_yaw_quat(placed.yaw_rad)
@@ -194,9 +196,18 @@ class HouseBuilder:
         self._counts[category] = number + 1
         return f"{category}_{number:02d}"
 
+    def _describe(self, body: str, item: Item) -> None:
+        """Notes the style of a body's item, and writes its facts into the file (`sim.houses.instance_facts`)."""
+        self.styles[body] = item.style
+        if id(item) not in self._facts:
+            self._facts[id(item)] = (item, facts_of(item).text())
+        text = self._facts[id(item)][1]
+        if text:
+            self._spec.add_text(name=body, data=text)
+
     def _add_body(self, parent: mujoco.MjsBody, item: Item, pos_m: tuple[float, float, float], yaw_rad: float) -> str:
         name = self._label(item.category)
-        self.styles[name] = item.style
+        self._describe(name, item)
         body = parent.add_body(name=name, pos=[_r(v) for v in pos_m], quat=_yaw_quat(yaw_rad))
         parts = self._assembly(item)
         for geom in parts.visual:

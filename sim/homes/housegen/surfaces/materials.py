@@ -12,7 +12,7 @@ thinnest side of every textured box is along its local z, for furniture as well 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -246,7 +246,7 @@ def look(material: str, rng: np.random.Generator, pool: Pool) -> Look:
     """
     if material not in MATERIALS:
         raise ConfigError(f"Unknown material '{material}'. Available: {', '.join(sorted(MATERIALS))}.")
-    return _draw(MATERIALS[material], rng, pool)
+    return replace(_draw(MATERIALS[material], rng, pool), material=material)
 
 
 def palettes(pool: Pool) -> tuple[str | None, ...]:
