@@ -19,7 +19,7 @@ import json
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -93,7 +93,7 @@ class Args:
     detector: Path
     """Folder in which npm installed `@vladmandic/human` and the two packages of tfjs."""
     out: cli.OutFolder
-    """Folder of views.json, table.json and the sheets."""
+    """Folder of views.json, table.json (by class and by style) and the sheets."""
     split: str = "val"
     """Houses of a shipped split, or of a folder with the same layout."""
     made: bool = False
@@ -126,8 +126,9 @@ def main(args: Args) -> int:
     """Renders the views, runs the detector, writes the results and prints the table; returns the exit status."""
     earlier = None if args.like is None else read_views(args.like)
     views, crops = [], []
-    with _Detector(args.detector) as detector:
-        for house, scene, styles in _scenes(args):
+    known = None if earlier is None else {view.house for view in earlier}
+    with Detector(args.detector) as detector:
+        for house, scene, styles in _scenes(args, known):
             for pose, image, truths in _labelled(args, scene, house, styles, earlier):
                 view = SeenView(house, pose, truths, tuple(detector.detect(image)))
                 views.append(view)
@@ -138,13 +139,14 @@ def main(args: Args) -> int:
     rows = [row for score in SCORES for row in scores(views, score)]
     if earlier is not None:
         rows = [row | difference(earlier, views, row["category"], row["score"]) for row in rows]
-    write_atomically(args.out / "table.json", (json.dumps(rows, indent=1) + "\n").encode())
+    tables = {"classes": rows, "styles": [row for score in SCORES for row in by_style(views, score)]}
+    write_atomically(args.out / "table.json", (json.dumps(tables, indent=1) + "\n").encode())
     write_sheets(args.out / "sheets", crops)
     _print(rows)
     return 0
 
 
-class _Detector:
+class Detector:
     """The detector in a process of Node.js, as a context manager."""
 
     def __init__(self, folder: Path) -> None:
@@ -162,7 +164,7 @@ class _Detector:
             [node, str(script), str(folder)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
         )
 
-    def __enter__(self) -> _Detector:
+    def __enter__(self) -> Detector:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -198,9 +200,12 @@ class _Detector:
         ]
 
 
-def _scenes(args: Args) -> Iterator[tuple[str, Scene, Mapping[str, str]]]:
-    """Yields the houses with their scenes, and the styles of their instances where they are generated here."""
-    for name, house, styles in _houses(args):
+def _scenes(args: Args, known: Collection[str] | None) -> Iterator[tuple[str, Scene, Mapping[str, str]]]:
+    """Yields the houses with their scenes, and the styles of their instances where they are generated here.
+
+    With `known`, houses of other names are left out.
+    """
+    for name, house, styles in _houses(args, known):
         scene = Scene(house, robot=RobotConfig(), camera=CameraModel(), profile=args.profile)
         try:
             yield name, scene, styles
@@ -208,16 +213,20 @@ def _scenes(args: Args) -> Iterator[tuple[str, Scene, Mapping[str, str]]]:
             scene.close()
 
 
-def _houses(args: Args) -> Iterator[tuple[str, House, Mapping[str, str]]]:
+def _houses(args: Args, known: Collection[str] | None) -> Iterator[tuple[str, House, Mapping[str, str]]]:
     if not args.made:
         split = load_split(args.split)
         for name in split.houses[: args.houses]:
+            if known is not None and name not in known:
+                continue
             yield name, split.load_house(name), {}
         return
     if args.split != "train" and args.split not in SPLITS:
         raise ConfigError(f"--made needs one of the splits train, {', '.join(SPLITS)}, got '{args.split}'.")
     recipes = [train_recipe(seed) for seed in range(args.houses)] if args.split == "train" else SPLITS[args.split]
     for recipe in recipes[: args.houses]:
+        if known is not None and recipe.name not in known:
+            continue
         made = recipe.make()
         yield recipe.name, House(recipe.name, made.spec), made.styles
 
@@ -302,6 +311,21 @@ def scores(views: Sequence[SeenView], score: float) -> list[dict[str, Any]]:
     ]
 
 
+def by_style(views: Sequence[SeenView], score: float) -> list[dict[str, Any]]:
+    """Returns a row for each style of each class: objects that count, and how many are found."""
+    objects, hits = collections.Counter[tuple[str, str]](), collections.Counter[tuple[str, str]]()
+    for view in views:
+        found, _ = match(view.truths, [each for each in view.detections if each.score >= score], ALIASES)
+        for truth, hit in zip(view.truths, found, strict=True):
+            if truth.counted:
+                objects[truth.category, truth.style] += 1
+                hits[truth.category, truth.style] += hit
+    return [
+        {"category": category, "style": style, "score": score, "objects": count, "found": hits[category, style]}
+        for (category, style), count in sorted(objects.items())
+    ]
+
+
 def difference(before: Sequence[SeenView], after: Sequence[SeenView], category: str, score: float) -> dict[str, Any]:
     """Returns the paired difference of recall for the objects that count in the same view of both runs."""
     old, new = (_found_by_object(views, category, score) for views in (before, after))
@@ -379,15 +403,14 @@ def _tile(truth: Truth, image: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def _print(rows: Sequence[Mapping[str, Any]]) -> None:
-    table = Table(
-        "class", "score", "found", "recall", "false", "precision", *(["paired"] if "paired_objects" in rows[0] else [])
-    )
+    paired = ("recall, paired",) if "paired_objects" in rows[0] else ()
+    table = Table("class", "score", "found", "recall", "false", "precision", *paired)
     for row in rows:
         cells = [
             row["category"], f"{row['score']}", f"{row['found']} of {row['objects']}", _interval(row["recall"]),
             str(row["detections"] - row["right"]), _interval(row["precision"]),
         ]  # fmt: skip
-        if "paired_objects" in row:
+        if paired:
             change = f"{row['found_before']} -> {row['found_after']} of {row['paired_objects']}"
             cells.append(f"{change}: {_interval(row['recall_difference'])}")
         table.add_row(*cells)
