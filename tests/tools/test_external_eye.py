@@ -94,6 +94,7 @@ def test_the_interval_holds_the_share_and_narrows_with_more_houses() -> None:
     assert few[0] == many[0] == 0.5
     assert few[1] <= 0.5 <= few[2]
     assert many[2] - many[1] < few[2] - few[1]
+    assert many[2] - many[1] == pytest.approx(2 * 1.96 * 0.3 / math.sqrt(40), rel=0.1)  # of a normal distribution
     assert math.isnan(share_with_interval({}, {})[0])
 
 
@@ -117,8 +118,9 @@ def test_the_styles_of_a_class_are_counted_apart() -> None:
 
 def test_runs_are_compared_by_the_objects_that_count_in_both() -> None:
     second = replace(CHAIR, name="chair_01", box=(300.0, 100.0, 400.0, 300.0))
-    before = [SeenView("house", HERE, (CHAIR, second), ())]
-    after = [SeenView("house", HERE, (CHAIR, replace(second, counted=False)), (SEEN,))]
+    third = replace(CHAIR, name="chair_02", box=(500.0, 100.0, 600.0, 300.0))
+    before = [SeenView("house", HERE, (CHAIR, second, replace(third, counted=False)), ())]
+    after = [SeenView("house", HERE, (CHAIR, replace(second, counted=False), third), (SEEN,))]
     change = difference(before, after, "chair", 0.25)
     assert (change["paired_objects"], change["found_before"], change["found_after"]) == (1, 0, 1)
 
