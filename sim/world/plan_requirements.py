@@ -59,7 +59,9 @@ ROOM_SIZES: Mapping[str, RoomSize] = MappingProxyType(
 )
 """Size limits by kind of room; other kinds have none."""
 HALLWAY_M = (0.9, 15.0)
-"""Smallest width of a hallway between its walls, and its largest length."""
+"""Smallest width of a hallway between its walls, and its largest length in a storey of up to `USUAL_M2`."""
+USUAL_M2, M2_PER_M = 250.0, 60.0
+"""Area of a storey from which hallways may be longer, and by how many square metres for each metre."""
 HALLWAY_SHARE = 0.2
 """Largest share of the hallways in the floor area of a storey."""
 NEEDED_ROOMS = ("bedroom", "bathroom", "kitchen", "living_room")
@@ -68,8 +70,9 @@ MAX_ROOMS: Mapping[str, int] = MappingProxyType({"kitchen": 1, "laundry": 1, "st
 """Largest number of rooms of these kinds in a home."""
 MORE_THAN_BEDROOMS: Mapping[str, int] = MappingProxyType({"bathroom": 1, "closet": 1, "office": 1, "gym": 0})
 """By how much rooms of these kinds may outnumber the bedrooms; the further bathroom is for guests."""
-DOOR_EVERY_M, MAX_DOORS_IN_WALL = 1.9, 5
-"""A wall of a room may have two doors, or one for each stretch of this length, up to this number."""
+DOOR_EVERY_M, MAX_DOORS_IN_WALL = (1.9, 3.0), 5
+"""A wall of a room may have two doors, or one for each stretch of the first length, up to this number; a longer wall
+may have one for each stretch of the second length."""
 SWING_M = 0.8
 """Depth of the floor before a door, on which no other door of the same room opens, except in a hallway."""
 CIRCULATION = frozenset(("hallway", "stair_hall", "living_room", "dining_room", "studio"))
@@ -130,12 +133,13 @@ def plan_faults(rooms: Sequence[Room], doors: Iterable[Doorway]) -> list[str]:
         doors: their doors and front doors, without wide openings.
     """
     faults = _number_faults(Counter(room.kind for room in rooms))
-    for room in rooms:
-        faults += _size_faults(room)
     for floor_z_m in sorted({room.floor_z_m for room in rooms}):
         storey = [room for room in rooms if room.floor_z_m == floor_z_m]
         whole_m2 = sum(room.area_m2 for room in storey)
         halls_m2 = sum(room.area_m2 for room in storey if room.kind == "hallway")
+        longest_m = HALLWAY_M[1] + max(0.0, whole_m2 - USUAL_M2) / M2_PER_M
+        for room in storey:
+            faults += _hallway_faults(room, longest_m) if room.kind == "hallway" else _size_faults(room)
         if halls_m2 > HALLWAY_SHARE * whole_m2:
             faults.append(f"hallways take {halls_m2:.0f} of {whole_m2:.0f} m2")
     return faults + _door_faults(rooms, tuple(doors))
@@ -155,9 +159,7 @@ def unmet_plan_requirements(
     return plan_faults(rooms, measured_doors(model, data, labels, rooms))
 
 
-def measured_doors(
-    model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, rooms: Sequence[Room]
-) -> list[Doorway]:
+def measured_doors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, rooms: Sequence[Room]) -> list[Doorway]:
     """Returns the doors of a compiled house, from the geoms labelled `door` that lie in walls; leaves are left out."""
     doors: list[Doorway] = []
     for instance in labels.of_category("door"):
@@ -165,9 +167,7 @@ def measured_doors(
         rotation = data.geom_xmat[ids].reshape(-1, 3, 3)
         middle = data.geom_xpos[ids] + np.einsum("nij,nj->ni", rotation, model.geom_aabb[ids, :3])
         reach = np.einsum("nij,nj->ni", np.abs(rotation), model.geom_aabb[ids, 3:])
-        floor_z_m = max(
-            (room.floor_z_m for room in rooms if room.floor_z_m < float(middle[:, 2].mean())), default=0.0
-        )
+        floor_z_m = max((room.floor_z_m for room in rooms if room.floor_z_m < float(middle[:, 2].mean())), default=0.0)
         storey = [_extent(room) for room in rooms if room.floor_z_m == floor_z_m]
         in_wall = np.array([not any(_inside(extent, point, -_CASING_M) for extent in storey) for point in middle])
         if not in_wall.any():
@@ -202,9 +202,6 @@ def _size_faults(room: Room) -> list[str]:
     """Returns the faults in the size of a room."""
     x0, y0, x1, y1 = _extent(room)
     short_m, long_m = sorted((x1 - x0, y1 - y0))
-    if room.kind == "hallway":
-        faults = [f"{room.name} is only {short_m:.2f} m wide"] if short_m < HALLWAY_M[0] - 0.005 else []
-        return faults + ([f"{room.name} is {long_m:.1f} m long"] if long_m > HALLWAY_M[1] + 0.005 else [])
     limit = ROOM_SIZES.get(room.kind)
     if limit is None:
         return []
@@ -216,6 +213,18 @@ def _size_faults(room: Room) -> list[str]:
         faults.append(f"{room.name} is only {short_m:.2f} m wide instead of {limit.short_m:g} m")
     if long_m > (limit.aspect + 0.01) * short_m:
         faults.append(f"{room.name} is {long_m / short_m:.1f} times as long as wide instead of {limit.aspect:g} times")
+    return faults
+
+
+def _hallway_faults(hallway: Room, longest_m: float) -> list[str]:
+    """Returns the faults in the width and the length of a hallway."""
+    x0, y0, x1, y1 = _extent(hallway)
+    short_m, long_m = sorted((x1 - x0, y1 - y0))
+    faults = []
+    if short_m < HALLWAY_M[0] - 0.005:
+        faults.append(f"{hallway.name} is only {short_m:.2f} m wide instead of {HALLWAY_M[0]:g} m")
+    if long_m > longest_m + 0.005:
+        faults.append(f"{hallway.name} is {long_m:.1f} m long instead of at most {longest_m:.1f} m")
     return faults
 
 
@@ -248,7 +257,8 @@ def _wall_faults(room: Room, doors: Sequence[Doorway]) -> list[str]:
     extent, faults = _extent(room), []
     for wall, count in Counter(door.wall(extent) for door in doors).items():
         length_m = extent[2] - extent[0] if wall[0] == "y" else extent[3] - extent[1]
-        if count > min(max(2, int(length_m / DOOR_EVERY_M)), MAX_DOORS_IN_WALL):
+        close, wide = (int(length_m / every_m) for every_m in DOOR_EVERY_M)
+        if count > max(2, min(close, MAX_DOORS_IN_WALL), wide):
             faults.append(f"{room.name} has {count} doors in a wall of {length_m:.1f} m")
     if room.kind not in ("hallway", "stair_hall"):
         zones = [door.swing(extent) for door in doors]
@@ -273,9 +283,7 @@ def _extent(room: Room) -> Extent:
 
 def _inside(extent: Extent, point_m: NDArray[np.float64], margin_m: float) -> bool:
     x, y = float(point_m[0]), float(point_m[1])
-    return (
-        extent[0] - margin_m <= x <= extent[2] + margin_m and extent[1] - margin_m <= y <= extent[3] + margin_m
-    )
+    return extent[0] - margin_m <= x <= extent[2] + margin_m and extent[1] - margin_m <= y <= extent[3] + margin_m
 
 
 def _overlap(a: Extent, b: Extent) -> bool:

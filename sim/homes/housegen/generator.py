@@ -34,7 +34,7 @@ from sim.homes.housegen.mjcf.builder import HouseBuilder
 from sim.homes.housegen.mjcf.merging import Assembler
 from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
 from sim.homes.housegen.structure.building import build_structure
-from sim.homes.housegen.structure.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
+from sim.homes.housegen.structure.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings, plan_rule_faults
 from sim.homes.housegen.surfaces.lighting import DAYLIGHT, draw_lamps
 from sim.homes.housegen.surfaces.structure_looks import draw_structure_looks
 from sim.homes.housegen.upper_storey import Stairs, UpperStorey, draw_stairs, draw_upper_storey, lifted
@@ -50,7 +50,8 @@ MAX_AREA_ERROR = 0.05
 """Largest relative difference between the requested floor area and that of the rooms."""
 DRAWN_AREAS = (0.92, 1.1)
 """Range of the areas for which plans are drawn until one has the requested area, relative to it."""
-MAX_PLAN_TRIES = 60
+MAX_PLAN_TRIES = 600
+"""Each takes about 2 ms."""
 MAX_STAIRS_TRIES = 12
 """Plans that are drawn until an upper storey of enough rooms fits on one; each takes about 20 ms."""
 MAX_BYTES = 395_000
@@ -240,7 +241,10 @@ def _draw_plan(
             plan = draw_floor_plan(rng, kind, drawn_m2, rooms)
             if config.exact:
                 _require_as_asked(plan, area_m2 if must_match else None, rooms)
-            return plan, cut_openings(rng, plan)
+            openings = cut_openings(rng, plan)
+            if faults := plan_rule_faults(plan, openings):
+                raise PlanError(faults[0])
+            return plan, openings
         except PlanError as fault:
             error = fault
     raise error

@@ -41,7 +41,7 @@ def draw_chain(
     hall = draft.add("hallway", Rect(0.0, 0.0, length_m, corridor_m))
     at = most_m - corridor_m
     _add_public_rooms(rng, draft, hall, (living_m, at, most_m), (corridor_m, corridor_m + core_m, back_m))
-    queue = RoomQueue(rng, 0.85 * (length_m * deep_m[0] + (length_m - most_m) * deep_m[1]), required, large=False)
+    queue = RoomQueue(rng, area_m2, 0.85 * (length_m * deep_m[0] + (length_m - most_m) * deep_m[1]), required)
     row = queue.fill_row(rng, at - living_m, core_m, 1.0, kinds=CORE_KINDS)
     add_row(
         rng, draft, hall, row, at - living_m, corridor_m,

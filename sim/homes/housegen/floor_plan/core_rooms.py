@@ -44,7 +44,7 @@ def add_core(
         kind, join = "hallway", "open"
     else:
         kind, join = "living_room", "opening"
-    if kind == "hallway" or rng.random() < 0.7:  # else the middle stays open: a courtyard
+    if kind == "hallway" or rng.random() < 0.4:  # else the middle stays open: a courtyard
         room = draft.add(kind, middle)
         draft.join(core.north, room, join)
         draft.join(core.south, room, join)
@@ -56,7 +56,7 @@ def _middle_width_m(rng: np.random.Generator, core: Core) -> float:
     """Returns the width of a cross corridor or of a room across the whole depth in the middle of the core."""
     if rng.random() < 0.35 or core.rect.width_m < 9.0:
         return core.corridor_m
-    return draw_length_m(rng, max(4.2, core.rect.depth_m / 1.6), min(0.5 * core.rect.width_m, 7.5))
+    return draw_length_m(rng, max(4.2, core.rect.depth_m / 1.6), min(0.6 * core.rect.width_m, 8.0))
 
 
 def _add_pairs(

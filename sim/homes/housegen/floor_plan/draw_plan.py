@@ -11,15 +11,16 @@ from sim.homes.housegen.floor_plan.chain_plan import draw_chain
 from sim.homes.housegen.floor_plan.draft import Draft, check_draft, finish_draft
 from sim.homes.housegen.floor_plan.great_room import draw_great_room
 from sim.homes.housegen.floor_plan.plan import FloorPlan, PlanError
+from sim.homes.housegen.floor_plan.programme import draw_program
 from sim.homes.housegen.floor_plan.public_rooms import add_public_block
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.ring_plan import draw_ring
-from sim.homes.housegen.floor_plan.rooms import MAX_ROOMS, MIN_ESTATE_ROOMS, PlanKind, draw_program
+from sim.homes.housegen.floor_plan.rooms import MAX_ROOMS, MIN_ESTATE_ROOMS, PlanKind
 from sim.homes.housegen.floor_plan.rows import Row, add_row, draw_common_length_m, draw_length_m
 from sim.homes.housegen.floor_plan.split_plan import draw_split
 from sim.homes.housegen.floor_plan.wings import TwoRows, draw_wings
 
-CORRIDOR_M = ((180.0, (1.5, 1.9)), (120.0, (1.35, 1.75)), (0.0, (1.2, 1.45)))
+CORRIDOR_M = ((250.0, (1.4, 1.7)), (120.0, (1.25, 1.5)), (0.0, (1.2, 1.4)))
 """Range of the corridor's width by the smallest floor area: long corridors need room for furniture at their walls."""
 NEEDED_ROOMS = ("living_room", "kitchen", "bedroom", "bathroom")
 """Rooms that every home has that is not a studio."""
@@ -107,7 +108,7 @@ def _draw_rows(
 
 def _depth_scale(scale: float) -> float:
     """Returns by how much rows are deeper when rooms are larger."""
-    return float(np.clip(scale**0.5, 0.9, 1.25))
+    return float(np.clip(scale**0.5, 0.9, 1.1))
 
 
 def _add_main_wing(

@@ -36,7 +36,7 @@ def draw_great_room(
     hall = draft.add("hallway", Rect(0.0, 0.0, length_m, corridor_m))
     zones = _add_zones(rng, draft, Rect(0.0, corridor_m, great_m, corridor_m + block_m))
     _join_zones(rng, draft, hall, zones)
-    queue = RoomQueue(rng, 0.85 * (length_m * deep_m[0] + (length_m - great_m) * deep_m[1]), required, large=False)
+    queue = RoomQueue(rng, area_m2, 0.85 * (length_m * deep_m[0] + (length_m - great_m) * deep_m[1]), required)
     add_private_rows(rng, draft, hall, queue, (great_m, length_m), corridor_m, (deep_m[0], deep_m[1]), scale)
     return draft, hall
 

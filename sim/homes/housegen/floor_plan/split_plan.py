@@ -13,6 +13,9 @@ from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue
 from sim.homes.housegen.floor_plan.rows import draw_length_m
 
+MAX_CORE_M2 = 88.0
+"""Largest floor area of the public rooms."""
+
 
 def draw_split(
     rng: np.random.Generator, area_m2: float, required: Sequence[str], corridor_m: float, scale: float
@@ -23,14 +26,14 @@ def draw_split(
         PlanError: the rooms do not fit.
     """
     draft = Draft()
-    core_m2 = area_m2 * float(rng.uniform(0.34, 0.42))
-    width_m = round(float(np.clip((core_m2 * rng.uniform(1.0, 1.4)) ** 0.5, 6.2, 11.0)), 1)
+    core_m2 = min(area_m2 * float(rng.uniform(0.34, 0.42)), MAX_CORE_M2)
+    width_m = round(float(np.clip((core_m2 * rng.uniform(1.0, 1.3)) ** 0.5, 6.2, 11.0)), 1)
     depth_m = core_m2 / width_m
-    living_m = round(max(depth_m * float(rng.uniform(0.52, 0.6)), width_m / 2.2), 1)
+    living_m = round(max(depth_m * float(rng.uniform(0.52, 0.6)), width_m / 1.95), 1)
     back_m = round(max(depth_m - living_m, 2.8), 1)
     living = draft.add("living_room", Rect(0.0, 0.0, width_m, living_m))
     _add_back_rooms(rng, draft, living, back_m, with_dining=area_m2 > 105.0)
-    queue = RoomQueue(rng, 0.75 * (area_m2 - core_m2), required, large=area_m2 > 200.0)
+    queue = RoomQueue(rng, area_m2, 0.75 * (area_m2 - core_m2), required)
     for side in ("west", "east"):
         depths_m = (draw_length_m(rng, 3.3, 3.9), draw_length_m(rng, 3.3, 3.9))
         depths_m = (round(depths_m[0] * scale**0.5, 1), round(depths_m[1] * scale**0.5, 1))
