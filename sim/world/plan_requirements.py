@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from sim.gl import mujoco
 from sim.houses.house import Room
-from sim.houses.labels import Labels
+from sim.houses.labels import Labels, collidable_geoms
 
 Extent = tuple[float, float, float, float]
 """Smallest x and y, largest x and y, metres."""
@@ -66,6 +66,8 @@ HALLWAY_SHARE = 0.2
 """Largest share of the hallways in the floor area of a storey."""
 NEEDED_ROOMS = ("bedroom", "bathroom", "kitchen", "living_room")
 """Kinds of rooms that every home has, except for a studio, which needs a bathroom only."""
+BEDROOMS_FROM_M2 = ((100.0, 2), (180.0, 3), (280.0, 4))
+"""Smallest numbers of bedrooms, and the floor area of a home from which each applies."""
 MAX_ROOMS: Mapping[str, int] = MappingProxyType({"kitchen": 1, "laundry": 1, "studio": 1})
 """Largest number of rooms of these kinds in a home."""
 MORE_THAN_BEDROOMS: Mapping[str, int] = MappingProxyType({"bathroom": 1, "closet": 1, "office": 1, "gym": 0})
@@ -84,7 +86,7 @@ FOR_GUESTS = frozenset(("hallway", "stair_hall", "studio"))
 _WALL_M = 0.3
 """Largest distance from the middle of a door to the rooms on its two sides."""
 _CASING_M = 0.05
-"""Distance by which the casing of a door may reach into a room."""
+"""A geom lies in a wall if its middle is at most this far inside of a room."""
 _SAME_DOOR_M = 0.45
 """Geoms of doors nearer than this belong to one doorway, for example a frame and its leaf."""
 
@@ -132,7 +134,7 @@ def plan_faults(rooms: Sequence[Room], doors: Iterable[Doorway]) -> list[str]:
         rooms: the rooms of all storeys.
         doors: their doors and front doors, without wide openings.
     """
-    faults = _number_faults(Counter(room.kind for room in rooms))
+    faults = _number_faults(Counter(room.kind for room in rooms), sum(room.area_m2 for room in rooms))
     for floor_z_m in sorted({room.floor_z_m for room in rooms}):
         storey = [room for room in rooms if room.floor_z_m == floor_z_m]
         whole_m2 = sum(room.area_m2 for room in storey)
@@ -160,10 +162,16 @@ def unmet_plan_requirements(
 
 
 def measured_doors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, rooms: Sequence[Room]) -> list[Doorway]:
-    """Returns the doors of a compiled house, from the geoms labelled `door` that lie in walls; leaves are left out."""
+    """Returns the doors of a compiled house, from the solid geoms labelled `door` that lie in walls.
+
+    Leaves inside of a room are left out; a closed leaf counts with its frame.
+    """
     doors: list[Doorway] = []
+    solid = collidable_geoms(model)
     for instance in labels.of_category("door"):
-        ids = np.array(instance.geom_ids)
+        ids = np.array([geom for geom in instance.geom_ids if solid[geom]], dtype=np.int64)
+        if not ids.size:
+            continue
         rotation = data.geom_xmat[ids].reshape(-1, 3, 3)
         middle = data.geom_xpos[ids] + np.einsum("nij,nj->ni", rotation, model.geom_aabb[ids, :3])
         reach = np.einsum("nij,nj->ni", np.abs(rotation), model.geom_aabb[ids, 3:])
@@ -180,7 +188,7 @@ def measured_doors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, r
     return doors
 
 
-def _number_faults(count: Counter[str]) -> list[str]:
+def _number_faults(count: Counter[str], area_m2: float) -> list[str]:
     """Returns the faults in the kinds and numbers of rooms of a home."""
     needed = ("bathroom",) if count["studio"] else NEEDED_ROOMS
     faults = [f"the home has no {_words(kind)}" for kind in needed if not count[kind]]
@@ -190,6 +198,9 @@ def _number_faults(count: Counter[str]) -> list[str]:
         if count[kind] > most
     ]
     beds = max(count["bedroom"], count["studio"])
+    least = max((number for from_m2, number in BEDROOMS_FROM_M2 if area_m2 >= from_m2), default=0)
+    if 0 < beds < least:
+        faults.append(f"the home of {area_m2:.0f} m2 has {beds} bedrooms instead of at least {least}")
     faults += [
         f"the home has {count[kind]} rooms of the kind {kind} for {beds} bedrooms"
         for kind, more in MORE_THAN_BEDROOMS.items()

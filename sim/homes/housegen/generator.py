@@ -368,7 +368,9 @@ def _draw_size(rng: np.random.Generator, config: HouseConfig) -> tuple[float, Pl
     """Returns area and kind of plan; a missing one is drawn to suit the other."""
     kind = config.kind
     if config.area_m2 is not None:
-        return config.area_m2, kind or draw_plan_kind(rng, config.area_m2)
+        low, high = config.areas_m2
+        area_m2 = low if low == high else float(rng.uniform(low, high))
+        return area_m2, kind or draw_plan_kind(rng, area_m2)
     if kind is None:
         kind = PLAN_KINDS[int(rng.integers(len(PLAN_KINDS)))]
     low, high = PLAN_AREA_M2[kind]

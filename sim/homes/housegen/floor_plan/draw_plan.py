@@ -94,7 +94,7 @@ def _draw_rows(
     scale = float(np.clip(0.85 * area_m2 / program.usual_area_m2, 0.85, 1.7))
     public_at_end = kind in ("studio", "flat", "openplan", "large") or (kind == "lshape" and rng.random() < 0.6)
     main, branches = draw_wings(rng, kind, program, public_at_end)
-    depths_m = (draw_length_m(rng, 3.5, 4.5) * _depth_scale(scale), draw_length_m(rng, 3.5, 4.5) * _depth_scale(scale))
+    depths_m = (draw_length_m(rng, 3.5, 4.3) * _depth_scale(scale), draw_length_m(rng, 3.5, 4.3) * _depth_scale(scale))
     if kind == "studio":
         depths_m = (draw_length_m(rng, 2.3, 2.9), draw_length_m(rng, 2.0, 2.6))
     upper, lower = (Row(tuple(columns), round(depth, 1), scale) for columns, depth in zip(main, depths_m, strict=True))
@@ -102,7 +102,8 @@ def _draw_rows(
     for gap, branch in zip(gaps, branches, strict=True):
         _add_branch(rng, draft, hall, gap, branch, corridor_m, scale)
     if public_at_end:
-        add_public_block(rng, draft, hall, program.public, area_m2, kind)
+        across_m = (-lower.depth_m if lower.columns else 0.0, corridor_m + (upper.depth_m if upper.columns else 0.0))
+        add_public_block(rng, draft, hall, program.public, across_m, area_m2, kind)
     return draft, hall
 
 

@@ -50,8 +50,13 @@ def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float, requi
         extra = "laundry" if rng.random() < 0.4 else "closet"
         return Program(("studio",), ((Column("bathroom"),), (Column(extra),)))
     public = ["living_room", "kitchen"]
-    if area_m2 > 1.4 * _PUBLIC_M2 or rng.random() < 0.5 + (area_m2 - _PUBLIC_M2) / _PUBLIC_M2:
+    if (
+        "dining_room" in required
+        or area_m2 > 1.4 * _PUBLIC_M2
+        or rng.random() < 0.5 + (area_m2 - _PUBLIC_M2) / _PUBLIC_M2
+    ):
         public.append("dining_room")
+    required = [room for room in required if room != "dining_room"]
     private_m2 = 0.84 * area_m2 - _usual_m2(public)
     most = MAX_ROOMS[kind] - HALLWAYS[kind] - len(public)
     counts = draw_numbers(rng, area_m2, private_m2, required, most)
@@ -71,7 +76,10 @@ def draw_numbers(
         most: largest number of rooms.
     """
     least = Counter(required) | Counter(("bedroom", "bathroom"))
-    least["bedroom"] = max(least["bedroom"], least["bathroom"] - 1, least["gym"], least["office"] - 1)
+    beds = max((number for from_m2, number in plan_requirements.BEDROOMS_FROM_M2 if area_m2 >= from_m2), default=1)
+    for kind, more in plan_requirements.MORE_THAN_BEDROOMS.items():
+        beds = max(beds, least[kind] - more)
+    least["bedroom"] = max(least["bedroom"], beds)
     counts = Counter(least)
     for kind, means in _NUMBERS.items():
         mean = float(np.interp(area_m2, _AREAS_M2, means))
@@ -80,7 +88,8 @@ def draw_numbers(
         spare = [kind for kind in _NUMBERS if counts[kind] > least[kind]]
         if not spare:
             break
-        counts[spare[int(rng.integers(len(spare)))]] -= 1
+        others = [kind for kind in spare if kind != "bedroom"]
+        counts["bedroom" if not others else others[int(rng.integers(len(others)))]] -= 1
     while counts.total() < most:
         more = [kind for kind in ("bedroom", "office", "closet", "bathroom") if may_add(counts, kind)]
         kind = more[int(rng.integers(len(more)))]

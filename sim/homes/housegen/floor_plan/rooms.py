@@ -23,7 +23,7 @@ PLAN_AREA_M2: Mapping[PlanKind, tuple[float, float]] = MappingProxyType(
     {
         "studio": (50.0, 68.0),
         "flat": (62.0, 130.0),
-        "corridor": (70.0, 170.0),
+        "corridor": (70.0, 155.0),
         "lshape": (95.0, 230.0),
         "openplan": (80.0, 200.0),
         "greatroom": (90.0, 190.0),

@@ -106,7 +106,7 @@ def outer_spans(rects: Sequence[Rect], room: int, side: Side) -> list[Interval]:
 def plan_rule_faults(
     plan: FloorPlan, openings: Sequence[Opening], *further: tuple[FloorPlan, Sequence[Opening]]
 ) -> list[str]:
-    """Returns a sentence for each rule of `sim.world.plan_requirements` that a plan violates, or a plan with further storeys."""
+    """Returns a sentence for each rule of `sim.world.plan_requirements` that a plan and further storeys violate."""
     rooms: list[Room] = []
     doors: list[Doorway] = []
     for storey, (level, holes) in enumerate(((plan, openings), *further)):
@@ -169,6 +169,8 @@ def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tu
         return Opening("opening", join.a, join.b, side, line_m, (round(at, 2), round(at + width_m, 2)), 0.0, HEAD_M)
     small = "bathroom" in (a.kind, b.kind) or "closet" in (a.kind, b.kind)
     width_m = (clear_m[0] if small else clear_m[1]) + 2 * JAMB_M
+    if length_m < width_m + 0.16:
+        width_m = clear_m[0] + 2 * JAMB_M
     if length_m < width_m + 0.16:
         raise PlanError(f"{a.name} and {b.name} share only {length_m:.2f} m of wall")
     spare = max(0.0, length_m - width_m - 0.16)
