@@ -48,7 +48,7 @@ ROOM_SIZES: Mapping[str, RoomSize] = MappingProxyType(
         "kitchen": RoomSize((5.5, 24.0), 1.8),
         "dining_room": RoomSize((7.0, 28.0), 2.3),
         "studio": RoomSize((20.0, 50.0), 3.5),
-        "bedroom": RoomSize((7.5, 26.0), 2.15),
+        "bedroom": RoomSize((7.5, 24.0), 2.15),
         "bathroom": RoomSize((2.5, 9.0), 1.2, 2.6),
         "office": RoomSize((6.0, 20.0), 2.13),
         "gym": RoomSize((9.0, 32.0), 2.4),
@@ -68,15 +68,17 @@ NEEDED_ROOMS = ("bedroom", "bathroom", "kitchen", "living_room")
 """Kinds of rooms that every home has, except for a studio, which needs a bathroom only."""
 BEDROOMS_FROM_M2 = ((100.0, 2), (180.0, 3), (280.0, 4))
 """Smallest numbers of bedrooms, and the floor area of a home from which each applies."""
-MAX_ROOMS: Mapping[str, int] = MappingProxyType({"kitchen": 1, "laundry": 1, "studio": 1})
+MAX_ROOMS: Mapping[str, int] = MappingProxyType({"kitchen": 1, "laundry": 1, "gym": 1, "studio": 1})
 """Largest number of rooms of these kinds in a home."""
-MORE_THAN_BEDROOMS: Mapping[str, int] = MappingProxyType({"bathroom": 1, "closet": 1, "office": 1, "gym": 0})
+MORE_THAN_BEDROOMS: Mapping[str, int] = MappingProxyType({"bathroom": 1, "closet": 1, "office": 1})
 """By how much rooms of these kinds may outnumber the bedrooms; the further bathroom is for guests."""
 DOOR_EVERY_M, MAX_DOORS_IN_WALL = (1.9, 3.0), 5
 """A wall of a room may have two doors, or one for each stretch of the first length, up to this number; a longer wall
 may have one for each stretch of the second length."""
 SWING_M = 0.8
 """Depth of the floor before a door, on which no other door of the same room opens, except in a hallway."""
+NOT_CAPTIVE = frozenset(("bedroom", "gym", "living_room", "kitchen"))
+"""Kinds of rooms with a door to one of `CIRCULATION`, if they have doors; others may lie behind a private room."""
 CIRCULATION = frozenset(("hallway", "stair_hall", "living_room", "dining_room", "studio"))
 """Kinds of rooms through which one may walk to a bedroom."""
 TO_BATHROOM = frozenset(("hallway", "stair_hall", "bedroom", "closet", "laundry", "studio"))
@@ -255,7 +257,7 @@ def _door_faults(rooms: Sequence[Room], doors: Sequence[Doorway]) -> list[str]:
         behind = [kind_of[name] for name in neighbours[room.name]]
         if room.kind == "bathroom":
             faults += [f"{room.name} opens off a {_words(kind)}" for kind in behind if kind not in TO_BATHROOM]
-        if room.kind == "bedroom" and behind and not CIRCULATION.intersection(behind):
+        if room.kind in NOT_CAPTIVE and behind and not CIRCULATION.intersection(behind):
             faults.append(f"{room.name} is entered only through a {_words(behind[0])}")
     baths = [room.name for room in rooms if room.kind == "bathroom"]
     if baths and not any(kind_of[other] in FOR_GUESTS for name in baths for other in neighbours[name]):

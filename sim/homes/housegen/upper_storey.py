@@ -166,6 +166,7 @@ def draw_upper_plan(rng: np.random.Generator, ground: FloorPlan) -> tuple[FloorP
     chosen = _rooms_around(ground, hall)
     kinds = _draw_kinds(rng, ground, [ground.rooms[i] for i in chosen])
     kept = [(i, kind) for i, kind in zip(chosen, kinds, strict=True) if kind]
+    kept = _without_dead_ends(ground, kept)
     index = {i: n for n, (i, _) in enumerate(kept)}
     joins = [_join(ground, join, index) for join in ground.joins if join.a in index and join.b in index]
     rooms = [ground.rooms[i] for i in index]
@@ -240,6 +241,17 @@ def _fits(kind: str, rect: Rect) -> bool:
         and rect.short_m >= rule.short_m
         and rect.long_m <= rule.aspect * rect.short_m
     )
+
+
+def _without_dead_ends(ground: FloorPlan, kept: list[tuple[int, str]]) -> list[tuple[int, str]]:
+    """Returns the rooms of the upper storey without hallways that lead nowhere."""
+    while True:
+        there = {i for i, _ in kept}
+        degree = Counter(i for join in ground.joins if {join.a, join.b} <= there for i in (join.a, join.b))
+        rest = [(i, kind) for i, kind in kept if kind != "hallway" or degree[i] > 1]
+        if len(rest) == len(kept):
+            return rest
+        kept = rest
 
 
 def _named(ground: FloorPlan, rooms: Sequence[Room], kinds: Sequence[str]) -> tuple[Room, ...]:

@@ -43,8 +43,10 @@ def draw_great_room(
 
 def _add_zones(rng: np.random.Generator, draft: Draft, block: Rect) -> list[int]:
     """Adds the zones of the great room in two rows, the living room at the corridor; returns their indices."""
-    more = ["office", "living_room"][:: 1 if rng.random() < 0.6 else -1]
-    extra = int(block.area_m2 > 58.0) + int(block.area_m2 > 90.0)
+    extra = int(block.area_m2 > 70.0) + int(block.area_m2 > 100.0)
+    more = ["office", "living_room"]
+    if extra == 2 and rng.random() < 0.4:
+        more.reverse()
     back = ["kitchen", "dining_room"] if extra < 2 else ["kitchen", "dining_room", more[1]]
     front = ["living_room"] if extra < 1 else ["living_room", more[0]]
     weight = [sum(ROOM_RULES[kind].area_m2[1] for kind in row) for row in (front, back)]

@@ -16,7 +16,7 @@ WIDTH_M = (3.6, 7.5)
 """Smallest and largest width of the block along the corridor."""
 
 DIVISIONS = 8
-"""Divisions of the block that are drawn until the corridor ends at a room and not between two."""
+"""Divisions of the block that are drawn until the corridor ends at one that is not the kitchen."""
 DOOR_WALL_M = 1.199
 """Smallest length of a common wall, to the middle of the walls at its ends, that has a door."""
 
@@ -33,7 +33,7 @@ def add_public_block(
     """Adds the public rooms at the far end of the corridor, across the whole depth of the main wing, `across_m` in y.
 
     Raises:
-        PlanError: the corridor ends between two of them.
+        PlanError: the corridor ends between two of them, or at the kitchen.
     """
     x0, (y0, y1) = draft.rects[hall].x1, across_m
     depth_m = y1 - y0
@@ -52,10 +52,11 @@ def add_public_block(
             rects = _side_by_side(shares, block)
         else:
             rects = _two_deep(order, shares, block)
-        if any(_has_door_to(draft.rects[hall], rect) for rect in rects):
+        doors = [room for room, rect in zip(order, rects, strict=True) if _has_door_to(draft.rects[hall], rect)]
+        if doors not in ([], ["kitchen"]):
             break
     else:
-        raise PlanError("the corridor ends between two public rooms")
+        raise PlanError("the corridor ends between two public rooms, or at the kitchen")
     rooms = [draft.add(room, rect) for room, rect in zip(order, rects, strict=True)]
     _join_public(rng, draft, rooms, kind)
     _join_hall(rng, draft, hall, rooms, kind)

@@ -70,6 +70,14 @@ class RoomQueue:
         """Returns how many rooms of the kind of a group there are, relative to how many a home usually has."""
         return self._placed[group[0].front] / _SHARES[group[0].front]
 
+    def add(self, kind: str) -> bool:
+        """Counts a room that is placed without the queue; returns False if the home may not have it."""
+        planned = sum(map(_kinds, self._groups), self._placed)
+        if may_add(planned, kind):
+            self._placed[kind] += 1
+            return True
+        return False
+
     def fill_row(
         self,
         rng: np.random.Generator,

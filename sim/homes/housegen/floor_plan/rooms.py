@@ -70,7 +70,7 @@ ROOM_RULES: Mapping[str, RoomRule] = MappingProxyType(
         "kitchen": RoomRule((8.0, 12.0, 25.0), 2.4, 2.1),
         "dining_room": RoomRule((9.0, 14.0, 29.0), 2.7, 2.1),
         "studio": RoomRule((26.0, 34.0, 48.0), 4.4, 1.8),
-        "bedroom": RoomRule((9.5, 14.5, 27.0), 2.7, 2.1),
+        "bedroom": RoomRule((9.5, 14.5, 24.8), 2.7, 2.1),
         "bathroom": RoomRule((4.2, 5.5, 9.7), 1.75, 2.4),
         "office": RoomRule((8.0, 11.5, 21.5), 2.4, 2.1),
         "gym": RoomRule((13.0, 18.0, 33.0), 3.1, 2.1),

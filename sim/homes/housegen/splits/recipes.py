@@ -139,7 +139,7 @@ _VAL: tuple[_Shape, ...] = (
     ("corridor", 72.0, ()),
     ("lshape", 98.0, ("laundry",)),
     ("greatroom", 165.0, ("gym", "closet")),
-    ("flat", 80.0, ("bathroom", "bathroom")),
+    ("flat", 80.0, ()),
     ("split", 145.0, ("gym",)),
     ("corridor", 86.0, ("laundry",)),
     ("flat", 116.0, ("gym",)),
@@ -165,7 +165,7 @@ _TEST: tuple[_Shape, ...] = (
     ("flat", 62.0, ()),
     ("lshape", 112.0, ("gym",)),
     ("loop", 205.0, ("gym", "laundry")),
-    ("corridor", 90.0, ("bathroom", "bathroom")),
+    ("corridor", 90.0, ()),
     ("greatroom", 150.0, ("gym", "office")),
     ("flat", 84.0, ()),
     ("corridor", 116.0, ("gym",)),
@@ -192,7 +192,7 @@ _LARGE: tuple[_Shape, ...] = (
     ("estate", 310.0, ("laundry",)),
     ("estate", 460.0, ("office", "gym")),
     ("estate", 400.0, ("stair_hall", "office", "laundry")),
-    ("estate", 500.0, ("gym", "office", "laundry", "gym")),
+    ("estate", 500.0, ("gym", "office", "laundry", "office")),
     ("estate", 340.0, ("gym",)),
     ("estate", 430.0, ("gym", "laundry", "closet")),
     ("estate", 450.0, ("stair_hall", "gym", "laundry")),
@@ -265,7 +265,7 @@ _SMALL_M2, _LARGE_M2 = (60.0, 250.0), (262.0, 400.0)
 """Areas of small and of large train houses, limited to those of their kind of plan."""
 _SKEW = 1.8
 """Exponent that gives small homes more often than large ones."""
-_ROOMY_M2 = 100.0
+_ROOMY_M2 = 105.0
 """Smallest area with required rooms: in a smaller home a gym would take the place of the second bedroom."""
 _GOLDEN = 0.6180339887
 """The fractional parts of its multiples fill [0, 1) evenly for any number of them (Kronecker sequence)."""
