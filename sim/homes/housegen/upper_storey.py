@@ -47,6 +47,10 @@ _PRIVATE = (
     "laundry",
     "living_room",
 )
+_REPEATED = ("bedroom", "bathroom", "office", "closet")
+"""Kinds of rooms of which there may be more than `_PRIVATE` names."""
+_NEEDED = Counter({"bedroom": 2, "bathroom": 1})
+"""Rooms that an upper storey has at least."""
 
 
 @dataclass(frozen=True)
@@ -175,6 +179,8 @@ def draw_upper_plan(rng: np.random.Generator, ground: FloorPlan) -> tuple[FloorP
         raise PlanError("the rooms of the upper storey are not connected")
     if sum(kind not in _PUBLIC for _, kind in kept) < ROOMS[0]:
         raise PlanError("the upper storey has too few rooms")
+    if missing := _NEEDED - Counter(kind for _, kind in kept):
+        raise PlanError(f"the upper storey has no place for a {next(iter(missing))}")
     return plan, tuple(opening for opening in cut_openings(rng, plan) if opening.kind != "entry")
 
 
@@ -225,7 +231,7 @@ def _draw_kinds(rng: np.random.Generator, ground: FloorPlan, rooms: Sequence[Roo
             kinds.append(room.kind)
             continue
         fitting = [kind for kind in private_kinds if _fits(kind, room.rect) and may_add(counts, kind)]
-        fitting = fitting or [k for k in dict.fromkeys(_PRIVATE) if _fits(k, room.rect) and may_add(counts, k)]
+        fitting = fitting or [kind for kind in _REPEATED if _fits(kind, room.rect) and may_add(counts, kind)]
         kind = fitting[int(rng.integers(min(2, len(fitting))))] if fitting else ""
         if kind in private_kinds:
             private_kinds.remove(kind)

@@ -71,8 +71,8 @@ class Args:
     kind: PlanKind | None = None
     """Without a split: kind of floor plan; sampled when not given."""
     area_m2: Area = None
-    """Without a split: floor area of the ground storey such as 90, met to within 5 %, or a range such as 80:120 from which
-    it is drawn; sampled when not given."""
+    """Without a split: floor area of the ground storey such as 90, met to within 5 %, or a range such as 80:120;
+    sampled when not given."""
     rooms: tuple[str, ...] = ()
     """Without a split: rooms that each house has at least, such as gym or office; two bathrooms: bathroom bathroom."""
     storeys: Literal[1, 2] = 1

@@ -26,6 +26,7 @@ from sim.core.paths import assets_dir
 from sim.core.reading import Json
 from sim.episodes.splits import load_split
 from sim.gl import mujoco
+from sim.homes.housegen.config import shown_area
 from sim.homes.housegen.floor_plan.rooms import PlanKind
 from sim.homes.housegen.furniture.item import Pool
 from sim.homes.housegen.generator import GENERATOR_VERSION, HouseConfig, generate_house
@@ -111,7 +112,7 @@ def _export_named(out: Path, split: str, version: str, name: str) -> Exported:
 
 def _export_seed(out: Path, config: HouseConfig, seed: int) -> Exported:
     """Generates the house of a seed and exports it."""
-    area_m2 = list(config.area_m2) if isinstance(config.area_m2, tuple) else config.area_m2
+    area_m2 = shown_area(config.area_m2) if isinstance(config.area_m2, tuple) else config.area_m2
     source: dict[str, Json] = {"pool": config.pool, "kind": config.kind, "area_m2": area_m2, "seed": seed}
     source |= {"generator": GENERATOR_VERSION, "exact": config.exact}
     return _export(out, name_of(config, seed), source, lambda: house_of(config, seed))

@@ -16,7 +16,7 @@ from sim.homes.housegen.floor_plan.public_rooms import add_public_block
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.ring_plan import draw_ring
 from sim.homes.housegen.floor_plan.rooms import MAX_ROOMS, MIN_ESTATE_ROOMS, PlanKind
-from sim.homes.housegen.floor_plan.rows import Row, add_row, draw_common_length_m, draw_length_m
+from sim.homes.housegen.floor_plan.rows import Row, add_row, draw_common_length_m, draw_length_m, with_stairs_m
 from sim.homes.housegen.floor_plan.split_plan import draw_split
 from sim.homes.housegen.floor_plan.wings import TwoRows, draw_wings
 
@@ -95,6 +95,7 @@ def _draw_rows(
     public_at_end = kind in ("studio", "flat", "openplan", "large") or (kind == "lshape" and rng.random() < 0.6)
     main, branches = draw_wings(rng, kind, program, public_at_end)
     depths_m = (draw_length_m(rng, 3.5, 4.3) * _depth_scale(scale), draw_length_m(rng, 3.5, 4.3) * _depth_scale(scale))
+    depths_m = (with_stairs_m(depths_m[0], required), depths_m[1])
     if kind == "studio":
         depths_m = (draw_length_m(rng, 2.3, 2.9), draw_length_m(rng, 2.0, 2.6))
     upper, lower = (Row(tuple(columns), round(depth, 1), scale) for columns, depth in zip(main, depths_m, strict=True))

@@ -12,7 +12,7 @@ from sim.homes.housegen.floor_plan.plan import PlanError
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue, add_private_rows
 from sim.homes.housegen.floor_plan.rooms import ROOM_RULES
-from sim.homes.housegen.floor_plan.rows import draw_length_m
+from sim.homes.housegen.floor_plan.rows import draw_length_m, with_stairs_m
 
 MIN_SHARED_M = 1.7
 """Shortest wall between two zones that gets an opening."""
@@ -28,6 +28,7 @@ def draw_great_room(
     """
     draft = Draft()
     deep_m = tuple(round(draw_length_m(rng, 3.4, 4.1) * scale**0.5, 1) for _ in range(2))
+    deep_m = (with_stairs_m(deep_m[0], required), deep_m[1])
     block_m = round(draw_length_m(rng, 6.8, 7.8) * scale**0.5, 1)
     share = float(rng.uniform(0.6, 0.8)) if area_m2 > 110.0 else 1.0
     length_m = area_m2 / (corridor_m + deep_m[0] + share * block_m + (1.0 - share) * deep_m[1])

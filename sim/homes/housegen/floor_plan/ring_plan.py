@@ -19,7 +19,7 @@ from sim.homes.housegen.floor_plan.frames import Frame
 from sim.homes.housegen.floor_plan.plan import PlanError
 from sim.homes.housegen.floor_plan.rectangles import Rect, Side
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue
-from sim.homes.housegen.floor_plan.rows import add_row, draw_length_m
+from sim.homes.housegen.floor_plan.rows import add_row, draw_length_m, with_stairs_m
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +53,7 @@ def draw_ring(
         PlanError: the rooms do not fit.
     """
     ring = (_draw_estate if estate else _draw_loop)(rng, area_m2, corridor_m, scale)
+    ring = replace(ring, rows=(with_stairs_m(ring.rows[0], required), *ring.rows[1:]))
     draft = Draft()
     w, d, c = ring.width, ring.depth, ring.corridor
     north = draft.add("hallway", Rect(0.0, d, w, d + c))

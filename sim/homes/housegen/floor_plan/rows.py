@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,8 @@ from sim.homes.housegen.floor_plan.wings import PUBLIC_KINDS
 
 CUT = (0.46, 0.54)
 """Range of the depth of a front room relative to that of a row, where another room lies behind it."""
+STAIRS_DEPTH_M = 4.8
+"""Depth of a row in which a flight of stairs lies across it."""
 ToRect = Callable[[float, float, float, float], Rect]
 """Turns s0, s1 along a corridor and t0, t1 away from it into a rectangle in the frame of the plan."""
 
@@ -48,6 +50,11 @@ class Row:
         high = min(min(rule.area_m2[2] for rule in rules) / deepest, min(rule.aspect for rule in rules) * usable)
         usual = self.scale * sum(rule.area_m2[1] for rule in rules) / self.depth_m
         return low, min(max(usual, low), high), high
+
+
+def with_stairs_m(depth_m: float, required: Sequence[str]) -> float:
+    """Returns the depth of a row, deep enough for a flight of stairs where a stair hall is required."""
+    return max(depth_m, STAIRS_DEPTH_M) if "stair_hall" in required else depth_m
 
 
 def draw_length_m(rng: np.random.Generator, low_m: float, high_m: float) -> float:

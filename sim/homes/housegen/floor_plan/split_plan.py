@@ -11,7 +11,7 @@ from sim.homes.housegen.floor_plan.draft import Draft
 from sim.homes.housegen.floor_plan.frames import Frame
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue
-from sim.homes.housegen.floor_plan.rows import draw_length_m
+from sim.homes.housegen.floor_plan.rows import draw_length_m, with_stairs_m
 
 MAX_CORE_M2 = 88.0
 """Largest floor area of the public rooms."""
@@ -37,6 +37,8 @@ def draw_split(
     for side in ("west", "east"):
         depths_m = (draw_length_m(rng, 3.3, 3.9), draw_length_m(rng, 3.3, 3.9))
         depths_m = (round(depths_m[0] * scale**0.5, 1), round(depths_m[1] * scale**0.5, 1))
+        if side == "west":
+            depths_m = (with_stairs_m(depths_m[0], required), depths_m[1])
         length_m = (area_m2 - sum(r.area_m2 for r in draft.rects)) / (sum(depths_m) + corridor_m)
         length_m = round(length_m * (float(rng.uniform(0.44, 0.56)) if side == "west" else 1.0) * 20) / 20
         y_m = round(float(rng.uniform(corridor_m / 2 + 0.15, living_m - corridor_m / 2 - 0.15)), 2)

@@ -292,6 +292,8 @@ SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
         "hazards-test": _heldout("hazards-test", 160_000, _HAZARDS),
     }
 )
-"""Recipes of the houses shipped as files, by split, in the order of the episodes; the houses of val and test
-have 60 to 250 m2, a third of them more than 120 m2, all of `large` are larger than 300 m2, and 5 of them have two storeys. `large-test` and
-`hazards-test` have the sizes and rooms of `large` and `hazards` with other seeds."""
+"""Recipes of the houses shipped as files, by split, in the order of the episodes.
+
+The houses of val and test have 60 to 250 m2, a third of them more than 120 m2. All of `large` have more than 300 m2,
+and 5 of them have two storeys. `large-test` and `hazards-test` have the sizes and rooms of `large` and `hazards` with
+other seeds."""
