@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.gl import mujoco
+from sim.houses.hazards import read_hazards
 from sim.houses.house import Room
 from sim.houses.labels import Labels, collidable_geoms
 
@@ -77,8 +78,8 @@ DOOR_EVERY_M, MAX_DOORS_IN_WALL = (1.9, 3.0), 5
 may have one for each stretch of the second length."""
 SWING_M = 0.8
 """Depth of the floor before a door, on which no other door of the same room opens, except in a hallway."""
-NOT_CAPTIVE = frozenset(("bedroom", "gym", "living_room", "kitchen"))
-"""Kinds of rooms with a door to one of `CIRCULATION`, if they have doors; others may lie behind a private room."""
+NOT_CAPTIVE = frozenset(("bedroom", "gym"))
+"""Kinds of rooms that need a door to one of `CIRCULATION`: they have doors only, and no wide openings."""
 CIRCULATION = frozenset(("hallway", "stair_hall", "living_room", "dining_room", "studio"))
 """Kinds of rooms through which one may walk to a bedroom."""
 TO_BATHROOM = frozenset(("hallway", "stair_hall", "bedroom", "closet", "laundry", "studio"))
@@ -166,10 +167,10 @@ def unmet_plan_requirements(
 def measured_doors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, rooms: Sequence[Room]) -> list[Doorway]:
     """Returns the doors of a compiled house, from the solid geoms labelled `door` that lie in walls.
 
-    Leaves inside of a room are left out; a closed leaf counts with its frame.
+    Leaves inside of a room are left out, and so are glass doors that are hazards; a closed leaf counts with its frame.
     """
     doors: list[Doorway] = []
-    solid = collidable_geoms(model)
+    solid, hazards, slack_m = collidable_geoms(model), read_hazards(model), np.full(3, 0.01)
     for instance in labels.of_category("door"):
         ids = np.array([geom for geom in instance.geom_ids if solid[geom]], dtype=np.int64)
         if not ids.size:
@@ -177,6 +178,9 @@ def measured_doors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, r
         rotation = data.geom_xmat[ids].reshape(-1, 3, 3)
         middle = data.geom_xpos[ids] + np.einsum("nij,nj->ni", rotation, model.geom_aabb[ids, :3])
         reach = np.einsum("nij,nj->ni", np.abs(rotation), model.geom_aabb[ids, 3:])
+        corners = (middle - reach).min(axis=0), (middle + reach).max(axis=0)
+        if any((corners[0] > h.low_m - slack_m).all() and (corners[1] < h.high_m + slack_m).all() for h in hazards):
+            continue
         floor_z_m = max((room.floor_z_m for room in rooms if room.floor_z_m < float(middle[:, 2].mean())), default=0.0)
         storey = [_extent(room) for room in rooms if room.floor_z_m == floor_z_m]
         in_wall = np.array([not any(_inside(extent, point, -_CASING_M) for extent in storey) for point in middle])
