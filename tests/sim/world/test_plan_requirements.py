@@ -131,9 +131,10 @@ def test_one_bathroom_must_open_off_a_hallway() -> None:
     assert faults(doors={"bathroom_00": ensuite}) == ["no bathroom has a door to a hallway"]
 
 
-@pytest.mark.parametrize("seed", [1, 2])
-def test_the_doors_of_a_compiled_house_are_those_that_were_drawn(seed: int) -> None:
-    house = generate_house(seed, HouseConfig(kind="flat", area_m2=90.0, clutter=0.0))
+@pytest.mark.parametrize(("seed", "hazards"), [(1, ()), (5, ("glass",))])
+def test_the_doors_of_a_compiled_house_are_those_that_were_drawn(seed: int, hazards: tuple[str, ...]) -> None:
+    config = HouseConfig(kind="flat", area_m2=90.0, clutter=0.0, hazards=hazards, hazard_count=5)
+    house = generate_house(seed, config)
     model = house.spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
