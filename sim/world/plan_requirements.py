@@ -5,7 +5,9 @@ Sizes are measured between the walls. Smallest sizes follow these handbooks wher
 - bedrooms: Nationally Described Space Standard (England, 2015), a single bedroom of 7.5 m2 that is 2.15 m wide;
 - living rooms: London Housing Design Guide (2010), a sitting area that is 2.8 m wide;
 - corridors: Approved Document M (England), an unobstructed width of 0.9 m;
-- rooms for work: International Residential Code, section R304, habitable rooms 7 ft (2.13 m) wide.
+- rooms for work: International Residential Code, section R304, habitable rooms 7 ft (2.13 m) wide;
+- windows: International Residential Code, section R303, glazing in habitable rooms; open kitchens and dining rooms may
+  share it with the room beside them.
 
 The other limits, the largest sizes and the numbers of rooms and doors, are this project's own: they exclude plans that
 have no use for the area, such as a bathroom of 15 m2.
@@ -18,6 +20,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,7 +55,7 @@ ROOM_SIZES: Mapping[str, RoomSize] = MappingProxyType(
         "bedroom": RoomSize((7.5, 24.0), 2.15),
         "bathroom": RoomSize((2.5, 9.0), 1.2, 2.6),
         "office": RoomSize((6.0, 20.0), 2.13),
-        "gym": RoomSize((9.0, 32.0), 2.4),
+        "gym": RoomSize((9.0, 26.0), 2.4),
         "laundry": RoomSize((2.5, 9.0), 1.4, 2.6),
         "closet": RoomSize((2.0, 8.0), 1.2, 2.6),
         "stair_hall": RoomSize((9.0, 16.0), 2.2),
@@ -67,6 +70,10 @@ HALLWAY_SHARE = 0.2
 """Largest share of the hallways in the floor area of a storey."""
 NEEDED_ROOMS = ("bedroom", "bathroom", "kitchen", "living_room")
 """Kinds of rooms that every home has, except for a studio, which needs a bathroom only."""
+LIVING_SHARE, LIVING_M2 = 0.12, 20.0
+"""Smallest share of the largest living room in the floor area of a home, and the area that suffices for any home."""
+LIT = frozenset(("living_room", "bedroom", "studio", "office"))
+"""Kinds of rooms that have a window."""
 BEDROOMS_FROM_M2 = ((100.0, 2), (180.0, 3), (280.0, 4))
 """Smallest numbers of bedrooms, and the floor area of a home from which each applies."""
 MAX_ROOMS: Mapping[str, int] = MappingProxyType({"kitchen": 1, "laundry": 1, "gym": 1, "studio": 1})
@@ -96,7 +103,7 @@ _SAME_DOOR_M = 0.45
 
 @dataclass(frozen=True)
 class Doorway:
-    """A door in a wall."""
+    """A door or a window in a wall."""
 
     centre_m: tuple[float, float]
     """Middle of its threshold (x, y)."""
@@ -130,14 +137,19 @@ class Doorway:
         return ends[0], y - half, ends[1], y + half
 
 
-def plan_faults(rooms: Sequence[Room], doors: Iterable[Doorway]) -> list[str]:
+def plan_faults(rooms: Sequence[Room], doors: Iterable[Doorway], windows: Iterable[Doorway]) -> list[str]:
     """Returns a sentence for each rule that the floor plan of a home violates.
 
     Args:
         rooms: the rooms of all storeys.
         doors: their doors and front doors, without wide openings.
+        windows: their windows.
     """
-    faults = _number_faults(Counter(room.kind for room in rooms), sum(room.area_m2 for room in rooms))
+    home_m2 = sum(room.area_m2 for room in rooms)
+    faults = _number_faults(Counter(room.kind for room in rooms), home_m2)
+    living_m2 = max((room.area_m2 for room in rooms if room.kind == "living_room"), default=LIVING_M2)
+    if living_m2 < min(LIVING_SHARE * home_m2, LIVING_M2):
+        faults.append(f"the living room has {living_m2:.0f} of {home_m2:.0f} m2")
     for floor_z_m in sorted({room.floor_z_m for room in rooms}):
         storey = [room for room in rooms if room.floor_z_m == floor_z_m]
         whole_m2 = sum(room.area_m2 for room in storey)
@@ -147,6 +159,8 @@ def plan_faults(rooms: Sequence[Room], doors: Iterable[Doorway]) -> list[str]:
             faults += _hallway_faults(room, longest_m) if room.kind == "hallway" else _size_faults(room)
         if halls_m2 > HALLWAY_SHARE * whole_m2:
             faults.append(f"hallways take {halls_m2:.0f} of {whole_m2:.0f} m2")
+    lit = {room.name for window in windows for sign in (-1.0, 1.0) if (room := _room_at(rooms, window, sign))}
+    faults += [f"{room.name} has no window" for room in rooms if room.kind in LIT and room.name not in lit]
     return faults + _door_faults(rooms, tuple(doors))
 
 
@@ -161,17 +175,24 @@ def unmet_plan_requirements(
         labels: the labels of its geoms.
         rooms: its rooms.
     """
-    return plan_faults(rooms, measured_doors(model, data, labels, rooms))
+    doors, windows = (measured(kind, model, data, labels, rooms) for kind in ("door", "window"))
+    return plan_faults(rooms, doors, windows)
 
 
-def measured_doors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, rooms: Sequence[Room]) -> list[Doorway]:
-    """Returns the doors of a compiled house, from the solid geoms labelled `door` that lie in walls.
+def measured(
+    category: Literal["door", "window"],
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    labels: Labels,
+    rooms: Sequence[Room],
+) -> list[Doorway]:
+    """Returns the doors or windows of a compiled house, from the solid geoms with that label that lie in walls.
 
     Leaves inside of a room are left out, and so are glass doors that are hazards; a closed leaf counts with its frame.
     """
-    doors: list[Doorway] = []
+    found: list[Doorway] = []
     solid, hazards, slack_m = collidable_geoms(model), read_hazards(model), np.full(3, 0.01)
-    for instance in labels.of_category("door"):
+    for instance in labels.of_category(category):
         ids = np.array([geom for geom in instance.geom_ids if solid[geom]], dtype=np.int64)
         if not ids.size:
             continue
@@ -188,10 +209,10 @@ def measured_doors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, r
             continue
         low, high = (middle - reach)[in_wall].min(axis=0), (middle + reach)[in_wall].max(axis=0)
         size, (x, y, _) = high - low, (0.5 * (low + high)).tolist()
-        door = Doorway((x, y), float(size[:2].max()), bool(size[0] > size[1]), floor_z_m)
-        if not any(_distance_m(door, other) < _SAME_DOOR_M for other in doors):
-            doors.append(door)
-    return doors
+        opening = Doorway((x, y), float(size[:2].max()), bool(size[0] > size[1]), floor_z_m)
+        if not any(_distance_m(opening, other) < _SAME_DOOR_M for other in found):
+            found.append(opening)
+    return found
 
 
 def _number_faults(count: Counter[str], area_m2: float) -> list[str]:

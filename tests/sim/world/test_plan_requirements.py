@@ -9,7 +9,8 @@ from sim.homes.housegen.generator import HouseConfig, generate_house
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import read_labels
 from sim.world.check import check_house
-from sim.world.plan_requirements import HALLWAY_M, ROOM_SIZES, USUAL_M2, Doorway, measured_doors, plan_faults
+from sim.world.plan_requirements import HALLWAY_M, ROOM_SIZES, USUAL_M2, Doorway, measured, plan_faults
+from tests.helpers.worlds import room, with_box
 
 Rect = tuple[float, float, float, float]
 HOME: dict[str, Rect] = {
@@ -30,6 +31,13 @@ DOORS = {
 }
 
 
+WINDOWS = {
+    "bedroom_00": Doorway((1.5, 5.35), 1.2, along_x=True),
+    "bedroom_01": Doorway((7.0, 5.35), 1.2, along_x=True),
+    "living_room_00": Doorway((2.0, -4.15), 1.2, along_x=True),
+}
+
+
 def rooms_of(home: dict[str, Rect]) -> list[Room]:
     rooms = []
     for name, (x0, y0, x1, y1) in home.items():
@@ -41,7 +49,11 @@ def rooms_of(home: dict[str, Rect]) -> list[Room]:
 def faults(rooms: dict[str, Rect | None] | None = None, doors: dict[str, Doorway | None] | None = None) -> list[str]:
     """Returns the faults of `HOME` with other rooms and doors; None removes one."""
     home = {name: rect for name, rect in (HOME | (rooms or {})).items() if rect is not None}
-    return plan_faults(rooms_of(home), [door for door in (DOORS | (doors or {})).values() if door is not None])
+    found = plan_faults(
+        rooms_of(home), [door for door in (DOORS | (doors or {})).values() if door is not None], WINDOWS.values()
+    )
+    new = set(home) - set(HOME)  # rooms that a test adds have no windows
+    return [fault for fault in found if fault not in {f"room_{name} has no window" for name in new}]
 
 
 def test_a_usual_home_has_no_fault() -> None:
@@ -55,9 +67,10 @@ def test_a_missing_kind_of_room_is_reported(kind: str) -> None:
 
 def test_a_studio_needs_only_a_bathroom() -> None:
     studio = rooms_of({"studio_00": (0.0, 0.0, 6.0, 5.0), "bathroom_00": (6.1, 0.0, 8.2, 2.5)})
-    door = Doorway((6.05, 1.0), 0.9, along_x=False)
-    assert plan_faults(studio, [door]) == []
-    assert plan_faults(studio[:1], []) == ["the home has no bathroom"]
+    door, window = Doorway((6.05, 1.0), 0.9, along_x=False), Doorway((3.0, -0.1), 1.2, along_x=True)
+    assert plan_faults(studio, [door], [window]) == []
+    assert plan_faults(studio[:1], [], [window]) == ["the home has no bathroom"]
+    assert plan_faults(studio, [door], []) == ["room_studio_00 has no window"]
 
 
 def test_more_bathrooms_than_bedrooms_and_one_for_guests_are_reported() -> None:
@@ -131,19 +144,31 @@ def test_one_bathroom_must_open_off_a_hallway() -> None:
     assert faults(doors={"bathroom_00": ensuite}) == ["no bathroom has a door to a hallway"]
 
 
-@pytest.mark.parametrize(("seed", "hazards"), [(1, ()), (5, ("glass",))])
-def test_the_doors_of_a_compiled_house_are_those_that_were_drawn(seed: int, hazards: tuple[str, ...]) -> None:
-    config = HouseConfig(kind="flat", area_m2=90.0, clutter=0.0, hazards=hazards, hazard_count=5)
-    house = generate_house(seed, config)
-    model = house.spec.compile()
+def doors_of(spec: mujoco.MjSpec) -> list[Doorway]:
+    model = spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    rooms = read_rooms(model)
-    doors = measured_doors(model, data, read_labels(model), rooms)
+    return measured("door", model, data, read_labels(model), read_rooms(model))
+
+
+@pytest.mark.parametrize("seed", [2, 3])
+def test_the_doors_of_a_compiled_house_are_those_that_were_drawn(seed: int) -> None:
+    house = generate_house(seed, HouseConfig(kind="flat", area_m2=90.0, clutter=0.0))
+    rooms, doors = read_rooms(house.spec.compile()), doors_of(house.spec)
     assert len(doors) == sum(join.kind == "door" for join in house.plan.joins) + 1  # the front door
     for door in doors:
         assert 0.8 < door.width_m < 1.1
-        assert sum(room.contains(*door.side_point(sign)) for room in rooms for sign in (-1.0, 1.0)) in (1, 2)
+        assert sum(place.contains(*door.side_point(sign)) for place in rooms for sign in (-1.0, 1.0)) in (1, 2)
+
+
+def test_a_glass_door_that_is_a_hazard_is_no_door_of_the_plan() -> None:
+    box = mujoco.mjtGeom.mjGEOM_BOX
+    spec = with_box(room(4, 4), "door_00", centre_m=(2.05, 0.0, 1.0), half_m=(0.02, 0.4, 1.0)).spec
+    (door,) = doors_of(spec)
+    assert door.centre_m == pytest.approx((2.05, 0.0))
+    assert not door.along_x
+    spec.worldbody.add_site(name="hazard_glass_00", type=box, pos=(2.05, 0.0, 1.0), size=(0.02, 0.4, 1.0))
+    assert doors_of(spec) == []
 
 
 def test_the_check_measures_the_sites_of_a_house() -> None:

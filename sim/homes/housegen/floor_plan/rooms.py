@@ -73,7 +73,7 @@ ROOM_RULES: Mapping[str, RoomRule] = MappingProxyType(
         "bedroom": RoomRule((9.5, 14.5, 24.8), 2.7, 2.1),
         "bathroom": RoomRule((4.2, 5.5, 9.7), 1.75, 2.4),
         "office": RoomRule((8.0, 11.5, 21.5), 2.4, 2.1),
-        "gym": RoomRule((13.0, 18.0, 33.0), 3.1, 2.1),
+        "gym": RoomRule((13.0, 17.0, 27.0), 3.1, 2.1),
         "laundry": RoomRule((4.0, 5.5, 9.7), 1.75, 2.4, windows=False),
         "closet": RoomRule((3.4, 4.5, 8.7), 1.7, 2.4, windows=False),
         "stair_hall": RoomRule((11.4, 12.5, 16.8), 2.4, 2.1, long_m=4.75),

@@ -109,6 +109,7 @@ def plan_rule_faults(
     """Returns a sentence for each rule of `sim.world.plan_requirements` that a plan and further storeys violate."""
     rooms: list[Room] = []
     doors: list[Doorway] = []
+    windows: list[Doorway] = []
     for storey, (level, holes) in enumerate(((plan, openings), *further)):
         z_m = storey * _STOREY_M
         for room in level.rooms:
@@ -116,11 +117,13 @@ def plan_rule_faults(
             half = (0.5 * inner.width_m, 0.5 * inner.depth_m, 1.0)
             rooms.append(Room(room.name, room.kind, (((*inner.centre, z_m + 1.0), half),)))
         for hole in holes:
-            if hole.kind in ("door", "entry"):
+            if hole.kind in ("door", "entry", "window"):
                 along_x = hole.side in ("north", "south")
                 centre = (hole.centre_m, hole.line_m) if along_x else (hole.line_m, hole.centre_m)
-                doors.append(Doorway(centre, hole.span[1] - hole.span[0], along_x, z_m))
-    return plan_faults(rooms, doors)
+                (windows if hole.kind == "window" else doors).append(
+                    Doorway(centre, hole.span[1] - hole.span[0], along_x, z_m)
+                )
+    return plan_faults(rooms, doors, windows)
 
 
 def _cut_apart(
