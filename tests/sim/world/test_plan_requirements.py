@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import pytest
 
 from sim.gl import mujoco
@@ -46,11 +48,13 @@ def rooms_of(home: dict[str, Rect]) -> list[Room]:
     return rooms
 
 
-def faults(rooms: dict[str, Rect | None] | None = None, doors: dict[str, Doorway | None] | None = None) -> list[str]:
+def faults(
+    rooms: Mapping[str, Rect | None] | None = None, doors: Mapping[str, Doorway | None] | None = None
+) -> list[str]:
     """Returns the faults of `HOME` with other rooms and doors; None removes one."""
-    home = {name: rect for name, rect in (HOME | (rooms or {})).items() if rect is not None}
+    home = {name: rect for name, rect in {**HOME, **(rooms or {})}.items() if rect is not None}
     found = plan_faults(
-        rooms_of(home), [door for door in (DOORS | (doors or {})).values() if door is not None], WINDOWS.values()
+        rooms_of(home), [door for door in {**DOORS, **(doors or {})}.values() if door is not None], WINDOWS.values()
     )
     new = set(home) - set(HOME)  # rooms that a test adds have no windows
     return [fault for fault in found if fault not in {f"room_{name} has no window" for name in new}]

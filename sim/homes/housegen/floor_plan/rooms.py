@@ -26,7 +26,7 @@ PLAN_AREA_M2: Mapping[PlanKind, tuple[float, float]] = MappingProxyType(
         "corridor": (70.0, 155.0),
         "lshape": (95.0, 230.0),
         "openplan": (80.0, 200.0),
-        "greatroom": (90.0, 190.0),
+        "greatroom": (90.0, 165.0),
         "split": (110.0, 300.0),
         "loop": (90.0, 320.0),
         "large": (180.0, 400.0),

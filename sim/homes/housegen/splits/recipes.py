@@ -218,7 +218,7 @@ _HAZARDS: tuple[_Shape, ...] = (
     ("loop", 195.0, ("office", "gym")),
     ("flat", 120.0, ("gym",)),
     ("corridor", 150.0, ("gym", "laundry")),
-    ("greatroom", 185.0, ("gym",)),
+    ("greatroom", 160.0, ("gym",)),
     ("openplan", 160.0, ("gym",)),
     ("split", 130.0, ("office",)),
     ("lshape", 190.0, ("gym", "office")),
