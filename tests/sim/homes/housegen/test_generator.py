@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from sim.core.interface import GOAL_CATEGORIES, ConfigError
 from sim.gl import mujoco
 from sim.homes.housegen import generate
 from sim.homes.housegen.config import parse_area
+from sim.homes.housegen.floor_plan import PlanError
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.rooms import PLAN_AREA_M2, draw_plan_kind
 from sim.homes.housegen.furnishing.placement import RoomLayout
@@ -25,6 +27,7 @@ from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
 from sim.homes.housegen.furniture import CATALOGUE
 from sim.homes.housegen.generator import (
     MAX_BYTES,
+    MAX_TRIES,
     GeneratedHouse,
     HouseConfig,
     _draw_plan,
@@ -33,7 +36,7 @@ from sim.homes.housegen.generator import (
     generate_house,
     max_bytes,
 )
-from sim.homes.housegen.splits.recipes import SPLITS, Recipe, train_recipe
+from sim.homes.housegen.splits.recipes import SPLITS, Recipe
 from sim.homes.housegen.structure.openings import HALF_WALL_M, plan_rule_faults
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
@@ -187,13 +190,19 @@ def test_an_area_is_read_from_the_command_line() -> None:
             parse_area(text)
 
 
-RECIPES = [recipe for recipes in SPLITS.values() for recipe in recipes] + [train_recipe(seed) for seed in range(60)]
+RECIPES = [recipe for recipes in SPLITS.values() for recipe in recipes]
 
 
 @pytest.mark.parametrize("recipe", sample(RECIPES, 25), ids=lambda recipe: recipe.name)
 def test_every_recipe_has_a_plan_without_a_fault(recipe: Recipe) -> None:
-    rng, config = np.random.default_rng(recipe.seed), recipe.config()
-    plan, openings, stairs = _draw_storeys(rng, recipe.kind, recipe.area_m2, config)
+    config = recipe.config()
+    for attempt in range(MAX_TRIES):
+        rng = np.random.default_rng([recipe.seed, attempt])
+        with contextlib.suppress(PlanError):
+            plan, openings, stairs = _draw_storeys(rng, recipe.kind, recipe.area_m2, config)
+            break
+    else:
+        pytest.fail("no plan")
     further = [(stairs.plan, stairs.openings)] if stairs is not None else []
     assert plan_rule_faults(plan, openings, *further) == []
     assert not Counter(config.rooms) - Counter(room.kind for room in plan.rooms)
