@@ -74,7 +74,7 @@ LIVING_SHARE, LIVING_M2 = 0.12, 20.0
 """Smallest share of the largest living room in the floor area of a home, and the area that suffices for any home."""
 LIT = frozenset(("living_room", "bedroom", "studio", "office"))
 """Kinds of rooms that have a window."""
-BEDROOMS_FROM_M2 = ((100.0, 2), (180.0, 3), (280.0, 4))
+BEDROOMS_FROM_M2 = ((78.0, 2), (150.0, 3), (260.0, 4))
 """Smallest numbers of bedrooms, and the floor area of a home from which each applies."""
 MAX_ROOMS: Mapping[str, int] = MappingProxyType({"kitchen": 1, "laundry": 1, "gym": 1, "studio": 1})
 """Largest number of rooms of these kinds in a home."""

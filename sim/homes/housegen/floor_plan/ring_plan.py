@@ -21,6 +21,9 @@ from sim.homes.housegen.floor_plan.rectangles import Rect, Side
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue
 from sim.homes.housegen.floor_plan.rows import add_row, draw_length_m, with_stairs_m
 
+COURT_M = 2.0
+"""Distance of a wing from the row before it, whose rooms keep their windows."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Ring:
@@ -165,7 +168,7 @@ def _add_rows(
             starts[side] = Frame(gap.centre[0], gap.y0 if side == "north" else gap.y1, side)
     for side in ring.wings:
         n = ("north", "south", "east").index(side)
-        before_m = 0.0 if side == "east" else ring.rows[n] + (2.0 if rng.random() < 0.5 else 0.0)
+        before_m = 0.0 if side == "east" else ring.rows[n] + COURT_M
         wing = Wing(
             frame=starts[side], before_m=before_m, length_m=ring.wing_length,
             depths_m=(ring.wing_depth, ring.wing_depth), corridor_m=c,
