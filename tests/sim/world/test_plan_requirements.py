@@ -159,10 +159,17 @@ def doors_of(spec: mujoco.MjSpec) -> list[Doorway]:
 def test_the_doors_of_a_compiled_house_are_those_that_were_drawn(seed: int) -> None:
     house = generate_house(seed, HouseConfig(kind="flat", area_m2=90.0, clutter=0.0))
     rooms, doors = read_rooms(house.spec.compile()), doors_of(house.spec)
-    assert len(doors) == sum(join.kind == "door" for join in house.plan.joins) + 1  # the front door
+    names = [room.name for room in house.plan.rooms]
+    drawn = {frozenset((names[join.a], names[join.b])): join.kind for join in house.plan.joins}
+    beside = []
     for door in doors:
         assert 0.8 < door.width_m < 1.1
-        assert sum(place.contains(*door.side_point(sign)) for place in rooms for sign in (-1.0, 1.0)) in (1, 2)
+        sides = [place.name for place in rooms for sign in (-1.0, 1.0) if place.contains(*door.side_point(sign))]
+        beside.append(frozenset(sides))
+    assert sum(len(sides) == 1 for sides in beside) == 1, "one front door"
+    assert len(set(beside)) == len(beside)
+    assert {sides for sides in beside if len(sides) == 2} <= set(drawn)
+    assert {sides for sides, kind in drawn.items() if kind == "door"} <= set(beside)
 
 
 def test_a_glass_door_that_is_a_hazard_is_no_door_of_the_plan() -> None:

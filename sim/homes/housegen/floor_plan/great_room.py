@@ -30,7 +30,7 @@ def draw_great_room(
     deep_m = tuple(round(draw_length_m(rng, 3.4, 4.1) * scale**0.5, 1) for _ in range(2))
     deep_m = (with_stairs_m(deep_m[0], required), deep_m[1])
     block_m = round(draw_length_m(rng, 6.8, 7.8) * scale**0.5, 1)
-    share = float(rng.uniform(0.6, 0.8)) if area_m2 > 110.0 else 1.0
+    share = float(rng.uniform(0.6, 0.8)) if area_m2 > 100.0 else 1.0
     length_m = area_m2 / (corridor_m + deep_m[0] + share * block_m + (1.0 - share) * deep_m[1])
     length_m = round(length_m * 20) / 20
     great_m = round(share * length_m * 20) / 20

@@ -26,7 +26,7 @@ PLAN_AREA_M2: Mapping[PlanKind, tuple[float, float]] = MappingProxyType(
         "corridor": (70.0, 155.0),
         "lshape": (95.0, 230.0),
         "openplan": (80.0, 200.0),
-        "greatroom": (90.0, 165.0),
+        "greatroom": (95.0, 165.0),
         "split": (110.0, 300.0),
         "loop": (90.0, 320.0),
         "large": (180.0, 400.0),
@@ -76,7 +76,7 @@ ROOM_RULES: Mapping[str, RoomRule] = MappingProxyType(
         "gym": RoomRule((13.0, 17.0, 27.0), 3.1, 2.1),
         "laundry": RoomRule((4.0, 5.5, 9.7), 1.75, 2.4, windows=False),
         "closet": RoomRule((3.4, 4.5, 8.7), 1.7, 2.4, windows=False),
-        "stair_hall": RoomRule((11.4, 12.5, 16.8), 2.4, 2.1, long_m=4.75),
+        "stair_hall": RoomRule((13.0, 14.0, 17.0), 2.75, 2.1, long_m=4.75),
         "hallway": RoomRule((1.4, 10.0, 60.0), 1.1, 30.0, windows=False),
     }
 )
