@@ -19,11 +19,10 @@ from sim.homes.housegen.floor_plan.rooms import MAX_ROOMS, MIN_ESTATE_ROOMS, Pla
 from sim.homes.housegen.floor_plan.rows import Row, add_row, draw_common_length_m, draw_length_m, with_stairs_m
 from sim.homes.housegen.floor_plan.split_plan import draw_split
 from sim.homes.housegen.floor_plan.wings import TwoRows, draw_wings
+from sim.world.plan_requirements import NEEDED_ROOMS
 
 CORRIDOR_M = ((250.0, (1.4, 1.7)), (120.0, (1.25, 1.5)), (0.0, (1.2, 1.4)))
 """Range of the corridor's width by the smallest floor area: long corridors need room for furniture at their walls."""
-NEEDED_ROOMS = ("living_room", "kitchen", "bedroom", "bathroom")
-"""Rooms that every home has that is not a studio."""
 EXTRA_DOORS = {
     frozenset(("living_room", "office")): 0.4,
     frozenset(("living_room", "dining_room")): 0.8,

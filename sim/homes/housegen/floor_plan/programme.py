@@ -27,6 +27,10 @@ _NUMBERS: Mapping[str, tuple[float, ...]] = MappingProxyType(
     }
 )
 """Mean number of private rooms by kind at the floor areas `_AREAS_M2`."""
+_PAIRS = (("bathroom", "bathroom"), ("bathroom", "closet"), ("closet", "bathroom"), ("laundry", "bathroom"))
+"""Small rooms one behind another (front, back), next to a bedroom that owns the one behind."""
+_ALONE = 0.15
+"""Probability that no further small rooms lie one behind another."""
 _PUBLIC_M2 = 90.0
 """Floor area at which half of the homes have a dining room."""
 
@@ -117,25 +121,18 @@ def draw_groups(rng: np.random.Generator, counts: Mapping[str, int]) -> list[Gro
     """
     rest = Counter(counts)
     groups: list[Group] = []
-
-    def take(column: Column) -> None:
-        rest.subtract([column.front] + ([column.back] if column.back else []))
-        rest.subtract(["bedroom"])
-        groups.append((Column("bedroom"), column))
-
-    pairs = (Column("bathroom", "bathroom"), Column("bathroom", "closet"), Column("closet", "bathroom"))
-    pairs += (Column("laundry", "bathroom"),)
     while rest["bedroom"] > 0:
-        at_hall = sum(column.front == "bathroom" for group in groups for column in group)
-        fitting = []
-        for pair in pairs:
-            needs = Counter(kind for kind in (pair.front, pair.back) if kind)
-            public_bath = at_hall or pair.front == "bathroom" or rest["bathroom"] > needs["bathroom"]
-            if needs <= rest and public_bath:
-                fitting.append(pair)
-        if not fitting or rng.random() < 0.15:
+        at_hall = any(column.front == "bathroom" for group in groups for column in group)
+        fitting = [
+            pair
+            for pair in _PAIRS
+            if Counter(pair) <= rest and (at_hall or pair[0] == "bathroom" or rest["bathroom"] > 1)
+        ]
+        if not fitting or rng.random() < _ALONE:
             break
-        take(fitting[int(rng.integers(len(fitting)))])
+        pair = fitting[int(rng.integers(len(fitting)))]
+        groups.append((Column("bedroom"), Column(*pair)))
+        rest.subtract(("bedroom", *pair))
     return groups + [(Column(kind),) for kind in rest.elements()]
 
 
