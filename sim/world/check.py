@@ -2,7 +2,7 @@
 
 The check measures the compiled model, not the generator's own data: labels, overlaps of collision geoms, objects
 without support, unstable objects, and whether the robot reaches every room and every goal category. For generated
-houses it also tests the furniture that each kind of room must have.
+houses it also tests the floor plan, and the furniture that each kind of room must have.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from sim.houses.geoms import world_boxes
 from sim.houses.house import House, Room, read_rooms
 from sim.houses.labels import Instance, Labels, collidable_geoms, cover_geoms, describe_geom, read_labels
 from sim.world.freespace import FreeSpace, connected_to
+from sim.world.plan_requirements import unmet_plan_requirements
 from sim.world.room_requirements import unmet_requirements
 
 MAX_OVERLAP_M = 0.01
@@ -52,8 +53,8 @@ def check_house(
 
     Args:
         spec: the house, without a robot; it is not changed.
-        furnished: True: each room must also have the furniture of its kind (`sim.world.room_requirements`), as in every
-            generated house.
+        furnished: True: each room must also have the furniture of its kind (`sim.world.room_requirements`), and the
+            floor plan must keep the rules of `sim.world.plan_requirements`, as in every generated house.
         rule: its success distance and storey height count; the default rule when None.
         robot: its radius and height count; the default robot when None.
     """
@@ -64,6 +65,7 @@ def check_house(
     faults = _overlaps(house) + _without_support(house) + _unstable(house.model)
     if furnished:
         faults += unmet_requirements(house.model, house.data, house.labels, house.rooms)
+        faults += unmet_plan_requirements(house.model, house.data, house.labels, house.rooms)
     if not house.rooms:
         return [*faults, "it has no room sites"]
     return faults + _unreachable(house, rule or SuccessRule(), robot or RobotModel())

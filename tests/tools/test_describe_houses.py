@@ -43,7 +43,7 @@ def test_the_table_has_one_row_for_each_house(root: Path) -> None:
 
 def test_seed_and_kind_come_from_the_recipe_with_the_name_of_the_house(root: Path) -> None:
     _, rows = write(root)
-    assert [(row["seed"], row["kind"]) for row in rows] == [("10000", "flat"), ("10001", "corridor")]
+    assert [(row["seed"], row["kind"]) for row in rows] == [("110000", "flat"), ("110001", "corridor")]
 
 
 def test_instances_and_unreachable_instances_are_in_the_table(root: Path) -> None:

@@ -31,7 +31,7 @@ from sim.homes.housegen.hazards import PlacedHazard, draw_hazards
 from sim.homes.housegen.mjcf.builder import HouseBuilder
 from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
 from sim.homes.housegen.structure.building import build_structure
-from sim.homes.housegen.structure.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
+from sim.homes.housegen.structure.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings, plan_rule_faults
 from sim.homes.housegen.surfaces.lighting import DAYLIGHT, draw_lamps
 from sim.homes.housegen.surfaces.structure_looks import draw_structure_looks
 from sim.homes.housegen.upper_storey import Stairs, UpperStorey, draw_stairs, draw_upper_storey, lifted
@@ -47,7 +47,8 @@ MAX_AREA_ERROR = 0.05
 """Largest relative difference between the requested floor area and that of the rooms."""
 DRAWN_AREAS = (0.92, 1.1)
 """Range of the areas for which plans are drawn until one has the requested area, relative to it."""
-MAX_PLAN_TRIES = 60
+MAX_PLAN_TRIES = 600
+"""Each takes about 2 ms."""
 MAX_STAIRS_TRIES = 12
 """Plans that are drawn until an upper storey of enough rooms fits on one; each takes about 20 ms."""
 
@@ -210,7 +211,10 @@ def _draw_plan(
             plan = draw_floor_plan(rng, kind, drawn_m2, rooms)
             if config.exact:
                 _require_as_asked(plan, area_m2 if must_match else None, rooms)
-            return plan, cut_openings(rng, plan)
+            openings = cut_openings(rng, plan)
+            if faults := plan_rule_faults(plan, openings):
+                raise PlanError(faults[0])
+            return plan, openings
         except PlanError as fault:
             error = fault
     raise error
@@ -259,7 +263,9 @@ def _draw_size(rng: np.random.Generator, config: HouseConfig) -> tuple[float, Pl
     """Returns area and kind of plan; a missing one is drawn to suit the other."""
     kind = config.kind
     if config.area_m2 is not None:
-        return config.area_m2, kind or draw_plan_kind(rng, config.area_m2)
+        low, high = config.areas_m2
+        area_m2 = low if low == high else float(rng.uniform(low, high))
+        return area_m2, kind or draw_plan_kind(rng, area_m2)
     if kind is None:
         kind = PLAN_KINDS[int(rng.integers(len(PLAN_KINDS)))]
     low, high = PLAN_AREA_M2[kind]

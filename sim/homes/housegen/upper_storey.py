@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from sim.homes.housegen.floor_plan import FloorPlan, Join, PlanError
 from sim.homes.housegen.floor_plan.plan import Room
+from sim.homes.housegen.floor_plan.programme import may_add
 from sim.homes.housegen.floor_plan.rectangles import Rect, frame_around
 from sim.homes.housegen.floor_plan.rooms import ROOM_RULES
 from sim.homes.housegen.furnishing import furnish
@@ -18,7 +20,7 @@ from sim.homes.housegen.furniture.item import Pool
 from sim.homes.housegen.mjcf.builder import HouseBuilder
 from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
 from sim.homes.housegen.structure.building import build_structure
-from sim.homes.housegen.structure.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
+from sim.homes.housegen.structure.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings, plan_rule_faults
 from sim.homes.housegen.structure.parts import StructureLooks
 from sim.homes.housegen.structure.stairs import Flight, place_flight
 from sim.homes.housegen.surfaces.lighting import draw_lamps
@@ -30,6 +32,8 @@ CEILINGS_M = (2.4, 2.45, 2.5)
 """Heights of ceilings: with more, the flight would be longer than the stair hall."""
 ROOMS, AREA_M2 = (5, 10), 140.0
 """Smallest and largest number of rooms, without hallways, and the area at which no more are added."""
+UPPER_TRIES = 20
+"""Upper plans that are drawn for a ground plan."""
 _PUBLIC = ("hallway", "stair_hall")
 _PRIVATE = (
     "bedroom",
@@ -43,6 +47,10 @@ _PRIVATE = (
     "laundry",
     "living_room",
 )
+_REPEATED = ("bedroom", "bathroom", "office", "closet")
+"""Kinds of rooms of which there may be more than `_PRIVATE` names."""
+_NEEDED = Counter({"bedroom": 2, "bathroom": 1})
+"""Rooms that an upper storey has at least."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +97,7 @@ def draw_stairs(rng: np.random.Generator, ground: FloorPlan, openings: Sequence[
     Raises:
         PlanError: the stairs do not fit, or there are too few rooms around the stair hall.
     """
-    plan, above = draw_upper_plan(rng, ground)
+    plan, above = _draw_sound_plan(rng, ground, openings)
     ceiling_m = CEILINGS_M[int(rng.integers(len(CEILINGS_M)))]
     hall = ground.stair_hall()
     assert hall is not None
@@ -102,6 +110,28 @@ def draw_stairs(rng: np.random.Generator, ground: FloorPlan, openings: Sequence[
         ceiling_m,
         flight,
     )
+
+
+def _draw_sound_plan(
+    rng: np.random.Generator, ground: FloorPlan, openings: Sequence[Opening]
+) -> tuple[FloorPlan, tuple[Opening, ...]]:
+    """Returns an upper plan with its openings that violates no plan rule together with the ground storey.
+
+    Raises:
+        PlanError: none of the plans drawn does.
+    """
+    error = PlanError("no upper storey was drawn")
+    for _ in range(UPPER_TRIES):
+        try:
+            plan, above = draw_upper_plan(rng, ground)
+        except PlanError as fault:
+            error = fault
+            continue
+        faults = plan_rule_faults(ground, openings, (plan, above))
+        if not faults:
+            return plan, above
+        error = PlanError(f"upstairs, {faults[0]}")
+    raise error
 
 
 def draw_upper_storey(
@@ -138,8 +168,9 @@ def draw_upper_plan(rng: np.random.Generator, ground: FloorPlan) -> tuple[FloorP
     if hall is None:
         raise PlanError("the ground storey has no stair hall")
     chosen = _rooms_around(ground, hall)
-    kinds = _draw_kinds(rng, [ground.rooms[i] for i in chosen])
+    kinds = _draw_kinds(rng, ground, [ground.rooms[i] for i in chosen])
     kept = [(i, kind) for i, kind in zip(chosen, kinds, strict=True) if kind]
+    kept = _without_dead_ends(ground, kept)
     index = {i: n for n, (i, _) in enumerate(kept)}
     joins = [_join(ground, join, index) for join in ground.joins if join.a in index and join.b in index]
     rooms = [ground.rooms[i] for i in index]
@@ -148,6 +179,8 @@ def draw_upper_plan(rng: np.random.Generator, ground: FloorPlan) -> tuple[FloorP
         raise PlanError("the rooms of the upper storey are not connected")
     if sum(kind not in _PUBLIC for _, kind in kept) < ROOMS[0]:
         raise PlanError("the upper storey has too few rooms")
+    if missing := _NEEDED - Counter(kind for _, kind in kept):
+        raise PlanError(f"the upper storey has no place for a {next(iter(missing))}")
     return plan, tuple(opening for opening in cut_openings(rng, plan) if opening.kind != "entry")
 
 
@@ -188,19 +221,21 @@ def _rooms_around(plan: FloorPlan, hall: int) -> list[int]:
     return chosen
 
 
-def _draw_kinds(rng: np.random.Generator, rooms: Sequence[Room]) -> list[str]:
+def _draw_kinds(rng: np.random.Generator, ground: FloorPlan, rooms: Sequence[Room]) -> list[str]:
     """Returns a kind for each room, "" for one that suits none; bedrooms and bathrooms come first."""
+    counts = Counter(room.kind for room in ground.rooms)
     private_kinds = list(_PRIVATE)
     kinds = []
     for room in rooms:
         if room.kind in _PUBLIC:
             kinds.append(room.kind)
             continue
-        fitting = [kind for kind in private_kinds if _fits(kind, room.rect)]
-        fitting = fitting or [kind for kind in dict.fromkeys(_PRIVATE) if _fits(kind, room.rect)]
+        fitting = [kind for kind in private_kinds if _fits(kind, room.rect) and may_add(counts, kind)]
+        fitting = fitting or [kind for kind in _REPEATED if _fits(kind, room.rect) and may_add(counts, kind)]
         kind = fitting[int(rng.integers(min(2, len(fitting))))] if fitting else ""
         if kind in private_kinds:
             private_kinds.remove(kind)
+        counts[kind] += 1
         kinds.append(kind)
     return kinds
 
@@ -212,6 +247,17 @@ def _fits(kind: str, rect: Rect) -> bool:
         and rect.short_m >= rule.short_m
         and rect.long_m <= rule.aspect * rect.short_m
     )
+
+
+def _without_dead_ends(ground: FloorPlan, kept: list[tuple[int, str]]) -> list[tuple[int, str]]:
+    """Returns the rooms of the upper storey without hallways that lead nowhere."""
+    while True:
+        there = {i for i, _ in kept}
+        degree = Counter(i for join in ground.joins if {join.a, join.b} <= there for i in (join.a, join.b))
+        rest = [(i, kind) for i, kind in kept if kind != "hallway" or degree[i] > 1]
+        if len(rest) == len(kept):
+            return rest
+        kept = rest
 
 
 def _named(ground: FloorPlan, rooms: Sequence[Room], kinds: Sequence[str]) -> tuple[Room, ...]:

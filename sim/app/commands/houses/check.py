@@ -6,10 +6,10 @@
     stubborn houses check --house kitchen.xml --labels labels.json
 
 The check measures the file as users load it: labels, overlaps, support, movable objects at rest, reachability, the
-furniture that each kind of room must have (`sim.world.room_requirements`), and pixels of void in views of the robot's
-camera. A house of your own needs no room sites and no furniture: only places and goals that the robot cannot reach are
-faults, and everything else is printed as notes, unless `--furnished` is given. The exit status is 1 if any house has a
-fault.
+rules for floor plans (`sim.world.plan_requirements`), the furniture that each kind of room must have
+(`sim.world.room_requirements`), and pixels of void in views of the robot's camera. A house of your own needs no room
+sites and no furniture: only places and goals that the robot cannot reach are faults, and everything else is printed as
+notes, unless `--furnished` is given. The exit status is 1 if any house has a fault.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ import numpy as np
 from sim.app import cli
 from sim.app.analysis import display
 from sim.app.commands.house_file import HouseFile
+from sim.app.commands.houses.area import Area
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import ConfigError, HouseError
 from sim.core.geometry.pose import Pose
@@ -59,8 +60,8 @@ class Args(HouseFile):
     """The first of consecutive seeds; no split has seeds from 900000 on."""
     kind: PlanKind | None = None
     """Kind of floor plan; sampled when not given."""
-    area_m2: cli.Positive | None = None
-    """Floor area; sampled when not given."""
+    area_m2: Area = None
+    """Floor area such as 90, or a range such as 80:120; sampled when not given."""
     movable: bool = False
     """Whether light furniture can be pushed."""
     split: str | None = None

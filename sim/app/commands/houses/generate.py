@@ -5,7 +5,7 @@ The houses of val, test, large and hazards are written as MJCF files, the train 
     stubborn houses generate --split train --out assets/mjcf_houses/train --workers 2
 Houses of other seeds:
     stubborn houses generate --first-seed 0 --houses 5 --pool train --out /tmp/houses
-    stubborn houses generate --area-m2 120 --rooms gym office --hazards glass slab --out /tmp/houses
+    stubborn houses generate --area-m2 100:140 --rooms gym office --hazards glass slab --out /tmp/houses
     stubborn houses generate --kind estate --storeys 2 --out /tmp/houses
 Houses with models that `stubborn import furniture` has imported, and the ten houses of the transfer test:
     stubborn houses generate --furniture runs/models --houses 5 --out /tmp/houses
@@ -30,6 +30,7 @@ from pathlib import Path
 from typing import Literal
 
 from sim.app import cli
+from sim.app.commands.houses.area import Area
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import HouseError
 from sim.core.files import write_atomically
@@ -69,10 +70,11 @@ class Args:
     """Without a split: without leaves out the styles that `stubborn views` withholds; only prefers these."""
     kind: PlanKind | None = None
     """Without a split: kind of floor plan; sampled when not given."""
-    area_m2: cli.Positive | None = None
-    """Without a split: floor area of the ground storey, met to within 5 %; sampled when not given."""
+    area_m2: Area = None
+    """Without a split: floor area of the ground storey such as 90, met to within 5 %, or a range such as 80:120;
+    sampled when not given."""
     rooms: tuple[str, ...] = ()
-    """Without a split: private rooms that each house must have, such as gym or office; a kind may be repeated."""
+    """Without a split: rooms that each house has at least, such as gym or office; two bathrooms: bathroom bathroom."""
     storeys: Literal[1, 2] = 1
     """Without a split: number of storeys."""
     hazards: tuple[str, ...] = ()

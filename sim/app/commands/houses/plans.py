@@ -19,12 +19,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim.app import cli
+from sim.app.commands.houses.area import Area
 from sim.app.evaluation.parallel import Shard, ordered_map
 from sim.core.errors import ConfigError, HouseError
 from sim.core.paths import assets_dir
 from sim.core.reading import Json
 from sim.episodes.splits import load_split
 from sim.gl import mujoco
+from sim.homes.housegen.config import shown_area
 from sim.homes.housegen.floor_plan.rooms import PlanKind
 from sim.homes.housegen.furniture.item import Pool
 from sim.homes.housegen.generator import GENERATOR_VERSION, HouseConfig, generate_house
@@ -54,8 +56,8 @@ class Args:
     """Without a split: the first of consecutive seeds."""
     kind: PlanKind | None = None
     """Without a split: kind of floor plan; sampled when not given."""
-    area_m2: cli.Positive | None = None
-    """Without a split: floor area; sampled when not given."""
+    area_m2: Area = None
+    """Without a split: floor area such as 90, or a range such as 80:120; sampled when not given."""
 
 
 OF_GENERATED = ("pool", "first_seed", "kind", "area_m2")
@@ -110,7 +112,8 @@ def _export_named(out: Path, split: str, version: str, name: str) -> Exported:
 
 def _export_seed(out: Path, config: HouseConfig, seed: int) -> Exported:
     """Generates the house of a seed and exports it."""
-    source: dict[str, Json] = {"pool": config.pool, "kind": config.kind, "area_m2": config.area_m2, "seed": seed}
+    area_m2 = shown_area(config.area_m2) if isinstance(config.area_m2, tuple) else config.area_m2
+    source: dict[str, Json] = {"pool": config.pool, "kind": config.kind, "area_m2": area_m2, "seed": seed}
     source |= {"generator": GENERATOR_VERSION, "exact": config.exact}
     return _export(out, name_of(config, seed), source, lambda: house_of(config, seed))
 

@@ -9,7 +9,7 @@ import numpy as np
 from sim.homes.housegen.floor_plan.draft import Draft
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue, add_private_rows
-from sim.homes.housegen.floor_plan.rows import add_row, draw_length_m
+from sim.homes.housegen.floor_plan.rows import add_row, draw_length_m, with_stairs_m
 
 CORE_KINDS = frozenset(("bathroom", "closet", "laundry"))
 """Rooms of the core."""
@@ -28,6 +28,7 @@ def draw_chain(
     """
     draft = Draft()
     deep_m = tuple(round(draw_length_m(rng, 3.3, 4.0) * scale**0.5, 1) for _ in range(2))
+    deep_m = (with_stairs_m(deep_m[0], required), deep_m[1])
     core_m, back_m = draw_length_m(rng, 2.2, 2.7), draw_length_m(rng, 3.1, 3.7)
     living_m = draw_length_m(rng, 3.8, 4.6)
     most_m = living_m + corridor_m + draw_length_m(rng, 4.2, 6.4)
@@ -41,7 +42,7 @@ def draw_chain(
     hall = draft.add("hallway", Rect(0.0, 0.0, length_m, corridor_m))
     at = most_m - corridor_m
     _add_public_rooms(rng, draft, hall, (living_m, at, most_m), (corridor_m, corridor_m + core_m, back_m))
-    queue = RoomQueue(rng, 0.85 * (length_m * deep_m[0] + (length_m - most_m) * deep_m[1]), required, large=False)
+    queue = RoomQueue(rng, area_m2, 0.85 * (length_m * deep_m[0] + (length_m - most_m) * deep_m[1]), required)
     row = queue.fill_row(rng, at - living_m, core_m, 1.0, kinds=CORE_KINDS)
     add_row(
         rng, draft, hall, row, at - living_m, corridor_m,

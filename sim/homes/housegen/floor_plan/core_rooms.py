@@ -1,4 +1,4 @@
-"""The core of a ring of corridors: small rooms back to back, with a lounge, a cross corridor or a courtyard between."""
+"""The core of a ring of corridors: small rooms back to back, with a cross corridor or a courtyard between."""
 
 from __future__ import annotations
 
@@ -40,23 +40,19 @@ def add_core(
         return
     at = round((core.rect.centre[0] - middle_m / 2 + float(rng.uniform(-0.8, 0.8))) * 20) / 20
     middle = Rect(at, core.rect.y0, round(at + middle_m, 3), core.rect.y1)
-    if middle_m <= core.corridor_m:
-        kind, join = "hallway", "open"
-    else:
-        kind, join = "living_room", "opening"
-    if kind == "hallway" or rng.random() < 0.7:  # else the middle stays open: a courtyard
-        room = draft.add(kind, middle)
-        draft.join(core.north, room, join)
-        draft.join(core.south, room, join)
+    if middle_m <= core.corridor_m:  # else the middle stays open: a courtyard
+        hallway = draft.add("hallway", middle)
+        draft.join(core.north, hallway, "open")
+        draft.join(core.south, hallway, "open")
     for span in ((core.rect.x0, middle.x0), (middle.x1, core.rect.x1)):
         _add_pairs(rng, draft, queue, core, span, scale)
 
 
 def _middle_width_m(rng: np.random.Generator, core: Core) -> float:
-    """Returns the width of a cross corridor or of a room across the whole depth in the middle of the core."""
+    """Returns the width of a cross corridor or of a courtyard across the whole depth in the middle of the core."""
     if rng.random() < 0.35 or core.rect.width_m < 9.0:
         return core.corridor_m
-    return draw_length_m(rng, max(4.2, core.rect.depth_m / 1.6), min(0.5 * core.rect.width_m, 7.5))
+    return draw_length_m(rng, max(4.2, core.rect.depth_m / 1.6), min(0.6 * core.rect.width_m, 8.0))
 
 
 def _add_pairs(

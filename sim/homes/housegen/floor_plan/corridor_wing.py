@@ -58,8 +58,11 @@ def add_wing(
         add_row(rng, draft, hall, row, wing.length_m, wing.corridor_m, to_rect)
     if end_room:
         kind = END_ROOMS[int(rng.integers(len(END_ROOMS)))]
+        if not queue.add(kind):
+            kind = "bedroom"
         across_m = wing.corridor_m + wing.depths_m[0]
-        deep_m = max(draw_length_m(rng, 3.8, 4.8), across_m / ROOM_RULES[kind].aspect)
+        rule = ROOM_RULES[kind]
+        deep_m = min(max(draw_length_m(rng, 3.8, 4.8), across_m / rule.aspect), rule.area_m2[2] / across_m - 0.05)
         room = draft.add(kind, wing.frame.rect(whole_m, whole_m + round(deep_m, 1), -half, half + wing.depths_m[0]))
         draft.join(hall, room, "door")
     return hall

@@ -11,18 +11,18 @@ from sim.homes.housegen.floor_plan.chain_plan import draw_chain
 from sim.homes.housegen.floor_plan.draft import Draft, check_draft, finish_draft
 from sim.homes.housegen.floor_plan.great_room import draw_great_room
 from sim.homes.housegen.floor_plan.plan import FloorPlan, PlanError
+from sim.homes.housegen.floor_plan.programme import draw_program
 from sim.homes.housegen.floor_plan.public_rooms import add_public_block
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.ring_plan import draw_ring
-from sim.homes.housegen.floor_plan.rooms import MAX_ROOMS, MIN_ESTATE_ROOMS, PlanKind, draw_program
-from sim.homes.housegen.floor_plan.rows import Row, add_row, draw_common_length_m, draw_length_m
+from sim.homes.housegen.floor_plan.rooms import MAX_ROOMS, MIN_ESTATE_ROOMS, PlanKind
+from sim.homes.housegen.floor_plan.rows import Row, add_row, draw_common_length_m, draw_length_m, with_stairs_m
 from sim.homes.housegen.floor_plan.split_plan import draw_split
 from sim.homes.housegen.floor_plan.wings import TwoRows, draw_wings
+from sim.world.plan_requirements import NEEDED_ROOMS
 
-CORRIDOR_M = ((180.0, (1.5, 1.9)), (120.0, (1.35, 1.75)), (0.0, (1.2, 1.45)))
+CORRIDOR_M = ((250.0, (1.4, 1.7)), (120.0, (1.25, 1.5)), (0.0, (1.2, 1.4)))
 """Range of the corridor's width by the smallest floor area: long corridors need room for furniture at their walls."""
-NEEDED_ROOMS = ("living_room", "kitchen", "bedroom", "bathroom")
-"""Rooms that every home has that is not a studio."""
 EXTRA_DOORS = {
     frozenset(("living_room", "office")): 0.4,
     frozenset(("living_room", "dining_room")): 0.8,
@@ -93,7 +93,8 @@ def _draw_rows(
     scale = float(np.clip(0.85 * area_m2 / program.usual_area_m2, 0.85, 1.7))
     public_at_end = kind in ("studio", "flat", "openplan", "large") or (kind == "lshape" and rng.random() < 0.6)
     main, branches = draw_wings(rng, kind, program, public_at_end)
-    depths_m = (draw_length_m(rng, 3.5, 4.5) * _depth_scale(scale), draw_length_m(rng, 3.5, 4.5) * _depth_scale(scale))
+    depths_m = (draw_length_m(rng, 3.5, 4.3) * _depth_scale(scale), draw_length_m(rng, 3.5, 4.3) * _depth_scale(scale))
+    depths_m = (with_stairs_m(depths_m[0], required), depths_m[1])
     if kind == "studio":
         depths_m = (draw_length_m(rng, 2.3, 2.9), draw_length_m(rng, 2.0, 2.6))
     upper, lower = (Row(tuple(columns), round(depth, 1), scale) for columns, depth in zip(main, depths_m, strict=True))
@@ -101,13 +102,14 @@ def _draw_rows(
     for gap, branch in zip(gaps, branches, strict=True):
         _add_branch(rng, draft, hall, gap, branch, corridor_m, scale)
     if public_at_end:
-        add_public_block(rng, draft, hall, program.public, area_m2, kind)
+        across_m = (-lower.depth_m if lower.columns else 0.0, corridor_m + (upper.depth_m if upper.columns else 0.0))
+        add_public_block(rng, draft, hall, program.public, across_m, area_m2, kind)
     return draft, hall
 
 
 def _depth_scale(scale: float) -> float:
     """Returns by how much rows are deeper when rooms are larger."""
-    return float(np.clip(scale**0.5, 0.9, 1.25))
+    return float(np.clip(scale**0.5, 0.9, 1.1))
 
 
 def _add_main_wing(

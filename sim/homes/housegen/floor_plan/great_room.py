@@ -12,7 +12,7 @@ from sim.homes.housegen.floor_plan.plan import PlanError
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue, add_private_rows
 from sim.homes.housegen.floor_plan.rooms import ROOM_RULES
-from sim.homes.housegen.floor_plan.rows import draw_length_m
+from sim.homes.housegen.floor_plan.rows import draw_length_m, with_stairs_m
 
 MIN_SHARED_M = 1.7
 """Shortest wall between two zones that gets an opening."""
@@ -28,23 +28,26 @@ def draw_great_room(
     """
     draft = Draft()
     deep_m = tuple(round(draw_length_m(rng, 3.4, 4.1) * scale**0.5, 1) for _ in range(2))
+    deep_m = (with_stairs_m(deep_m[0], required), deep_m[1])
     block_m = round(draw_length_m(rng, 6.8, 7.8) * scale**0.5, 1)
-    share = float(rng.uniform(0.6, 0.8)) if area_m2 > 110.0 else 1.0
+    share = float(rng.uniform(0.6, 0.8)) if area_m2 > 100.0 else 1.0
     length_m = area_m2 / (corridor_m + deep_m[0] + share * block_m + (1.0 - share) * deep_m[1])
     length_m = round(length_m * 20) / 20
     great_m = round(share * length_m * 20) / 20
     hall = draft.add("hallway", Rect(0.0, 0.0, length_m, corridor_m))
     zones = _add_zones(rng, draft, Rect(0.0, corridor_m, great_m, corridor_m + block_m))
     _join_zones(rng, draft, hall, zones)
-    queue = RoomQueue(rng, 0.85 * (length_m * deep_m[0] + (length_m - great_m) * deep_m[1]), required, large=False)
+    queue = RoomQueue(rng, area_m2, 0.85 * (length_m * deep_m[0] + (length_m - great_m) * deep_m[1]), required)
     add_private_rows(rng, draft, hall, queue, (great_m, length_m), corridor_m, (deep_m[0], deep_m[1]), scale)
     return draft, hall
 
 
 def _add_zones(rng: np.random.Generator, draft: Draft, block: Rect) -> list[int]:
     """Adds the zones of the great room in two rows, the living room at the corridor; returns their indices."""
-    more = ["office", "living_room"][:: 1 if rng.random() < 0.6 else -1]
-    extra = int(block.area_m2 > 58.0) + int(block.area_m2 > 90.0)
+    extra = int(block.area_m2 > 70.0) + int(block.area_m2 > 100.0)
+    more = ["office", "living_room"]
+    if extra == 2 and rng.random() < 0.4:
+        more.reverse()
     back = ["kitchen", "dining_room"] if extra < 2 else ["kitchen", "dining_room", more[1]]
     front = ["living_room"] if extra < 1 else ["living_room", more[0]]
     weight = [sum(ROOM_RULES[kind].area_m2[1] for kind in row) for row in (front, back)]

@@ -9,53 +9,63 @@ import numpy as np
 
 from sim.homes.housegen.floor_plan.draft import Draft
 from sim.homes.housegen.floor_plan.plan import JoinKind, PlanError
-from sim.homes.housegen.floor_plan.rectangles import Interval, Rect
+from sim.homes.housegen.floor_plan.rectangles import Interval, Rect, shared_side
 from sim.homes.housegen.floor_plan.rooms import ROOM_RULES, PlanKind
 
 WIDTH_M = (3.6, 7.5)
 """Smallest and largest width of the block along the corridor."""
 
+DIVISIONS = 8
+"""Divisions of the block that are drawn until the corridor ends at one that is not the kitchen."""
+DOOR_WALL_M = 1.199
+"""Smallest length of a common wall, to the middle of the walls at its ends, that has a door."""
+
 
 def add_public_block(
-    rng: np.random.Generator, draft: Draft, hall: int, public: Sequence[str], area_m2: float, kind: PlanKind
+    rng: np.random.Generator,
+    draft: Draft,
+    hall: int,
+    public: Sequence[str],
+    across_m: Interval,
+    area_m2: float,
+    kind: PlanKind,
 ) -> None:
-    """Adds the public rooms at the far end of the corridor, across the whole depth of the main wing.
+    """Adds the public rooms at the far end of the corridor, across the whole depth of the main wing, `across_m` in y.
 
     Raises:
-        PlanError: the corridor ends between two of them.
+        PlanError: the corridor ends between two of them, or at the kitchen.
     """
-    x0, (y0, y1) = draft.rects[hall].x1, _end_span(draft, hall)
+    x0, (y0, y1) = draft.rects[hall].x1, across_m
     depth_m = y1 - y0
     wanted_m2 = max(
         area_m2 - sum(rect.area_m2 for rect in draft.rects),
         0.85 * sum(ROOM_RULES[room].area_m2[1] for room in public),
     )
-    order = list(public) if len(public) != 3 else ["living_room", "dining_room", "kitchen"]
-    if rng.random() < 0.5:
-        order.reverse()
     width_m = float(np.clip(wanted_m2 / depth_m, *WIDTH_M))
-    shares = np.array([ROOM_RULES[room].area_m2[1] * rng.uniform(0.9, 1.1) for room in order])
     block = Rect(x0, y0, x0 + round(width_m, 1), y1)
-    if kind == "studio" or depth_m / width_m > 1.15 * len(order) / 2 or len(order) < 3:
-        rects = _side_by_side(shares, block)
+    for _ in range(DIVISIONS):
+        order = list(public) if len(public) != 3 else ["living_room", "dining_room", "kitchen"]
+        if rng.random() < 0.5:
+            order.reverse()
+        shares = np.array([ROOM_RULES[room].area_m2[1] * rng.uniform(0.85, 1.15) for room in order])
+        if kind == "studio" or depth_m / width_m > 1.15 * len(order) / 2 or len(order) < 3:
+            rects = _side_by_side(shares, block)
+        else:
+            rects = _two_deep(order, shares, block)
+        doors = [room for room, rect in zip(order, rects, strict=True) if _has_door_to(draft.rects[hall], rect)]
+        if doors not in ([], ["kitchen"]):
+            break
     else:
-        rects = _two_deep(order, shares, block)
+        raise PlanError("the corridor ends between two public rooms, or at the kitchen")
     rooms = [draft.add(room, rect) for room, rect in zip(order, rects, strict=True)]
     _join_public(rng, draft, rooms, kind)
     _join_hall(rng, draft, hall, rooms, kind)
 
 
-def _end_span(draft: Draft, hall: int) -> Interval:
-    """Returns the y interval of the main wing at the far end of its corridor."""
-    hall_rect = draft.rects[hall]
-    beside = [
-        rect
-        for i, rect in enumerate(draft.rects)
-        if i != hall and abs(rect.x1 - hall_rect.x1) < 0.01 and rect.y1 > hall_rect.y0 - 9
-    ]
-    y0 = min([rect.y0 for rect in beside] + [hall_rect.y0])
-    y1 = max([rect.y1 for rect in beside if rect.y0 < hall_rect.y1 + 0.01] + [hall_rect.y1])
-    return y0, y1
+def _has_door_to(hall: Rect, room: Rect) -> bool:
+    """Returns whether a corridor and a room share enough wall for a door."""
+    shared = shared_side(hall, room)
+    return shared is not None and shared[1][1] - shared[1][0] >= DOOR_WALL_M
 
 
 def _side_by_side(shares: np.ndarray, block: Rect) -> list[Rect]:
@@ -99,8 +109,7 @@ def _join_public(rng: np.random.Generator, draft: Draft, rooms: Sequence[int], k
 
 def _join_hall(rng: np.random.Generator, draft: Draft, hall: int, rooms: Sequence[int], kind: PlanKind) -> None:
     """Connects the corridor with the public rooms that it touches."""
-    touching = [room for room in rooms if draft.shared_m(hall, room) > 1.0]
-    if not touching:
-        raise PlanError("the corridor ends between two public rooms")
-    for room in touching:
+    for room in rooms:
+        if not _has_door_to(draft.rects[hall], draft.rects[room]):
+            continue
         draft.join(hall, room, "opening" if kind in ("openplan", "studio") or rng.random() < 0.5 else "door")

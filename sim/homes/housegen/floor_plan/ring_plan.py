@@ -19,7 +19,10 @@ from sim.homes.housegen.floor_plan.frames import Frame
 from sim.homes.housegen.floor_plan.plan import PlanError
 from sim.homes.housegen.floor_plan.rectangles import Rect, Side
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue
-from sim.homes.housegen.floor_plan.rows import add_row, draw_length_m
+from sim.homes.housegen.floor_plan.rows import add_row, draw_length_m, with_stairs_m
+
+COURT_M = 2.0
+"""Distance of a wing from the row before it, whose rooms keep their windows."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +56,7 @@ def draw_ring(
         PlanError: the rooms do not fit.
     """
     ring = (_draw_estate if estate else _draw_loop)(rng, area_m2, corridor_m, scale)
+    ring = replace(ring, rows=(with_stairs_m(ring.rows[0], required), *ring.rows[1:]))
     draft = Draft()
     w, d, c = ring.width, ring.depth, ring.corridor
     north = draft.add("hallway", Rect(0.0, d, w, d + c))
@@ -63,7 +67,7 @@ def draw_ring(
     _add_public_rooms(rng, draft, ring, north, south)
     rows_m2 = w * (ring.rows[0] + ring.rows[1]) + (d + 2 * c) * ring.rows[2]
     wings_m2 = 2 * len(ring.wings) * ring.wing_length * ring.wing_depth
-    queue = RoomQueue(rng, (rows_m2 + wings_m2 + 0.6 * w * d) / max(scale, 1.0), required, large=estate)
+    queue = RoomQueue(rng, area_m2, (rows_m2 + wings_m2 + 0.6 * w * d) / max(scale, 1.0), required)
     add_core(rng, draft, queue, Core(Rect(0.0, 0.0, w, d), north, south, c), scale, estate=estate)
     _add_rows(rng, draft, queue, ring, (north, south, east), scale, estate)
     return draft, east
@@ -85,7 +89,7 @@ def _draw_loop(rng: np.random.Generator, area_m2: float, corridor_m: float, scal
 
 def _draw_estate(rng: np.random.Generator, area_m2: float, corridor_m: float, scale: float) -> Ring:
     """Returns the measures of an estate with two or three wings."""
-    rows = [round(draw_length_m(rng, 3.9, 4.5) * scale**0.5, 1) for _ in range(3)]
+    rows = [round(draw_length_m(rng, 3.7, 4.2) * scale**0.5, 1) for _ in range(3)]
     growth = float(np.clip((area_m2 - 300.0) / 500.0, 0.0, 1.0))
     depth = round(draw_length_m(rng, 5.0, 5.8) + 2.2 * growth, 1)
     public = round(draw_length_m(rng, 5.4, 6.2) + 1.2 * growth, 1)
@@ -123,7 +127,7 @@ def _add_public_rooms(rng: np.random.Generator, draft: Draft, ring: Ring, north:
     names = ["living_room"]
     if ring.public * (y1 - y0) > 34.0:
         names = ["living_room", "dining_room"] if rng.random() < 0.5 else ["dining_room", "living_room"]
-    cut = y0 + (y1 - y0) * float(rng.uniform(0.54, 0.58) if names[0] == "living_room" else rng.uniform(0.42, 0.46))
+    cut = y0 + (y1 - y0) * float(rng.uniform(0.56, 0.62) if names[0] == "living_room" else rng.uniform(0.38, 0.44))
     cuts = [y0, y1] if len(names) == 1 else [y0, round(cut * 20) / 20, y1]
     rooms = [draft.add(n, Rect(x0, a, 0.0, b)) for n, a, b in zip(names, cuts, cuts[1:], strict=False)]
     if len(rooms) == 2:
@@ -164,7 +168,7 @@ def _add_rows(
             starts[side] = Frame(gap.centre[0], gap.y0 if side == "north" else gap.y1, side)
     for side in ring.wings:
         n = ("north", "south", "east").index(side)
-        before_m = 0.0 if side == "east" else ring.rows[n] + (2.0 if rng.random() < 0.5 else 0.0)
+        before_m = 0.0 if side == "east" else ring.rows[n] + COURT_M
         wing = Wing(
             frame=starts[side], before_m=before_m, length_m=ring.wing_length,
             depths_m=(ring.wing_depth, ring.wing_depth), corridor_m=c,

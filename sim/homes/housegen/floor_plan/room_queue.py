@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections import Counter
 from collections.abc import Callable, Sequence
 
@@ -10,28 +9,19 @@ import numpy as np
 
 from sim.homes.housegen.floor_plan.draft import Draft
 from sim.homes.housegen.floor_plan.plan import PlanError
+from sim.homes.housegen.floor_plan.programme import Group, draw_groups, draw_numbers, may_add
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.rooms import GAP, ROOM_RULES, Column
 from sim.homes.housegen.floor_plan.rows import Row, add_row
 
-Group = tuple[Column, ...]
-_ENSUITE: Group = (Column("bedroom"), Column("closet", "bathroom"))
-_BESIDE: Group = (Column("bedroom"), Column("bathroom", "closet"))
-_BEDROOM, _BATHROOM, _OFFICE, _LAUNDRY, _GYM, _CLOSET = (
-    (Column(kind),) for kind in ("bedroom", "bathroom", "office", "laundry", "gym", "closet")
+_BEDROOM, _BATHROOM, _OFFICE, _LAUNDRY, _CLOSET = (
+    (Column(kind),) for kind in ("bedroom", "bathroom", "office", "laundry", "closet")
 )
-_SMALL_HOME: tuple[Group, ...] = (
-    _BATHROOM, _BEDROOM, _BEDROOM, _OFFICE, _CLOSET, _ENSUITE, _LAUNDRY, _BEDROOM, _GYM, _BESIDE, _OFFICE, _BEDROOM,
-)  # fmt: skip
-_LARGE_HOME: tuple[Group, ...] = (
-    _BATHROOM, _BEDROOM, _ENSUITE, _OFFICE, _BEDROOM, _LAUNDRY, _CLOSET, _BEDROOM, _GYM, _BESIDE, _BEDROOM, _OFFICE,
-    _BATHROOM, _CLOSET, _BEDROOM, _ENSUITE, _OFFICE, _BEDROOM, _CLOSET, _BEDROOM, _GYM, _BEDROOM, _LAUNDRY, _OFFICE,
-)  # fmt: skip
 _MORE: tuple[Group, ...] = (_BEDROOM, _BATHROOM, _OFFICE, _CLOSET, _LAUNDRY)
 """Groups that are added when no group of the queue fits."""
 _SHARES = {"bedroom": 4.0, "bathroom": 1.5, "office": 1.5, "closet": 1.2, "laundry": 0.5}
 """Usual numbers of rooms of these kinds in a home, relative to each other."""
-WITHOUT_DAYLIGHT = frozenset(("bathroom", "closet", "laundry", "office", "gym"))
+WITHOUT_DAYLIGHT = frozenset(("bathroom", "closet", "laundry", "gym"))
 """Rooms that may lie in the core of a home, without windows."""
 
 MORE_M = 2.5
@@ -41,22 +31,25 @@ MORE_M = 2.5
 class RoomQueue:
     """Groups of private rooms in the order in which they are placed."""
 
-    def __init__(self, rng: np.random.Generator, area_m2: float, required: Sequence[str], *, large: bool) -> None:
-        """Makes a queue of rooms with about this usual area; `required` rooms, a bathroom and a bedroom come first."""
-        order = _LARGE_HOME if large else _SMALL_HOME
-        first = [(Column(kind),) for kind in required] + [_BATHROOM, _BEDROOM]
-        rest_m2 = area_m2 - sum(map(_area_m2, first))
-        missing = list(required)
-        rest: list[Group] = []
-        for group in itertools.islice(itertools.cycle(order), 2, 3 * len(order)):
-            if rest_m2 < 4.0:
-                break
-            if group[0].front in missing:
-                missing.remove(group[0].front)
-                continue
-            rest.append(group)
-            rest_m2 -= _area_m2(group)
-        self._groups = [first[i] for i in rng.permutation(len(first))] + [rest[i] for i in rng.permutation(len(rest))]
+    def __init__(
+        self, rng: np.random.Generator, area_m2: float, private_m2: float, required: Sequence[str] = ()
+    ) -> None:
+        """Makes a queue of rooms for a home; those that it needs come first.
+
+        Args:
+            rng: source of the rooms and their order.
+            area_m2: floor area of the home.
+            private_m2: floor area of the private rooms.
+            required: kinds of rooms that the home has at least, as often as they are named.
+        """
+        groups = draw_groups(rng, draw_numbers(rng, area_m2, private_m2, required))
+        missing = Counter(required) | Counter(("bedroom", "bathroom"))
+        first, rest = [], []
+        for group in [groups[i] for i in rng.permutation(len(groups))]:
+            kinds = _kinds(group)
+            (first if missing & kinds else rest).append(group)
+            missing -= kinds
+        self._groups = first + rest
         self._placed: Counter[str] = Counter()
 
     def take(self, fits: Callable[[Group], bool], *, more: bool) -> Group | None:
@@ -64,16 +57,26 @@ class RoomQueue:
         for i, group in enumerate(self._groups):
             if fits(group):
                 return self._count(self._groups.pop(i))
-        others = [group for group in _MORE if more and fits(group)]
+        planned = sum(map(_kinds, self._groups), self._placed)
+        allowed = [group for group in _MORE if more and may_add(planned, group[0].front)]
+        others = [group for group in allowed if fits(group)]
         return self._count(min(others, key=self._excess)) if others else None
 
     def _count(self, group: Group) -> Group:
-        self._placed.update(kind for column in group for kind in (column.front, column.back) if kind)
+        self._placed += _kinds(group)
         return group
 
     def _excess(self, group: Group) -> float:
         """Returns how many rooms of the kind of a group there are, relative to how many a home usually has."""
         return self._placed[group[0].front] / _SHARES[group[0].front]
+
+    def add(self, kind: str) -> bool:
+        """Counts a room that is placed without the queue; returns False if the home may not have it."""
+        planned = sum(map(_kinds, self._groups), self._placed)
+        if may_add(planned, kind):
+            self._placed[kind] += 1
+            return True
+        return False
 
     def fill_row(
         self,
@@ -109,7 +112,10 @@ class RoomQueue:
                     return False
                 if any(depth_m / (1 + (c.back is not None)) < ROOM_RULES[c.front].short_m for c in group):
                     return False
-                own_low, own_usual, _ = _widths_m([group], depth_m, scale, 0.0)
+                own = Row(group, depth_m, scale).widths_m(0.0)
+                if (own[:, 0] > own[:, 2]).any():
+                    return False
+                own_low, own_usual, _ = own.sum(axis=0)
                 return low + own_low <= length_m + 1e-9 and usual + 0.55 * own_usual <= length_m
 
             group = self.take(fits, more=high < length_m or length_m - usual > MORE_M)
@@ -170,5 +176,6 @@ def _widths_m(groups: Sequence[Group], depth_m: float, scale: float, gap_m: floa
     return low, usual, high
 
 
-def _area_m2(group: Group) -> float:
-    return sum(column.usual_area_m2 for column in group)
+def _kinds(group: Group) -> Counter[str]:
+    """Returns the numbers of rooms of each kind in a group."""
+    return Counter(kind for column in group for kind in (column.front, column.back) if kind)

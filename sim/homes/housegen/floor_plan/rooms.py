@@ -1,12 +1,12 @@
-"""Kinds of rooms with their sizes, and the choice of rooms for a home of a given plan kind and area.
+"""Kinds of floor plans and of rooms, with the sizes that are drawn.
 
-Room sizes follow what European building guides call usual (Neufert, Architects' Data, 4th ed., chapter "Dwellings"):
-a single bedroom from 9 m2, a double from 12 m2, bathrooms 3.5-10 m2, corridors 1.1-1.6 m wide.
+The sizes reach to the middle of the walls. They lie within the limits of `sim.world.plan_requirements`, which are
+measured between the walls and name their sources.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
@@ -23,11 +23,11 @@ PLAN_AREA_M2: Mapping[PlanKind, tuple[float, float]] = MappingProxyType(
     {
         "studio": (50.0, 68.0),
         "flat": (62.0, 130.0),
-        "corridor": (70.0, 270.0),
+        "corridor": (70.0, 155.0),
         "lshape": (95.0, 230.0),
-        "openplan": (80.0, 260.0),
-        "greatroom": (90.0, 260.0),
-        "split": (110.0, 320.0),
+        "openplan": (80.0, 200.0),
+        "greatroom": (95.0, 165.0),
+        "split": (110.0, 300.0),
         "loop": (90.0, 320.0),
         "large": (180.0, 400.0),
         "estate": (300.0, 800.0),
@@ -60,26 +60,24 @@ class RoomRule:
     """Largest ratio of the longer side to the shorter one."""
     windows: bool = True
     """Whether it gets windows."""
-    grows: bool = True
-    """Whether it is larger in large homes."""
     long_m: float = 0.0
     """Smallest length of the longer side."""
 
 
 ROOM_RULES: Mapping[str, RoomRule] = MappingProxyType(
     {
-        "living_room": RoomRule((15.0, 24.0, 60.0), 3.5, 2.0),
-        "kitchen": RoomRule((8.0, 13.0, 26.0), 2.4),
-        "dining_room": RoomRule((9.0, 14.0, 28.0), 2.7),
+        "living_room": RoomRule((15.0, 24.0, 56.0), 3.5, 2.0),
+        "kitchen": RoomRule((8.0, 12.0, 25.0), 2.4, 2.1),
+        "dining_room": RoomRule((9.0, 14.0, 29.0), 2.7, 2.1),
         "studio": RoomRule((26.0, 34.0, 48.0), 4.4, 1.8),
-        "bedroom": RoomRule((9.5, 14.5, 27.0), 2.7),
-        "bathroom": RoomRule((4.2, 6.5, 15.0), 1.75, 2.6, grows=False),
-        "office": RoomRule((8.0, 11.5, 22.0), 2.4),
-        "gym": RoomRule((13.0, 18.0, 32.0), 3.1),
-        "laundry": RoomRule((4.0, 5.5, 13.0), 1.75, 2.6, windows=False, grows=False),
-        "closet": RoomRule((3.4, 4.5, 11.0), 1.7, 2.6, windows=False, grows=False),
-        "stair_hall": RoomRule((13.1, 15.0, 26.0), 2.75, 2.2, grows=False, long_m=4.75),
-        "hallway": RoomRule((2.0, 10.0, 60.0), 1.1, 30.0, windows=False),
+        "bedroom": RoomRule((9.5, 14.5, 24.8), 2.7, 2.1),
+        "bathroom": RoomRule((4.2, 5.5, 9.7), 1.75, 2.4),
+        "office": RoomRule((8.0, 11.5, 21.5), 2.4, 2.1),
+        "gym": RoomRule((13.0, 17.0, 27.0), 3.1, 2.1),
+        "laundry": RoomRule((4.0, 5.5, 9.7), 1.75, 2.4, windows=False),
+        "closet": RoomRule((3.4, 4.5, 8.7), 1.7, 2.4, windows=False),
+        "stair_hall": RoomRule((13.0, 14.0, 17.0), 2.75, 2.1, long_m=4.75),
+        "hallway": RoomRule((1.4, 10.0, 60.0), 1.1, 30.0, windows=False),
     }
 )
 """Every kind of room; the names appear in `room_<kind>_<nn>`."""
@@ -100,65 +98,7 @@ class Column:
         return sum(ROOM_RULES[kind].area_m2[1] for kind in (self.front, self.back) if kind)
 
 
-@dataclass(frozen=True)
-class Program:
-    """The rooms of a home: public rooms, and groups of columns of private rooms that stay side by side."""
-
-    public: tuple[str, ...]
-    private: tuple[tuple[Column, ...], ...]
-
-    @property
-    def usual_area_m2(self) -> float:
-        """Sum of the usual areas of all its rooms."""
-        columns = [column for group in self.private for column in group]
-        return sum(ROOM_RULES[kind].area_m2[1] for kind in self.public) + sum(c.usual_area_m2 for c in columns)
-
-
 def draw_plan_kind(rng: np.random.Generator, area_m2: float) -> PlanKind:
     """Returns a random kind of plan that suits the area."""
     fitting: list[PlanKind] = [kind for kind in PLAN_KINDS if PLAN_AREA_M2[kind][0] <= area_m2 <= PLAN_AREA_M2[kind][1]]
     return fitting[int(rng.integers(len(fitting)))]
-
-
-def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float, required: Sequence[str] = ()) -> Program:
-    """Returns the rooms of a home of this plan kind and area; larger homes have more of the rarer rooms.
-
-    The private rooms `required` are added first, to the extent that the area allows.
-    """
-    if kind == "studio":
-        extra = "laundry" if rng.random() < 0.4 else "closet"
-        return Program(("studio",), ((Column("bathroom"),), (Column(extra),)))
-    public = ["living_room", "kitchen"]
-    if area_m2 > 150 or (area_m2 > 80 and rng.random() < 0.6):
-        public.append("dining_room")
-    rest_m2 = 0.84 * area_m2 - sum(ROOM_RULES[room].area_m2[1] for room in public) * (
-        1.25 if kind == "openplan" else 1.0
-    )
-    groups: list[tuple[Column, ...]] = [(Column("bathroom"),)]
-    candidates = [(Column(room),) for room in required] + _candidates(rng, area_m2, required)
-    rest_m2 -= 6.5
-    rooms = len(public) + 1
-    for group in candidates:
-        need = sum(column.usual_area_m2 for column in group)
-        count = sum(1 + (column.back is not None) for column in group)
-        if need <= rest_m2 + 4.0 and rooms + count <= MAX_ROOMS[kind] - HALLWAYS[kind]:
-            groups.append(group)
-            rest_m2 -= need
-            rooms += count
-    return Program(tuple(public), tuple(groups))
-
-
-def _candidates(rng: np.random.Generator, area_m2: float, required: Sequence[str]) -> list[tuple[Column, ...]]:
-    """Returns private rooms in the order in which they are added while area is left."""
-    ensuite = (Column("bedroom"), Column("closet", "bathroom"))
-    beside = (Column("bedroom"), Column("bathroom", "closet"))
-    bedroom = (Column("bedroom"),)
-    first = ensuite if area_m2 > 85 and rng.random() < 0.6 else bedroom
-    second = beside if area_m2 > 130 and rng.random() < 0.5 else bedroom
-    rare = [(Column(kind),) for kind in rng.permutation(["office", "gym", "laundry"]).tolist()]
-    rooms = [first, rare[0], second, rare[1], bedroom, rare[2]]
-    if area_m2 < 105 and rng.random() < 0.5:
-        rooms = [first, second, *rare]
-    rooms = [group for group in rooms if group[0].front not in required]
-    rooms += [ensuite, bedroom, (Column("office"),), beside, (Column("closet"),), bedroom]
-    return rooms

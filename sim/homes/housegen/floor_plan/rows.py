@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,10 @@ from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.rooms import GAP, ROOM_RULES, Column
 from sim.homes.housegen.floor_plan.wings import PUBLIC_KINDS
 
+CUT = (0.46, 0.54)
+"""Range of the depth of a front room relative to that of a row, where another room lies behind it."""
+STAIRS_DEPTH_M = 4.8
+"""Depth of a row in which a flight of stairs lies across it."""
 ToRect = Callable[[float, float, float, float], Rect]
 """Turns s0, s1 along a corridor and t0, t1 away from it into a rectangle in the frame of the plan."""
 
@@ -28,7 +32,10 @@ class Row:
     """Size of the rooms relative to the usual one."""
 
     def widths_m(self, corridor_m: float) -> np.ndarray:
-        """Returns (n, 3) smallest, usual and largest widths of the columns; `corridor_m` is that of a gap."""
+        """Returns (n, 3) smallest, usual and largest widths of the columns; `corridor_m` is that of a gap.
+
+        A column whose smallest width exceeds its largest one does not suit the depth of the row.
+        """
         return np.array([self._column_widths_m(column, corridor_m) for column in self.columns])
 
     def _column_widths_m(self, column: Column, corridor_m: float) -> tuple[float, float, float]:
@@ -36,13 +43,18 @@ class Row:
             return corridor_m, corridor_m, corridor_m
         rules = [ROOM_RULES[kind] for kind in (column.front, column.back) if kind]
         usable = self.depth_m if len(rules) == 1 else self.depth_m / 2
+        deepest = self.depth_m if len(rules) == 1 else self.depth_m * CUT[1]
         low = max(max(rule.area_m2[0] / usable for rule in rules), max(rule.short_m for rule in rules))
         low = max(low, max(usable / rule.aspect for rule in rules))
         low = max(low, max(rule.long_m if rule.long_m > usable else 0.0 for rule in rules))
-        largest = max(rule.area_m2[2] * (max(self.scale, 1.0) if rule.grows else 1.0) for rule in rules)
-        high = min(largest / usable, min(rule.aspect for rule in rules) * usable)
+        high = min(min(rule.area_m2[2] for rule in rules) / deepest, min(rule.aspect for rule in rules) * usable)
         usual = self.scale * sum(rule.area_m2[1] for rule in rules) / self.depth_m
-        return low, min(max(usual, low), max(high, low)), max(high, low)
+        return low, min(max(usual, low), high), high
+
+
+def with_stairs_m(depth_m: float, required: Sequence[str]) -> float:
+    """Returns the depth of a row, deep enough for a flight of stairs where a stair hall is required."""
+    return max(depth_m, STAIRS_DEPTH_M) if "stair_hall" in required else depth_m
 
 
 def draw_length_m(rng: np.random.Generator, low_m: float, high_m: float) -> float:
@@ -56,6 +68,10 @@ def draw_common_length_m(rng: np.random.Generator, upper: Row, lower: Row, corri
     Raises:
         PlanError: no length fits both rows.
     """
+    if any(
+        (row.widths_m(corridor_m)[:, 0] > row.widths_m(corridor_m)[:, 2]).any() for row in (upper, lower) if row.columns
+    ):
+        raise PlanError("a room does not suit the depth of its row")
     ranges = [row.widths_m(corridor_m).sum(axis=0) for row in (upper, lower) if row.columns]
     low, high = max(r[0] for r in ranges), min(r[2] for r in ranges)
     if low > high:
@@ -102,7 +118,7 @@ def add_row(
             fronts.append(None)
             backs.append(None)
             continue
-        cut = row.depth_m if column.back is None else round(row.depth_m * float(rng.uniform(0.44, 0.54)), 1)
+        cut = row.depth_m if column.back is None else round(row.depth_m * float(rng.uniform(*CUT)), 2)
         front = draft.add(column.front, to_rect(s0, s1, 0.0, cut))
         wide = column.front == "stair_hall" or (column.front == "living_room" and rng.random() < 0.5)
         draft.join(hall, front, "opening" if wide else "door")

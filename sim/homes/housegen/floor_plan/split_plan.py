@@ -11,7 +11,10 @@ from sim.homes.housegen.floor_plan.draft import Draft
 from sim.homes.housegen.floor_plan.frames import Frame
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.room_queue import RoomQueue
-from sim.homes.housegen.floor_plan.rows import draw_length_m
+from sim.homes.housegen.floor_plan.rows import draw_length_m, with_stairs_m
+
+MAX_CORE_M2 = 88.0
+"""Largest floor area of the public rooms."""
 
 
 def draw_split(
@@ -23,17 +26,19 @@ def draw_split(
         PlanError: the rooms do not fit.
     """
     draft = Draft()
-    core_m2 = area_m2 * float(rng.uniform(0.34, 0.42))
-    width_m = round(float(np.clip((core_m2 * rng.uniform(1.0, 1.4)) ** 0.5, 6.2, 11.0)), 1)
+    core_m2 = min(area_m2 * float(rng.uniform(0.34, 0.42)), MAX_CORE_M2)
+    width_m = round(float(np.clip((core_m2 * rng.uniform(1.0, 1.3)) ** 0.5, 6.2, 11.0)), 1)
     depth_m = core_m2 / width_m
-    living_m = round(max(depth_m * float(rng.uniform(0.52, 0.6)), width_m / 2.2), 1)
+    living_m = round(max(depth_m * float(rng.uniform(0.52, 0.6)), width_m / 1.95), 1)
     back_m = round(max(depth_m - living_m, 2.8), 1)
     living = draft.add("living_room", Rect(0.0, 0.0, width_m, living_m))
     _add_back_rooms(rng, draft, living, back_m, with_dining=area_m2 > 105.0)
-    queue = RoomQueue(rng, 0.75 * (area_m2 - core_m2), required, large=area_m2 > 200.0)
+    queue = RoomQueue(rng, area_m2, 0.75 * (area_m2 - core_m2), required)
     for side in ("west", "east"):
         depths_m = (draw_length_m(rng, 3.3, 3.9), draw_length_m(rng, 3.3, 3.9))
         depths_m = (round(depths_m[0] * scale**0.5, 1), round(depths_m[1] * scale**0.5, 1))
+        if side == "west":
+            depths_m = (with_stairs_m(depths_m[0], required), depths_m[1])
         length_m = (area_m2 - sum(r.area_m2 for r in draft.rects)) / (sum(depths_m) + corridor_m)
         length_m = round(length_m * (float(rng.uniform(0.44, 0.56)) if side == "west" else 1.0) * 20) / 20
         y_m = round(float(rng.uniform(corridor_m / 2 + 0.15, living_m - corridor_m / 2 - 0.15)), 2)

@@ -7,11 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from sim.homes.housegen.floor_plan.plan import PlanError
-from sim.homes.housegen.floor_plan.rooms import GAP, Column, PlanKind, Program
+from sim.homes.housegen.floor_plan.programme import Group, Program
+from sim.homes.housegen.floor_plan.rooms import GAP, Column, PlanKind
 
 PUBLIC_KINDS = frozenset(("living_room", "kitchen", "dining_room"))
-Group = tuple[Column, ...]
-"""Columns that stay side by side."""
 TwoRows = tuple[list[Column], list[Column]]
 """Columns of the two rows along a corridor."""
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:  # loading a house needs no furniture
     from sim.homes.housegen.furniture.item import Pool
     from sim.homes.housegen.generator import GeneratedHouse, HouseConfig
 
-SPLIT_VERSION = "3.0.0"
+SPLIT_VERSION = "4.0.0"
 """Version of all shipped splits; results contain it with a hash over houses and episodes. It is increased in
 
 - the last number when a house or an episode changed without an effect on agents (a colour, the layout of a file);
@@ -119,69 +119,69 @@ _Shape = tuple[PlanKind, float, tuple[str, ...]]
 """Kind of plan, area in square metres, and required rooms beyond the usual ones."""
 
 _VAL: tuple[_Shape, ...] = (
-    ("flat", 95.0, ("gym",)),
+    ("flat", 98.0, ()),
     ("corridor", 140.0, ("office",)),
-    ("loop", 130.0, ("gym", "laundry")),
-    ("openplan", 130.0, ()),
-    ("split", 150.0, ("office",)),
-    ("large", 270.0, ("gym", "laundry", "office")),
-    ("studio", 55.0, ()),
-    ("greatroom", 150.0, ("gym", "closet")),
-    ("lshape", 190.0, ("laundry",)),
-    ("corridor", 260.0, ("gym",)),
-    ("loop", 190.0, ("office",)),
-    ("flat", 75.0, ()),
-    ("split", 280.0, ("gym", "laundry")),
-    ("greatroom", 105.0, ()),
-    ("openplan", 220.0, ("laundry",)),
-    ("large", 380.0, ("gym", "office", "laundry", "closet")),
-    ("lshape", 120.0, ("gym",)),
-    ("loop", 100.0, ()),
-    ("flat", 128.0, ("gym",)),
-    ("loop", 290.0, ("gym", "laundry")),
-    ("split", 200.0, ("gym",)),
-    ("openplan", 100.0, ("office",)),
-    ("large", 320.0, ("office", "laundry")),
-    ("corridor", 165.0, ("laundry",)),
-    ("greatroom", 210.0, ("office", "gym")),
-    ("loop", 160.0, ("closet",)),
-    ("large", 300.0, ("gym",)),
-    ("split", 125.0, ()),
-    ("lshape", 145.0, ("office",)),
-    ("greatroom", 258.0, ("gym", "office")),
+    ("lshape", 108.0, ("gym",)),
+    ("flat", 64.0, ()),
+    ("loop", 170.0, ("gym",)),
+    ("corridor", 86.0, ()),
+    ("openplan", 92.0, ("office",)),
+    ("large", 205.0, ("laundry",)),
+    ("lshape", 104.0, ()),
+    ("studio", 60.0, ()),
+    ("split", 230.0, ("gym", "laundry")),
+    ("loop", 118.0, ("gym",)),
+    ("flat", 78.0, ()),
+    ("lshape", 190.0, ("gym", "office")),
+    ("corridor", 112.0, ("gym",)),
+    ("greatroom", 100.0, ()),
+    ("large", 250.0, ("gym", "office", "laundry")),
+    ("corridor", 74.0, ()),
+    ("lshape", 106.0, ("laundry",)),
+    ("lshape", 215.0, ("gym", "closet")),
+    ("flat", 84.0, ()),
+    ("split", 160.0, ("gym",)),
+    ("corridor", 95.0, ("laundry",)),
+    ("flat", 120.0, ("gym",)),
+    ("loop", 240.0, ("gym", "office")),
+    ("loop", 102.0, ()),
+    ("split", 115.0, ()),
+    ("flat", 70.0, ()),
+    ("large", 185.0, ("gym",)),
+    ("corridor", 119.0, ("office", "laundry")),
 )
 
 _TEST: tuple[_Shape, ...] = (
-    ("lshape", 110.0, ("gym",)),
-    ("loop", 145.0, ("office",)),
-    ("flat", 125.0, ("office",)),
-    ("large", 300.0, ("gym", "office")),
-    ("greatroom", 135.0, ("laundry",)),
-    ("split", 165.0, ("gym",)),
-    ("corridor", 155.0, ("gym",)),
-    ("flat", 65.0, ()),
-    ("loop", 270.0, ("gym", "laundry")),
-    ("openplan", 145.0, ("laundry",)),
-    ("split", 260.0, ("office", "gym")),
-    ("studio", 50.0, ()),
-    ("greatroom", 180.0, ("gym", "office")),
-    ("lshape", 200.0, ("gym", "office")),
-    ("large", 360.0, ("gym", "laundry", "office")),
-    ("loop", 115.0, ()),
-    ("openplan", 185.0, ("closet",)),
-    ("split", 140.0, ()),
-    ("corridor", 265.0, ("laundry",)),
-    ("flat", 90.0, ("gym",)),
-    ("loop", 205.0, ("gym", "laundry")),
-    ("greatroom", 230.0, ("gym",)),
-    ("large", 390.0, ("gym", "laundry", "closet")),
-    ("corridor", 120.0, ()),
-    ("lshape", 140.0, ("laundry",)),
-    ("split", 305.0, ("gym", "office", "laundry")),
-    ("openplan", 80.0, ()),
-    ("greatroom", 98.0, ()),
-    ("loop", 310.0, ("office", "gym")),
-    ("flat", 130.0, ("gym", "office")),
+    ("corridor", 110.0, ("gym",)),
+    ("flat", 72.0, ()),
+    ("lshape", 150.0, ("laundry",)),
+    ("loop", 104.0, ()),
+    ("corridor", 88.0, ()),
+    ("split", 175.0, ("gym",)),
+    ("flat", 96.0, ("office",)),
+    ("openplan", 114.0, ("laundry",)),
+    ("large", 235.0, ("gym", "office")),
+    ("corridor", 76.0, ()),
+    ("flat", 62.0, ()),
+    ("lshape", 116.0, ("gym",)),
+    ("loop", 210.0, ("gym", "laundry")),
+    ("corridor", 98.0, ()),
+    ("lshape", 180.0, ("gym", "office")),
+    ("flat", 90.0, ()),
+    ("corridor", 118.0, ("gym",)),
+    ("studio", 66.0, ()),
+    ("lshape", 220.0, ("gym", "office")),
+    ("loop", 112.0, ("gym",)),
+    ("flat", 82.0, ("laundry",)),
+    ("corridor", 145.0, ("gym", "laundry")),
+    ("split", 245.0, ("gym", "office")),
+    ("greatroom", 101.0, ()),
+    ("lshape", 106.0, ()),
+    ("lshape", 108.0, ("office",)),
+    ("large", 250.0, ("gym", "laundry", "closet")),
+    ("split", 120.0, ()),
+    ("loop", 195.0, ("gym", "closet")),
+    ("flat", 80.0, ()),
 )
 
 _LARGE: tuple[_Shape, ...] = (
@@ -192,7 +192,7 @@ _LARGE: tuple[_Shape, ...] = (
     ("estate", 310.0, ("laundry",)),
     ("estate", 460.0, ("office", "gym")),
     ("estate", 400.0, ("stair_hall", "office", "laundry")),
-    ("estate", 500.0, ("gym", "office", "laundry", "gym")),
+    ("estate", 500.0, ("gym", "office", "laundry", "office")),
     ("estate", 340.0, ("gym",)),
     ("estate", 430.0, ("gym", "laundry", "closet")),
     ("estate", 450.0, ("stair_hall", "gym", "laundry")),
@@ -217,8 +217,8 @@ _HAZARDS: tuple[_Shape, ...] = (
     ("lshape", 150.0, ("gym",)),
     ("loop", 195.0, ("office", "gym")),
     ("flat", 120.0, ("gym",)),
-    ("corridor", 180.0, ("gym", "laundry")),
-    ("greatroom", 185.0, ("gym",)),
+    ("corridor", 150.0, ("gym", "laundry")),
+    ("greatroom", 160.0, ("gym",)),
     ("openplan", 160.0, ("gym",)),
     ("split", 130.0, ("office",)),
     ("lshape", 190.0, ("gym", "office")),
@@ -249,7 +249,7 @@ def _heldout(split: str, first_seed: int, shapes: tuple[_Shape, ...]) -> tuple[R
 _TRAIN_SMALL: tuple[PlanKind, ...] = (
     "flat", "loop", "openplan", "corridor", "split", "greatroom", "lshape", "loop", "flat", "studio", "corridor",
 )  # fmt: skip
-_TRAIN_LARGE: tuple[PlanKind, ...] = ("large", "corridor", "loop", "large", "split")
+_TRAIN_LARGE: tuple[PlanKind, ...] = ("large", "estate", "loop", "large", "split")
 _TRAIN_ROOMS: tuple[tuple[str, ...], ...] = (
     ("gym",),
     ("office",),
@@ -261,10 +261,12 @@ _TRAIN_ROOMS: tuple[tuple[str, ...], ...] = (
     ("office", "laundry"),
     ("gym",),
 )
-_SMALL_M2, _LARGE_M2 = (50.0, 230.0), (262.0, 400.0)
+_SMALL_M2, _LARGE_M2 = (60.0, 250.0), (262.0, 400.0)
 """Areas of small and of large train houses, limited to those of their kind of plan."""
-_ROOMY_M2 = 110.0
-"""Smallest area with required rooms: in a smaller home a gym or an office would replace the bedroom."""
+_SKEW = 1.8
+"""Exponent that gives small homes more often than large ones."""
+_ROOMY_M2 = 105.0
+"""Smallest area with required rooms: in a smaller home a gym would take the place of the second bedroom."""
 _GOLDEN = 0.6180339887
 """The fractional parts of its multiples fill [0, 1) evenly for any number of them (Kronecker sequence)."""
 
@@ -275,21 +277,23 @@ def train_recipe(seed: int) -> Recipe:
     kinds, (smallest, largest) = (_TRAIN_LARGE, _LARGE_M2) if large else (_TRAIN_SMALL, _SMALL_M2)
     kind = kinds[(seed // 4 if large else seed) % len(kinds)]
     low, high = max(smallest, PLAN_AREA_M2[kind][0]), min(largest, PLAN_AREA_M2[kind][1])
-    area_m2 = round(low + (high - low) * (seed * _GOLDEN % 1.0), 0)
+    area_m2 = round(low + (high - low) * (seed * _GOLDEN % 1.0) ** (1.0 if large else _SKEW), 0)
     rooms = _TRAIN_ROOMS[seed % len(_TRAIN_ROOMS)] if area_m2 >= _ROOMY_M2 else ()
     return Recipe(f"train_{seed:03d}", seed, "train", kind, area_m2, rooms, movable=_is_movable(seed))
 
 
 SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
     {
-        "val": _heldout("val", 10_000, _VAL),
-        "test": _heldout("test", 20_000, _TEST),
-        "large": _heldout("large", 30_000, _LARGE),
-        "hazards": _heldout("hazards", 40_000, _HAZARDS),
-        "large-test": _heldout("large-test", 70_000, _LARGE),
-        "hazards-test": _heldout("hazards-test", 60_000, _HAZARDS),
+        "val": _heldout("val", 110_000, _VAL),
+        "test": _heldout("test", 120_000, _TEST),
+        "large": _heldout("large", 130_000, _LARGE),
+        "hazards": _heldout("hazards", 140_000, _HAZARDS),
+        "large-test": _heldout("large-test", 170_000, _LARGE),
+        "hazards-test": _heldout("hazards-test", 160_000, _HAZARDS),
     }
 )
-"""Recipes of the houses shipped as files, by split, in the order of the episodes; a quarter of the houses of val and
-test is larger than 250 m2, all of `large` are larger than 300 m2, and 5 of them have two storeys. `large-test` and
-`hazards-test` have the sizes and rooms of `large` and `hazards` with other seeds."""
+"""Recipes of the houses shipped as files, by split, in the order of the episodes.
+
+The houses of val and test have 60 to 250 m2, a third of them more than 120 m2. All of `large` have more than 300 m2,
+and 5 of them have two storeys. `large-test` and `hazards-test` have the sizes and rooms of `large` and `hazards` with
+other seeds."""

@@ -11,6 +11,8 @@ import numpy as np
 from sim.homes.housegen.floor_plan import FloorPlan, Join, PlanError
 from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, SIDES, Interval, Rect, Side, shared_side, subtract
 from sim.homes.housegen.floor_plan.rooms import ROOM_RULES
+from sim.houses.house import Room
+from sim.world.plan_requirements import SWING_M, Doorway, plan_faults
 
 HALF_WALL_M = 0.06
 """Thickness of one room's half of a wall, inside the room's rectangle."""
@@ -18,6 +20,10 @@ OUTER_WALL_M = 0.12
 """Thickness of outer walls outside of the rectangle."""
 JAMB_M = 0.03
 """Thickness of a door frame inside its opening."""
+DOOR_TRIES = 12
+"""Places that are tried for a door until it opens onto no other doorway."""
+_STOREY_M = 3.0
+"""Height of a storey in the plan rules, which only tell storeys apart."""
 HEAD_M = 2.1
 """Height of the upper edge of doors, openings and windows."""
 
@@ -99,7 +105,9 @@ def cut_openings(rng: np.random.Generator, plan: FloorPlan) -> tuple[Opening, ..
     """
     rects = [room.rect for room in plan.rooms]
     widths = (round(float(rng.uniform(0.80, 0.88)), 2), round(float(rng.uniform(0.86, 1.0)), 2))
-    openings = [_cut_join(rng, plan, join, widths) for join in plan.joins]
+    openings: list[Opening] = []
+    for join in sorted(plan.joins, key=lambda join: join.kind == "door"):  # doors find places beside wide openings
+        openings.append(_cut_apart(rng, plan, join, widths, openings))
     for n, opening in enumerate(openings):
         openings[n] = _with_leaf(rng, plan, opening, openings)
     entry = _cut_entry(rng, plan, rects)
@@ -117,6 +125,53 @@ def outer_spans(rects: Sequence[Rect], room: int, side: Side) -> list[Interval]:
         if shared is not None and shared[0] == side:
             holes.append(shared[1])
     return subtract(rects[room].span(side), holes, 0.01)
+
+
+def plan_rule_faults(
+    plan: FloorPlan, openings: Sequence[Opening], *further: tuple[FloorPlan, Sequence[Opening]]
+) -> list[str]:
+    """Returns a sentence for each rule of `sim.world.plan_requirements` that a plan and further storeys violate."""
+    rooms: list[Room] = []
+    doors: list[Doorway] = []
+    windows: list[Doorway] = []
+    for storey, (level, holes) in enumerate(((plan, openings), *further)):
+        z_m = storey * _STOREY_M
+        for room in level.rooms:
+            inner = room.rect.grown(-HALF_WALL_M)
+            half = (0.5 * inner.width_m, 0.5 * inner.depth_m, 1.0)
+            rooms.append(Room(room.name, room.kind, (((*inner.centre, z_m + 1.0), half),)))
+        for hole in holes:
+            if hole.kind in ("door", "entry", "window"):
+                along_x = hole.side in ("north", "south")
+                centre = (hole.centre_m, hole.line_m) if along_x else (hole.line_m, hole.centre_m)
+                (windows if hole.kind == "window" else doors).append(
+                    Doorway(centre, hole.span[1] - hole.span[0], along_x, z_m)
+                )
+    return plan_faults(rooms, doors, windows)
+
+
+def _cut_apart(
+    rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tuple[float, float], others: Sequence[Opening]
+) -> Opening:
+    """Returns the opening of a connection; a door whose floor on either side is free of other doorways if possible."""
+    opening = _cut_join(rng, plan, join, clear_m)
+    for _ in range(DOOR_TRIES):
+        if opening.kind != "door" or not any(_meet(plan, opening, other) for other in others):
+            break
+        opening = _cut_join(rng, plan, join, clear_m)
+    return opening
+
+
+def _meet(plan: FloorPlan, door: Opening, other: Opening) -> bool:
+    """Returns whether the floors before two openings of a room that is no hallway overlap."""
+    for room in {door.a, door.b} & {other.a, other.b} - {None}:
+        if plan.rooms[room].kind in ("hallway", "stair_hall"):
+            continue
+        inner = plan.rooms[room].rect.grown(-HALF_WALL_M)
+        zones = [inner.strip(hole.side_of(room), hole.span, SWING_M) for hole in (door, other)]
+        if zones[0].overlaps(zones[1], 0.01):
+            return True
+    return False
 
 
 def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tuple[float, float]) -> Opening:
@@ -141,6 +196,8 @@ def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tu
         return Opening("opening", join.a, join.b, side, line_m, (round(at, 2), round(at + width_m, 2)), 0.0, HEAD_M)
     small = "bathroom" in (a.kind, b.kind) or "closet" in (a.kind, b.kind)
     width_m = (clear_m[0] if small else clear_m[1]) + 2 * JAMB_M
+    if length_m < width_m + 0.16:
+        width_m = clear_m[0] + 2 * JAMB_M
     if length_m < width_m + 0.16:
         raise PlanError(f"{a.name} and {b.name} share only {length_m:.2f} m of wall")
     spare = max(0.0, length_m - width_m - 0.16)

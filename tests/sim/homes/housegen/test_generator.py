@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,15 +17,25 @@ from sim.core.errors import HouseError
 from sim.core.interface import GOAL_CATEGORIES, ConfigError
 from sim.gl import mujoco
 from sim.homes.housegen import generate
+from sim.homes.housegen.config import parse_area
+from sim.homes.housegen.floor_plan import PlanError
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.floor_plan.rooms import PLAN_AREA_M2, draw_plan_kind
 from sim.homes.housegen.furnishing.placement import RoomLayout
 from sim.homes.housegen.furnishing.placement.floor import put_against_wall
 from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
 from sim.homes.housegen.furniture import CATALOGUE
-from sim.homes.housegen.generator import GeneratedHouse, HouseConfig, _draw_plan, generate_house
-from sim.homes.housegen.splits.recipes import SPLITS
-from sim.homes.housegen.structure.openings import HALF_WALL_M
+from sim.homes.housegen.generator import (
+    MAX_TRIES,
+    GeneratedHouse,
+    HouseConfig,
+    _draw_plan,
+    _draw_size,
+    _draw_storeys,
+    generate_house,
+)
+from sim.homes.housegen.splits.recipes import SPLITS, Recipe
+from sim.homes.housegen.structure.openings import HALF_WALL_M, plan_rule_faults
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house, validate_house
@@ -126,6 +139,78 @@ def test_the_area_and_the_rooms_that_are_asked_for_are_met(area_m2: float) -> No
         assert plan.area_m2 == pytest.approx(area_m2, rel=0.05)
         assert inner_m2 == pytest.approx(area_m2, rel=0.05)
         assert set(config.rooms) <= {room.kind for room in plan.rooms}
+
+
+@pytest.mark.parametrize("area_m2", [82.0, 120.0])
+def test_rooms_that_are_asked_for_count_those_that_a_home_has_anyway(area_m2: float) -> None:
+    config = HouseConfig(area_m2=area_m2, rooms=("bathroom", "bathroom", "living_room", "kitchen"))
+    numbers = []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        plan, _ = _draw_plan(rng, draw_plan_kind(rng, area_m2), area_m2, config)
+        counts = Counter(room.kind for room in plan.rooms)
+        assert counts["kitchen"] == 1
+        assert counts["bedroom"] >= 1
+        numbers.append(counts["bathroom"])
+    assert min(numbers) == 2, "two bathrooms in all, not two more"
+    assert max(numbers) <= 3
+
+
+def test_the_area_is_drawn_from_a_range() -> None:
+    config = HouseConfig(area_m2=(80.0, 120.0))
+    areas = [_draw_size(np.random.default_rng(seed), config)[0] for seed in range(30)]
+    assert 80.0 <= min(areas) < 90.0
+    assert 110.0 < max(areas) <= 120.0
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"area_m2": (120.0, 80.0)}, "smaller to a larger area, got 120:80"),
+        ({"area_m2": (30.0, 80.0)}, "50-800 m2, got 30:80"),
+        ({"area_m2": (60.0, 200.0), "kind": "flat"}, "62-130 m2, got 60:200"),
+        ({"rooms": ("laundry", "laundry")}, "at most 1 of the kind 'laundry', got 2"),
+        ({"rooms": ("hallway",)}, "unknown kind 'hallway'"),
+    ],
+)
+def test_bad_ranges_and_rooms_are_refused(fields: dict[str, Any], message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        HouseConfig(**fields)
+
+
+def test_an_area_is_read_from_the_command_line() -> None:
+    assert parse_area("90") == 90.0
+    assert parse_area("80:120") == (80.0, 120.0)
+    for text in ("large", "80:", "80:100:120", ""):
+        with pytest.raises(ConfigError, match="80:120"):
+            parse_area(text)
+
+
+RECIPES = [recipe for recipes in SPLITS.values() for recipe in recipes]
+
+
+@pytest.mark.parametrize("recipe", sample(RECIPES, 25), ids=lambda recipe: recipe.name)
+def test_every_recipe_has_a_plan_without_a_fault(recipe: Recipe) -> None:
+    config = recipe.config()
+    for attempt in range(MAX_TRIES):
+        rng = np.random.default_rng([recipe.seed, attempt])
+        with contextlib.suppress(PlanError):
+            plan, openings, stairs = _draw_storeys(rng, recipe.kind, recipe.area_m2, config)
+            break
+    else:
+        pytest.fail("no plan")
+    further = [(stairs.plan, stairs.openings)] if stairs is not None else []
+    assert plan_rule_faults(plan, openings, *further) == []
+    assert not Counter(config.rooms) - Counter(room.kind for room in plan.rooms)
+
+
+def test_val_and_test_mix_sizes_as_homes_do() -> None:
+    for split in ("val", "test"):
+        areas = [recipe.area_m2 for recipe in SPLITS[split]]
+        assert len(areas) == 30
+        assert 60.0 <= min(areas) <= max(areas) <= 250.0
+        assert sum(area > 120.0 for area in areas) == 10
+        assert {recipe.kind for recipe in SPLITS[split]} >= set(PLAN_AREA_M2) - {"estate"}
 
 
 def test_a_written_house_is_read_from_its_folder_wherever_that_is(tmp_path: Path) -> None:
