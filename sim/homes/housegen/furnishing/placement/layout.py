@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.homes.housegen.floor_plan.rectangles import Rect
+from sim.homes.housegen.floor_plan.rectangles import Interval, Rect, Side, subtract
 from sim.homes.housegen.furnishing.placement.records import Placement, zone_in_front
 from sim.homes.housegen.furnishing.placement.walk_grid import WalkGrid
 from sim.homes.housegen.furnishing.placement.walls import RoomWalls
@@ -91,6 +91,13 @@ class RoomLayout:
     def in_reserved_zone(self, rect: Rect, *, ignore: Rect | None = None) -> bool:
         """Returns whether a rectangle overlaps a reserved zone; zones of the item at `ignore` are skipped."""
         return any(rect.overlaps(zone, 0.01) for owner, zone in self._reserved if owner != ignore)
+
+    def free_spans(self, side: Side, depth_m: float) -> list[Interval]:
+        """Returns the parts of a side in front of which a strip of floor has no doorway and no furniture."""
+        strip = self.inner.strip(side, self.inner.span(side), depth_m)
+        blocks = [block.rect for block in self._blocks if block.z0_m < ROBOT_HEIGHT_M]
+        holes = [rect.span(side) for rect in [*self._keep_out, *blocks] if rect.overlaps(strip, 0.005)]
+        return subtract(self.inner.span(side), [*holes, *self.walls.gaps(side)], 0.3)
 
     def is_zone_free(self, zone: Rect) -> bool:
         """Returns whether a zone lies in the room and nothing at the robot's height stands in it."""

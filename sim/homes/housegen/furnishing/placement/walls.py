@@ -34,10 +34,13 @@ class RoomWalls:
         """Returns the room's windows and the sides they are on."""
         return [(side, hole) for side in SIDES for hole in self._openings[side] if hole.kind == "window"]
 
+    def gaps(self, side: Side) -> list[Interval]:
+        """Returns the spans of the doors and passages of a side."""
+        return [hole.span for hole in self._openings[side] if hole.kind != "window"]
+
     def free_stretches(self, side: Side) -> list[Interval]:
         """Returns the parts of a side that have no door and no passage."""
-        holes = [hole.span for hole in self._openings[side] if hole.kind != "window"]
-        return subtract(self.inner.span(side), holes, 0.05)
+        return subtract(self.inner.span(side), self.gaps(side), 0.05)
 
     def longest_stretch_m(self, side: Side) -> float:
         """Returns the length of the longest part of a side without a door."""
@@ -79,9 +82,12 @@ class RoomWalls:
         """Returns whether an item against a wall would stand in front of a window and is too high for that."""
         assert placement.side is not None
         lo, hi = placement.rect.span(placement.side)
+        height_m = placement.item.size_m[2]
+        if placement.item.category == "counter":  # a tap may stand in front of a window
+            height_m = min(height_m, LOW_M)
         return any(
             hole.kind == "window"
-            and placement.item.size_m[2] > max(hole.bottom_m, LOW_M) + 0.05
+            and height_m > max(hole.bottom_m, LOW_M) + 0.05
             and hi > hole.span[0] - 0.02
             and lo < hole.span[1] + 0.02
             for hole in self._openings[placement.side]

@@ -1,0 +1,3 @@
+"""x"""
+MIN_TRIANGLE_M, MAX_TRIANGLE_M = 4.0, 7.9
+AISLE_M = 1.0
