@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.homes.housegen.floor_plan.rectangles import Interval, Rect, Side, subtract
-from sim.homes.housegen.furnishing.placement.records import Placement, zone_in_front
+from sim.homes.housegen.furnishing.placement.records import Placement
 from sim.homes.housegen.furnishing.placement.walk_grid import WalkGrid
 from sim.homes.housegen.furnishing.placement.walls import RoomWalls
 from sim.homes.housegen.structure.openings import HALF_WALL_M, Opening, leaf_keep_out
@@ -18,6 +18,8 @@ from sim.homes.housegen.structure.openings import HALF_WALL_M, Opening, leaf_kee
 ROBOT_HEIGHT_M = 0.9
 DOORWAY_DEPTH_M, ENTRY_DEPTH_M = 0.7, 0.9
 """Depth of the zone kept free on the room's side of a doorway, and of the front door."""
+SWING_MARGIN_M = 0.05
+"""The quarter circle of a leaf, from closed to open at a right angle, is kept free with this margin."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,7 @@ class Snapshot:
     blocks: tuple[Block, ...]
     reserved: tuple[tuple[Rect, Rect], ...]
     occupied: NDArray[np.uint8]
+    on_surface: Mapping[tuple[int, int], tuple[Rect, ...]]
 
 
 class RoomLayout:
@@ -136,10 +139,9 @@ class RoomLayout:
         self._keep_out.append(passage)
         self.grid.occupy(rect)
 
-    def reserve_zone(self, placement: Placement, length_m: float) -> None:
-        """Keeps the floor free in front of an item that stands against a wall."""
-        if placement.side is not None:
-            self._reserved.append((placement.rect, zone_in_front(placement.rect, placement.side, length_m)))
+    def reserve(self, placement: Placement, zones: Sequence[Rect]) -> None:
+        """Keeps the floor of some zones free for an item."""
+        self._reserved += [(placement.rect, zone) for zone in zones]
 
     def release_zones(self, placement: Placement) -> None:
         """Frees the zones of an item for the items that belong there: a table in front of a sofa, chairs at a table."""
@@ -151,14 +153,15 @@ class RoomLayout:
 
     def snapshot(self) -> Snapshot:
         """Returns the present state of the layout, for `restore`."""
-        return Snapshot(tuple(self.placements), tuple(self._blocks), tuple(self._reserved), self.grid.occupied())
+        used = {key: tuple(rects) for key, rects in self._on_surface.items()}
+        return Snapshot(tuple(self.placements), tuple(self._blocks), tuple(self._reserved), self.grid.occupied(), used)
 
     def restore(self, state: Snapshot) -> None:
         """Removes everything that was added after a snapshot was taken."""
         self.placements[:] = state.placements
         self._blocks[:] = state.blocks
         self._reserved[:] = state.reserved
-        self._on_surface.clear()
+        self._on_surface = {key: list(rects) for key, rects in state.on_surface.items()}
         self.grid.set_occupied(state.occupied)
 
     # ---- inside --------------------------------------------------------------------------------------------------
@@ -179,6 +182,7 @@ class RoomLayout:
         depth_m = DOORWAY_DEPTH_M if opening.kind != "entry" else ENTRY_DEPTH_M
         self._keep_out.append(self.inner.strip(side, (lo - 0.06, hi + 0.06), depth_m))
         if opening.leaf is not None and opening.leaf.room == index:
+            self._keep_out.append(self.inner.strip(side, (lo - 0.06, hi + 0.06), hi - lo + SWING_MARGIN_M))
             self._keep_out.append(leaf_keep_out(opening, rect))
             self.grid.occupy(_leaf_rect(opening, rect))
         if opening.kind != "entry":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 import numpy as np
@@ -15,6 +16,8 @@ Along = Literal["any", "middle", "corner"]
 """Preferred position along a wall: anywhere, as near its middle as possible, or in a corner."""
 WALL_GAP_M = 0.016
 """Distance between furniture and wall: room for the baseboard."""
+NEVER_BELOW_WINDOWS = frozenset(("fireplace", "tv_monitor"))
+"""Categories that stand in front of no window, however low they are."""
 LOW_M = 0.9
 """Furniture lower than this may stand in front of any window."""
 
@@ -85,12 +88,20 @@ class RoomWalls:
         height_m = placement.item.size_m[2]
         if placement.item.category == "counter":  # a tap may stand in front of a window
             height_m = min(height_m, LOW_M)
+        elif placement.item.category in NEVER_BELOW_WINDOWS:
+            height_m = math.inf
         return any(
             hole.kind == "window"
             and height_m > max(hole.bottom_m, LOW_M) + 0.05
             and hi > hole.span[0] - 0.02
             and lo < hole.span[1] + 0.02
             for hole in self._openings[placement.side]
+        )
+
+    def has_window(self, side: Side, span: Interval) -> bool:
+        """Returns whether a window is in a part of a wall."""
+        return any(
+            hole.kind == "window" and span[1] > hole.span[0] and span[0] < hole.span[1] for hole in self._openings[side]
         )
 
     def meets_opening(self, side: Side, span: Interval, bottom_m: float, top_m: float) -> bool:
