@@ -1,12 +1,13 @@
 """Facts about a house at the start of an episode: free space, places where a STOP succeeds, distances to them.
 
 They are computed on first use and kept, because every episode of a house starts from the same state: objects are where
-the house file puts them, whatever episodes ran before.
+the house file puts them, whatever episodes ran before. Only the test at STOP uses the objects and door leaves where
+they are then.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +18,9 @@ from sim.core.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
 from sim.gl import mujoco
 from sim.houses.labels import rendered_geoms
 from sim.task.seen_floor import SeenFloor, floor_cells
-from sim.task.success import SIGHT_BLOCKERS, GoalRegion, Surroundings
+from sim.task.success import SIGHT_BLOCKERS, GoalRegion, Surroundings, sight_blockers
 from sim.world.freespace import FreeSpace
+from sim.world.leaves import hinged_leaves, moved
 from sim.world.plan import floor_polygons
 from sim.world.world import World
 
@@ -50,6 +52,7 @@ class GroundTruth:
         self._sight_height_m = self.success.sight_height_with(self.camera)
         self._at_rest = mujoco.MjData(world.model)
         mujoco.mj_kinematics(world.model, self._at_rest)
+        self._leaves = hinged_leaves(world.model, self._at_rest, world.labels)
         self._spaces: dict[float, FreeSpace] = {}
         self._floors: dict[float, tuple[GridFrame, NDArray[np.bool_]]] = {}
         self._surroundings: dict[float, Surroundings] = {}
@@ -164,18 +167,26 @@ class GroundTruth:
         return bool(np.any(off_m - radius_m <= within_m))
 
     def _region_now(self, goal: str, floor_z_m: float) -> GoalRegion:
-        if self._may_have_moved(goal):
-            return self._existing(self._region(goal, floor_z_m, self.world.data))
-        return self.target(goal, floor_z_m).region
+        """Returns the region with objects and door leaves where they are now in the world."""
+        surroundings, data = self._surroundings_of(floor_z_m), self.world.data
+        if moved(self._leaves, data, self._at_rest.qpos):
+            height_m = floor_z_m + self._sight_height_m
+            blockers = sight_blockers(self.world.model, data, self.world.labels, height_m)
+            surroundings = replace(surroundings, blockers=blockers)
+        elif not self._may_have_moved(goal):
+            return self.target(goal, floor_z_m).region
+        return self._existing(self._region(goal, floor_z_m, data, surroundings))
 
-    def _region(self, goal: str, floor_z_m: float, data: mujoco.MjData) -> GoalRegion:
+    def _region(
+        self, goal: str, floor_z_m: float, data: mujoco.MjData, surroundings: Surroundings | None = None
+    ) -> GoalRegion:
         if goal not in GOAL_CATEGORIES:
             raise EpisodeError(f"Unknown goal '{goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
         return GoalRegion(
             data,
             self.world.labels,
             goal,
-            surroundings=self._surroundings_of(floor_z_m),
+            surroundings=surroundings or self._surroundings_of(floor_z_m),
             success=self.success,
             floor_z_m=floor_z_m,
         )

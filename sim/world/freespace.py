@@ -2,7 +2,8 @@
 
 A position is free when the robot's disc lies on floors of the house, so that no wheel can be beyond the edge of a
 stairwell, and touches no obstacle (`sim.world.obstacles`). Movable objects count at their positions when the
-`FreeSpace` is made. Arrays are indexed [row, col] = [y, x] on `frame`.
+`FreeSpace` is made; a door leaf that the robot must push, and can, counts as open (`sim.world.leaves`). Arrays are
+indexed [row, col] = [y, x] on `frame`.
 """
 
 from __future__ import annotations
@@ -24,8 +25,9 @@ from sim.core.interface import RobotModel, SuccessRule
 from sim.gl import mujoco
 from sim.houses.house import Room
 from sim.houses.labels import Labels
+from sim.world.leaves import pushed_open
 from sim.world.obstacles import obstacle_polygons
-from sim.world.plan import floor_polygons, house_extent, room_rectangles
+from sim.world.plan import floor_polygons, house_extent, polygons_between, room_rectangles
 
 if TYPE_CHECKING:
     from sim.world.world import World
@@ -73,7 +75,10 @@ class FreeSpace:
         robot, rule = robot or RobotModel(), rule or SuccessRule()
         self.radius_m = robot.radius_m
         self.floor_z_m = floor_z_m
-        self._obstacles = obstacle_polygons(model, data, labels, robot, floor_z_m)
+        opened, leaves = pushed_open(model, data, labels, robot.radius_m)
+        self._obstacles = obstacle_polygons(model, opened, labels, robot, floor_z_m)
+        heights_m = (floor_z_m + robot.climb_m, floor_z_m + robot.height_m)
+        self._unpushed = polygons_between(model, data, np.array(leaves, np.int64), heights_m) if leaves else []
         self._floors = floor_polygons(model, data, labels, floor_z_m)
         rooms = tuple(room for room in rooms if abs(room.floor_z_m - floor_z_m) < rule.same_storey_m)
         self._extent = house_extent(model, data, labels, rooms, self._floors, self._obstacles)
@@ -119,8 +124,15 @@ class FreeSpace:
         return _covers(self._floors, np.array([[x_m, y_m]])) and bool((here | (east & west) | (north & south)).all())
 
     def largest_part(self) -> NDArray[np.bool_]:
-        """Returns the mask (rows, cols) of the largest connected part of the free space."""
-        _, parts, stats, _ = cv2.connectedComponentsWithStats(self.free.astype(np.uint8), connectivity=4)
+        """Returns the mask (rows, cols) of the largest connected part of the free space.
+
+        Places that only a leaf connects to it which the robot would have to pull are not part of it.
+        """
+        free = self.free
+        if self._unpushed:
+            free = free.copy()
+            self._clear_near(free, self._unpushed)
+        _, parts, stats, _ = cv2.connectedComponentsWithStats(free.astype(np.uint8), connectivity=4)
         areas = stats[1:, cv2.CC_STAT_AREA]
         return np.asarray(parts) == 1 + int(areas.argmax()) if areas.size else np.zeros_like(self.free)
 
@@ -177,15 +189,19 @@ class FreeSpace:
         free = self._covered(self._extent)
         if self._floors is not None:
             free &= self._away_from_edges(self._covered(self._floors))
-        x, y = self.frame.axes()
-        for polygon in self._obstacles:
-            rows, cols = self.frame.index_of(polygon.bounds_m, self.radius_m)
-            shape = (polygon.vertices_m, polygon.normals, polygon.offsets_m)
-            clear_near(free[rows, cols], x[cols], y[rows], *shape, self.radius_m)
+        self._clear_near(free, self._obstacles)
         if not rooms:
             return free
         inside = self._covered([rectangle for room in rooms for rectangle in room_rectangles(room)])
         return connected_to(free, free & inside)
+
+    def _clear_near(self, free: NDArray[np.bool_], obstacles: Iterable[ConvexPolygon]) -> None:
+        """Clears the cells of a mask (rows, cols) at which the robot's disc would touch an obstacle."""
+        x, y = self.frame.axes()
+        for polygon in obstacles:
+            rows, cols = self.frame.index_of(polygon.bounds_m, self.radius_m)
+            shape = (polygon.vertices_m, polygon.normals, polygon.offsets_m)
+            clear_near(free[rows, cols], x[cols], y[rows], *shape, self.radius_m)
 
     def _away_from_edges(self, floor: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Returns a mask (rows, cols) of the cells with their disc on the floor; seams and the grid's border count."""

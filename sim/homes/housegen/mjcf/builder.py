@@ -10,16 +10,22 @@ from sim.core.paths import assets_dir
 from sim.gl import mujoco
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.furniture.item import Geom, Item
+from sim.homes.housegen.furniture.transforms import bounds
 from sim.homes.housegen.mjcf.appearance import facts_of
 from sim.homes.housegen.mjcf.assets import MESH_UNIT_M, AssetTable
 from sim.homes.housegen.mjcf.merging import BYTES_PER_GEOM, Assembler, Assembly
 from sim.homes.housegen.mjcf.movables import ROLLING_M, Movable, split_movable
-from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
+from sim.homes.housegen.mjcf.placed import Hinge, Lamp, PlacedItem, RoomBox
 
 TEXTURE_DIR = "../textures"
 """Folder of the textures, relative to the house file."""
 AMBIENT, HEADLIGHT = 0.36, 0.12
 """Ambient light and light from the camera: without them, walls that no lamp faces look black."""
+LEAF_KG_M2 = 8.0
+"""Mass of a door leaf for its area: light inner doors with a core of cardboard or chipboard weigh 6 to 12 kg/m2."""
+HINGE_DAMPING, HINGE_FRICTION_NM = 1.0, 1.0
+"""Damping in N m s/rad, and friction: 1.2 N at the edge of the leaf move it. Accessible inner doors may need 22 N (ADA
+Standards for Accessible Design, 404.2.9)."""
 _VISUAL, _VISUAL_MESH, _COLLISION = "seen", "skin", "hit"
 """Default classes of visual-only geoms, of visual-only meshes, and of collision-only geoms."""
 _SHAPES = {
@@ -85,7 +91,27 @@ class HouseBuilder:
     def add(self, placed: PlacedItem) -> str:
         """Adds an item and its children; returns the name of its body."""
         at = (placed.x_m, placed.y_m, placed.z_m)
-        return self._add_body(self._spec.worldbody, placed.item, at, placed.yaw_rad)
+        name = self._add_body(self._spec.worldbody, placed.item, at, placed.yaw_rad)
+        if placed.hinge is not None:
+            self._hang(self._spec.body(name), placed.item, placed.hinge)
+        return name
+
+    def _hang(self, body: mujoco.MjsBody, leaf: Item, hinge: Hinge) -> None:
+        """Hangs the body of a door leaf on its hinge; at the lower end of the joint's range it closes the doorway."""
+        low, high = bounds(leaf.geoms)
+        width_m, height_m = float(high[0] - low[0]), float(high[2] - low[2])
+        mass_kg = LEAF_KG_M2 * width_m * height_m
+        body.explicitinertial = True
+        body.mass = _r(mass_kg)
+        body.ipos = [_r(width_m / 2), 0.0, _r((low[2] + high[2]) / 2)]
+        across, up = mass_kg / 12.0 * height_m**2, mass_kg / 12.0 * width_m**2
+        body.inertia = [_r(across), _r(across + up), _r(up)]
+        body.add_joint(
+            name=f"{body.name}_hinge", type=mujoco.mjtJoint.mjJNT_HINGE,
+            axis=[0.0, 0.0, 1.0 if hinge.turns_left else -1.0], limited=mujoco.mjtLimited.mjLIMITED_TRUE,
+            range=[round(math.degrees(at - hinge.angle_rad), 2) for at in (0.0, hinge.widest_rad)],
+            damping=HINGE_DAMPING, frictionloss=HINGE_FRICTION_NM,
+        )  # fmt: skip
 
     def _count(self, item: Item) -> None:
         self._copies[id(item)] = self._copies.get(id(item), 0) + 1

@@ -10,6 +10,18 @@ from sim.homes.housegen.furniture.item import Item
 
 
 @dataclass(frozen=True)
+class Hinge:
+    """The upright hinge of a door leaf, at the origin of the item."""
+
+    angle_rad: float
+    """How far the leaf is open where it is placed; 0 closes the doorway."""
+    widest_rad: float
+    """How far it opens."""
+    turns_left: bool
+    """Whether it opens counter-clockwise, seen from above."""
+
+
+@dataclass(frozen=True)
 class PlacedItem:
     """An item with the world pose of its origin; the yaw is the heading of its front."""
 
@@ -18,6 +30,8 @@ class PlacedItem:
     y_m: float = 0.0
     z_m: float = 0.0
     yaw_rad: float = 0.0
+    hinge: Hinge | None = None
+    """Set for a door leaf that the robot can push; everything else without a free joint is fixed."""
 
     def to_world(self, x_m: float, y_m: float) -> tuple[float, float]:
         """Returns the world position in plan of a point of the item's frame."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from sim.homes.housegen.furniture.item import Geom, Item, Look
-from sim.homes.housegen.mjcf.placed import PlacedItem
+from sim.homes.housegen.mjcf.placed import Hinge, PlacedItem
 from sim.homes.housegen.structure.openings import HALF_WALL_M, JAMB_M, OUTER_WALL_M, Opening
 from sim.homes.housegen.structure.parts import (
     CASING_M,
@@ -133,8 +133,10 @@ def _ajar(leaf: Item, hole: Opening) -> PlacedItem:
     along = math.pi / 2 if side in ("east", "west") else 0.0
     closed = along if hole.leaf.hinge_at_start else along + math.pi
     swing = 1.0 if math.sin(into - closed) > 0 else -1.0
-    hinge = (lo + 0.002) if hole.leaf.hinge_at_start else (hi - 0.002)
+    at_hinge = (lo + 0.002) if hole.leaf.hinge_at_start else (hi - 0.002)
     sign = 1.0 if side in ("east", "north") else -1.0
     at = hole.line_m - sign * (HALF_WALL_M + 0.004 + 0.02)
-    x, y = (hinge, at) if side in ("north", "south") else (at, hinge)
-    return PlacedItem(leaf, x, y, 0.0, closed + swing * hole.leaf.angle_rad)
+    x, y = (at_hinge, at) if side in ("north", "south") else (at, at_hinge)
+    angle_rad, widest_rad = hole.leaf.angle_rad, hole.leaf.widest_rad
+    hinge = None if widest_rad is None else Hinge(angle_rad, widest_rad, turns_left=swing > 0)
+    return PlacedItem(leaf, x, y, 0.0, closed + swing * angle_rad, hinge)

@@ -21,6 +21,12 @@ JAMB_M = 0.03
 HEAD_M = 2.1
 """Height of the upper edge of doors, openings and windows."""
 
+LEAF_SHARE, OPEN_SHARE, AJAR_SHARE = 0.8, 0.72, 0.5
+"""Shares of the doors that get a leaf, of the leaves that are wide open, and of the others that are only ajar, where a
+leaf may be."""
+HALF_OPEN_GAP_M, AJAR_GAP_M = (0.52, 0.64), (0.10, 0.34)
+"""Gaps beside a leaf that is half open, through which the robot of 0.36 m passes, and beside one that is ajar."""
+
 OpeningKind = Literal["door", "opening", "open", "window", "entry"]
 
 
@@ -34,6 +40,12 @@ class Leaf:
     """True: its hinge is at the lower end of the opening's span."""
     angle_rad: float
     """0 closes the doorway."""
+    widest_rad: float | None = None
+    """How far it opens on its hinge when it is pushed; None: it does not move."""
+
+    def gap_m(self, width_m: float) -> float:
+        """Returns the distance between the edge of a leaf of this width and the jamb that it closes against."""
+        return 2.0 * width_m * float(np.sin(0.5 * self.angle_rad))
 
 
 @dataclass(frozen=True)
@@ -127,11 +139,13 @@ def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tu
 
 
 def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening, others: Sequence[Opening]) -> Opening:
-    """Returns some doors with an ajar leaf in the room that is not a hallway, its hinge at the nearer corner.
+    """Returns most doors with a leaf on a hinge, in the room that is not a hallway, its hinge at the nearer corner.
 
-    Returns a door unchanged where the leaf would swing in front of another doorway of that room.
+    Most leaves are wide open. Some are half open, with a gap through which the robot passes; in a room that has no
+    other door a leaf may be ajar, so that the robot must push it to enter: a leaf opens into the room, and from within
+    the robot could not pull it. A door stays without a leaf where its swing would meet another doorway of that room.
     """
-    if opening.kind != "door" or rng.random() > 0.55:
+    if opening.kind != "door" or rng.random() > LEAF_SHARE:
         return opening
     assert opening.b is not None
     kinds = plan.rooms[opening.a].kind, plan.rooms[opening.b].kind
@@ -146,10 +160,12 @@ def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening, othe
     at_start = opening.span[0] - lo < hi - opening.span[1]
     gap_m = opening.span[0] - lo if at_start else hi - opening.span[1]
     # The wall next to a leaf limits its angle; without such a wall the leaf may open a little further.
-    widest = 92.0 if gap_m < 0.6 else 110.0
-    angle = np.deg2rad(round(float(rng.uniform(78.0, widest))))
-    ajar = replace(opening, leaf=Leaf(room, at_start, float(angle)))
-    zone = leaf_keep_out(ajar, rect)
+    widest_deg = 92.0 if gap_m < 0.6 else 110.0
+    only_door = sum(room in (other.a, other.b) for other in others) == 1
+    angle_deg = _draw_angle(rng, width_m - 2 * JAMB_M, widest_deg, may_be_ajar=only_door and room != plan.entry)
+    leaf = Leaf(room, at_start, float(np.deg2rad(round(angle_deg))), float(np.deg2rad(widest_deg)))
+    hung = replace(opening, leaf=leaf)
+    zone = leaf_keep_out(hung, rect)
     for other in others:
         if other is opening or room not in (other.a, other.b):
             continue
@@ -157,17 +173,27 @@ def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening, othe
         crossing = other.leaf is not None and other.leaf.room == room and zone.overlaps(leaf_keep_out(other, rect))
         if zone.overlaps(doorway) or crossing:
             return opening
-    return ajar
+    return hung
+
+
+def _draw_angle(rng: np.random.Generator, width_m: float, widest_deg: float, *, may_be_ajar: bool) -> float:
+    """Returns the angle in degrees to which a leaf of this width is open."""
+    if rng.random() < OPEN_SHARE:
+        return float(rng.uniform(78.0, widest_deg))
+    gap_m = AJAR_GAP_M if may_be_ajar and rng.random() < AJAR_SHARE else HALF_OPEN_GAP_M
+    return float(np.degrees(2.0 * np.arcsin(float(rng.uniform(*gap_m)) / (2.0 * width_m))))
 
 
 def leaf_keep_out(opening: Opening, rect: Rect) -> Rect:
-    """Returns the zone that an ajar leaf needs inside the room that it swings into, `rect`."""
+    """Returns the zone that a leaf needs inside the room that it swings into, `rect`, at every angle to its widest."""
     assert opening.leaf is not None
     lo, hi = opening.clear_span()
     width_m = hi - lo
-    reach = width_m * abs(np.cos(opening.leaf.angle_rad)) + 0.06
-    back = reach if opening.leaf.angle_rad > np.pi / 2 else 0.06
-    ahead = reach if opening.leaf.angle_rad <= np.pi / 2 else 0.06
+    angle_rad = opening.leaf.angle_rad if opening.leaf.widest_rad is None else opening.leaf.widest_rad
+    reach = width_m * abs(np.cos(angle_rad)) + 0.06
+    back = reach if angle_rad > np.pi / 2 else 0.06
+    moves = opening.leaf.widest_rad is not None
+    ahead = width_m if moves else reach if angle_rad <= np.pi / 2 else 0.06
     span = (lo - back, lo + ahead) if opening.leaf.hinge_at_start else (hi - ahead, hi + back)
     return rect.strip(opening.side_of(opening.leaf.room), span, width_m + 0.1)
 
