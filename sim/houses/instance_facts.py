@@ -55,11 +55,11 @@ def read_instance_facts(model: mujoco.MjModel, labels: Labels) -> Mapping[str, I
     instances = {instance.name for instance in labels.instances}
     facts = {}
     for number in range(model.ntext):
-        element = model.text(number)
-        if element.name in instances:
+        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_TEXT, number)
+        if name in instances:
             start = int(model.text_adr[number])
             raw = bytes(model.text_data[start : start + int(model.text_size[number])])
-            facts[element.name] = parse_facts(raw.rstrip(b"\0").decode("utf-8", "replace"), element.name)
+            facts[name] = parse_facts(raw.rstrip(b"\0").decode("utf-8", "replace"), name)
     return facts
 
 

@@ -18,8 +18,6 @@ from sim.homes.housegen.structure.openings import HALF_WALL_M, Opening, leaf_kee
 ROBOT_HEIGHT_M = 0.9
 DOORWAY_DEPTH_M, ENTRY_DEPTH_M = 0.7, 0.9
 """Depth of the zone kept free on the room's side of a doorway, and of the front door."""
-SWING_MARGIN_M = 0.05
-"""The quarter circle of a leaf, from closed to open at a right angle, is kept free with this margin."""
 
 
 @dataclass(frozen=True)
@@ -182,7 +180,6 @@ class RoomLayout:
         depth_m = DOORWAY_DEPTH_M if opening.kind != "entry" else ENTRY_DEPTH_M
         self._keep_out.append(self.inner.strip(side, (lo - 0.06, hi + 0.06), depth_m))
         if opening.leaf is not None and opening.leaf.room == index:
-            self._keep_out.append(self.inner.strip(side, (lo - 0.06, hi + 0.06), hi - lo + SWING_MARGIN_M))
             self._keep_out.append(leaf_keep_out(opening, rect))
             self.grid.occupy(_leaf_rect(opening, rect))
         if opening.kind != "entry":
