@@ -104,8 +104,11 @@ class HouseBuilder:
         body.explicitinertial = True
         body.mass = _r(mass_kg)
         body.ipos = [_r(width_m / 2), 0.0, _r((low[2] + high[2]) / 2)]
-        across, up = mass_kg / 12.0 * height_m**2, mass_kg / 12.0 * width_m**2
-        body.inertia = [_r(across), _r(across + up), _r(up)]
+        depth_m = float(high[1] - low[1])
+        body.inertia = [
+            _r(mass_kg / 12.0 * (a**2 + b**2))
+            for a, b in ((depth_m, height_m), (width_m, height_m), (width_m, depth_m))
+        ]
         body.add_joint(
             name=f"{body.name}_hinge", type=mujoco.mjtJoint.mjJNT_HINGE,
             axis=[0.0, 0.0, 1.0 if hinge.turns_left else -1.0], limited=mujoco.mjtLimited.mjLIMITED_TRUE,

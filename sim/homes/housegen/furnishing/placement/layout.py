@@ -187,10 +187,11 @@ class RoomLayout:
 
 
 def _leaf_rect(opening: Opening, rect: Rect) -> Rect:
-    """Returns the footprint of an ajar door leaf in a room of rectangle `rect`."""
+    """Returns the footprint of a door leaf in a room of rectangle `rect`; one on a hinge counts as wide open."""
     assert opening.leaf is not None
     lo, hi = opening.clear_span()
-    reach = (hi - lo) * math.cos(opening.leaf.angle_rad)
+    angle_rad = opening.leaf.angle_rad if opening.leaf.widest_rad is None else opening.leaf.widest_rad
+    reach = (hi - lo) * math.cos(angle_rad)
     span = (lo, lo + reach) if opening.leaf.hinge_at_start else (hi - reach, hi)
     a, b = sorted(span)
     return rect.strip(opening.side_of(opening.leaf.room), (a - 0.02, b + 0.02), (hi - lo) + 0.08)
