@@ -115,9 +115,7 @@ def arrangement_faults(model: mujoco.MjModel, data: mujoco.MjData, labels: Label
 def _standing(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> list[Standing]:
     """Returns all instances with their boxes."""
     facts = read_instance_facts(model, labels)
-    rotation = data.geom_xmat.reshape(-1, 3, 3)
-    middle = data.geom_xpos + np.einsum("nij,nj->ni", rotation, model.geom_aabb[:, :3])
-    reach = np.einsum("nij,nj->ni", np.abs(rotation), model.geom_aabb[:, 3:])
+    low, high = _boxes(model, data)
     items = []
     for instance in labels.instances:
         ids = np.array(instance.geom_ids)
@@ -131,14 +129,31 @@ def _standing(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> lis
                 instance.name,
                 name or instance.category.replace("_", " "),
                 instance.category,
-                (middle - reach)[ids].min(axis=0),
-                (middle + reach)[ids].max(axis=0),
+                low[ids].min(axis=0),
+                high[ids].max(axis=0),
                 data.xpos[body][:2].copy(),
                 x_axis / max(float(np.linalg.norm(x_axis)), 1e-9),
                 tuple(instance.geom_ids),
             )
         )
     return items
+
+
+def _boxes(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Returns the lowest and highest corners (ngeom, 3) of the world-aligned boxes around all geoms, metres.
+
+    Those of meshes are of their vertices: the frame of a mesh is turned, which makes the box of its own box too large.
+    """
+    rotation = data.geom_xmat.reshape(-1, 3, 3)
+    middle = data.geom_xpos + np.einsum("nij,nj->ni", rotation, model.geom_aabb[:, :3])
+    reach = np.einsum("nij,nj->ni", np.abs(rotation), model.geom_aabb[:, 3:])
+    low, high = middle - reach, middle + reach
+    for geom in np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_MESH.value).tolist():
+        mesh = model.geom_dataid[geom]
+        first = model.mesh_vertadr[mesh]
+        vertices = model.mesh_vert[first : first + model.mesh_vertnum[mesh]] @ rotation[geom].T + data.geom_xpos[geom]
+        low[geom], high[geom] = vertices.min(axis=0), vertices.max(axis=0)
+    return low, high
 
 
 def _is_in(room: Room, item: Standing) -> bool:

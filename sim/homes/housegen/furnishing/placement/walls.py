@@ -18,6 +18,8 @@ WALL_GAP_M = 0.016
 """Distance between furniture and wall: room for the baseboard."""
 NEVER_BELOW_WINDOWS = frozenset(("fireplace", "tv_monitor"))
 """Categories that stand in front of no window, however low they are."""
+BEFORE_WINDOW_M = 0.45
+"""An item nearer to a wall than this hides a window in it."""
 LOW_M = 0.9
 """Furniture lower than this may stand in front of any window."""
 
@@ -82,21 +84,21 @@ class RoomWalls:
         return floor_placement(item, x, y, INWARD_YAW_RAD[side], side)
 
     def hides_window(self, placement: Placement) -> bool:
-        """Returns whether an item against a wall would stand in front of a window and is too high for that."""
-        assert placement.side is not None
-        lo, hi = placement.rect.span(placement.side)
-        height_m = placement.item.size_m[2]
-        if placement.item.category == "counter":  # a tap may stand in front of a window
+        """Returns whether an item would stand in front of a window, or beside one in a corner, and is too high for it."""
+        item, rect = placement.item, placement.rect
+        height_m = item.size_m[2]
+        if item.category == "counter":  # a tap may stand in front of a window
             height_m = min(height_m, LOW_M)
-        elif placement.item.category in NEVER_BELOW_WINDOWS:
+        elif item.category in NEVER_BELOW_WINDOWS:
             height_m = math.inf
-        return any(
-            hole.kind == "window"
-            and height_m > max(hole.bottom_m, LOW_M) + 0.05
-            and hi > hole.span[0] - 0.02
-            and lo < hole.span[1] + 0.02
-            for hole in self._openings[placement.side]
-        )
+        for side in SIDES:
+            near = side == placement.side or abs(rect.line(side) - self.inner.line(side)) < BEFORE_WINDOW_M
+            for hole in self._openings[side] if near else ():
+                too_high = hole.kind == "window" and height_m > max(hole.bottom_m, LOW_M) + 0.05
+                lo, hi = rect.span(side)
+                if too_high and hi > hole.span[0] - 0.02 and lo < hole.span[1] + 0.02:
+                    return True
+        return False
 
     def has_window(self, side: Side, span: Interval) -> bool:
         """Returns whether a window is in a part of a wall."""
