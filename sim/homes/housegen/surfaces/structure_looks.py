@@ -20,19 +20,16 @@ WALLPAPER_ROOMS = frozenset(("living_room", "bedroom", "dining_room", "studio"))
 
 def draw_structure_looks(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> StructureLooks:
     """Returns paint and floors by room; rooms without a wall between them share theirs."""
-    walls, floors = {}, {}
+    walls = {}
     paint = "heldout" if pool == "heldout" else "train"
-    main_floor = materials.floor_look("living_room", rng, pool)
     main_wall = _wall_look(rng, pool, "hallway")
     shared = _open_rooms(plan)
     has_wallpaper = False
     for i, room in enumerate(plan.rooms):
         own = _wall_look(rng, pool, room.kind, paper=not has_wallpaper and room.kind in WALLPAPER_ROOMS)
         has_wallpaper = has_wallpaper or _is_wallpaper(own)
-        floor = materials.floor_look(room.kind, rng, pool)
-        same_floor = room.kind in ("hallway", "living_room", "dining_room") and rng.random() < 0.75
         walls[room.name] = main_wall if room.kind == "hallway" or i in shared else own
-        floors[room.name] = main_floor if room.kind == "hallway" or i in shared or same_floor else floor
+    floors = _floors(rng, plan, pool)
     trim = Look(TRIM[paint], specular=0.2)
     time = draw_time(rng)
     door = materials.look("wood", rng, pool) if rng.random() < 0.5 else materials.look("lacquer", rng, pool)
@@ -41,6 +38,42 @@ def draw_structure_looks(rng: np.random.Generator, plan: FloorPlan, pool: Pool) 
         walls, floors, replace(materials.ceiling_look(rng, pool), texture=None), Look(OUTSIDE[paint]), trim, door,
         frame, materials.look("metal", rng, pool), draw_views(rng, pool, time), time,
     )  # fmt: skip
+
+
+def _floors(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> dict[str, Look]:
+    """Returns the floor of each room: a home has few, and they change at doors.
+
+    Hallways and living rooms have one hard floor, mostly; bedrooms another or the same, or carpet; rooms with water
+    tiles or stone. Rooms without a wall between them share a hard floor, but for a kitchen with tiles of its own.
+    """
+    main = materials.floor_look("hallway", rng, pool)
+    living = materials.floor_look("living_room", rng, pool)
+    if rng.random() < 0.6 or (_open_rooms(plan) and not _is_hard(living)):
+        living = main
+    private = main if rng.random() < 0.35 else materials.floor_look("bedroom", rng, pool)
+    wet = [materials.floor_look("bathroom", rng, pool) for _ in range(2)]
+    kitchen, laundry = (materials.floor_look(kind, rng, pool) for kind in ("kitchen", "laundry"))
+    kitchen_is_zone = rng.random() < 0.4
+    shared, floors = _open_rooms(plan), {}
+    for i, room in enumerate(plan.rooms):
+        if room.kind in ("hallway", "stair_hall"):
+            floor = main
+        elif room.kind == "bathroom":
+            floor = wet[int(rng.integers(2))]
+        elif room.kind in ("kitchen", "laundry"):
+            floor = kitchen if room.kind == "kitchen" else laundry
+            floor = living if i in shared and not kitchen_is_zone else floor
+        elif room.kind == "gym":
+            floor = materials.floor_look("gym", rng, pool)
+        else:
+            floor = living if i in shared or room.kind in ("living_room", "dining_room", "studio") else private
+        floors[room.name] = floor
+    return floors
+
+
+def _is_hard(look: Look) -> bool:
+    """Returns whether a floor is not a carpet."""
+    return look.texture is None or not look.texture.startswith("carpet")
 
 
 def _wall_look(rng: np.random.Generator, pool: Pool, room_kind: str, *, paper: bool = False) -> Look:
