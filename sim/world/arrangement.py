@@ -38,6 +38,8 @@ TALL_M = 1.3
 """Higher pieces hide a window."""
 BEFORE_WINDOW_M = 0.4
 """An item nearer to a window than this stands in front of it."""
+SHALLOW_M = 0.13
+"""An item on a wall that is no deeper than this is not in the way."""
 CLOSED_DEG = 10.0
 """A leaf that is open by less does not show into which room it swings."""
 SLACK_M = 0.03
@@ -314,8 +316,10 @@ def _is_free(
 
 
 def _blocks(item: Standing, floor_z_m: float, up_to_m: float = 0.9) -> bool:
-    """Returns whether an item stands in the way of a person: no rug, nothing thin on the floor, nothing high above."""
+    """Returns whether an item is in the way of a person: no rug, nothing high above, nothing shallow on a wall."""
     if item.category in _NOT_ON_FLOOR or item.category == "objects":
+        return False
+    if item.low[2] > floor_z_m + 0.3 and (item.high - item.low)[:2].min() < SHALLOW_M:
         return False
     return item.low[2] < floor_z_m + up_to_m and item.high[2] > floor_z_m + 0.05
 

@@ -53,7 +53,7 @@ def _pieces(layout: RoomLayout) -> Iterator[Piece]:
     waiting: list[Item] = [placement.item for placement in layout.placements]
     while waiting:
         item = waiting.pop()
-        yield Piece(item.category, max(item.size_m) - ROUNDING_M)
+        yield Piece(item.category, max(item.size_m) - ROUNDING_M, item.name)
         waiting += [child.item for child in item.children]
 
 
