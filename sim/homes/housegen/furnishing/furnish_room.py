@@ -19,6 +19,9 @@ MAX_TRIES = 6
 ROUNDING_M, ROUNDING_M2 = 0.02, 0.05
 """Margins for lengths and areas, which the check of the finished house measures again on the geoms."""
 
+FLAT_LAMPS = frozenset(("bathroom", "kitchen", "hallway", "stair_hall", "laundry", "closet", "gym", "office"))
+"""Rooms without a chandelier."""
+
 
 class FurnishError(Exception):
     """A room that lacks a required piece of furniture after all tries."""
@@ -76,10 +79,15 @@ def _hang_curtains(layout: RoomLayout, source: FurnitureSource) -> None:
 
 
 def _hang_ceiling_lamps(layout: RoomLayout, source: FurnitureSource) -> None:
-    """Hangs a lamp from the middle of the ceiling, several along a hallway."""
-    lamp = source.make("lighting", "ceiling")
-    if lamp is None or lamp.mount != "ceiling":
+    """Hangs a lamp from the middle of the ceiling, several along a hallway.
+
+    Of the two designs of a home, the flatter one hangs in rooms to work and walk in.
+    """
+    designs = [source.make("lighting", "ceiling") for _ in range(2)]
+    lamps = [lamp for lamp in designs if lamp is not None and lamp.mount == "ceiling"]
+    if not lamps:
         return
+    lamp = min(lamps, key=lambda lamp: lamp.size_m[2]) if layout.kind in FLAT_LAMPS else lamps[0]
     count = max(1, int(layout.inner.long_m / 4.5)) if layout.kind == "hallway" else 1
     for n in range(count):
         x, y = layout.inner.centre

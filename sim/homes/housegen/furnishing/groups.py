@@ -19,6 +19,8 @@ from sim.homes.housegen.furniture.item import Hints, Item
 
 MIN_CHAIRS = 2
 """Least number of chairs at a dining table; a table for which fewer fit is not placed."""
+LARGE_DINING_M2, LONG_TABLE_M = 16.0, 2.0
+"""Floor area from which a dining room gets a long table, and its length."""
 BESIDE_BED_M = 0.65
 """Free floor along a long side of a bed; the check of the finished house asks for a little less."""
 NIGHTSTAND_M = 0.6
@@ -98,7 +100,8 @@ def dining_group(
 ) -> Placement | None:
     """Places a table with chairs at its sides, a lamp above it and perhaps a rug under it."""
     chair, before = source.make("chair", "dining"), layout.snapshot()
-    for width_m, least in ((None, 0.65), (1.3, 0.7), (0.85, 0.0)):
+    long_m = LONG_TABLE_M if layout.kind == "dining_room" and layout.inner.area_m2 > LARGE_DINING_M2 else None
+    for width_m, least in ((long_m, 0.65), (1.3, 0.7), (0.85, 0.0)):
         hints: Hints = {"width_m": width_m} if width_m else {}
         item = source.make("table", "dining", **hints)
         if item is None or chair is None:

@@ -43,14 +43,16 @@ def draw_structure_looks(rng: np.random.Generator, plan: FloorPlan, pool: Pool) 
 def _floors(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> dict[str, Look]:
     """Returns the floor of each room: a home has few, and they change at doors.
 
-    Hallways and living rooms have one hard floor, mostly; bedrooms another or the same, or carpet; rooms with water
-    tiles or stone. Rooms without a wall between them share a hard floor, but for a kitchen with tiles of its own.
+    Hallways and most living rooms have one hard floor; bedrooms have boards or carpet; rooms with water have tiles or
+    stone. Rooms without a wall between them share a hard floor, but for a kitchen with tiles of its own.
     """
     main = materials.floor_look("hallway", rng, pool)
     living = materials.floor_look("living_room", rng, pool)
-    if rng.random() < 0.6 or (_open_rooms(plan) and not _is_hard(living)):
+    if (rng.random() < 0.7 and not _is(main, "tiles")) or (_open_rooms(plan) and _is(living, "carpet")):
         living = main
-    private = main if rng.random() < 0.35 else materials.floor_look("bedroom", rng, pool)
+    private = materials.floor_look("bedroom", rng, pool)
+    if rng.random() < 0.6 and (_is(main, "planks") or _is(main, "parquet")):
+        private = main
     wet = [materials.floor_look("bathroom", rng, pool) for _ in range(2)]
     kitchen, laundry = (materials.floor_look(kind, rng, pool) for kind in ("kitchen", "laundry"))
     kitchen_is_zone = rng.random() < 0.4
@@ -71,9 +73,9 @@ def _floors(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> dict[str, 
     return floors
 
 
-def _is_hard(look: Look) -> bool:
-    """Returns whether a floor is not a carpet."""
-    return look.texture is None or not look.texture.startswith("carpet")
+def _is(look: Look, kind: str) -> bool:
+    """Returns whether the texture of a floor is of a kind: tiles, carpet, planks, parquet."""
+    return look.texture is not None and look.texture.startswith(kind)
 
 
 def _wall_look(rng: np.random.Generator, pool: Pool, room_kind: str, *, paper: bool = False) -> Look:
