@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +58,25 @@ def geom_polytope(model: mujoco.MjModel, data: mujoco.MjData, geom: int, *, rend
         raise ValueError(f"geom {geom} is of type {_GEOM(shape).name}, which is not convex.")
     rotation = data.geom_xmat[geom].reshape(3, 3)
     return Polytope(vertices @ rotation.T + data.geom_xpos[geom], edges)
+
+
+def world_boxes(
+    model: mujoco.MjModel, data: mujoco.MjData, geoms: Sequence[int] | NDArray[np.integer]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Returns the lowest and the highest corners (n, 3) of the world-aligned boxes around geoms, metres.
+
+    Boxes around meshes are those of their vertices: MuJoCo's own box of a mesh is aligned with its axes of inertia, and
+    turned into the world it can be wider by a third.
+    """
+    ids = np.asarray(geoms, np.int64)
+    rotation = data.geom_xmat[ids].reshape(-1, 3, 3)
+    middle = data.geom_xpos[ids] + np.einsum("nij,nj->ni", rotation, model.geom_aabb[ids, :3])
+    reach = np.einsum("nij,nj->ni", np.abs(rotation), model.geom_aabb[ids, 3:])
+    low, high = middle - reach, middle + reach
+    for row in np.flatnonzero(model.geom_type[ids] == mujoco.mjtGeom.mjGEOM_MESH).tolist():
+        vertices = _mesh_vertices(model, int(model.geom_dataid[ids[row]])) @ rotation[row].T + data.geom_xpos[ids[row]]
+        low[row], high[row] = vertices.min(axis=0), vertices.max(axis=0)
+    return low, high
 
 
 def geoms_between(

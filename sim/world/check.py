@@ -19,6 +19,7 @@ from sim.core.errors import HouseError
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import GOAL_CATEGORIES, RobotModel, SuccessRule
 from sim.gl import mujoco
+from sim.houses.geoms import world_boxes
 from sim.houses.house import House, Room, read_rooms
 from sim.houses.labels import Instance, Labels, collidable_geoms, cover_geoms, describe_geom, read_labels
 from sim.world.arrangement import arrangement_faults
@@ -122,11 +123,7 @@ class _CompiledHouse:
 
     def boxes(self, geoms: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Returns the lowest and highest corners (n, 3) of the world-aligned boxes around geoms, metres."""
-        centre, half = self.model.geom_aabb[geoms, :3], self.model.geom_aabb[geoms, 3:]
-        rotation = self.data.geom_xmat[geoms].reshape(-1, 3, 3)
-        middle = self.data.geom_xpos[geoms] + np.einsum("nij,nj->ni", rotation, centre)
-        reach = np.einsum("nij,nj->ni", np.abs(rotation), half)
-        return middle - reach, middle + reach
+        return world_boxes(self.model, self.data, geoms)
 
 
 def _overlaps(house: _CompiledHouse) -> list[str]:

@@ -39,8 +39,6 @@ class HouseConfig:
     """Families of hazards (`sim.homes.housegen.hazards.FAMILIES`), which are placed on paths."""
     hazard_count: int | None = None
     """Number of hazards; it depends on the area when None."""
-    any_size: bool = False
-    """Whether the file may have any size, larger than those of the shipped splits; imported models are large."""
     reshape: bool = False
     """Whether about half of the items get other proportions than those of their styles, to train perception."""
     exact: bool = True

@@ -7,10 +7,9 @@ the number of tries is limited and reported.
 
 from __future__ import annotations
 
-import copy
 import dataclasses
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -27,11 +26,9 @@ from sim.homes.housegen.furnishing.placement import RoomLayout
 from sim.homes.housegen.furnishing.placement.surfaces import supports_items
 from sim.homes.housegen.furniture import CATALOGUE
 from sim.homes.housegen.furniture.catalogue import Catalogue
-from sim.homes.housegen.furniture.item import Item
 from sim.homes.housegen.ground import lay_ground
 from sim.homes.housegen.hazards import PlacedHazard, draw_hazards
 from sim.homes.housegen.mjcf.builder import HouseBuilder
-from sim.homes.housegen.mjcf.merging import Assembler
 from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
 from sim.homes.housegen.structure.building import build_structure
 from sim.homes.housegen.structure.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
@@ -53,20 +50,6 @@ DRAWN_AREAS = (0.92, 1.1)
 MAX_PLAN_TRIES = 60
 MAX_STAIRS_TRIES = 12
 """Plans that are drawn until an upper storey of enough rooms fits on one; each takes about 20 ms."""
-MAX_BYTES = 395_000
-"""Largest size of the file of a house of up to `USUAL_M2`."""
-USUAL_M2, BYTES_PER_M2 = 230.0, 1_400
-"""Floor area from which the file may be larger, and by how much for each square metre."""
-THINNED_SHARES = (1.0, 0.3)
-"""Shares of the small objects that stay; the second is tried where the file is too large in spite of all joining."""
-SAFETY = 1.6
-"""Factor by which the estimate of saved bytes must exceed the bytes to save: it counts joined geoms too high."""
-MAX_EXCESS = 1.08
-"""A file that is too large by more than this factor does not become small enough with fewer small objects."""
-STOREYS_BYTES, MAX_STOREYS_BYTES = 1.4, 1_300_000
-"""The file of a house with two storeys may be larger by this factor, up to this size."""
-BYTES_PER_GEOM = (200, 130, 100, 80, 50)
-"""Bytes by which the file may grow for each geom saved; the next value is tried where the file is too large."""
 
 
 @dataclass(frozen=True)
@@ -131,16 +114,10 @@ def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Cata
         except (PlanError, FurnishError) as error:
             rejects.append(str(error))
             continue
-        built = _build_within_limit(draft, config)
-        spec = built.spec if built is not None else None
-        if spec is not None:
-            lay_ground(spec, house_text(spec), seed, POOL_STREAM[config.pool])
-        faults = (
-            check_house(spec, furnished=True)
-            if spec is not None
-            else [f"its file is larger than {draft.max_bytes / 1000:.0f} KB"]
-        )
-        if built is not None and not faults:
+        built = _build(draft, config)
+        lay_ground(built.spec, house_text(built.spec), seed, POOL_STREAM[config.pool])
+        faults = check_house(built.spec, furnished=True)
+        if not faults:
             geoms = len(built.spec.geoms)
             return GeneratedHouse(built.spec, draft.plan, geoms, attempt + 1, tuple(rejects), built.styles)
         rejects.append("; ".join(faults))
@@ -161,13 +138,6 @@ class _Draft:
     """Time of day, a key of `DAYLIGHT`."""
     hazards: tuple[PlacedHazard, ...] = ()
     upper: UpperStorey | None = None
-
-    @property
-    def max_bytes(self) -> int:
-        """Largest size of its file without the ground; see `max_bytes`."""
-        if self.upper is None:
-            return max_bytes(self.plan.area_m2)
-        return min(round(STOREYS_BYTES * max_bytes(self.plan.area_m2 + self.upper.plan.area_m2)), MAX_STOREYS_BYTES)
 
 
 def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalogue) -> _Draft:
@@ -197,7 +167,7 @@ def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalo
         draft = replace(draft, upper=draw_upper_storey(rng, stairs, config.pool, source, looks))
     if not config.hazards:
         return draft
-    bare = _build(draft, config, BYTES_PER_GEOM[0]).spec
+    bare = _build(draft, config).spec
     hazards = draw_hazards(rng, config.hazards, config.pool, bare, openings, config.hazard_count)
     return replace(draft, hazards=hazards)
 
@@ -258,82 +228,9 @@ def _require_as_asked(plan: FloorPlan, area_m2: float | None, rooms: tuple[str, 
         raise PlanError(f"no plan has {area_m2:.0f} m2")
 
 
-def max_bytes(area_m2: float) -> int:
-    """Returns the largest size of the file of a house of this floor area, without the ground, which adds up to 2 %."""
-    return round(MAX_BYTES + BYTES_PER_M2 * max(0.0, area_m2 - USUAL_M2))
-
-
-def _build_within_limit(draft: _Draft, config: HouseConfig) -> HouseBuilder | None:
-    """Returns a drawn home, built, its parts joined as much as the size of the file allows.
-
-    Returns None if the file is too large anyway. Homes with reshaped items are in no split and may have any size.
-    """
-    assembler = Assembler()
-    if config.reshape or config.any_size:
-        return _build(draft, config, BYTES_PER_GEOM[0], assembler)
-    limit, last = draft.max_bytes, len(BYTES_PER_GEOM) - 1
-    level = 0
-    for share in THINNED_SHARES:
-        thinned = draft if share == 1.0 else _thinned(draft, share)
-        while level <= last:
-            built = _build(thinned, config, BYTES_PER_GEOM[level], assembler)
-            excess = len(house_text(built.spec)) - limit
-            if excess <= 0:
-                return built
-            if level == last and excess > (MAX_EXCESS - 1.0) * limit:
-                return None
-            if level == last:
-                break
-            level = _level_that_saves(thinned, assembler, level, excess)
-    return None
-
-
-def _level_that_saves(draft: _Draft, assembler: Assembler, level: int, excess: int) -> int:
-    """Returns the first index of `BYTES_PER_GEOM` after `level` that saves about these bytes, else the last one."""
-    placed = list(_all_items(draft))
-    copies = Counter(map(id, placed))
-    designs = {id(item): item for item in placed}.values()
-    for other in range(level + 1, len(BYTES_PER_GEOM) - 1):
-        limits = BYTES_PER_GEOM[level], BYTES_PER_GEOM[other]
-        if sum(assembler.saved_bytes(item, copies[id(item)], *limits) for item in designs) > SAFETY * excess:
-            return other
-    return len(BYTES_PER_GEOM) - 1
-
-
-def _all_items(draft: _Draft) -> Iterator[Item]:
-    """Yields every item of a home, children too, as often as it is placed."""
-    upper = draft.upper
-    todo = [placed.item for placed in [*draft.structure, *(upper.structure if upper else ())]]
-    layouts = [*draft.layouts, *(upper.layouts if upper else ())]
-    todo += [placement.placed.item for layout in layouts for placement in layout.placements]
-    while todo:
-        item = todo.pop()
-        yield item
-        todo += [child.item for child in item.children]
-
-
-def _thinned(draft: _Draft, share: float) -> _Draft:
-    """Returns the home with this share of the small objects of each room."""
-    upper = draft.upper
-    if upper is not None:
-        upper = replace(upper, layouts=_thinned_layouts(upper.layouts, share))
-    return replace(draft, layouts=_thinned_layouts(draft.layouts, share), upper=upper)
-
-
-def _thinned_layouts(of_rooms: list[RoomLayout], share: float) -> list[RoomLayout]:
-    layouts = []
-    for layout in of_rooms:
-        small = [p for p in layout.placements if p.item.category == "objects"]
-        removed = {id(p) for n, p in enumerate(small) if int((n + 1) * share) == int(n * share)}
-        thinned = copy.copy(layout)
-        thinned.placements = [p for p in layout.placements if id(p) not in removed]
-        layouts.append(thinned)
-    return layouts
-
-
-def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int, assembler: Assembler | None = None) -> HouseBuilder:
+def _build(draft: _Draft, config: HouseConfig) -> HouseBuilder:
     """Returns the builder of a drawn home, which has its specification and the styles of its items."""
-    builder = HouseBuilder(config.name, bytes_per_geom=bytes_per_geom, assembler=assembler)
+    builder = HouseBuilder(config.name)
     builder.add_ground(draft.plan.bounds.grown(OUTER_WALL_M))
     for room in draft.plan.rooms:
         builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), draft.ceiling_m)
@@ -341,8 +238,6 @@ def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int, assembler: A
     if draft.upper is not None:
         draft.upper.add_ground(builder)
         storeys.append((draft.upper.floor_z_m, draft.upper.structure, draft.upper.layouts))
-    for _, structure, layouts in storeys:
-        builder.expect([*structure, *(placement.placed for layout in layouts for placement in layout.placements)])
     for z_m, structure, layouts in storeys:
         for placed in structure:
             builder.add(lifted(placed, z_m))

@@ -90,7 +90,6 @@ def import_house(source: Source, assets: Mapping[str, Asset], config: ProcthorCo
     builder.add_ground(layout.plan.bounds.grown(OUTER_WALL_M))
     for room in layout.plan.rooms:
         builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), layout.ceiling_m)
-    builder.expect([*structure, *(item.placed for item in placer.standing)])
     for part in structure:
         builder.add(part)
     for number, item in enumerate(placer.standing):

@@ -76,7 +76,7 @@ class Args:
     storeys: Literal[1, 2] = 1
     """Without a split: number of storeys."""
     hazards: tuple[str, ...] = ()
-    """Without a split: families of hazards (glass, slab, overhang, legs, scan, loose)."""
+    """Without a split: families of hazards (glass, slab, overhang, legs, scan, loose, door)."""
     clutter: cli.Share | None = None
     """Without a split: 0 without small objects to 1 with many; sampled when not given."""
     movable: bool = False

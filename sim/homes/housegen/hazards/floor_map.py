@@ -32,7 +32,7 @@ _LOST_M2 = {TIGHT_M: 0.12, SPARE_M: 0.4}
 _DRAWN_RADIUS_M = 0.018
 """Solid cells reach this far beyond the geoms: half a cell's diagonal, so that thin geoms are not missed."""
 _FURNITURE_GAP = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
-"""Hazards stay two cells from furniture: its collision boxes depend on how much the file has to be made smaller."""
+"""Hazards stay two cells from furniture."""
 _BUILDING_IDS = [MPCAT40_ID[category] for category in sorted(STRUCTURE)]
 _SHIFT = 8
 """Binary digits of the fractions of a cell with which outlines are drawn."""

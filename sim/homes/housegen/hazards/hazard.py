@@ -15,7 +15,7 @@ from sim.core.interface import CLIMB_M
 from sim.homes.housegen.furniture.item import Geom, Item, Look, Pool
 from sim.homes.housegen.furniture.transforms import bounds, matrix_from_euler
 from sim.homes.housegen.mjcf.builder import HouseBuilder
-from sim.homes.housegen.mjcf.merging import possible_collision_geoms
+from sim.homes.housegen.mjcf.merging import collision_geoms
 from sim.homes.housegen.mjcf.movables import Movable, as_movable
 from sim.homes.housegen.mjcf.placed import PlacedItem
 from sim.homes.housegen.mjcf.triangles import facets
@@ -47,7 +47,7 @@ class Part:
         if self.movable is not None:
             geoms = list(self.movable.collision_geoms)
         else:
-            geoms = [*possible_collision_geoms(self.placed.item), *self.hidden]
+            geoms = [*collision_geoms(self.placed.item), *self.hidden]
         outlines = (_outline(geom, self.placed) for geom in geoms)
         return [outline for outline in outlines if outline is not None]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from sim.gl import mujoco
 from sim.homes.housegen.furniture.item import Look, Pool
-from sim.homes.housegen.hazards import glass, legs, loose, overhangs, scans, slabs
+from sim.homes.housegen.hazards import doors, glass, legs, loose, overhangs, scans, slabs
 from sim.homes.housegen.hazards.floor_map import FloorMap, Path
 from sim.homes.housegen.hazards.hazard import Design, PlacedHazard, Sketch
 from sim.homes.housegen.structure.openings import Opening
@@ -24,11 +24,12 @@ DESIGNS = MappingProxyType[str, tuple[Design, ...]](
         "legs": legs.DESIGNS,
         "scan": scans.DESIGNS,
         "loose": loose.DESIGNS,
+        "door": doors.DESIGNS,
     }
 )
 """The designs of each family."""
 FAMILIES: tuple[str, ...] = tuple(DESIGNS)
-SHARES = MappingProxyType({"glass": 2, "slab": 2, "overhang": 1, "legs": 1, "scan": 2, "loose": 1})
+SHARES = MappingProxyType({"glass": 2, "slab": 2, "overhang": 1, "legs": 1, "scan": 2, "loose": 1, "door": 1})
 """Relative number of hazards of each family: more of those that only a collision shows."""
 FEWEST, MOST, FLOOR_M2 = 6, 14, 11.0
 """Least and largest number of hazards, and the floor area for each."""

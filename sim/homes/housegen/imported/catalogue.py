@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -49,7 +49,7 @@ class ImportedFurniture:
         return _catalogue(self.folder, self.split, pool, self.alone or self.split == "transfer")
 
     def make_house(self, seed: int, config: HouseConfig, *, withheld: Withheld | None = None) -> GeneratedHouse:
-        """Returns a house with the models, of any file size, and with their credits in its comment.
+        """Returns a house with the models, and with their credits in its comment.
 
         `withheld` leaves out the withheld styles and models, or prefers them (`sim.homes.housegen.withheld`).
 
@@ -58,7 +58,7 @@ class ImportedFurniture:
             HouseError: the seed gives no house.
         """
         catalogue = restricted(self.catalogue(config.pool), withheld)
-        made = generate_house(seed, replace(config, any_size=True), catalogue)
+        made = generate_house(seed, config, catalogue)
         add_credits(made.spec, self.models)
         return made
 

@@ -13,7 +13,7 @@ from sim.homes.housegen.furniture.item import Geom, Item
 from sim.homes.housegen.furniture.transforms import bounds
 from sim.homes.housegen.mjcf.appearance import facts_of
 from sim.homes.housegen.mjcf.assets import MESH_UNIT_M, AssetTable
-from sim.homes.housegen.mjcf.merging import BYTES_PER_GEOM, Assembler, Assembly
+from sim.homes.housegen.mjcf.merging import Assembly, assemble
 from sim.homes.housegen.mjcf.movables import ROLLING_M, Movable, split_movable
 from sim.homes.housegen.mjcf.placed import Hinge, Lamp, PlacedItem, RoomBox
 
@@ -41,16 +41,8 @@ _SHAPES = {
 class HouseBuilder:
     """A builder that collects the parts of a house in one `MjSpec`; equal looks and meshes are written once."""
 
-    def __init__(self, name: str, *, bytes_per_geom: int = BYTES_PER_GEOM, assembler: Assembler | None = None) -> None:
-        """Begins an empty house.
-
-        Args:
-            name: the model's name.
-            bytes_per_geom: bytes by which the file may grow for each geom that is saved.
-            assembler: one that has assembled the same items before, which saves time.
-        """
-        self._bytes_per_geom = bytes_per_geom
-        self._assembler = assembler or Assembler()
+    def __init__(self, name: str) -> None:
+        """Begins an empty house with this name."""
         self._spec = mujoco.MjSpec()
         self._spec.modelname = name
         self._spec.texturedir = TEXTURE_DIR
@@ -68,7 +60,6 @@ class HouseBuilder:
         self._collision.geom.group = 3
         self._spec.default.mesh.scale = [MESH_UNIT_M] * 3
         self._spec.default.mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL  # some show only their front
-        self._copies: dict[int, int] = {}
         self._assemblies: dict[int, tuple[Item, Assembly]] = {}
         self._frictions: dict[str, mujoco.MjsDefault] = {}
         self._splits: dict[int, tuple[Item, tuple[Item | None, tuple[Movable, ...]]]] = {}
@@ -82,11 +73,6 @@ class HouseBuilder:
     def spec(self) -> mujoco.MjSpec:
         """The specification built so far."""
         return self._spec
-
-    def expect(self, items: Sequence[PlacedItem]) -> None:
-        """Counts the items that will be added: meshes of an item that occurs often may take more bytes."""
-        for placed in items:
-            self._count(placed.item)
 
     def add(self, placed: PlacedItem) -> str:
         """Adds an item and its children; returns the name of its body."""
@@ -116,11 +102,6 @@ class HouseBuilder:
             damping=HINGE_DAMPING, frictionloss=HINGE_FRICTION_NM,
         )  # fmt: skip
 
-    def _count(self, item: Item) -> None:
-        self._copies[id(item)] = self._copies.get(id(item), 0) + 1
-        for child in item.children:
-            self._count(child.item)
-
     def add_movable(self, placed: PlacedItem) -> None:
         """Adds an item so that the robot can push it, or those parts of it that are light and separate."""
         rest, movables = self._split(placed.item)
@@ -133,10 +114,6 @@ class HouseBuilder:
         """Returns the static and the movable parts of an item; computed once for each design."""
         if id(item) not in self._splits:
             self._splits[id(item)] = (item, split_movable(item))
-            rest, movables = self._splits[id(item)][1]
-            for part in (rest, *(movable.item for movable in movables)):
-                if part is not None:
-                    self._copies[id(part)] = self._copies.get(id(item), 1)
         return self._splits[id(item)][1]
 
     def add_ground(self, rect: Rect, z_m: float = 0.0) -> None:
@@ -250,10 +227,7 @@ class HouseBuilder:
     def _assembly(self, item: Item) -> Assembly:
         """Returns the geoms of an item; computed once for each design."""
         if id(item) not in self._assemblies:
-            self._assemblies[id(item)] = (
-                item,
-                self._assembler.assemble(item, self._bytes_per_geom * self._copies.get(id(item), 1)),
-            )
+            self._assemblies[id(item)] = (item, assemble(item))
         return self._assemblies[id(item)][1]
 
     def _add_geom(self, body: mujoco.MjsBody, geom: Geom) -> None:

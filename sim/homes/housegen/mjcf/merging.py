@@ -22,10 +22,6 @@ from sim.homes.housegen.surfaces.textures import TEXTURES
 
 SLAT_HALF_M, ROD_HALF_M = 0.045, 0.07
 """Textured boards and rods narrower than twice this lose their texture in a mesh: its grain would not be visible."""
-BYTES_PER_GEOM = 200
-"""Bytes by which the file may grow for each geom that is saved."""
-GEOM_BYTES = 100
-"""Usual size of a geom in the file."""
 MAX_JOINED_VERTICES = 400
 BUILDING = frozenset(("wall", "floor", "ceiling", "door", "window", "column"))
 """Categories that keep their exact geoms, because lines of sight and free space depend on them."""
@@ -41,51 +37,16 @@ class Assembly:
     """Geoms that collide and are not rendered."""
 
 
-def assemble(item: Item, bytes_per_geom: int = BYTES_PER_GEOM) -> Assembly:
-    """Returns the smallest assembly that looks the same and collides nearly the same; children are left out.
-
-    Args:
-        item: the item.
-        bytes_per_geom: bytes by which the file may grow for each geom saved; more for an item that a house has
-            several times.
-    """
-    return Assembler().assemble(item, bytes_per_geom)
-
-
-class Assembler:
-    """Assembles items for several limits on bytes; parts that do not depend on the limit are computed once per item."""
-
-    def __init__(self) -> None:
-        self._parts: dict[int, _Parts] = {}
-
-    def assemble(self, item: Item, bytes_per_geom: int) -> Assembly:
-        """Returns the same as `assemble`."""
-        parts = self._parts_of(item)
-        if item.collision_geoms:
-            return Assembly(tuple(_join(parts.visual_only, parts, bytes_per_geom)), tuple(item.collision_geoms))
-        exact = Assembly((*_join(parts.visual_only, parts, bytes_per_geom), *parts.solid), ())
-        if item.category in BUILDING or parts.boxes is None:
-            return exact
-        boxed = Assembly((*_join(parts.small, parts, bytes_per_geom), *parts.rest), parts.boxes)
-        return min(exact, boxed, key=lambda a: len(a.visual) + len(a.collision_only))
-
-    def saved_bytes(self, item: Item, copies: int, bytes_per_geom: int, fewer: int) -> int:
-        """Returns about how many bytes a file saves with the limit `fewer` instead of `bytes_per_geom`.
-
-        Args:
-            item: the item.
-            copies: how often the house has it.
-            bytes_per_geom: the larger limit.
-            fewer: the smaller limit.
-        """
-        parts = self._parts_of(item)
-        kept = [extra for extra in parts.extra_bytes.values() if copies * fewer < extra <= copies * bytes_per_geom]
-        return sum(extra - (copies - 1) * GEOM_BYTES for extra in kept)
-
-    def _parts_of(self, item: Item) -> _Parts:
-        if id(item) not in self._parts:
-            self._parts[id(item)] = _Parts(item)
-        return self._parts[id(item)]
+def assemble(item: Item) -> Assembly:
+    """Returns the smallest assembly that looks the same and collides nearly the same; children are left out."""
+    parts = _Parts(item)
+    if item.collision_geoms:
+        return Assembly(tuple(_join(parts.visual_only, parts)), tuple(item.collision_geoms))
+    exact = Assembly((*_join(parts.visual_only, parts), *parts.solid), ())
+    if item.category in BUILDING or parts.boxes is None:
+        return exact
+    boxed = Assembly((*_join(parts.small, parts), *parts.rest), parts.boxes)
+    return min(exact, boxed, key=lambda a: len(a.visual) + len(a.collision_only))
 
 
 class _Parts:
@@ -103,7 +64,6 @@ class _Parts:
         self.boxes = tuple(collision_boxes(solid, item)) if len(solid) > 1 and item.category not in BUILDING else None
         every = [*self.visual_only, *self.small]
         self.looks = {id(geom): _plain(geom) for geom in every}
-        self.extra_bytes = {id(geom): _extra_bytes(geom) for geom in every if self.looks[id(geom)] is not None}
         self._facets: dict[int, Facets] = {}
         self._blocks = [
             geom_box(geom)
@@ -118,14 +78,10 @@ class _Parts:
         return self._facets[id(geom)]
 
 
-def possible_collision_geoms(item: Item) -> list[Geom]:
-    """Returns every geom with which an item may collide, however it is assembled; children are left out."""
-    if item.collision_geoms:
-        return list(item.collision_geoms)
-    solid = [geom for geom in item.geoms if geom.solid]
-    return (
-        solid + collision_boxes(solid, item) + collision_boxes([geom for geom in _joinable(item) if geom.solid], item)
-    )
+def collision_geoms(item: Item) -> list[Geom]:
+    """Returns the geoms with which an item collides; children are left out."""
+    parts = assemble(item)
+    return [*(geom for geom in parts.visual if geom.solid), *parts.collision_only]
 
 
 def _joinable(item: Item) -> list[Geom]:
@@ -148,16 +104,6 @@ def _plain(geom: Geom) -> Look | None:
     return replace(look, texture=None, rgba=(r, g, b, 1.0))
 
 
-def _extra_bytes(geom: Geom) -> int:
-    """Returns about how many more bytes a geom takes in the file as part of a mesh than as a geom of its own."""
-    if geom.shape == "box":
-        return 84
-    if geom.mesh is not None and len(geom.mesh.faces):
-        return 0
-    corners, triangles = facets(geom)
-    return 13 * len(corners) + 9 * len(triangles) - 110
-
-
 def _width_m(geom: Geom) -> float:
     """Returns half the width of a geom across its length."""
     if geom.shape == "ellipsoid":
@@ -175,13 +121,13 @@ def _mean_colour(texture: str) -> tuple[float, float, float]:
 # ---- visual meshes -------------------------------------------------------------------------------------------------
 
 
-def _join(geoms: Sequence[Geom], parts: _Parts, bytes_per_geom: int) -> list[Geom]:
+def _join(geoms: Sequence[Geom], parts: _Parts) -> list[Geom]:
     """Returns geoms that look the same, those of each plain look joined into meshes."""
     kept: list[Geom] = []
     groups: dict[Look, list[tuple[Geom, Facets]]] = {}
     for geom in geoms:
         look = parts.looks[id(geom)]
-        if look is None or parts.extra_bytes[id(geom)] > bytes_per_geom:
+        if look is None:
             kept.append(geom)
         else:
             groups.setdefault(look, []).append((geom, parts.facets(geom)))

@@ -224,7 +224,7 @@ _HAZARDS: tuple[_Shape, ...] = (
     ("lshape", 190.0, ("gym", "office")),
     ("flat", 82.0, ()),
 )
-HAZARD_KINDS = ("glass", "slab", "overhang", "legs", "scan", "loose")
+HAZARD_KINDS = ("glass", "slab", "overhang", "legs", "scan", "loose", "door")
 """Families of hazards (`sim.homes.housegen.hazards.FAMILIES`) in the houses of the split `hazards`."""
 
 

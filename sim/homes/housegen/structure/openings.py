@@ -27,6 +27,12 @@ leaf may be."""
 HALF_OPEN_GAP_M, AJAR_GAP_M = (0.52, 0.64), (0.10, 0.34)
 """Gaps beside a leaf that is half open, through which the robot of 0.36 m passes, and beside one that is ajar."""
 
+HALF_OPEN_RAD = np.deg2rad(70.0)
+BESIDE_M, BEYOND_M = 0.35, 0.6
+"""Floor that stays free next to the doorway on the side of the edge of a leaf that is half open, and past that edge."""
+AJAR_RAD = np.deg2rad(28.0)
+"""A leaf that is less open than this is ajar: its gap is narrower than those of leaves that are half open."""
+
 OpeningKind = Literal["door", "opening", "open", "window", "entry"]
 
 
@@ -42,6 +48,12 @@ class Leaf:
     """0 closes the doorway."""
     widest_rad: float | None = None
     """How far it opens on its hinge when it is pushed; None: it does not move."""
+
+    @property
+    def standing_rad(self) -> float:
+        """How far it is open for a robot that enters: one that is only ajar is pushed wide open."""
+        is_ajar = self.widest_rad is not None and self.angle_rad < AJAR_RAD
+        return self.widest_rad if is_ajar and self.widest_rad is not None else self.angle_rad
 
     def gap_m(self, width_m: float) -> float:
         """Returns the distance between the edge of a leaf of this width and the jamb that it closes against."""
@@ -194,8 +206,11 @@ def leaf_keep_out(opening: Opening, rect: Rect) -> Rect:
     back = reach if angle_rad > np.pi / 2 else 0.06
     moves = opening.leaf.widest_rad is not None
     ahead = width_m if moves else reach if angle_rad <= np.pi / 2 else 0.06
+    depth_m = width_m + 0.1
+    if moves and opening.leaf.standing_rad < HALF_OPEN_RAD:  # the robot passes between its edge and what stands there
+        ahead, depth_m = width_m + BESIDE_M, width_m * float(np.sin(opening.leaf.standing_rad)) + BEYOND_M
     span = (lo - back, lo + ahead) if opening.leaf.hinge_at_start else (hi - ahead, hi + back)
-    return rect.strip(opening.side_of(opening.leaf.room), span, width_m + 0.1)
+    return rect.strip(opening.side_of(opening.leaf.room), span, max(depth_m, width_m + 0.1))
 
 
 def _cut_entry(rng: np.random.Generator, plan: FloorPlan, rects: Sequence[Rect]) -> Opening | None:

@@ -21,6 +21,7 @@ from sim.homes.importers.procthor import Imported, ProcthorConfig, import_house
 from sim.homes.importers.procthor_files import Asset, Source, find_assets, parse_house, read_assets, read_houses
 from sim.homes.importers.procthor_plan import lay_out
 from sim.homes.importers.rectilinear import Stretch, rectangles
+from sim.houses.geoms import world_boxes
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.world.check import check_own_house
@@ -78,11 +79,8 @@ def test_items_have_the_sizes_of_their_assets(imported: Imported) -> None:
     for category, size in (("sofa", (0.9, 2.0, 0.8)), ("bed", (2.1, 1.5, 0.9)), ("picture", (0.8, 0.03, 0.5))):
         (instance,) = labels.of_category(category)
         geoms = [geom for geom in instance.geom_ids if model.geom_group[geom] < 3]
-        half = np.abs(data.geom_xmat[geoms].reshape(-1, 3, 3)) @ model.geom_aabb[geoms, 3:, None]
-        middle = data.geom_xpos[geoms] + np.einsum(
-            "nij,nj->ni", data.geom_xmat[geoms].reshape(-1, 3, 3), model.geom_aabb[geoms, :3]
-        )
-        found = (middle + half[..., 0]).max(axis=0) - (middle - half[..., 0]).min(axis=0)
+        low, high = world_boxes(model, data, geoms)
+        found = high.max(axis=0) - low.min(axis=0)
         assert found == pytest.approx(size, abs=0.06), category
 
 

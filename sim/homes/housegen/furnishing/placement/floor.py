@@ -18,7 +18,7 @@ from sim.homes.housegen.furnishing.placement.records import (
 )
 from sim.homes.housegen.furnishing.placement.walls import WALL_GAP_M, Along
 from sim.homes.housegen.furniture.item import Item
-from sim.homes.housegen.mjcf.merging import possible_collision_geoms
+from sim.homes.housegen.mjcf.merging import collision_geoms
 
 MAX_CHECKS = 16
 """Positions along the walls that are tested for walkability before the search for one item ends."""
@@ -94,8 +94,8 @@ def put_partly_under(
     It is moved back along its own -x, up to `out_m`, until the two do not touch.
     """
     c, s = math.cos(yaw_rad), math.sin(yaw_rad)
-    host_boxes = geom_boxes(possible_collision_geoms(host.item), host.placed)
-    geoms = possible_collision_geoms(item)
+    host_boxes = geom_boxes(collision_geoms(host.item), host.placed)
+    geoms = collision_geoms(item)
     for step in range(int(out_m / TUCK_STEP_M) + 1):
         placement = floor_placement(item, x_m - c * TUCK_STEP_M * step, y_m - s * TUCK_STEP_M * step, yaw_rad)
         if boxes_touch(geom_boxes(geoms, placement.placed), host_boxes, 0.015):

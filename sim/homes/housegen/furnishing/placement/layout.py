@@ -40,6 +40,10 @@ class Snapshot:
     on_surface: Mapping[tuple[int, int], tuple[Rect, ...]]
 
 
+LEAF_PIECES = 4
+"""Rectangles by which a door leaf is marked on the walking grid."""
+
+
 class RoomLayout:
     """The placements of one room, and the tests whether another one fits."""
 
@@ -181,17 +185,22 @@ class RoomLayout:
         self._keep_out.append(self.inner.strip(side, (lo - 0.06, hi + 0.06), depth_m))
         if opening.leaf is not None and opening.leaf.room == index:
             self._keep_out.append(leaf_keep_out(opening, rect))
-            self.grid.occupy(_leaf_rect(opening, rect))
+            for part in _leaf_rects(opening, rect):
+                self.grid.occupy(part)
         if opening.kind != "entry":
             self.grid.add_doorway(*self.inner.strip(side, (lo, hi), 0.3).centre)
 
 
-def _leaf_rect(opening: Opening, rect: Rect) -> Rect:
-    """Returns the footprint of a door leaf in a room of rectangle `rect`; one on a hinge counts as wide open."""
+def _leaf_rects(opening: Opening, rect: Rect) -> list[Rect]:
+    """Returns rectangles along the footprint of a door leaf in a room of rectangle `rect`, from the hinge on."""
     assert opening.leaf is not None
     lo, hi = opening.clear_span()
-    angle_rad = opening.leaf.angle_rad if opening.leaf.widest_rad is None else opening.leaf.widest_rad
-    reach = (hi - lo) * math.cos(angle_rad)
-    span = (lo, lo + reach) if opening.leaf.hinge_at_start else (hi - reach, hi)
-    a, b = sorted(span)
-    return rect.strip(opening.side_of(opening.leaf.room), (a - 0.02, b + 0.02), (hi - lo) + 0.08)
+    side, angle_rad = opening.side_of(opening.leaf.room), opening.leaf.standing_rad
+    pieces = []
+    for n in range(LEAF_PIECES):
+        near, far = ((hi - lo) * (n + k) / LEAF_PIECES for k in (0, 1))
+        a, b = sorted(r * math.cos(angle_rad) for r in (near, far))
+        span = (lo + a - 0.02, lo + b + 0.02) if opening.leaf.hinge_at_start else (hi - b - 0.02, hi - a + 0.02)
+        inward_m, outward_m = far * math.sin(angle_rad) + 0.08, 0.02 - near * math.sin(angle_rad)
+        pieces.append(rect.strip(side, span, inward_m, outward_m))
+    return pieces
