@@ -43,13 +43,15 @@ SHALLOW_M = 0.13
 CLOSED_DEG = 10.0
 """A leaf that is open by less does not show into which room it swings."""
 SLACK_M = 0.03
-_RUN = frozenset(("kitchen counter", "cooker", "fridge", "dishwasher", "washing machine"))
+_RUN = frozenset(("kitchen counter", "counter", "cooker", "fridge", "dishwasher", "washing machine"))
 _ISLANDS = frozenset(("kitchen island", "breakfast bar", "kitchen trolley"))
 _FOCUS = frozenset(("television", "fireplace", "wood stove", "tiled stove", "armchair", "rocking chair"))
 _SOFAS = frozenset(("sofa", "corner sofa", "daybed"))
 _NEVER_AT_WINDOWS = frozenset(("fireplace", "wood stove", "tiled stove", "television"))
 _TALL = frozenset(("cabinet", "shelving", "appliances", "furniture"))
-_NOT_ON_FLOOR = frozenset(("floor", "wall", "ceiling", "window", "door", "curtain", "blinds", "void", "stairs", "railing"))
+_NOT_ON_FLOOR = frozenset(
+    ("floor", "wall", "ceiling", "window", "door", "curtain", "blinds", "void", "stairs", "railing")
+)
 _HARD_FLOORS = frozenset(("kitchen", "bathroom", "laundry", "hallway", "stair_hall"))
 """Rooms without carpet on the whole floor."""
 
@@ -210,10 +212,10 @@ def _kitchen(inside: Sequence[Standing]) -> list[str]:
         ("sink", [item for item in inside if item.category == "sink"]),
         ("cooker or hob", hobs),
     ):
-        if not found:
+        if not found or not counters:  # a requirement of its own
             continue
         item = found[0]
-        if min((item.gap_m(counter) for counter in counters), default=math.inf) > TOUCH_M and not (
+        if min(item.gap_m(counter) for counter in counters) > TOUCH_M and not (
             kind == "fridge" and _joined(item, units)
         ):
             clauses.append(f"has no worktop next to the {kind}")
@@ -240,7 +242,8 @@ def _kitchen(inside: Sequence[Standing]) -> list[str]:
 
 def _joined(fridge: Standing, units: Sequence[Standing]) -> bool:
     """Returns whether a fridge is joined to a worktop by a dishwasher or a washing machine between them."""
-    between = [unit for unit in units if unit.name in ("dishwasher", "washing machine") and fridge.gap_m(unit) <= TOUCH_M]
+    low = [unit for unit in units if unit.name in ("dishwasher", "washing machine")]
+    between = [unit for unit in low if fridge.gap_m(unit) <= TOUCH_M]
     return any(a.gap_m(b) <= TOUCH_M for a in between for b in units if b.category == "counter")
 
 
@@ -325,7 +328,7 @@ def _blocks(item: Standing, floor_z_m: float, up_to_m: float = 0.9) -> bool:
 
 
 def _blocked_swings(model: mujoco.MjModel, standing: Sequence[Standing]) -> list[str]:
-    """Returns a sentence for each piece of furniture in the quarter circle of a door leaf, from closed to 90 degrees."""
+    """Returns a sentence for each piece of furniture in the quarter circle of a door leaf."""
     doors = [item for item in standing if item.category == "door"]
     leaves = [(door, width_m) for door in doors if (width_m := _leaf_width_m(model, door)) > 0.0]
     of_leaves = {door.label for door, _ in leaves}

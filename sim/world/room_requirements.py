@@ -1,7 +1,8 @@
 """The furniture that each kind of room of a generated house must have, and the check of it.
 
-A requirement counts instances by their mpcat40 category, some by their everyday name. An instance belongs to a room if the room's site contains the
-middle of its bounding box. The longest side of that box tells a cooker from a toaster and a dresser from a nightstand.
+A requirement counts instances by their mpcat40 category, some by their everyday name. An instance belongs to a room if
+the room's site contains the middle of its bounding box. The longest side of that box tells a cooker from a toaster and
+a dresser from a nightstand.
 """
 
 from __future__ import annotations

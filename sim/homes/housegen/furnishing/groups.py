@@ -59,11 +59,11 @@ def _place_bed(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> P
         item = source.make("bed", width_m=width_m)
         if item is None:
             return None
-        for free_sides, along in (((1.0, -1.0), "middle"), ((1.0,), "corner"), ((-1.0,), "corner")):
+        for free_sides in ((1.0, -1.0), (1.0,), (-1.0,)):
             if len(free_sides) == 1 and width_m > 1.4:
                 continue
             before = layout.snapshot()
-            beside_m = BESIDE_BED_M if len(free_sides) > 1 else 0.0
+            along, beside_m = ("middle", BESIDE_BED_M) if len(free_sides) > 1 else ("corner", 0.0)
             bed = put_against_wall(layout, source.rng, item, along=along, front_m=0.6, beside_m=beside_m)
             zones = [_beside(bed, towards) for towards in free_sides] if bed is not None else []
             if bed is not None and all(layout.is_zone_free(zone) for zone in zones):

@@ -164,7 +164,7 @@ def _is_short(leg: Leg) -> bool:
 
 
 def _score(layout: RoomLayout, shape: Shape, plan: Sequence[Run]) -> float:
-    """Returns how well a plan suits the room: enough worktop, few odd gaps, the sink rather than the hob at a window."""
+    """Returns how well a plan suits the room: enough worktop, few odd gaps, the sink and not the hob at a window."""
     area_m2 = layout.inner.area_m2
     suits = {"line": 0.6 if area_m2 < 9 else -0.6, "L": 0.8, "U": 0.8 if area_m2 > 10 else -0.5, "galley": 0.2}
     score = suits[shape]
@@ -195,14 +195,16 @@ def _fitted(
             return None
         stretch_m = sum(high) - sum(low)
         share = min(1.0, slack_m / stretch_m) if stretch_m > 0.0 else 0.0
-        widths = [math.floor(100.0 * (a + share * (b - a))) / 100.0 if b > a else a for a, b in zip(low, high, strict=True)]
+        widths = [
+            math.floor(100.0 * (a + share * (b - a))) / 100.0 if b > a else a for a, b in zip(low, high, strict=True)
+        ]
         runs.append(Run(leg, tuple((u.kind, w) for u, w in zip(units, widths, strict=True) if w >= 0.2)))
     return tuple(runs)
 
 
 def _legs(layout: RoomLayout, longest_m: float) -> Iterator[tuple[Shape, tuple[Leg, ...]]]:
     """Yields the legs of every shape that the room's free walls allow."""
-    free = {side: layout.free_spans(side, FRIDGE_DEPTH_M) for side in SIDES}
+    free: dict[Side, list[Interval]] = {side: layout.free_spans(side, FRIDGE_DEPTH_M) for side in SIDES}
     for side in SIDES:
         for lo, hi in free[side]:
             length_m = min(hi - lo, longest_m)
@@ -237,11 +239,12 @@ def _leg(side: Side, span: Interval, sign: int, longest_m: float) -> Leg:
 def _corner(
     layout: RoomLayout, free: Mapping[Side, Sequence[Interval]], side: Side, end: int, longest_m: float
 ) -> tuple[Leg, Leg] | None:
-    """Returns the two legs from a corner: along `side` from its lower (0) or upper (1) end, and along the other wall."""
+    """Returns the legs from a corner: along `side` from its lower (0) or upper (1) end, and along the other wall."""
     ends: tuple[Side, Side] = ("south", "north") if side in ("east", "west") else ("west", "east")
     other, other_end = ends[end], 1 if side in ("east", "north") else 0
     legs = []
-    for wall, at_end in ((side, end), (other, other_end)):
+    walls: tuple[tuple[Side, int], ...] = ((side, end), (other, other_end))
+    for wall, at_end in walls:
         corner = layout.inner.span(wall)[at_end]
         span = next((s for s in free[wall] if abs(s[at_end] - corner) < 0.02), None)
         if span is None:

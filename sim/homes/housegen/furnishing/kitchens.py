@@ -51,7 +51,7 @@ def kitchen_units(layout: RoomLayout, source: FurnitureSource) -> bool:
     }
     looks = _looks(source)
     longest_m = LONGEST_STUDIO_RUN_M if layout.kind == "studio" else LONGEST_RUN_M
-    widths = {kind: item.size_m[1] for kind, item in appliances.items() if item is not None}
+    widths: dict[Kind, float] = {kind: item.size_m[1] for kind, item in appliances.items() if item is not None}
     jitter = [source.uniform(0.0, 1.0) for _ in range(_JITTER)]
     plans = kitchen_plans(layout, widths, jitter, longest_m=longest_m)
     for aisle_m in (AISLE_M, NARROW_AISLE_M):

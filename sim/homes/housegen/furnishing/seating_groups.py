@@ -63,7 +63,9 @@ def _sofa_with_focus(layout: RoomLayout, source: FurnitureSource) -> Placement |
     for width_m in (None, None, 1.5):
         hints: Hints = {"width_m": width_m} if width_m else {}
         item = source.make("sofa", fresh=True, **hints)
-        for side in _sides(layout, source) if item is not None else ():
+        if item is None:
+            return None
+        for side in _sides(layout, source):
             before = layout.snapshot()
             sofa = _place_sofa(layout, source, item, [side])
             if sofa is not None and (

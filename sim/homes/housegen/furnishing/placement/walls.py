@@ -84,7 +84,7 @@ class RoomWalls:
         return floor_placement(item, x, y, INWARD_YAW_RAD[side], side)
 
     def hides_window(self, placement: Placement) -> bool:
-        """Returns whether an item would stand in front of a window, or beside one in a corner, and is too high for it."""
+        """Returns whether an item would stand in front of a window, or beside it in a corner, and is too high."""
         item, rect = placement.item, placement.rect
         height_m = item.size_m[2]
         if item.category == "counter":  # a tap may stand in front of a window
