@@ -194,9 +194,9 @@ def _seats_at_tables(inside: Sequence[Standing]) -> list[str]:
         elif item.name == "desk" and near == 0:
             clauses.append(f"has {item.label}, a desk without a chair")
         elif item.name == "nightstand":
-            beds = [other for other in inside if other.category in ("bed", "sofa")]
-            if beds and min(item.gap_m(bed) for bed in beds) > MAX_TO_NIGHTSTAND_M:
-                clauses.append(f"has {item.label}, a nightstand that is not next to a bed")
+            seats = [other for other in inside if other.category in ("bed", "sofa", "chair")]
+            if seats and min(item.gap_m(seat) for seat in seats) > MAX_TO_NIGHTSTAND_M:
+                clauses.append(f"has {item.label}, a nightstand that is next to no bed and no seat")
     return clauses
 
 

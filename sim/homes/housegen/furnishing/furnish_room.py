@@ -81,13 +81,15 @@ def _hang_curtains(layout: RoomLayout, source: FurnitureSource) -> None:
 def _hang_ceiling_lamps(layout: RoomLayout, source: FurnitureSource) -> None:
     """Hangs a lamp from the middle of the ceiling, several along a hallway.
 
-    Of the two designs of a home, the flatter one hangs in rooms to work and walk in.
+    Of the three designs of a home, a flat one hangs in rooms to work and walk in.
     """
-    designs = [source.make("lighting", "ceiling") for _ in range(2)]
+    designs = [source.make("lighting", "ceiling") for _ in range(3)]
     lamps = [lamp for lamp in designs if lamp is not None and lamp.mount == "ceiling"]
     if not lamps:
         return
-    lamp = min(lamps, key=lambda lamp: lamp.size_m[2]) if layout.kind in FLAT_LAMPS else lamps[0]
+    lamp = lamps[0]
+    if layout.kind in FLAT_LAMPS:
+        lamp = min(lamps, key=lambda lamp: (lamp.name not in ("ceiling lamp", "spotlights"), lamp.size_m[2]))
     count = max(1, int(layout.inner.long_m / 4.5)) if layout.kind == "hallway" else 1
     for n in range(count):
         x, y = layout.inner.centre

@@ -21,6 +21,8 @@ MIN_CHAIRS = 2
 """Least number of chairs at a dining table; a table for which fewer fit is not placed."""
 LARGE_DINING_M2, LONG_TABLE_M = 16.0, 2.0
 """Floor area from which a dining room gets a long table, and its length."""
+PLACE_M = 0.58
+"""Least length of table for one person: Neufert gives 0.6 m."""
 BESIDE_BED_M = 0.65
 """Free floor along a long side of a bed; the check of the finished house asks for a little less."""
 NIGHTSTAND_M = 0.6
@@ -150,9 +152,9 @@ def _seats(source: FurnitureSource, table: Item, chair: Item) -> list[Seat]:
         quarters = (0.0, math.pi / 2, math.pi, -math.pi / 2)
         return [(math.cos(a) * depth / 2, math.sin(a) * depth / 2, a + math.pi) for a in quarters]
     seats: list[Seat] = []
-    count = max(1, min(4, int((width - 0.25) / (chair.size_m[1] + 0.14))))
+    count = max(1, min(4, int((width + 0.02) / max(PLACE_M, chair.size_m[1] + 0.06))))
     for n in range(count):
-        y = (n - 0.5 * (count - 1)) * (width - 0.2) / count
+        y = (n - 0.5 * (count - 1)) * (width - 0.06) / count
         seats += [(depth / 2, y, math.pi), (-depth / 2, y, 0.0)]
     if width > 1.7 and source.chance(0.5):
         seats += [(0.0, width / 2, -math.pi / 2), (0.0, -width / 2, math.pi / 2)]

@@ -1,4 +1,4 @@
-"""Plans the units of a kitchen along its walls: one run, an L, a U or two runs opposite each other.
+"""Plans the units of a kitchen along its walls: one run, an L, a U, two runs opposite each other, or two walls apart.
 
 Rules of the NKBA Kitchen Planning Guidelines: the work triangle between the fronts of sink, cooker and fridge adds up
 to 13-26 ft (4.0-7.9 m; guideline 3), no tall unit stands between two of them (4), work aisles are at least 42 in wide
@@ -19,7 +19,7 @@ from sim.homes.housegen.furnishing.placement import RoomLayout
 from sim.world.arrangement import MAX_TRIANGLE_M, MIN_TRIANGLE_M
 
 Kind = Literal["fridge", "cooker", "dishwasher", "sink", "top", "sink_and_hob"]
-Shape = Literal["line", "L", "U", "galley"]
+Shape = Literal["line", "L", "U", "galley", "apart"]
 
 DEPTH_M = 0.66
 """Depth of a run with its gap to the wall; in a corner, this much of the other run begins behind it."""
@@ -107,6 +107,10 @@ TEMPLATES: Mapping[Shape, tuple[tuple[tuple[Unit, ...], ...], ...]] = MappingPro
             ((_top(0.4, 0.9), COOKER, _top(0.5, 1.0), FRIDGE), (_sink(0.9, 2.0),)),
             ((_top(0.4, 1.0), COOKER, _top(0.4, 1.0)), (_sink(0.9, 1.6), FRIDGE)),
         ),
+        "apart": (
+            ((_sink(0.9, 1.6), COOKER, _top(0.4, 0.9)), (_top(0.4, 0.9), FRIDGE)),
+            ((FRIDGE, _sink(0.9, 1.8)), (_top(0.4, 0.8), COOKER, _top(0.4, 0.8))),
+        ),
     }
 )
 """Units of each run by the shape of the kitchen, from the corner outwards."""
@@ -166,7 +170,7 @@ def _is_short(leg: Leg) -> bool:
 def _score(layout: RoomLayout, shape: Shape, plan: Sequence[Run]) -> float:
     """Returns how well a plan suits the room: enough worktop, few odd gaps, the sink and not the hob at a window."""
     area_m2 = layout.inner.area_m2
-    suits = {"line": 0.6 if area_m2 < 9 else -0.6, "L": 0.8, "U": 0.8 if area_m2 > 10 else -0.5, "galley": 0.2}
+    suits = {"line": 0.6 if area_m2 < 9 else -0.6, "L": 0.8, "U": 0.8 if area_m2 > 10 else -0.5, "galley": 0.2, "apart": -0.4}
     score = suits[shape]
     for run in plan:
         used_m = sum(width_m for _, width_m in run.units)
@@ -230,6 +234,11 @@ def _legs(layout: RoomLayout, longest_m: float) -> Iterator[tuple[Shape, tuple[L
             if min(b, d) - max(a, c) > 0.9:
                 yield "galley", (_leg(side, (a, b), 1, longest_m), _leg(OPPOSITE[side], (c, d), 1, longest_m))
                 yield "galley", (_leg(side, (a, b), -1, longest_m), _leg(OPPOSITE[side], (c, d), -1, longest_m))
+    spans = [(side, span) for side in SIDES for span in free[side]]
+    for (side, span), (other_side, other_span) in itertools.permutations(spans, 2):
+        if side != other_side:
+            for sign, other_sign in itertools.product((1, -1), (1, -1)):
+                yield "apart", (_leg(side, span, sign, longest_m), _leg(other_side, other_span, other_sign, longest_m))
 
 
 def _leg(side: Side, span: Interval, sign: int, longest_m: float) -> Leg:

@@ -16,6 +16,8 @@ TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
 OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
 WALLPAPER_ROOMS = frozenset(("living_room", "bedroom", "dining_room", "studio"))
 """Rooms that may have patterned wallpaper; one room of a home at most."""
+MAX_CHROMA = 0.25
+"""Largest difference between the parts red, green and blue of the colour of a floor of stone or tiles in hallways."""
 
 
 def draw_structure_looks(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> StructureLooks:
@@ -47,11 +49,15 @@ def _floors(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> dict[str, 
     stone. Rooms without a wall between them share a hard floor, but for a kitchen with tiles of its own.
     """
     main = materials.floor_look("hallway", rng, pool)
-    living = materials.floor_look("living_room", rng, pool)
-    if (rng.random() < 0.7 and not _is(main, "tiles")) or (_open_rooms(plan) and _is(living, "carpet")):
+    while not _is_calm(main):
+        main = materials.floor_look("hallway", rng, pool)
+    living, wooden = materials.floor_look("living_room", rng, pool), materials.floor_look_of("boards", rng, pool)
+    if rng.random() < 0.7 and _is(main, "planks", "parquet", "marble"):
         living = main
+    elif _open_rooms(plan) and _is(living, "carpet"):
+        living = wooden
     private = materials.floor_look("bedroom", rng, pool)
-    if rng.random() < 0.6 and (_is(main, "planks") or _is(main, "parquet")):
+    if rng.random() < 0.6 and _is(main, "planks", "parquet"):
         private = main
     wet = [materials.floor_look("bathroom", rng, pool) for _ in range(2)]
     kitchen, laundry = (materials.floor_look(kind, rng, pool) for kind in ("kitchen", "laundry"))
@@ -73,9 +79,14 @@ def _floors(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> dict[str, 
     return floors
 
 
-def _is(look: Look, kind: str) -> bool:
-    """Returns whether the texture of a floor is of a kind: tiles, carpet, planks, parquet."""
-    return look.texture is not None and look.texture.startswith(kind)
+def _is(look: Look, *kinds: str) -> bool:
+    """Returns whether the texture of a floor is of one of some kinds: tiles, carpet, planks, parquet, marble."""
+    return look.texture is not None and look.texture.startswith(kinds)
+
+
+def _is_calm(look: Look) -> bool:
+    """Returns whether a floor suits all hallways of a home: wood, or tiles without a strong colour."""
+    return _is(look, "planks", "parquet") or max(look.rgba[:3]) - min(look.rgba[:3]) < MAX_CHROMA
 
 
 def _wall_look(rng: np.random.Generator, pool: Pool, room_kind: str, *, paper: bool = False) -> Look:
