@@ -107,7 +107,7 @@ def arrangement_faults(model: mujoco.MjModel, data: mujoco.MjData, labels: Label
             clauses += _kitchen(inside)
         if room.kind in ("living_room", "studio"):
             clauses += _sofas(inside, [*inside, *windows])
-        if room.kind in ("bedroom", "studio"):
+        if room.kind == "bedroom":
             clauses += _beds(room, inside)
         clauses += _toilets(room, inside)
         if room.kind in _HARD_FLOORS and _has_carpet(model, data, labels, room):
@@ -182,7 +182,7 @@ def _before_windows(items: Iterable[Standing], windows: Sequence[Standing]) -> I
 
 
 def _seats_at_tables(inside: Sequence[Standing]) -> list[str]:
-    """Returns clauses on dining tables without enough chairs, desks without a chair, and nightstands without a bed."""
+    """Returns clauses on dining tables without enough chairs and desks without a chair."""
     chairs = [item for item in inside if item.category == "chair"]
     clauses = []
     for item in inside:
@@ -193,10 +193,6 @@ def _seats_at_tables(inside: Sequence[Standing]) -> list[str]:
                 clauses.append(f"has {item.label}, a dining table with {near} of {max(MIN_CHAIRS, laid)} chairs")
         elif item.name == "desk" and near == 0:
             clauses.append(f"has {item.label}, a desk without a chair")
-        elif item.name == "nightstand":
-            seats = [other for other in inside if other.category in ("bed", "sofa", "chair")]
-            if seats and min(item.gap_m(seat) for seat in seats) > MAX_TO_NIGHTSTAND_M:
-                clauses.append(f"has {item.label}, a nightstand that is next to no bed and no seat")
     return clauses
 
 
@@ -268,8 +264,13 @@ def _faces(sofa: Standing, target: Standing) -> bool:
 
 
 def _beds(room: Room, inside: Sequence[Standing]) -> list[str]:
-    """Returns clauses on beds that have no free floor along either long side."""
-    clauses = []
+    """Returns clauses on beds without free floor along either long side, and on nightstands apart from them."""
+    seats = [item for item in inside if item.category in ("bed", "sofa", "chair")]
+    clauses = [
+        f"has {item.label}, a nightstand that is next to no bed and no seat"
+        for item in inside
+        if item.name == "nightstand" and min((item.gap_m(seat) for seat in seats), default=0.0) > MAX_TO_NIGHTSTAND_M
+    ]
     for bed in (item for item in inside if item.category == "bed"):
         left = np.array([-bed.front[1], bed.front[0]])
         size = (bed.high - bed.low)[:2]

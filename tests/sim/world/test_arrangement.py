@@ -131,7 +131,11 @@ def test_each_dining_table_has_two_chairs_and_each_desk_one() -> None:
 def test_a_bed_has_free_floor_along_a_long_side() -> None:
     bed = Piece("bed_00", "bed", -1.9, -1.2, (2.0, 1.4, 0.5))
     chest = Piece("chest_of_drawers_00", "chest of drawers", -1.8, -0.25, (0.4, 0.4, 0.9))
-    assert faults("bedroom", bed) == []
+    stand = Piece("table_00", "nightstand", -2.7, -0.3, (0.4, 0.35, 0.5))
+    assert faults("bedroom", bed, stand) == []
+    assert faults("bedroom", bed, moved(stand, 0.0, 1.0)) == [
+        "room_bedroom_00 has table_00, a nightstand that is next to no bed and no seat"
+    ]
     assert len(faults("bedroom", bed, chest)) == 1
 
 

@@ -170,7 +170,13 @@ def _is_short(leg: Leg) -> bool:
 def _score(layout: RoomLayout, shape: Shape, plan: Sequence[Run]) -> float:
     """Returns how well a plan suits the room: enough worktop, few odd gaps, the sink and not the hob at a window."""
     area_m2 = layout.inner.area_m2
-    suits = {"line": 0.6 if area_m2 < 9 else -0.6, "L": 0.8, "U": 0.8 if area_m2 > 10 else -0.5, "galley": 0.2, "apart": -0.4}
+    suits = {
+        "line": 0.6 if area_m2 < 9 else -0.6,
+        "L": 0.8,
+        "U": 0.8 if area_m2 > 10 else -0.5,
+        "galley": 0.2,
+        "apart": -0.4,
+    }
     score = suits[shape]
     for run in plan:
         used_m = sum(width_m for _, width_m in run.units)
