@@ -240,7 +240,7 @@ def _legs(layout: RoomLayout, longest_m: float) -> Iterator[tuple[Shape, tuple[L
             if min(b, d) - max(a, c) > 0.9:
                 yield "galley", (_leg(side, (a, b), 1, longest_m), _leg(OPPOSITE[side], (c, d), 1, longest_m))
                 yield "galley", (_leg(side, (a, b), -1, longest_m), _leg(OPPOSITE[side], (c, d), -1, longest_m))
-    spans = [(side, span) for side in SIDES for span in free[side]]
+    spans: list[tuple[Side, Interval]] = [(side, span) for side in SIDES for span in free[side]]
     for (side, span), (other_side, other_span) in itertools.permutations(spans, 2):
         if side != other_side:
             for sign, other_sign in itertools.product((1, -1), (1, -1)):
