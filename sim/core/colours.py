@@ -21,8 +21,8 @@ COLOUR_NAMES: tuple[ColourName, ...] = (
 """All names, in the order of the numbers that `colour_numbers` returns."""
 _GREY_CHROMA, _CREAM_CHROMA = 7.0, 14.0
 """Largest chroma of neutral colours, and of those that are still called white where they are light."""
-_BLACK_L, _WHITE_L, _CREAM_L = 24.0, 84.0, 90.0
-_CLEAR_L, _CLEAR_AB = 6.0, 3.0
+_BLACK_L, _WHITE_L, _CREAM_L = 24.0, 80.0, 87.0
+_CLEAR_L, _CLEAR_AB = 4.0, 2.0
 """Differences of lightness and of the other two coordinates that a clear name survives."""
 _HUES_DEG: tuple[tuple[float, ColourName], ...] = (
     (10.0, "pink"), (43.0, "red"), (66.0, "orange"), (103.0, "yellow"), (195.0, "green"), (295.0, "blue"),

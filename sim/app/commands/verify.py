@@ -11,6 +11,7 @@ drawn at random, the true frames are rendered too, for the first sight of the go
 - different: the result does not come from these actions in this house with this robot.
 
 A replay proves what the actions achieve. It does not prove how the agent chose them: its observations are declared.
+Episodes whose actions are the oracle's, or whose path is hardly longer than the shortest one, are counted.
 Exit status: 0 if no episode is different, 1 if one is, 2 if the file is refused.
 """
 
@@ -141,11 +142,26 @@ def _summary(checked: Checked, choices: Choices, outcome: list[Verdict], seconds
     else:
         rest = f" {count['error']} episodes ended with an error and have no actions." if count["error"] else ""
         yield f"Verified: these actions lead to these results.{rest}"
+    yield _known_paths(checked, outcome)
     yield (
         f"Declared by the authors; a replay cannot prove it: agent '{inputs.agent}'"
         f"{' in a process of its own' if inputs.isolated else ', not in a process of its own'}; ground truth "
         f"{truth_of(inputs)}; sensors {', '.join(inputs.sensors) or 'none'}."
     )
+
+
+def _known_paths(checked: Checked, outcome: list[Verdict]) -> str:
+    """Returns the sentences on actions that repeat a known path, and on what the split says about them."""
+    oracle, shortest = (sum(verdict.known_path == kind for verdict in outcome) for kind in ("oracle", "shortest"))
+    found = (
+        f"Known paths: in {oracle} of {len(outcome)} episodes every action is the oracle's, and {shortest} more reach "
+        "the goal on a path at most 5 % longer than the shortest one."
+    )
+    if checked.origin == "public":
+        found += (
+            " The split is public: a replay cannot tell an agent that searches from one that repeats stored actions."
+        )
+    return found
 
 
 def _speed(episodes: int, seconds: float) -> str:

@@ -15,6 +15,7 @@ from sim.app.evaluation.parallel import ordered_map
 from sim.app.submissions.checks import coverage, require_consistent, truth_of
 from sim.app.submissions.contents import Entry, Submission, read_submission
 from sim.app.submissions.replay import Job, replay_house
+from sim.app.submissions.sealing import Origin, origin_of
 from sim.app.submissions.setting import Setting, setting_of
 from sim.app.submissions.verdicts import TOLERANCE_M, Verdict, judge
 from sim.core.errors import ConfigError
@@ -55,6 +56,8 @@ class Checked:
     """The episodes as text."""
     changes: Sequence[str]
     """Differences of its setting from the standard."""
+    origin: Origin
+    """Who drew its split."""
     job: Job
     house_of: Mapping[str, str] = field(repr=False)
 
@@ -100,6 +103,7 @@ def check(file: Path, choices: Choices, truth_of_agents: Mapping[str, bool]) -> 
         is_first=is_first,
         covers=covers,
         changes=changes,
+        origin=origin_of(split, choices.split),
         job=Job(split=chosen, setting=setting, seed=submission.manifest.seed),
         house_of={entry.result.episode_id: entry.result.house for entry in submission.episodes},
     )

@@ -11,7 +11,7 @@ import csv
 import html
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,6 +20,7 @@ from sim.app.analysis.tables import Cell, ResultTable
 from sim.app.submissions.checks import truth_of
 from sim.app.submissions.contents import SUFFIX, Submission
 from sim.app.submissions.report import Report
+from sim.app.submissions.sealing import Origin
 from sim.core.errors import ConfigError
 from sim.robot.config import PHYSICS_VERSION
 from sim.task.result import EpisodeResult
@@ -29,13 +30,14 @@ MIN_EPISODES = 50
 SUBMISSIONS, REPORTS = "submissions", "reports"
 HEADER = (
     "row", "authors", "ground truth (declared)", "own process (declared)", "noise", "episodes", "success %", "SPL",
-    "collisions", "verified",
+    "collisions", "verified", "known paths",
 )  # fmt: skip
 
 CSV_COLUMNS = (
     "split", "version", "split_sha256", "name", "authors", "links", "agent", "ground_truth_declared",
     "own_process_declared", "noise", "episodes", "success", "success_low", "success_high", "spl", "spl_low", "spl_high",
-    "collisions", "collisions_low", "collisions_high", "verified", "file",
+    "collisions", "collisions_low", "collisions_high", "verified", "origin", "oracle_paths", "shortest_paths",
+    "repeated", "file",
 )  # fmt: skip
 
 
@@ -88,26 +90,73 @@ def report_file(folder: Path, submission: Path) -> Path:
 
 def is_current(report: Report, sha256: str) -> bool:
     """Returns whether a report is that of this file, by this version of the physics."""
-    return report.sha256 == sha256 and report.physics == PHYSICS_VERSION
+    return report.sha256 == sha256 and report.physics == PHYSICS_VERSION and report.oracle_paths is not None
 
 
 def tables(rows: Sequence[Row]) -> list[ResultTable]:
-    """Returns a table for each split; rows with less ground truth come first, then those with more success."""
+    """Returns a table for each split, sealed splits before public ones.
+
+    In a table, rows with less ground truth come first, then those with more success.
+    """
     ranked = []
-    by_split: dict[tuple[str, str, str], list[Row]] = {}
+    repeats = repeated(rows)
+    by_split: dict[tuple[int, str, str, str], list[Row]] = {}
     for row in (row for row in rows if not row.refusal):
-        by_split.setdefault(_split(row), []).append(row)
-    for (name, version, sha256), members in sorted(by_split.items()):
-        title = f"{plain(name)} {plain(version)} ({sha256[:12]})"
+        by_split.setdefault((_ORDER.index(row.report.origin), *_split(row)), []).append(row)
+    for (number, name, version, sha256), members in sorted(by_split.items()):
+        origin = _ORDER[number]
+        title = f"{_TITLES[origin]}: {plain(name)} {plain(version)} ({sha256[:12]})"
         ordered = sorted(members, key=_rank)
-        ranked.append(ResultTable(name, title, HEADER, [(_name(row), _cells(row)) for row in ordered], NOTES))
+        cells = [(_name(row), _cells(row, repeats[row.file.name])) for row in ordered]
+        ranked.append(ResultTable(name, title, HEADER, cells, (*NOTES, _MEANINGS[origin])))
     return ranked
 
 
+def repeated(rows: Sequence[Row]) -> dict[str, int]:
+    """Returns for the file name of each row the number of its episodes with the actions of another row.
+
+    Episodes of fewer than `LONG_ACTIONS` actions do not count.
+    """
+    owners: dict[tuple[str, str, str], set[str]] = {}
+    keys: dict[str, list[tuple[str, str, str]]] = {}
+    for row in rows:
+        sha256 = row.submission.manifest.split.sha256
+        keys[row.file.name] = [
+            (sha256, entry.result.episode_id, entry.actions)
+            for entry in row.submission.episodes
+            if len(entry.actions) >= LONG_ACTIONS
+        ]
+        for key in keys[row.file.name]:
+            owners.setdefault(key, set()).add(row.file.name)
+    return {name: sum(len(owners[key]) > 1 for key in of_row) for name, of_row in keys.items()}
+
+
+LONG_ACTIONS = 20
+"""Two agents may well choose the same actions in an episode that is shorter."""
+_ORDER: tuple[Origin, ...] = ("organiser", "beacon", "authors", "private", "public")
+_TITLES: Mapping[Origin, str] = {
+    "organiser": "Sealed by an organiser",
+    "beacon": "Sealed by a later hash",
+    "authors": "Sealed by the authors alone",
+    "private": "Not public, not sealed",
+    "public": "Public",
+}
+_MEANINGS: Mapping[Origin, str] = {
+    "organiser": "An organiser made the houses from a secret and ran the agents, which could not know them.",
+    "beacon": "The houses come from a hash, made by others, that did not exist when the agent was frozen.",
+    "authors": "The houses come from a later commit of the authors: they could choose it, and nobody else drew them.",
+    "private": "Nobody can tell who knew these houses before the run.",
+    "public": (
+        "Houses and episodes are public. A replay proves what the actions achieve, and not that the agent searched: "
+        "one that repeats stored actions gets the same row. Sealed rows count."
+    ),
+}
 NOTES = (
     "Verified: every row's actions were replayed, and lead to its success, SPL and collisions; an episode that ended "
     "with an error counts as a failure, without collisions. Intervals of 95 % are over houses. Authors, ground truth "
     "and own process are what the authors declare.",
+    "Known paths: episodes in which every action is the oracle's + further successes on a path at most 5 % longer than "
+    "the shortest one + episodes of 20 actions and more with exactly the actions of another row.",
 )
 
 
@@ -116,6 +165,7 @@ def csv_of(rows: Sequence[Row]) -> str:
     stream = io.StringIO()
     writer = csv.writer(stream)
     writer.writerow(CSV_COLUMNS)
+    repeats = repeated(rows)
     for row in sorted((row for row in rows if not row.refusal), key=lambda row: (_split(row), _rank(row))):
         manifest, lines = row.submission.manifest, results_of(row.submission)
         estimates = [mean_cell(metric, lines).estimate for metric in (SUCCESS, SPL, COLLISIONS)]
@@ -123,7 +173,8 @@ def csv_of(rows: Sequence[Row]) -> str:
         writer.writerow([
             *_split(row), manifest.name, "; ".join(manifest.authors), " ".join(manifest.links), manifest.inputs.agent,
             truth_of(manifest.inputs), "yes" if manifest.inputs.isolated else "no", manifest.inputs.noise, row.episodes,
-            *("" if n is None else round(n, 6) for n in numbers), _verified(row), row.file.name,
+            *("" if n is None else round(n, 6) for n in numbers), _verified(row), row.report.origin,
+            row.report.oracle_paths, row.report.shortest_paths, repeats[row.file.name], row.file.name,
         ])  # fmt: skip
     return stream.getvalue()
 
@@ -133,7 +184,7 @@ def results_of(submission: Submission) -> list[EpisodeResult]:
     return [entry.result for entry in submission.episodes]
 
 
-def _cells(row: Row) -> list[Cell | str]:
+def _cells(row: Row, repeats: int) -> list[Cell | str]:
     manifest, lines = row.submission.manifest, results_of(row.submission)
     return [
         plain(", ".join(manifest.authors)),
@@ -143,6 +194,7 @@ def _cells(row: Row) -> list[Cell | str]:
         str(row.episodes),
         *(mean_cell(metric, lines) for metric in (SUCCESS, SPL, COLLISIONS)),
         _verified(row),
+        f"{row.report.oracle_paths} + {row.report.shortest_paths} + {repeats}",
     ]
 
 

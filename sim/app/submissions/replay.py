@@ -16,6 +16,7 @@ from sim.app.submissions.packing import places_of
 from sim.app.submissions.setting import Setting
 from sim.core.errors import EpisodeError, PhysicsError
 from sim.core.interface import Action
+from sim.env.oracle import Oracle
 from sim.env.scene import Scene
 from sim.episodes.episode import Episode
 from sim.episodes.seeds import episode_seeds
@@ -51,6 +52,8 @@ class Replay:
     """See `Entry.places_m`."""
     framed: bool
     """The true frames were rendered, so that the metrics of what was seen count."""
+    is_oracles: bool
+    """Whether every action is the one that the oracle would have chosen there."""
     fault: str
     """A sentence on why the actions could not be replayed to the end of the episode; "": they could."""
     seconds: float
@@ -119,28 +122,57 @@ def _replay(
     began_s: float,
 ) -> Replay:
     """Replays one episode; an error of the episode or the physics is its fault."""
-    fault, metrics, places = "", None, ()
+    fault, metrics, places, is_oracles = "", None, (), False
     try:
         world.reset(episode.start, conditions)
         task.begin(episode.goal, episode.start)
         if look is not None:
             task.look(look())
-        positions = np.array(list(_positions(world, task, entry, look))).reshape(-1, 2)
+        guide = _Guide(task, episode.goal)
+        positions = np.array(list(_positions(world, task, entry, look, guide))).reshape(-1, 2)
         places = places_of(positions)
-        metrics = task.metrics()
+        metrics, is_oracles = task.metrics(), guide.agrees
         if not task.done:
             fault = f"the episode has not ended after its {len(entry.actions)} actions"
     except (EpisodeError, PhysicsError) as error:
         fault = str(error).rstrip(".")
-    return Replay(episode.episode_id, metrics, places, look is not None, fault, round(time.process_time() - began_s, 4))
+    seconds = round(time.process_time() - began_s, 4)
+    return Replay(episode.episode_id, metrics, places, look is not None, is_oracles, fault, seconds)
 
 
-def _positions(world: World, task: Task, entry: Entry, look: Look | None) -> Iterator[tuple[float, float]]:
+@dataclass(frozen=True)
+class _Stage:
+    """The environment of a replay, as the oracle sees it."""
+
+    task: Task
+
+    @property
+    def scene(self) -> _Stage:
+        return self
+
+
+class _Guide:
+    """Compares actions with those of the oracle, until the first one that differs."""
+
+    def __init__(self, task: Task, goal: str) -> None:
+        self._oracle = Oracle(_Stage(task))
+        self._oracle.reset(goal, 0)
+        self.agrees = True
+
+    def compare(self, action: Action) -> None:
+        """Notes whether the oracle chooses this action where the robot is now."""
+        self.agrees = self.agrees and self._oracle.choose() == action
+
+
+def _positions(
+    world: World, task: Task, entry: Entry, look: Look | None, guide: _Guide
+) -> Iterator[tuple[float, float]]:
     """Carries out the actions and yields the robot's position after each one."""
     for action in map(Action, map(int, entry.actions)):
         if action is Action.STOP and entry.result.stop_target_xy_m is not None:
             task.stops_for(*entry.result.stop_target_xy_m)
         task.require_running()
+        guide.compare(action)
         motion = world.move(action)
         task.observe(action, motion, None if look is None else look())
         yield world.pose.x_m, world.pose.y_m

@@ -9,6 +9,7 @@ from typing import Annotated
 import msgspec
 
 from sim.app.submissions.audit import Checked, Choices, counts
+from sim.app.submissions.sealing import Origin
 from sim.app.submissions.verdicts import Verdict
 from sim.core.paths import processor
 from sim.core.reading import Count, Number, read_json
@@ -31,6 +32,12 @@ class Report(msgspec.Struct):
     is_first: bool
     nonstandard: Annotated[tuple[str, ...], msgspec.Meta(max_length=1000)]
     tolerance_m: Number
+    origin: Origin = "public"
+    """Who drew the split."""
+    oracle_paths: Count | None = None
+    """Episodes whose actions are the oracle's; None: an older version, which did not compare them."""
+    shortest_paths: Count | None = None
+    """Further successes on a path hardly longer than the shortest one (`sim.app.submissions.verdicts`)."""
 
 
 def report_of(checked: Checked, choices: Choices, verdicts: Sequence[Verdict], seconds: float) -> dict[str, object]:
@@ -48,6 +55,9 @@ def report_of(checked: Checked, choices: Choices, verdicts: Sequence[Verdict], s
         "is_first": checked.is_first,
         "nonstandard": list(checked.changes),
         "tolerance_m": choices.tolerance_m,
+        "origin": checked.origin,
+        "oracle_paths": sum(verdict.known_path == "oracle" for verdict in verdicts),
+        "shortest_paths": sum(verdict.known_path == "shortest" for verdict in verdicts),
         "draw_seed": choices.draw_seed,
         "processor": processor(),
         "seconds": round(seconds, 1),

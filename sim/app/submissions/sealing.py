@@ -17,6 +17,8 @@ from typing import Annotated, Literal
 
 import msgspec
 
+from sim.app.submissions.announcement import Commit, read_announcement
+from sim.app.submissions.announcement import digest_of as announcement_digest
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
 from sim.core.reading import Count, Name, read_json, read_text
@@ -34,6 +36,9 @@ FIRST_SEED, SEEDS = 10**9, 2**40
 TRIES = 20
 """Seeds of one house that are tried until one gives a house."""
 
+Origin = Literal["public", "private", "organiser", "beacon", "authors"]
+"""Who knew a split before the run: everybody; nobody can tell; an organiser; nobody, since a later hash of others drew
+it; nobody, but the authors could choose the later hash."""
 Digest = Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{64}\Z")]
 
 
@@ -50,17 +55,34 @@ class Seal(msgspec.Struct, forbid_unknown_fields=True):
     episodes: Count
     made_with: Annotated[dict[Name, Name], msgspec.Meta(max_length=50)]
     """Versions of the generator and of the packages on which the houses depend."""
+    announcement_sha256: Digest | None = None
+    """Hash of the announcement from which, with the beacon, the secret is derived; None: an organiser has it."""
+    beacon: Commit | None = None
+    beacon_by: Literal["others", "authors"] | None = None
+    """Who makes the beacon; `authors` could choose it."""
+
+    @property
+    def origin(self) -> Origin:
+        """Who drew the houses and episodes."""
+        if self.announcement_sha256 is None:
+            return "organiser"
+        return "beacon" if self.beacon_by == "others" else "authors"
 
 
-def seal_of(split: Split, secret: str | None) -> Seal:
+def seal_of(split: Split, secret: str | None, announced: tuple[Path, str] | None = None) -> Seal:
     """Returns the seal of a split.
+
+    Args:
+        split: the split.
+        secret: from which it was made; None: its houses come from elsewhere.
+        announced: the file of the announcement and the beacon, where the secret was derived from them.
 
     Raises:
         ConfigError: it has no episodes.
     """
     if not split.episodes:
         raise ConfigError(f"Split '{split.name}' has no episodes; `stubborn episodes` makes them.")
-    return Seal(
+    seal = Seal(
         format=FORMAT,
         name=split.name,
         split_sha256=split.sha256,
@@ -69,6 +91,30 @@ def seal_of(split: Split, secret: str | None) -> Seal:
         episodes=len(split.episodes),
         made_with=house_maker().versions(),
     )
+    if announced is not None:
+        file, seal.beacon = announced
+        seal.announcement_sha256, seal.beacon_by = announcement_digest(file), read_announcement(file).beacon_by
+    return seal
+
+
+def origin_of(split: Split, folder: Path | None) -> Origin:
+    """Returns who drew the houses of a split.
+
+    Args:
+        split: the split.
+        folder: of a split that does not ship; its seal lies next to it.
+
+    Raises:
+        ConfigError: the seal is of another split.
+    """
+    if folder is None:
+        return "public"
+    file = seal_file(folder.resolve())
+    if not file.is_file():
+        return "private"
+    seal = read_seal(file)
+    require_sealed(split, seal)
+    return seal.origin
 
 
 def seal_file(folder: Path) -> Path:

@@ -28,6 +28,8 @@ STEPS_OF_RENDERER = 1
 AREA_OF_RENDERER = 0.01
 """... and the seen area by this share."""
 MIN_PATH_M = 0.5
+LONG_M, DIRECT = 3.0, 1.05
+"""A path of at least this length that is longer than the shortest one by at most this factor repeats a known one."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,9 @@ class Verdict:
     """The differences and their meaning; "" for an equal episode."""
     largest: float
     """Largest difference of a length, metres."""
+    known_path: Literal["", "oracle", "shortest"] = ""
+    """`oracle`: the actions are the oracle's, one by one; `shortest`: a success on a path hardly longer than the
+    shortest one. An agent that has never seen the house takes such a path where it sees the goal early."""
 
 
 def judge(entry: Entry, replay: Replay | None, *, tolerance_m: float = TOLERANCE_M) -> Verdict:
@@ -57,13 +62,23 @@ def judge(entry: Entry, replay: Replay | None, *, tolerance_m: float = TOLERANCE
     if replay.fault or replay.metrics is None:
         text = f"{replay.fault}. The result does not come from these actions in this episode"
         return Verdict(episode_id, "different", replay.framed, text, math.inf)
+    known = _known_path(replay.metrics, is_oracles=replay.is_oracles)
     differing, largest, near = _differences(entry, replay.metrics, replay.framed, tolerance_m)
     if differing:
         text = f"{'; '.join(differing)}. {_meaning(entry, replay, tolerance_m)}"
-        return Verdict(episode_id, "different", replay.framed, text, largest)
+        return Verdict(episode_id, "different", replay.framed, text, largest, known)
     if near:
-        return Verdict(episode_id, "within tolerance", replay.framed, "; ".join(near), largest)
-    return Verdict(episode_id, "equal", replay.framed, "", 0.0)
+        return Verdict(episode_id, "within tolerance", replay.framed, "; ".join(near), largest, known)
+    return Verdict(episode_id, "equal", replay.framed, "", 0.0, known)
+
+
+def _known_path(metrics: EpisodeMetrics, *, is_oracles: bool) -> Literal["", "oracle", "shortest"]:
+    """Returns the known path that the actions of an episode repeat; see `Verdict.known_path`."""
+    if is_oracles:
+        return "oracle"
+    shortest_m = metrics.shortest_path or 0.0
+    direct = shortest_m >= LONG_M and metrics.path_length <= DIRECT * shortest_m
+    return "shortest" if metrics.success and direct else ""
 
 
 def _differences(

@@ -93,7 +93,7 @@ def sample_views(
     name = scene.world.house.name
     if len(cells) == 0:
         raise HouseError(f"House '{name}': the robot fits nowhere, so it cannot be viewed.")
-    _start_world(scene, space, cells, rng)
+    start_world(scene, space, cells, rng)
     if aim is not None:
         poses = aimed_poses(scene.world, space, cells, rng, AIMS[aim])
     elif sequence is not None:
@@ -211,7 +211,7 @@ def _instance_ids(geom: NDArray[np.int32], labels: Labels) -> NDArray[np.uint16]
     return numbers[geom].astype(np.uint16)
 
 
-def _start_world(scene: Scene, space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> None:
+def start_world(scene: Scene, space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> None:
     """Starts the world at a random free position where the body fits, so that movable objects come to rest."""
     for _ in range(MAX_TRIES):
         try:

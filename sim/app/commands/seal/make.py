@@ -1,10 +1,12 @@
-"""Makes a sealed split from a new secret: houses like those of `test`, their episodes, and the seal to be published.
+"""Makes a sealed split: houses like those of `test`, their episodes, and the seal to be published.
 
     stubborn seal make --out challenge/sealed2027 --secret-file secret.txt --houses 20 --episodes 400 --workers 4
 
 It writes the split to --out, a new secret to --secret-file (readable for its owner only), and the seal next to the
 split: `challenge/sealed2027.sealed.json`. Publish the seal; keep split and secret until the deadline. With an existing
-secret, give --from-secret.
+secret, give --from-secret. Without an organiser, the secret comes from an announcement and a later hash:
+
+    stubborn seal make --out challenge/mine --announced challenge/mine.announced.json --beacon HASH
 """
 
 from __future__ import annotations
@@ -16,6 +18,8 @@ from pathlib import Path
 from sim.app import cli
 from sim.app.commands import episodes
 from sim.app.evaluation.parallel import ordered_map
+from sim.app.submissions.announcement import Commit, read_announcement, secret_of
+from sim.app.submissions.announcement import digest_of as announcement_digest
 from sim.app.submissions.sealing import (  # fmt: skip
     LIKE,
     VERSION,
@@ -29,6 +33,7 @@ from sim.app.submissions.sealing import (  # fmt: skip
 )
 from sim.core.errors import ConfigError, HouseError
 from sim.core.files import write_atomically
+from sim.core.reading import convert
 from sim.episodes.house_list import copy_textures
 from sim.episodes.splits import Split, load_split
 from sim.houses.references import SHARED_TEXTURES
@@ -37,18 +42,22 @@ from sim.houses.writing import house_text
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Make a sealed split from a secret."""
+    """Make a sealed split from a secret, or from an announcement and a later hash."""
 
     out: cli.OutFolder
     """Folder of the split; its name is the split's, and part of the names of its episodes."""
-    secret_file: Path
+    secret_file: Path | None = None
     """File to which the new secret is written; it must not exist."""
     from_secret: bool = False
     """Take the secret that --secret-file holds already."""
+    announced: Path | None = None
+    """In place of a secret: announcement that `stubborn seal announce` wrote."""
+    beacon: str | None = None
+    """With --announced: the hash that the announcement promised, 40 hexadecimal digits."""
     houses: cli.Count = 20
-    """Number of houses."""
+    """Number of houses; an announcement has its own."""
     episodes: cli.Count = 400
-    """Number of episodes."""
+    """Number of episodes; an announcement has its own."""
     workers: cli.Count = 1
     """Number of processes."""
 
@@ -58,13 +67,43 @@ def main(args: Args) -> int:
     require_empty(args.out)
     if seal_file(args.out).exists():
         raise ConfigError(f"'{seal_file(args.out)}' exists; give a new folder.")
+    if args.announced is not None:
+        return _make_announced(args, args.announced)
+    if args.beacon is not None or args.secret_file is None:
+        raise ConfigError("Give --secret-file FILE, or --announced FILE together with --beacon HASH.")
     secret = read_secret(args.secret_file) if args.from_secret else new_secret(args.secret_file)
     split = make_split(args.out, secret, houses=args.houses, episode_count=args.episodes, workers=args.workers)
-    seal = seal_of(split, secret)
-    write_seal(seal_file(args.out), seal)
-    print(f"{args.out}: {seal.houses} houses, {seal.episodes} episodes, sha256 {seal.split_sha256}.")
+    write_seal(seal_file(args.out), seal_of(split, secret))
+    print(f"{args.out}: {args.houses} houses, {args.episodes} episodes, sha256 {split.sha256}.")
     print(f"Publish {seal_file(args.out)}; keep {args.out} and {args.secret_file} until the deadline.")
     return 0
+
+
+def _make_announced(args: Args, file: Path) -> int:
+    """Makes the split of an announcement; returns the exit status."""
+    if args.secret_file is not None or args.beacon is None:
+        raise ConfigError("--announced needs --beacon HASH and no --secret-file: the secret is derived from both.")
+    announcement = read_announcement(file)
+    if args.out.resolve().name != announcement.name:
+        raise ConfigError(f"--out must be a folder named '{announcement.name}', as '{file}' announces.")
+    split, secret = make_announced_split(args.out, file, args.beacon, workers=args.workers)
+    write_seal(seal_file(args.out), seal_of(split, secret, (file, args.beacon)))
+    print(f"{args.out}: {announcement.houses} houses, {announcement.episodes} episodes, sha256 {split.sha256}.")
+    print(f"Commit {seal_file(args.out)}, then run the agent that was frozen.")
+    return 0
+
+
+def make_announced_split(folder: Path, file: Path, beacon: str, *, workers: int) -> tuple[Split, str]:
+    """Writes the split of an announcement and a beacon; returns it with its secret.
+
+    Raises:
+        ConfigError: the announcement cannot be read, or the beacon is no hash of 40 hexadecimal digits.
+        HouseError: no seed of a house gives a house.
+    """
+    announcement, beacon = read_announcement(file), convert(beacon, Commit, where="--beacon")
+    secret = secret_of(announcement_digest(file), beacon)
+    houses, episode_count = announcement.houses, announcement.episodes
+    return make_split(folder, secret, houses=houses, episode_count=episode_count, workers=workers), secret
 
 
 def require_empty(folder: Path) -> None:

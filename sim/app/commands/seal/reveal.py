@@ -2,9 +2,11 @@
 
     stubborn seal reveal sealed2027.sealed.json --secret-file secret.txt --out sealed2027 --workers 4
     stubborn seal reveal homes.sealed.json --split homes
+    stubborn seal reveal mine.sealed.json --announced mine.announced.json --out mine --repository .
 
 The organiser publishes the secret after the deadline. Everybody can then make the split, see that it is the one that
-was sealed, and verify the submissions on it: `stubborn verify FILE --split sealed2027`.
+was sealed, and verify the submissions on it: `stubborn verify FILE --split sealed2027`. A split that was announced
+needs no secret; --repository also checks the order of the commits: agent, announcement, beacon, seal.
 """
 
 from __future__ import annotations
@@ -18,6 +20,8 @@ import tyro
 
 from sim.app import cli
 from sim.app.commands.seal.make import make_split, require_empty
+from sim.app.submissions.announcement import digest_of as announcement_digest
+from sim.app.submissions.announcement import faults_of_order, secret_of
 from sim.app.submissions.sealing import Seal, digest_of, other_versions, read_seal, read_secret, require_sealed
 from sim.core.errors import ConfigError
 from sim.episodes.splits import Split, load_split
@@ -33,8 +37,12 @@ class Args:
     """Folder of the revealed split."""
     secret_file: Path | None = None
     """In its place: file with the revealed secret, from which the split is made."""
+    announced: Path | None = None
+    """In its place: the announcement from which, with the beacon in the seal, the split is made."""
+    repository: Path | None = None
+    """With --announced: repository whose commits must have the announced order."""
     out: cli.OutFolder | None = None
-    """With --secret-file: folder of the split, which has the name in the seal."""
+    """With --secret-file or --announced: folder of the split, which has the name in the seal."""
     workers: cli.Count = 1
     """Number of processes."""
 
@@ -42,8 +50,10 @@ class Args:
 def main(args: Args) -> int:
     """Checks the split and prints the outcome; returns the exit status."""
     seal = read_seal(args.seal)
-    if (args.split is None) == (args.secret_file is None):
-        raise ConfigError("Give either --split FOLDER or --secret-file FILE.")
+    if sum(given is not None for given in (args.split, args.secret_file, args.announced)) != 1:
+        raise ConfigError("Give one of --split FOLDER, --secret-file FILE and --announced FILE.")
+    if args.announced is not None and args.repository is not None:
+        _require_order(args.announced, args.seal, seal, args.repository)
     if args.split is None:
         split = _made(args, seal)
     else:
@@ -51,20 +61,27 @@ def main(args: Args) -> int:
         require_sealed(split, seal)
     print(f"'{split.name}' is the sealed split: {seal.houses} houses, {seal.episodes} episodes.")
     if args.split is not None and seal.secret_sha256 is not None:
-        print("Only the secret (--secret-file) shows that its houses were drawn from it.")
+        print("Only the secret (--secret-file, --announced) shows that its houses were drawn from it.")
+    if seal.beacon_by == "authors":
+        print("The authors could choose the beacon: nobody else drew this split.")
     return 0
+
+
+def _require_order(announced: Path, file: Path, seal: Seal, repository: Path) -> None:
+    """Raises ConfigError where the commits of a repository do not show the announced order."""
+    faults = faults_of_order(announced, file, seal.beacon or "", repository)
+    if faults:
+        raise ConfigError(f"The order of '{file}' is not the announced one: {'; '.join(faults)}.")
+    print("Committed in the announced order: the agent, the announcement, the seal.")
 
 
 def _made(args: Args, seal: Seal) -> Split:
     """Returns the split of the secret; one that is not the sealed one is removed."""
-    assert args.secret_file is not None
     if seal.secret_sha256 is None:
         raise ConfigError(f"'{args.seal}' is the seal of houses without a secret: give their folder, --split FOLDER.")
     if args.out is None or args.out.resolve().name != seal.name:
-        raise ConfigError(f"With --secret-file, give --out with a folder named '{seal.name}', as the seal says.")
-    secret = read_secret(args.secret_file)
-    if digest_of(secret) != seal.secret_sha256:
-        raise ConfigError(f"The secret in '{args.secret_file}' is not the sealed one.")
+        raise ConfigError(f"Give --out with a folder named '{seal.name}', as the seal says.")
+    secret = _secret(args, seal)
     require_empty(args.out)
     for other in other_versions(seal):
         print(f"Made with another version: {other}. The houses may differ.", flush=True)
@@ -75,3 +92,17 @@ def _made(args: Args, seal: Seal) -> Split:
         shutil.rmtree(args.out, ignore_errors=True)
         raise
     return split
+
+
+def _secret(args: Args, seal: Seal) -> str:
+    """Returns the sealed secret, from its file or from announcement and beacon."""
+    if args.announced is not None:
+        if announcement_digest(args.announced) != seal.announcement_sha256 or seal.beacon is None:
+            raise ConfigError(f"'{args.announced}' is not the announcement of '{args.seal}'.")
+        secret = secret_of(announcement_digest(args.announced), seal.beacon)
+    else:
+        assert args.secret_file is not None
+        secret = read_secret(args.secret_file)
+    if digest_of(secret) != seal.secret_sha256:
+        raise ConfigError(f"The secret of '{args.secret_file or args.announced}' is not the sealed one.")
+    return secret

@@ -7,9 +7,9 @@ The leaves of a plant are one mesh and do not collide; the pot and the stem do.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from sim.homes.housegen.furniture.catalogue import Style
-from sim.homes.housegen.furniture.parts import darker
 from sim.homes.housegen.furniture.parts.leaves import (
     SWORD,
     Body,
@@ -23,7 +23,7 @@ from sim.homes.housegen.furniture.parts.leaves import (
     tube,
 )
 from sim.homes.housegen.furniture.shapes import Ring, loft
-from sim.homes.housegen.furniture.workbench import Workbench
+from sim.homes.housegen.furniture.workbench import Point, Workbench
 
 _ORIGIN = (0.0, 0.0, 0.0)
 _TURN = 2.4
@@ -37,6 +37,31 @@ def _pot(w: Workbench, r: float, high: float) -> None:
     shape = loft([Ring(z * high, s * r, s * r) for z, s in rings], 14, hull=True)
     w.mesh(shape, _ORIGIN, w.look("pot"))
     w.cylinder((0.0, 0.0), (high - 0.004, high + 0.004), 0.9 * r, w.look("soil"), solid=False)
+
+
+def _tuft(
+    at: Point, radius: float, count: int, width: float, reach: tuple[float, float], *, turn: float = 0.0
+) -> list[Body]:
+    """Returns leaves that point outwards from a ball.
+
+    Args:
+        at: middle of the ball.
+        radius: its radius.
+        count: number of leaves.
+        width: width of a leaf.
+        reach: where a leaf begins and ends, as shares of the radius.
+        turn: angle of the first leaf, radians.
+    """
+    leaves = []
+    for i in range(count):
+        a, up = _TURN * i + turn, math.sin(1.9 * i + turn)
+        flat = math.sqrt(1.0 - 0.8 * up * up)
+        out = (flat * math.cos(a), flat * math.sin(a), 0.85 * up)
+        near, far = ([c + d * share * radius for c, d in zip(at, out, strict=True)] for share in reach)
+        middle = [0.6 * n + 0.4 * f for n, f in zip(near, far, strict=True)]
+        path = [tuple(near), tuple(middle), (far[0], far[1], far[2] - 0.3 * width)]
+        leaves.append(blade(path, width, (1.0,)))  # type: ignore[arg-type]
+    return leaves
 
 
 def broadleaf(w: Workbench) -> None:
@@ -59,23 +84,17 @@ def tree(w: Workbench) -> None:
     r, high, tall = w.length(0.15, 0.20), w.length(0.26, 0.34), w.length(1.20, 1.65)
     _pot(w, r, high)
     crown, bark, green = w.length(0.24, 0.32), w.look("wood"), w.look("hedge")
-    fork = tall - 1.75 * crown
+    light = replace(green, texture=None)
+    fork = max(tall - 2.9 * crown, high + 0.1)
     w.rod((0.0, 0.0, high - 0.01), (0.02, 0.0, fork + 0.03), 0.018, bark)
     leaves: list[Body] = []
-    tufts = ((0.0, 0.0, 0.0, 0.78), (0.55, 0.35, -0.45, 0.5), (-0.5, 0.5, -0.2, 0.5), (0.05, -0.65, -0.3, 0.52))
+    tufts = ((0.0, 0.0, 0.0, 0.7), (0.5, 0.3, -0.7, 0.6), (-0.5, 0.4, -0.9, 0.55), (0.05, -0.6, -1.4, 0.55))
     for x, y, z, s in tufts:
         at = (x * crown, y * crown, tall - 0.85 * crown + z * crown)
         w.rod((0.02, 0.0, fork), at, 0.010, bark, solid=False)
-        w.ellipsoid(at, (s * crown, s * crown, 0.85 * s * crown), green, solid=s > 0.6)
-        for i in range(7):
-            a, up = _TURN * i + 5 * s + x, math.sin(1.9 * i + y)
-            flat = math.sqrt(1.0 - 0.8 * up * up)
-            out = (flat * math.cos(a), flat * math.sin(a), 0.85 * up)
-            near, far = ([c + d * share * s * crown for c, d in zip(at, out, strict=True)] for share in (0.8, 1.5))
-            middle = [0.6 * n + 0.4 * f for n, f in zip(near, far, strict=True)]
-            path = [tuple(near), tuple(middle), (far[0], far[1], far[2] - 0.05)]
-            leaves.append(blade(path, 0.13, (1.0,)))  # type: ignore[arg-type]
-    w.mesh(joined("leaves", leaves), _ORIGIN, darker(green, 0.72), solid=False)
+        w.ellipsoid(at, (0.6 * s * crown, 0.6 * s * crown, 0.5 * s * crown), green, solid=s > 0.6)
+        leaves += _tuft(at, s * crown, 12, 0.15, (0.5, 1.4), turn=5 * s + x)
+    w.mesh(joined("leaves", leaves), _ORIGIN, light, solid=False)
 
 
 def snake_plant(w: Workbench) -> None:
@@ -135,11 +154,14 @@ def topiary(w: Workbench) -> None:
     """Builds a clipped shrub of two balls in a footed urn."""
     r, ball = w.length(0.15, 0.19), w.length(0.18, 0.24)
     rings = [(0.0, 0.8), (0.04, 0.8), (0.06, 0.5), (0.10, 0.35), (0.17, 0.8), (0.30, 1.0), (0.31, 1.1), (0.33, 1.1)]
-    w.mesh(loft([Ring(z, s * r, s * r) for z, s in rings], 14), _ORIGIN, w.look("pot"))
+    w.mesh(loft([Ring(z, s * r, s * r) for z, s in rings], 10), _ORIGIN, w.look("pot"))
     green = w.look("hedge")
     w.cylinder((0.0, 0.0), (0.31, 0.34 + 2.6 * ball), 0.018, w.look("wood"))
-    w.ball((0.0, 0.0, 0.31 + ball), ball, green)
-    w.ball((0.0, 0.0, 0.31 + 2.55 * ball), 0.72 * ball, green)
+    leaves: list[Body] = []
+    for z, radius, count in ((0.31 + ball, ball, 29), (0.31 + 2.55 * ball, 0.72 * ball, 19)):
+        w.ball((0.0, 0.0, z), 0.94 * radius, green)
+        leaves += _tuft((0.0, 0.0, z), radius, count, 0.075, (0.8, 1.1))
+    w.mesh(joined("leaves", leaves), _ORIGIN, replace(green, texture=None), solid=False)
 
 
 def table_fern(w: Workbench) -> None:
@@ -172,20 +194,20 @@ def flower_pot(w: Workbench) -> None:
 
 
 def cactus(w: Workbench) -> None:
-    """Builds a ribbed column cactus with two arms and a flower."""
+    """Builds a cactus: three ribbed columns of different heights in one pot, and a flower."""
     r, high, tall = w.length(0.13, 0.17), w.length(0.20, 0.28), w.length(0.60, 1.10)
     _pot(w, r, high)
-    green = w.look("foliage")
-    column = [(0.0, 0.0, high + z) for z in (-0.01, 0.35 * tall, tall - 0.06, tall + 0.01, tall + 0.045)]
-    w.mesh(joined("cactus", [tube(column, (0.075, 0.085, 0.08, 0.055, 0.0), 14, groove=0.76)]), _ORIGIN, green)
-    for side, z in ((1, 0.36), (-1, 0.5)):
-        up, y = high + z * tall, side * (r - 0.01)
-        path = [(0.0, side * 0.04, up), (0.0, 0.8 * y, up + 0.015), (0.0, y, up + 0.07),
-                (0.0, y, up + 0.24 * tall), (0.0, y, up + 0.24 * tall + 0.05)]  # fmt: skip
-        w.mesh(joined("cactus", [tube(path, (0.045, 0.048, 0.05, 0.046, 0.0), 10, groove=0.74)]), _ORIGIN, green)
-    top = (0.0, 0.0, high + tall + 0.05)
-    flower = joined("flowers", [blossom(top, (0.2, 0.1, 1.0), 0.05, 6)])
-    w.mesh(flower, _ORIGIN, w.look("flower"), solid=False)
+    green, tall = w.look("foliage"), 0.72 * tall
+    for share, thick, a in ((1.0, 0.072, 0.4), (0.68, 0.058, 2.6), (0.42, 0.05, 4.6)):
+        x, y, out = math.cos(a), math.sin(a), 0.5 * r
+        grown = share * tall
+        column = [(out * x * (1 + 0.9 * t), out * y * (1 + 0.9 * t), high + t * grown) for t in (-0.02, 0.4, 0.88, 1.0)]
+        column.append((column[-1][0], column[-1][1], column[-1][2] + 0.03))
+        body = tube(column, (0.85 * thick, thick, 0.95 * thick, 0.62 * thick, 0.0), 12, groove=0.62)
+        w.mesh(joined("cactus", [body]), _ORIGIN, green)
+        if share == 1.0:
+            flower = joined("flowers", [blossom(column[-1], (0.2, 0.1, 1.0), 0.06, 6)])
+            w.mesh(flower, _ORIGIN, w.look("flower"), solid=False)
 
 
 def monstera(w: Workbench) -> None:

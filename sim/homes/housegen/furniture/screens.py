@@ -58,14 +58,14 @@ def monitor(w: Workbench) -> None:
 
 
 def tv_easel(w: Workbench) -> None:
-    """Builds a television on a wooden tripod."""
+    """Builds a television on a wooden tripod, whose legs pass behind the screen."""
     width, wood = w.width(0.95, 1.25), w.look("wood")
     z0 = w.length(0.62, 0.72)
     _panel(w, 0.0, width, (z0, z0 + 0.575 * width))
     for side in BOTH_SIDES:
-        w.rod((0.16, side * 0.36, 0.0), (-0.03, side * 0.05, z0 + 0.5), 0.018, wood)
-    w.rod((-0.34, 0.0, 0.0), (-0.035, 0.0, z0 + 0.5), 0.018, wood)
-    w.box((-0.06, -0.02), (-0.14, 0.14), (z0 + 0.15, z0 + 0.40), w.look("dark"))
+        w.rod((0.05, side * 0.40, 0.0), (-0.12, side * 0.05, z0 + 0.5), 0.018, wood)
+    w.rod((-0.42, 0.0, 0.0), (-0.12, 0.0, z0 + 0.5), 0.018, wood)
+    w.box((-0.11, -0.02), (-0.14, 0.14), (z0 + 0.15, z0 + 0.40), w.look("dark"))
 
 
 def crt(w: Workbench) -> None:

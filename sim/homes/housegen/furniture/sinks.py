@@ -11,7 +11,7 @@ from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
 from sim.homes.housegen.furniture.parts import BOTH_SIDES
 from sim.homes.housegen.furniture.shapes import Ring, loft
-from sim.homes.housegen.furniture.workbench import Workbench
+from sim.homes.housegen.furniture.workbench import Range, Workbench
 
 
 def _bowl(
@@ -38,40 +38,59 @@ def _bowl(
     w.cylinder((at[0], at[1]), (at[2] + 0.17 * high, at[2] + 0.2 * high), 0.022, w.look("chrome"), solid=False)
 
 
+def _ceramic_basin(
+    w: Workbench, x: Range, y: Range, rim: float, depth: float, look: Look, *, power: float = 4.5, taper: float = 0.8
+) -> None:
+    """Adds a basin of one piece: rounded corners, a rim with a ledge for the tap at -x, and an oval hollow.
+
+    Args:
+        w: the workbench.
+        x: back and front.
+        y: left and right.
+        rim: height of the rim.
+        depth: height of the outside.
+        look: look of the basin.
+        power: shape of its outline; 2 is an ellipse.
+        taper: size of its lower side as a share of that of its rim.
+    """
+    middle, rx, ry = 0.5 * (x[0] + x[1]), 0.5 * (x[1] - x[0]), 0.5 * (y[1] - y[0])
+    ledge = 0.05
+    hollow = [(0.0, 1.0), (-0.55, 0.88), (-0.85, 0.4)]
+    rings = [
+        Ring(rim - depth, taper * rx, taper * ry, middle - 0.5 * (1.0 - taper) * rx, power=power),
+        Ring(rim - 0.035, 0.97 * rx, 0.98 * ry, middle, power=power),
+        Ring(rim, rx, ry, middle, power=power),
+        *(
+            Ring(rim + z * depth, s * (rx - ledge - 0.015), s * (ry - 0.035), middle + ledge, power=2.8)
+            for z, s in hollow
+        ),
+    ]
+    w.mesh(loft(rings, 16), (0.0, 0.0, 0.0), look)
+    drain = rim - 0.85 * depth
+    w.cylinder((middle + ledge, 0.0), (drain, drain + 0.005), 0.022, w.look("chrome"), solid=False)
+
+
 def pedestal_sink(w: Workbench) -> None:
     """Builds a basin on a column."""
     width, depth, rim = w.width(0.50, 0.62), w.depth(0.42, 0.50), w.length(0.82, 0.86)
     white = w.look("ceramic")
-    _bowl(w, 0.5 * depth, 0.5 * width, 0.19, white, (0.0, 0.0, rim - 0.19), power=2.8, foot=0.5)
-    w.box((-0.5 * depth, -0.5 * depth + 0.09), (-0.42 * width, 0.42 * width), (rim - 0.10, rim + 0.012), white)
-    w.mesh(
-        loft(
-            [
-                Ring(0.0, 0.12, 0.14, -0.04),
-                Ring(0.05, 0.09, 0.11, -0.04),
-                Ring(0.5, 0.07, 0.09, -0.04),
-                Ring(rim - 0.15, 0.11, 0.14, -0.02),
-            ],
-            12,
-            hull=True,
-        ),
-        (0.0, 0.0, 0.0),
-        white,
-    )
-    parts.mixer_tap(w, (-0.5 * depth + 0.05, 0.0, rim + 0.012), 0.11, 0.10, w.look("chrome"))
+    x, y = parts.footprint(depth, width)
+    _ceramic_basin(w, x, y, rim, 0.16, white, taper=0.62)
+    column = [Ring(0.0, 0.09, 0.11, -0.06), Ring(0.04, 0.075, 0.09, -0.06), Ring(rim - 0.15, 0.08, 0.095, -0.05)]
+    w.mesh(loft(column, 12, hull=True), (0.0, 0.0, 0.0), white)
+    parts.mixer_tap(w, (x[0] + 0.05, 0.0, rim), 0.12, 0.13, w.look("chrome"))
 
 
 def wall_basin(w: Workbench) -> None:
-    """Builds a rectangular basin hung on the wall with a bottle trap below."""
+    """Builds a basin hung on the wall with a bottle trap below."""
     width, depth = w.width(0.45, 0.65), w.depth(0.36, 0.46)
     w.mount_height_m = 0.56
     white, chrome, z = w.look("ceramic"), w.look("chrome"), 0.28
-    parts.basin(w, (0.10, depth), (-0.5 * width, 0.5 * width), z, 0.13, 0.022, white)
-    w.box((0.0, 0.10), (-0.5 * width, 0.5 * width), (z - 0.13, z), white)
+    _ceramic_basin(w, (0.0, depth), (-0.5 * width, 0.5 * width), z, 0.14, white, taper=0.75)
     w.rod((0.24, 0.0, 0.05), (0.24, 0.0, z - 0.12), 0.018, chrome, solid=False)
     w.cylinder((0.24, 0.0), (0.0, 0.08), 0.035, chrome, solid=False)
     w.rod((0.0, 0.0, 0.06), (0.24, 0.0, 0.06), 0.015, chrome, solid=False)
-    parts.mixer_tap(w, (0.05, 0.0, z), 0.11, 0.11, chrome)
+    parts.mixer_tap(w, (0.05, 0.0, z), 0.12, 0.13, chrome)
 
 
 def inset_steel(w: Workbench) -> None:
@@ -102,21 +121,23 @@ def vessel_square(w: Workbench) -> None:
 
 
 def console_sink(w: Workbench) -> None:
-    """Builds an oval basin in a slab on four metal legs with a rail."""
+    """Builds a slab with an oval basin below it on four metal legs with a rail."""
     width, depth, rim = w.width(0.60, 0.75), w.depth(0.45, 0.52), w.length(0.82, 0.87)
     metal, white = w.look("chrome"), w.look("ceramic")
     x, y = parts.footprint(depth, width)
-    parts.basin(w, (x[0] + 0.09, x[1]), y, rim, 0.12, 0.05, white)
-    w.box((x[0], x[0] + 0.09), y, (rim - 0.06, rim), white)
-    w.legs((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (0.0, rim - 0.06), 0.025, metal, round_=True)
+    _ceramic_basin(w, x, y, rim, 0.07, white, power=6.0, taper=0.97)
+    rx, ry = 0.5 * depth, 0.5 * width
+    bowl = [Ring(rim - 0.19, rx - 0.16, ry - 0.22, 0.04), Ring(rim - 0.06, rx - 0.07, ry - 0.07, 0.03)]
+    w.mesh(loft(bowl, 14, hull=True), (0.0, 0.0, 0.0), white)
+    w.legs((x[0] + 0.04, x[1] - 0.06), (y[0] + 0.05, y[1] - 0.05), (0.0, rim - 0.06), 0.025, metal, round_=True)
     for side in BOTH_SIDES:
         w.rod(
-            (x[0] + 0.03, side * (0.5 * width - 0.03), 0.28),
-            (x[1] - 0.03, side * (0.5 * width - 0.03), 0.28),
+            (x[0] + 0.05, side * (0.5 * width - 0.06), 0.28),
+            (x[1] - 0.07, side * (0.5 * width - 0.06), 0.28),
             0.008,
             metal,
         )
-    parts.mixer_tap(w, (x[0] + 0.045, 0.0, rim), 0.13, 0.12, metal)
+    parts.mixer_tap(w, (x[0] + 0.05, 0.0, rim), 0.14, 0.15, metal)
 
 
 def inset_stone(w: Workbench) -> None:
@@ -132,8 +153,12 @@ def utility(w: Workbench) -> None:
     half, rim = 0.5 * w.width(0.50, 0.60), w.length(0.84, 0.88)
     depth, white, metal = w.depth(0.46, 0.52), w.look("ceramic"), w.look("metal")
     x = (-0.5 * depth, 0.5 * depth)
-    parts.basin(w, x, (-half, half), rim, 0.34, 0.03, white)
-    w.legs((x[0] + 0.02, x[1] - 0.02), (-half + 0.02, half - 0.02), (0.0, rim - 0.33), 0.03, metal)
+    rx, lip = 0.5 * depth, 0.05
+    tub = [Ring(rim - 0.34, 0.84 * rx, 0.84 * half, power=6), Ring(rim - lip, 0.92 * rx, 0.93 * half, power=6)]
+    tub += [Ring(z, rx, half, power=6) for z in (rim - lip, rim)]
+    tub += [Ring(rim, rx - 0.035, half - 0.035, power=6), Ring(rim - 0.3, 0.8 * rx, 0.8 * half, power=6)]
+    w.mesh(loft(tub, 16), (0.0, 0.0, 0.0), white)
+    w.legs((x[0] + 0.05, x[1] - 0.05), (-half + 0.05, half - 0.05), (0.0, rim - 0.33), 0.03, metal)
     for side in BOTH_SIDES:
         w.box(
             (x[0] + 0.03, x[1] - 0.03),

@@ -7,7 +7,7 @@ Sizes follow Panero & Zelnik (sofa depth 0.81-1.02 m, seat 0.38-0.45 m high, 0.5
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
@@ -284,17 +284,18 @@ def camelback(w: Workbench) -> None:
     """Builds a sofa with a curved wooden crest that rises in the middle, slender legs and thin arms."""
     s, cloth, wood = _measure(w, (0.10, 0.13), (0.86, 0.96)), w.look("fabric"), w.look("wood")
     x0, half = -0.5 * s.depth, 0.5 * s.width
-    w.mesh(chamfered_box((s.depth - 0.04, s.width - 0.04, 0.14), 0.03), (0.0, 0.0, s.seat - 0.16), cloth)
+    w.mesh(chamfered_box((s.depth - 0.04, s.width - 0.04, 0.18), 0.03), (0.0, 0.0, s.seat - 0.20), cloth)
     crest = [(half * t, s.height - 0.03 - 0.20 * t * t) for t in (-1.0, -0.72, -0.4, 0.0, 0.4, 0.72, 1.0)]
     back = [(x, y, z) for x in (0.0, 0.12) for y, z in (*crest, (-half, s.seat - 0.2), (half, s.seat - 0.2))]
     w.mesh(named_mesh("crest", back), (x0, 0.0, 0.0), cloth)
     for a, b in itertools.pairwise(crest):
-        w.rod((x0 + 0.06, *a), (x0 + 0.06, *b), 0.03, wood, round_ends=True)
+        w.rod((x0 + 0.06, *a), (x0 + 0.06, *b), 0.025, wood, round_ends=True)
     for side in BOTH_SIDES:
         y = side * (half - 0.5 * s.arm)
-        w.box((x0 + 0.06, 0.5 * s.depth - 0.12), (y - 0.05, y + 0.05), (s.seat - 0.1, 0.62), cloth)
-        w.bar((x0 + 0.08, y, 0.64), (0.5 * s.depth - 0.08, y, 0.62), 0.06, 0.035, wood)
-    _seat_cushions(w, s, cloth, 0.12)
+        w.box((x0 + 0.06, 0.5 * s.depth - 0.05), (y - 0.05, y + 0.05), (s.seat - 0.22, 0.60), cloth)
+        w.rod((x0 + 0.08, y, 0.61), (0.5 * s.depth - 0.06, y, 0.60), 0.075, cloth, round_ends=True)
+    _seat_cushions(w, s, cloth, 0.14)
+    _back_cushions(w, replace(s, height=s.height - 0.06), cloth, 0.12)  # below the crest
     w.legs((x0 + 0.03, 0.5 * s.depth - 0.05), (-half + 0.05, half - 0.05), (0.0, s.seat - 0.22), 0.045, wood)
     _loose_cushions(w, s, s.back)
 

@@ -95,11 +95,11 @@ def close_coupled(w: Workbench) -> None:
 
 
 def wall_hung(w: Workbench) -> None:
-    """Builds a pan on a boxed-in cistern with a flush plate."""
+    """Builds a pan on a slim sanitary module, which holds the cistern, with a flush plate."""
     white, half, seat = w.look("ceramic"), 0.5 * w.length(0.35, 0.38), w.length(0.40, 0.43)
     boxed = w.look("lacquer")
-    w.box((-0.36, -0.18), (-0.42, 0.42), (0.0, 1.12), boxed)
-    w.box((-0.18, -0.172), (-0.12, 0.12), (0.90, 1.06), w.look("chrome"), solid=False)
+    w.box((-0.36, -0.18), (-0.25, 0.25), (0.0, 1.0), boxed)
+    w.box((-0.18, -0.172), (-0.12, 0.12), (0.80, 0.94), w.look("chrome"), solid=False)
     profile = ((0.0, 0.42, 0.5, 0.5), (0.2, 0.68, 0.78, 0.28), (0.6, 0.92, 0.96, 0.06))
     w.box((-0.19, -0.04), (-0.8 * half, 0.8 * half), (0.16, seat - 0.025), white)
     _toilet(w, (-0.19, 0.34), half, seat, white, white, profile=profile, open_=w.chance(0.5), seat_x=-0.13, low=0.08)

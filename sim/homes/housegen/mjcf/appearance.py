@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import functools
 import math
-from collections import Counter
+from collections import defaultdict
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -38,8 +39,8 @@ def facts_of(item: Item) -> InstanceFacts:
     """Returns the name of an item and the colour and material of most of its surface."""
     if item.category in _NAMELESS and item.mount == "floor" and not item.walk_over:
         return InstanceFacts()
-    colours: Counter[str | None] = Counter()
-    words: Counter[str | None] = Counter()
+    colours: defaultdict[str | None, float] = defaultdict(float)
+    words: defaultdict[str | None, float] = defaultdict(float)
     for geom in item.geoms:
         area_m2 = _surface_m2(geom)
         words[_material_word(geom.look)] += area_m2
@@ -48,11 +49,11 @@ def facts_of(item: Item) -> InstanceFacts:
     return InstanceFacts(name, _most(colours), _most(words))  # type: ignore[arg-type]
 
 
-def _most(areas_m2: Counter[str | None]) -> str | None:
+def _most(areas_m2: Mapping[str | None, float]) -> str | None:
     """Returns the value that covers enough of the whole area."""
     if not areas_m2:
         return None
-    value, area_m2 = areas_m2.most_common(1)[0]
+    value, area_m2 = max(areas_m2.items(), key=lambda item: item[1])
     return value if area_m2 >= CLEAR_SHARE * sum(areas_m2.values()) else None
 
 

@@ -26,6 +26,7 @@ LEAF_KG_M2 = 8.0
 HINGE_DAMPING, HINGE_FRICTION_NM = 1.0, 1.0
 """Damping in N m s/rad, and friction: 1.2 N at the edge of the leaf move it. Accessible inner doors may need 22 N (ADA
 Standards for Accessible Design, 404.2.9)."""
+_HALF_WAY_M = 1e-9
 _VISUAL, _VISUAL_MESH, _COLLISION = "seen", "skin", "hit"
 """Default classes of visual-only geoms, of visual-only meshes, and of collision-only geoms."""
 _SHAPES = {
@@ -249,8 +250,12 @@ class HouseBuilder:
 
 
 def _r(value: float) -> float:
-    """Returns a value rounded to 0.1 mm, without a negative zero, for short and stable XML."""
-    return round(float(value), 4) + 0.0
+    """Returns a value rounded to 0.1 mm, without a negative zero, for short and stable XML.
+
+    Values half-way between two roundings are common, and processors compute them with other last digits: they are
+    rounded up on all.
+    """
+    return round(float(value) + _HALF_WAY_M, 4) + 0.0
 
 
 def _yaw_quat(yaw_rad: float) -> list[float]:

@@ -189,6 +189,6 @@ def _mesh_of(parts: Sequence[tuple[Geom, Facets]], look: Look) -> Geom:
         faces.append(triangles + start)
         start += len(corners)
     every = np.vstack(points)
-    middle = np.round(0.5 * (every.min(axis=0) + every.max(axis=0)), 4)
+    middle = np.round(0.5 * (every.min(axis=0) + every.max(axis=0)) + 1e-9, 4)
     mesh = mesh_shape("j", every - middle, np.vstack(faces))
     return Geom("mesh", (), (float(middle[0]), float(middle[1]), float(middle[2])), look, solid=False, mesh=mesh)

@@ -19,7 +19,7 @@ Facets = tuple[NDArray[np.float64], NDArray[np.int32]]
 
 def mesh_shape(kind: str, vertices_m: NDArray[np.float64], faces: NDArray[np.int32]) -> MeshShape:
     """Returns a mesh named after a hash of its content; vertices are rounded to 0.1 mm."""
-    vertices = np.round(np.asarray(vertices_m, dtype=np.float64), 4) + 0.0  # + 0.0 turns -0.0 into 0.0
+    vertices = np.round(np.asarray(vertices_m, dtype=np.float64) + 1e-9, 4) + 0.0  # + 0.0 turns -0.0 into 0.0
     triangles = np.asarray(faces, dtype=np.int32)
     content = np.rint(vertices * 1e4).astype("<i4").tobytes() + triangles.astype("<i4").tobytes()
     return MeshShape(f"{kind}_{hashlib.sha1(content).hexdigest()[:8]}", vertices, triangles)

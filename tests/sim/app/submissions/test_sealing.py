@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
+import re
 import stat
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from sim.app.commands.seal import make, publish, reveal
-from sim.app.submissions import sealing
+from sim.app.commands.seal import announce, make, publish, reveal
+from sim.app.submissions import announcement, sealing
 from sim.core.errors import ConfigError
 from sim.episodes.splits import load_split
 from sim.homes.housegen.splits.recipes import Recipe
@@ -86,7 +88,7 @@ def test_another_secret_or_another_name_is_refused_before_houses_are_made(tmp_pa
     cases: tuple[tuple[dict[str, Any], str], ...] = (
         ({"secret_file": secret, "out": tmp_path / "other"}, "a folder named 'tiny'"),
         ({"secret_file": secret, "out": tmp_path / "made" / "tiny"}, "is not the sealed one"),
-        ({}, "Give either"),
+        ({}, "--announced FILE"),
     )
     for options, sentence in cases:
         with pytest.raises(ConfigError, match=sentence):
@@ -119,3 +121,90 @@ def test_a_split_made_again_from_its_secret_is_the_sealed_one(
     assert "Made with another version: mujoco 1 there" in capsys.readouterr().out
     with pytest.raises(ConfigError, match=wording.IS_NOT_EMPTY):
         make.main(args)
+
+
+BEACON = "c0ffee" + "0" * 34
+
+
+def announced(tmp_path: Path, **changes: Any) -> Path:
+    """Returns the announcement of a split of one house."""
+    options: dict[str, Any] = {"agent_commit": "a" * 40, "beacon": "the first commit of tomorrow", "houses": 1}
+    options |= {"episodes": 2} | changes
+    assert announce.main(announce.Args(out=tmp_path / "mine", **options)) == 0
+    return tmp_path / "mine.announced.json"
+
+
+@pytest.mark.parametrize(
+    ("change", "part"),
+    [({"agent_commit": "HEAD"}, "agent_commit"), ({"beacon": "soon"}, "beacon"), ({"beacon_by": "me"}, "beacon_by")],
+)
+def test_an_announcement_without_a_commit_or_a_rule_is_refused(
+    tmp_path: Path, change: dict[str, Any], part: str
+) -> None:
+    with pytest.raises(ConfigError, match=part):
+        announced(tmp_path, **change)
+
+
+def test_the_secret_of_an_announced_split_depends_on_the_announcement_and_on_the_beacon(tmp_path: Path) -> None:
+    digest = announcement.digest_of(announced(tmp_path))
+    secrets = {announcement.secret_of(digest, BEACON), announcement.secret_of(digest, "0" * 40)}
+    secrets.add(announcement.secret_of("0" * 64, BEACON))
+    assert len(secrets) == 3
+
+
+@pytest.mark.slow
+def test_an_announced_split_is_made_from_the_beacon_and_again_by_everybody(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sealing, "SPLITS", {sealing.LIKE: (STUDIO,)})
+    file = announced(tmp_path, beacon_by="authors")
+    options: dict[str, Any] = {"out": tmp_path / "mine", "announced": file}
+    with pytest.raises(ConfigError, match="--beacon"):
+        make.main(make.Args(**options, beacon="tomorrow"))
+    assert make.main(make.Args(**options, beacon=BEACON)) == 0
+    split, seal = load_split(tmp_path / "mine"), tmp_path / "mine.sealed.json"
+    assert sealing.origin_of(split, tmp_path / "mine") == "authors"
+    again = tmp_path / "again" / "mine"
+    assert reveal.main(reveal.Args(seal=seal, announced=file, out=again)) == 0
+    assert load_split(again).sha256 == split.sha256
+    assert "The authors could choose the beacon" in capsys.readouterr().out
+    other = announced(tmp_path / "other")
+    with pytest.raises(ConfigError, match=re.escape(str(other))):
+        reveal.main(reveal.Args(seal=seal, announced=other, out=tmp_path / "third" / "mine"))
+
+
+def git(folder: Path, *words: str) -> str:
+    named = ("-c", "user.name=A", "-c", "user.email=a@b.c")
+    return subprocess.run(
+        ["git", "-C", str(folder), *named, *words], check=True, capture_output=True, text=True
+    ).stdout.strip()
+
+
+def committed(folder: Path, file: Path) -> str:
+    git(folder, "add", str(file))
+    git(folder, "commit", "-qm", file.name)
+    return git(folder, "rev-parse", "HEAD")
+
+
+def test_the_order_of_the_commits_is_agent_announcement_beacon_seal(tmp_path: Path) -> None:
+    git(tmp_path, "init", "-q")
+    agent, seal = tmp_path / "agent.py", tmp_path / "mine.sealed.json"
+    agent.write_text("pass")
+    seal.write_text("{}")
+    file = announced(tmp_path, agent_commit=committed(tmp_path, agent))
+    with pytest.raises(ConfigError, match=re.escape(str(file))):
+        announcement.faults_of_order(file, seal, BEACON, tmp_path)
+    committed(tmp_path, file)
+    later = tmp_path / "later.txt"
+    later.write_text("tomorrow")
+    beacon = committed(tmp_path, later)
+    committed(tmp_path, seal)
+    assert announcement.faults_of_order(file, seal, beacon, tmp_path) == []
+    assert announcement.faults_of_order(file, seal, BEACON, tmp_path) == []
+    assert len(announcement.faults_of_order(file, file, beacon, tmp_path)) == 1  # committed before the beacon
+    agent_commit = announcement.read_announcement(file).agent_commit
+    assert len(announcement.faults_of_order(file, seal, agent_commit, tmp_path)) == 1  # the beacon was there before
+    file.write_text(file.read_text() + " ")
+    committed(tmp_path, file)
+    with pytest.raises(ConfigError, match=re.escape(str(file))):
+        announcement.faults_of_order(file, seal, beacon, tmp_path)

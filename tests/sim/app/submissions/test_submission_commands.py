@@ -15,10 +15,11 @@ import pytest
 
 from sim.app.analysis.comparison import read_run
 from sim.app.commands import leaderboard, submit, verify
-from sim.app.submissions.contents import read_submission
-from sim.app.submissions.leaderboard import Row
+from sim.app.submissions.contents import Submission, read_submission
+from sim.app.submissions.leaderboard import LONG_ACTIONS, Row, repeated, tables
 from sim.app.submissions.packing import About, pack
 from sim.app.submissions.report import Report
+from sim.app.submissions.sealing import Origin
 from sim.core.errors import ConfigError
 from tests.helpers import wording
 from tests.helpers.submissions import (
@@ -144,3 +145,33 @@ def test_the_leaderboard_of_the_repository_is_that_of_its_files(
     assert leaderboard.main(leaderboard.Args(folder=tmp_path / "leaderboard")) == 0
     for name in ("table.md", "table.csv"):
         assert (tmp_path / "leaderboard" / name).read_bytes() == (shipped / name).read_bytes()
+
+
+def row_of(submission: Submission, name: str, origin: Origin) -> Row:
+    """Returns a row of fifty copies of the episodes of a submission, with this origin of its split."""
+    copies = [
+        msgspec.structs.replace(e, result=msgspec.structs.replace(e.result, episode_id=f"{e.result.episode_id}_{i}"))
+        for e in submission.episodes
+        for i in range(50)
+    ]
+    count = len(copies)
+    report = Report(
+        "0" * 64, 1, count, count, 0, 0, 0, 0, is_first=True, nonstandard=(), tolerance_m=0.01, origin=origin,
+        oracle_paths=7, shortest_paths=2,
+    )  # fmt: skip
+    return Row(Path(name), msgspec.structs.replace(submission, episodes=copies), report)
+
+
+def test_sealed_rows_are_ranked_apart_from_public_ones_and_repeated_actions_are_counted(folder: Path) -> None:
+    submission = read_submission(folder / "process.json.gz")
+    long_ones = sum(len(entry.actions) >= LONG_ACTIONS for entry in submission.episodes)
+    assert long_ones
+    inputs = msgspec.structs.replace(submission.manifest.inputs, isolated=True)
+    submission.manifest.inputs = inputs
+    twice = [row_of(submission, name, "public") for name in ("a", "b")]
+    sealed = row_of(submission, "c", "beacon")
+    shown = tables([*twice, sealed])
+    assert [table.title.split(":")[0] for table in shown] == ["Sealed by a later hash", "Public"]
+    assert [len(table.rows) for table in shown] == [1, 2]
+    assert repeated(twice) == {"a": 50 * long_ones, "b": 50 * long_ones}
+    assert repeated([sealed]) == {"c": 0}
