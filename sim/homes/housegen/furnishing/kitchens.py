@@ -27,7 +27,7 @@ HOOD_BOTTOM_M = 1.6
 LONGEST_RUN_M, LONGEST_STUDIO_RUN_M = 4.8, 3.6
 NARROW_AISLE_M = 0.8
 """Depth of the floor kept free in front of a run where `AISLE_M` is not available."""
-MAX_PLANS = 10
+MAX_PLANS = 40
 """Plans that are tried for one kitchen with each depth of the aisle."""
 _JITTER = 16
 
