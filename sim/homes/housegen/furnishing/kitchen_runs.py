@@ -114,9 +114,11 @@ TEMPLATES: Mapping[Shape, tuple[tuple[tuple[Unit, ...], ...], ...]] = MappingPro
     }
 )
 """Units of each run by the shape of the kitchen, from the corner outwards."""
+FILLED = (1.0, 0.6, 0.2)
+"""Shares of the spare length that the units take up: with another share, the cooker may stand between two windows."""
 SHORT: tuple[tuple[tuple[Unit, ...], ...], ...] = (
     ((FRIDGE, _sink(1.0, 1.3), COOKER),),
-    ((FRIDGE, Unit("sink_and_hob", 1.4, 2.2)),),
+    ((FRIDGE, Unit("sink_and_hob", 2.0, 2.4)),),
 )
 """Single runs for kitchens in which no other plan fits."""
 
@@ -135,8 +137,8 @@ def kitchen_plans(
     noise = itertools.cycle(jitter)
     scored: list[tuple[float, tuple[Run, ...]]] = []
     for shape, legs in _legs(layout, longest_m):
-        for template in TEMPLATES[shape]:
-            plan = _fitted(legs, template, appliance_widths_m)
+        for template, filled in itertools.product(TEMPLATES[shape], FILLED):
+            plan = _fitted(legs, template, appliance_widths_m, filled)
             triangle_m = work_triangle_m(layout, plan) if plan else 0.0
             if plan and MIN_TRIANGLE_M + MARGIN_M < triangle_m < MAX_TRIANGLE_M - MARGIN_M:
                 scored.append((_score(layout, shape, plan) + 1.6 * next(noise), plan))
@@ -191,9 +193,12 @@ def _score(layout: RoomLayout, shape: Shape, plan: Sequence[Run]) -> float:
 
 
 def _fitted(
-    legs: Sequence[Leg], template: Sequence[Sequence[Unit]], appliance_widths_m: Mapping[Kind, float]
+    legs: Sequence[Leg],
+    template: Sequence[Sequence[Unit]],
+    appliance_widths_m: Mapping[Kind, float],
+    filled: float = 1.0,
 ) -> tuple[Run, ...] | None:
-    """Returns the units of a template with widths that fill the legs; None if a leg is too short."""
+    """Returns the units of a template with widths that fill a share of the legs; None if a leg is too short."""
     runs = []
     for leg, units in zip(legs, template, strict=True):
         low = [appliance_widths_m.get(unit.kind, unit.low_m) for unit in units]
@@ -204,7 +209,7 @@ def _fitted(
         if slack_m < 0.0:
             return None
         stretch_m = sum(high) - sum(low)
-        share = min(1.0, slack_m / stretch_m) if stretch_m > 0.0 else 0.0
+        share = filled * min(1.0, slack_m / stretch_m) if stretch_m > 0.0 else 0.0
         widths = [
             math.floor(100.0 * (a + share * (b - a))) / 100.0 if b > a else a for a, b in zip(low, high, strict=True)
         ]
