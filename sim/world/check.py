@@ -22,6 +22,7 @@ from sim.gl import mujoco
 from sim.houses.geoms import world_boxes
 from sim.houses.house import House, Room, read_rooms
 from sim.houses.labels import Instance, Labels, collidable_geoms, cover_geoms, describe_geom, read_labels
+from sim.world.arrangement import arrangement_faults
 from sim.world.freespace import FreeSpace, connected_to
 from sim.world.plan_requirements import unmet_plan_requirements
 from sim.world.room_requirements import unmet_requirements
@@ -53,8 +54,9 @@ def check_house(
 
     Args:
         spec: the house, without a robot; it is not changed.
-        furnished: True: each room must also have the furniture of its kind (`sim.world.room_requirements`), and the
-            floor plan must keep the rules of `sim.world.plan_requirements`, as in every generated house.
+        furnished: True: each room must also have the furniture of its kind (`sim.world.room_requirements`), which must
+            stand as dwelling design wants it (`sim.world.arrangement`), and the floor plan must keep the rules of
+            `sim.world.plan_requirements`, as in every generated house.
         rule: its success distance and storey height count; the default rule when None.
         robot: its radius and height count; the default robot when None.
     """
@@ -66,6 +68,7 @@ def check_house(
     if furnished:
         faults += unmet_requirements(house.model, house.data, house.labels, house.rooms)
         faults += unmet_plan_requirements(house.model, house.data, house.labels, house.rooms)
+        faults += arrangement_faults(house.model, house.data, house.labels, house.rooms)
     if not house.rooms:
         return [*faults, "it has no room sites"]
     return faults + _unreachable(house, rule or SuccessRule(), robot or RobotModel())

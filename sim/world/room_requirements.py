@@ -1,7 +1,8 @@
 """The furniture that each kind of room of a generated house must have, and the check of it.
 
-A requirement counts instances by their mpcat40 category. An instance belongs to a room if the room's site contains the
-middle of its bounding box. The longest side of that box tells a cooker from a toaster and a dresser from a nightstand.
+A requirement counts instances by their mpcat40 category, some by their everyday name. An instance belongs to a room if
+the room's site contains the middle of its bounding box. The longest side of that box tells a cooker from a toaster and
+a dresser from a nightstand.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 
 from sim.gl import mujoco
 from sim.houses.house import Room
+from sim.houses.instance_facts import read_instance_facts
 from sim.houses.labels import Labels
 
 SITE_MARGIN_M = 0.05
@@ -29,6 +31,8 @@ class Piece:
     """mpcat40 name with underscores."""
     longest_m: float
     """Longest side of its bounding box."""
+    name: str = ""
+    """Everyday name; "" where the file does not say."""
 
 
 @dataclass(frozen=True)
@@ -43,24 +47,38 @@ class Requirement:
     """Instances do not count if their longest side is smaller."""
     from_m2: float = 0.0
     """Smallest floor area of a room to which the requirement applies."""
+    names: tuple[str, ...] = ()
+    """Everyday names that count; any when empty. An instance without a name counts by its category."""
 
     def counted(self, pieces: Iterable[Piece]) -> int:
         """Returns the number of pieces that count."""
-        return sum(piece.category in self.categories and piece.longest_m >= self.longest_m for piece in pieces)
+        return sum(
+            piece.category in self.categories
+            and piece.longest_m >= self.longest_m
+            and (not self.names or piece.name in ("", *self.names))
+            for piece in pieces
+        )
 
 
 GUEST_TOILET_M2 = 3.2
 """A bathroom below this floor area is a guest toilet, which needs no shower and no bathtub."""
-_APPLIANCES = Requirement("large appliances (fridge, cooker, hob, dishwasher ...)", ("appliances",), 2, 0.4)
+_KITCHEN = (
+    Requirement("counter", ("counter",), longest_m=0.7),
+    Requirement("sink", ("sink",)),
+    Requirement("large appliances (fridge, cooker, hob, dishwasher ...)", ("appliances",), 2, 0.4),
+    Requirement("fridge", ("appliances",), longest_m=0.4, names=("fridge",)),
+    Requirement("cooker or hob", ("appliances",), longest_m=0.4, names=("cooker", "hob")),
+)
+_USEFUL = Requirement(
+    "useful piece (console, bench, shelf, chest, hooks or mirror)",
+    ("table", "seating", "shelving", "cabinet", "chest_of_drawers", "clothes", "mirror", "stool", "chair"),
+    from_m2=8.0,
+)
 _STORAGE = ("cabinet", "chest_of_drawers", "shelving", "clothes")
 
 REQUIREMENTS: Mapping[str, tuple[Requirement, ...]] = MappingProxyType(
     {
-        "kitchen": (
-            Requirement("counter", ("counter",), longest_m=0.7),
-            Requirement("sink", ("sink",)),
-            _APPLIANCES,
-        ),
+        "kitchen": _KITCHEN,
         "bathroom": (
             Requirement("toilet", ("toilet",)),
             Requirement("sink", ("sink",)),
@@ -75,18 +93,16 @@ REQUIREMENTS: Mapping[str, tuple[Requirement, ...]] = MappingProxyType(
             Requirement("screen, fireplace or table to sit at", ("tv_monitor", "fireplace", "table")),
         ),
         "dining_room": (
-            Requirement("table", ("table",), longest_m=0.7),
+            Requirement("dining table", ("table",), longest_m=0.7, names=("dining table",)),
             Requirement("chairs", ("chair",), 2),
         ),
         "studio": (
-            Requirement("counter", ("counter",), longest_m=0.7),
-            Requirement("sink", ("sink",)),
-            _APPLIANCES,
+            *_KITCHEN,
             Requirement("bed", ("bed",)),
             Requirement("sofa or other seat", ("sofa", "seating", "chair")),
         ),
         "office": (
-            Requirement("desk", ("table",), longest_m=0.7),
+            Requirement("desk", ("table",), longest_m=0.7, names=("desk",)),
             Requirement("chair", ("chair",)),
             Requirement("shelf or cabinet", ("shelving", "cabinet", "chest_of_drawers"), longest_m=0.7),
         ),
@@ -99,13 +115,8 @@ REQUIREMENTS: Mapping[str, tuple[Requirement, ...]] = MappingProxyType(
             Requirement("wardrobe, chest, shelf or clothes rack", _STORAGE, longest_m=0.7),
             Requirement("wardrobes, chests, shelves or clothes racks", _STORAGE, 2, longest_m=0.7, from_m2=4.0),
         ),
-        "hallway": (
-            Requirement(
-                "useful piece (console, bench, shelf, chest, hooks or mirror)",
-                ("table", "seating", "shelving", "cabinet", "chest_of_drawers", "clothes", "mirror", "stool", "chair"),
-                from_m2=8.0,
-            ),
-        ),
+        "hallway": (_USEFUL,),
+        "stair_hall": (_USEFUL,),
     }
 )
 """Requirements by kind of room; the other kinds have no requirements."""
@@ -134,8 +145,12 @@ def unmet_requirements(model: mujoco.MjModel, data: mujoco.MjData, labels: Label
         data: its state; kinematics must be computed.
         labels: the labels of its geoms.
         rooms: its rooms.
+
+    Raises:
+        HouseError: the text of an instance has another form than docs/houses.md describes.
     """
     pieces: dict[str, list[Piece]] = {room.name: [] for room in rooms}
+    facts = read_instance_facts(model, labels)
     categories = {name for room in rooms for need in REQUIREMENTS.get(room.kind, ()) for name in need.categories}
     for instance in labels.instances:
         if instance.category not in categories:
@@ -143,7 +158,8 @@ def unmet_requirements(model: mujoco.MjModel, data: mujoco.MjData, labels: Label
         low, high = _box(model, data, instance.geom_ids)
         for room in rooms:
             if _holds(room, 0.5 * (low + high)):
-                pieces[room.name].append(Piece(instance.category, float((high - low).max())))
+                name = facts[instance.name].name if instance.name in facts else ""
+                pieces[room.name].append(Piece(instance.category, float((high - low).max()), name))
     return [
         f"{room.name} {clause}"
         for room in rooms

@@ -23,7 +23,7 @@ def kitchen(pieces: Mapping[str, tuple[float, float]], *, storey_m: float = 0.0)
     return house
 
 
-WHOLE = {"counter_00": (-2.0, 1.5), "sink_00": (-1.0, 0.3), "appliances_00": (0.0, 0.6), "appliances_01": (1.0, 0.6)}
+WHOLE = {"counter_00": (-2.0, 1.5), "sink_00": (-1.08, 0.3), "appliances_00": (0.0, 0.6), "appliances_01": (1.0, 0.6)}
 
 
 def faults(house: House) -> list[str]:

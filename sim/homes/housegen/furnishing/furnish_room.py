@@ -19,6 +19,9 @@ MAX_TRIES = 6
 ROUNDING_M, ROUNDING_M2 = 0.02, 0.05
 """Margins for lengths and areas, which the check of the finished house measures again on the geoms."""
 
+FLAT_LAMPS = frozenset(("bathroom", "kitchen", "hallway", "stair_hall", "laundry", "closet", "gym", "office"))
+"""Rooms without a chandelier."""
+
 
 class FurnishError(Exception):
     """A room that lacks a required piece of furniture after all tries."""
@@ -53,7 +56,7 @@ def _pieces(layout: RoomLayout) -> Iterator[Piece]:
     waiting: list[Item] = [placement.item for placement in layout.placements]
     while waiting:
         item = waiting.pop()
-        yield Piece(item.category, max(item.size_m) - ROUNDING_M)
+        yield Piece(item.category, max(item.size_m) - ROUNDING_M, item.name)
         waiting += [child.item for child in item.children]
 
 
@@ -76,10 +79,17 @@ def _hang_curtains(layout: RoomLayout, source: FurnitureSource) -> None:
 
 
 def _hang_ceiling_lamps(layout: RoomLayout, source: FurnitureSource) -> None:
-    """Hangs a lamp from the middle of the ceiling, several along a hallway."""
-    lamp = source.make("lighting", "ceiling")
-    if lamp is None or lamp.mount != "ceiling":
+    """Hangs a lamp from the middle of the ceiling, several along a hallway.
+
+    Of the three designs of a home, a flat one hangs in rooms to work and walk in.
+    """
+    designs = [source.make("lighting", "ceiling") for _ in range(3)]
+    lamps = [lamp for lamp in designs if lamp is not None and lamp.mount == "ceiling"]
+    if not lamps:
         return
+    lamp = lamps[0]
+    if layout.kind in FLAT_LAMPS:
+        lamp = min(lamps, key=lambda lamp: (lamp.name not in ("ceiling lamp", "spotlights"), lamp.size_m[2]))
     count = max(1, int(layout.inner.long_m / 4.5)) if layout.kind == "hallway" else 1
     for n in range(count):
         x, y = layout.inner.centre

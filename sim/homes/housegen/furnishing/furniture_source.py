@@ -27,7 +27,7 @@ MAX_ALIKE = 2
 SETS: Mapping[tuple[str, str | None], int] = MappingProxyType(
     {
         ("chair", "dining"): 2, ("stool", "bar"): 1, ("chest_of_drawers", "nightstand"): 3, ("table", "nightstand"): 3,
-        ("counter", "run"): 1, ("counter", "island"): 1, ("cabinet", "kitchen_wall"): 1, ("lighting", "ceiling"): 1,
+        ("counter", "run"): 1, ("counter", "island"): 1, ("cabinet", "kitchen_wall"): 1, ("lighting", "ceiling"): 3,
         ("curtain", None): 1, ("blinds", None): 1,
     }
 )  # fmt: skip

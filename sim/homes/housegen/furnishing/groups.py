@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 
+from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
 from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furnishing.placement.floor import put_against_wall, put_partly_under
@@ -15,6 +16,17 @@ from sim.homes.housegen.furnishing.placement.on_walls import hang_from_ceiling
 from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.homes.housegen.furnishing.steps import hang_above, lay_rug, place, place_beside, place_in_front, put_on_top
 from sim.homes.housegen.furniture.item import Hints, Item
+
+MIN_CHAIRS = 2
+"""Least number of chairs at a dining table; a table for which fewer fit is not placed."""
+LARGE_DINING_M2, LONG_TABLE_M = 16.0, 2.0
+"""Floor area from which a dining room gets a long table, and its length."""
+PLACE_M = 0.58
+"""Least length of table for one person: Neufert gives 0.6 m."""
+BESIDE_BED_M = 0.65
+"""Free floor along a long side of a bed; the check of the finished house asks for a little less."""
+NIGHTSTAND_M = 0.6
+"""Length at the head of a bed where a nightstand may stand."""
 
 Seat = tuple[float, float, float]
 """x, y where a chair meets the table's edge, in the table's frame, and the heading of its front."""
@@ -25,7 +37,6 @@ def bed_group(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> Pl
     bed = _place_bed(layout, source, large=large)
     if bed is None:
         return None
-    _place_nightstands(layout, source, bed)
     if source.chance(0.5):
         bench = source.make("seating", "plain")
         if bench is not None and bench.size_m[1] <= bed.item.size_m[1] + 0.1:
@@ -41,18 +52,36 @@ def bed_group(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> Pl
 
 
 def _place_bed(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> Placement | None:
-    """Places a bed against a wall, a narrower one where a wide one does not fit, with less and less wall next to it."""
-    widths_m = (source.pick((1.4, 1.6, 1.8)), 1.2, 0.9) if large else (0.9, 0.9, 1.2)
+    """Places a bed against a wall, with its nightstands: a narrower one where a wide one does not fit.
+
+    A wide bed has free floor along both long sides, a bed of up to 1.4 m along one.
+    """
+    widths_m = (source.pick((1.4, 1.6, 1.8)), 1.4, 1.2, 0.9) if large else (0.9, 0.9, 1.2)
     for width_m in widths_m:
         item = source.make("bed", width_m=width_m)
         if item is None:
             return None
-        for beside_m in (0.55, 0.3, 0.0):
-            along = "middle" if beside_m else "any"
+        for free_sides in ((1.0, -1.0), (1.0,), (-1.0,)):
+            if len(free_sides) == 1 and width_m > 1.4:
+                continue
+            before = layout.snapshot()
+            along, beside_m = ("middle", BESIDE_BED_M) if len(free_sides) > 1 else ("corner", 0.0)
             bed = put_against_wall(layout, source.rng, item, along=along, front_m=0.6, beside_m=beside_m)
-            if bed is not None:
+            zones = [_beside(bed, towards) for towards in free_sides] if bed is not None else []
+            if bed is not None and all(layout.is_zone_free(zone) for zone in zones):
+                _place_nightstands(layout, source, bed)
+                layout.reserve(bed, zones)
                 return bed
+            layout.restore(before)
     return None
+
+
+def _beside(bed: Placement, towards: float) -> Rect:
+    """Returns the floor along a long side of a bed, from where a nightstand ends to the foot."""
+    depth_m, width_m = bed.item.size_m[:2]
+    x0, y0 = bed.to_world(NIGHTSTAND_M - depth_m / 2, towards * width_m / 2)
+    x1, y1 = bed.to_world(depth_m / 2, towards * (width_m / 2 + BESIDE_BED_M))
+    return Rect(min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1))
 
 
 def _place_nightstands(layout: RoomLayout, source: FurnitureSource, bed: Placement) -> None:
@@ -72,8 +101,9 @@ def dining_group(
     layout: RoomLayout, source: FurnitureSource, *, around_m: float = 0.75, near: tuple[float, float] | None = None
 ) -> Placement | None:
     """Places a table with chairs at its sides, a lamp above it and perhaps a rug under it."""
-    chair = source.make("chair", "dining")
-    for width_m, least in ((None, 0.65), (1.3, 0.7), (0.85, 0.0)):
+    chair, before = source.make("chair", "dining"), layout.snapshot()
+    long_m = LONG_TABLE_M if layout.kind == "dining_room" and layout.inner.area_m2 > LARGE_DINING_M2 else None
+    for width_m, least in ((long_m, 0.65), (1.3, 0.7), (0.85, 0.0)):
         hints: Hints = {"width_m": width_m} if width_m else {}
         item = source.make("table", "dining", **hints)
         if item is None or chair is None:
@@ -86,8 +116,9 @@ def dining_group(
             break
     else:
         return None
-    for seat in seats:
-        _put_chair(layout, source, table, chair, seat)
+    if sum(_put_chair(layout, source, table, chair, seat) for seat in seats) < MIN_CHAIRS:
+        layout.restore(before)
+        return None
     put_on_top(layout, source, table, ("objects", "plant", "objects"), (0.6, 0.25, 0.3))
     lamp = source.make("lighting", "ceiling")
     if lamp is not None and lamp.mount == "ceiling":
@@ -100,14 +131,16 @@ def dining_group(
 
 def breakfast_group(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     """Places a small table against a wall with chairs at its free sides."""
-    chair = source.make("chair", "dining")
+    chair, before = source.make("chair", "dining"), layout.snapshot()
     table = place(layout, source, "table", "dining", front_m=0.6, width_m=0.95, depth_m=0.7)
     if chair is None or table is None:
         return None
     layout.release_zones(table)
     depth, width = table.item.size_m[:2]
-    for seat in ((0.0, width / 2, -math.pi / 2), (0.0, -width / 2, math.pi / 2), (depth / 2, 0.0, math.pi)):
-        _put_chair(layout, source, table, chair, seat)
+    seats = ((0.0, width / 2, -math.pi / 2), (0.0, -width / 2, math.pi / 2), (depth / 2, 0.0, math.pi))
+    if sum(_put_chair(layout, source, table, chair, seat) for seat in seats) < MIN_CHAIRS:
+        layout.restore(before)
+        return None
     put_on_top(layout, source, table, ("objects", "plant"), (0.6, 0.25))
     return table
 
@@ -119,34 +152,37 @@ def _seats(source: FurnitureSource, table: Item, chair: Item) -> list[Seat]:
         quarters = (0.0, math.pi / 2, math.pi, -math.pi / 2)
         return [(math.cos(a) * depth / 2, math.sin(a) * depth / 2, a + math.pi) for a in quarters]
     seats: list[Seat] = []
-    count = max(1, min(4, int((width - 0.25) / (chair.size_m[1] + 0.14))))
+    count = max(1, min(4, int((width + 0.02) / max(PLACE_M, chair.size_m[1] + 0.06))))
     for n in range(count):
-        y = (n - 0.5 * (count - 1)) * (width - 0.2) / count
+        y = (n - 0.5 * (count - 1)) * (width - 0.06) / count
         seats += [(depth / 2, y, math.pi), (-depth / 2, y, 0.0)]
     if width > 1.7 and source.chance(0.5):
         seats += [(0.0, width / 2, -math.pi / 2), (0.0, -width / 2, math.pi / 2)]
     return seats
 
 
-def _put_chair(layout: RoomLayout, source: FurnitureSource, table: Placement, chair: Item, seat: Seat) -> None:
-    """Puts a chair at its seat, a little under the table, sometimes slightly turned."""
+def _put_chair(layout: RoomLayout, source: FurnitureSource, table: Placement, chair: Item, seat: Seat) -> bool:
+    """Puts a chair at its seat, a little under the table, sometimes slightly turned; False if it does not fit."""
     x, y, turn = seat
     out_m = chair.size_m[0] / 2 - 0.14
     place_xy = table.to_world(x - out_m * math.cos(turn), y - out_m * math.sin(turn))
     askew_rad = source.uniform(-0.12, 0.12) if source.chance(0.4) else 0.0
-    put_partly_under(layout, chair, table, *place_xy, table.placed.yaw_rad + turn + askew_rad)
+    return put_partly_under(layout, chair, table, *place_xy, table.placed.yaw_rad + turn + askew_rad) is not None
 
 
 def desk_group(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     """Places a desk against a wall with a chair, a monitor, a lamp and objects."""
+    before = layout.snapshot()
     desk = place(layout, source, "table", "desk", front_m=0.85)
-    if desk is None:
+    chair = source.make("chair", "office") or source.make("chair", "dining")
+    if desk is None or chair is None:
         return None
     layout.release_zones(desk)
-    chair = source.make("chair", "office") or source.make("chair", "dining")
-    if chair is not None:
-        x, y = desk.to_world(desk.item.size_m[0] / 2 + chair.size_m[0] / 2 - 0.15, 0.0)
-        put_partly_under(layout, chair, desk, x, y, desk.placed.yaw_rad + math.pi + source.uniform(-0.2, 0.2))
+    x, y = desk.to_world(desk.item.size_m[0] / 2 + chair.size_m[0] / 2 - 0.15, 0.0)
+    yaw_rad = desk.placed.yaw_rad + math.pi + source.uniform(-0.2, 0.2)
+    if put_partly_under(layout, chair, desk, x, y, yaw_rad) is None:
+        layout.restore(before)
+        return None
     for n in range(3):
         monitor = source.make("tv_monitor", "monitor", fresh=n > 0)
         if monitor is None or monitor.mount != "top":

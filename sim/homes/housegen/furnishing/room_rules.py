@@ -63,12 +63,12 @@ def _place_wardrobe(layout: RoomLayout, source: FurnitureSource) -> Placement | 
 
 def _living_room(layout: RoomLayout, source: FurnitureSource) -> None:
     area = layout.inner.area_m2
-    if source.chance(0.7):
+    if sofa_group(layout, source) is None:
+        armchair_circle(layout, source)
+    if source.chance(0.5) and not any(p.item.category == "fireplace" for p in layout.placements):
         hearth = place(layout, source, "fireplace", along="middle", front_m=0.8, tries=3)
         if hearth is not None:
             hang_above(layout, source, hearth, "picture" if source.chance(0.6) else "mirror")
-    if sofa_group(layout, source) is None and reading_corner(layout, source) is None:
-        place(layout, source, "seating", "bench", "ottoman", front_m=0.4)
     _second_groups(layout, source)
     if area > 20 or source.chance(0.4):
         place(layout, source, "shelving", "bookcase", front_m=0.6)
@@ -137,6 +137,14 @@ def _hallway(layout: RoomLayout, source: FurnitureSource) -> None:
 
 
 def _stair_hall(layout: RoomLayout, source: FurnitureSource) -> None:
+    """Places coat hooks, a console or a chest, a bench and a plant around the stairs."""
+    hang(layout, source, "clothes", "hooks")
+    board = place(layout, source, *source.pick((("table", "console"), _DRESSER, ("cabinet", "sideboard"))), front_m=0.9)
+    if board is not None:
+        put_on_top(layout, source, board, ("objects", "plant", "lighting"), (0.6, 0.4, 0.4))
+        hang_above(layout, source, board, "mirror")
+    place(layout, source, "seating", "bench", front_m=0.7, tries=3)
+    place(layout, source, "plant", "floor", along="corner", front_m=0.0)
     _extras(layout, source, plants=0.5, pictures=(1, 2), lamp=False)
 
 

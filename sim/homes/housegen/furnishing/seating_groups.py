@@ -6,6 +6,7 @@ Each function puts its group into a room and returns its main item, or None if t
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, SIDES, Side
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
@@ -16,18 +17,27 @@ from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
 from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.homes.housegen.furnishing.placement.walls import WALL_GAP_M
 from sim.homes.housegen.furnishing.steps import hang_above, lay_rug, place, place_beside, place_in_front, put_on_top
-from sim.homes.housegen.furniture.item import Item
+from sim.homes.housegen.furniture.item import Hints, Item
+
+VIEWING_M, FOCUS_DEPTH_M, BEHIND_M = (2.4, 3.2), 0.45, 0.9
+"""Distance from a sofa to what it faces, the usual depth of that, and the least free floor behind a sofa."""
 
 
 def sofa_group(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
-    """Places a sofa facing a screen, with a low table on a rug between them and armchairs at its ends."""
-    item = source.make("sofa")
-    if item is None:
-        return None
-    sofa = _place_sofa(layout, source, item)
+    """Places a sofa facing a screen or a fireplace, with a low table on a rug between them and armchairs at its ends.
+
+    Where no wall opposite has room for either, two armchairs face the sofa.
+    """
+    sofa = _sofa_with_focus(layout, source)
+    faces_seats = sofa is None
+    for width_m in (None, 1.5) if sofa is None else ():
+        hints: Hints = {"width_m": width_m} if width_m else {}
+        item = source.make("sofa", **hints)
+        sofa = _place_sofa(layout, source, item, _sides(layout, source)) if item is not None else None
+        if sofa is not None:
+            break
     if sofa is None:
-        return put_against_wall(layout, source.rng, item, front_m=0.6)
-    _place_screen(layout, source, sofa)
+        return None
     low_table = source.make("table", "coffee")
     if low_table is not None:
         layout.release_zones(sofa)
@@ -35,32 +45,88 @@ def sofa_group(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
         if table is not None:
             put_on_top(layout, source, table, ("objects", "plant", "objects"), (0.6, 0.3, 0.3))
     ahead_m = sofa.item.size_m[0] / 2 + 0.65
-    if source.chance(0.8):
-        size_m = (1.7, 2.5) if layout.inner.area_m2 > 18 else None
-        x, y = sofa.to_world(ahead_m + 0.15, 0.0)
-        lay_rug(layout, source, x, y, sofa.placed.yaw_rad, runner=False, size_m=size_m)
-    _place_armchairs(layout, source, sofa, ahead_m + 0.1)
+    x, y = sofa.to_world(ahead_m + 0.15, 0.0)
+    for size_m in ((1.7, 2.5), (1.4, 2.0)):
+        if lay_rug(layout, source, x, y, sofa.placed.yaw_rad, runner=False, size_m=size_m):
+            break
+    if not (faces_seats and _place_opposite(layout, source, sofa)):
+        _place_armchairs(layout, source, sofa, ahead_m + 0.1)
     _place_side_table(layout, source, sofa)
     if source.chance(0.5):
         hang_above(layout, source, sofa, "picture")
     return sofa
 
 
-def _place_sofa(layout: RoomLayout, source: FurnitureSource, item: Item) -> Placement | None:
-    """Places a sofa in the middle of a long wall with a long wall opposite, or away from it in a deep room."""
+def _sofa_with_focus(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
+    """Places a sofa and the fireplace or the screen that it faces, a short sofa where no long one fits."""
+    hearth_first = layout.kind == "living_room" and source.chance(0.35)
+    for width_m in (None, None, 1.5):
+        hints: Hints = {"width_m": width_m} if width_m else {}
+        item = source.make("sofa", fresh=True, **hints)
+        if item is None:
+            return None
+        for side in _sides(layout, source):
+            before = layout.snapshot()
+            sofa = _place_sofa(layout, source, item, [side])
+            if sofa is not None and (
+                (hearth_first and _place_hearth(layout, source, sofa)) or _place_screen(layout, source, sofa)
+            ):
+                return sofa
+            layout.restore(before)
+    return None
+
+
+def _sides(layout: RoomLayout, source: FurnitureSource) -> list[Side]:
+    """Returns the walls for a sofa: long ones first that have a long wall without a window opposite."""
 
     def score(side: Side) -> float:
-        opposite_m = min(layout.walls.longest_stretch_m(OPPOSITE[side]), 2.5)
-        return layout.walls.longest_stretch_m(side) + opposite_m + source.uniform(0.0, 1.5)
+        opposite = OPPOSITE[side]
+        opposite_m = min(layout.walls.longest_stretch_m(opposite), 2.5)
+        lo, hi = layout.inner.span(opposite)
+        window = layout.walls.has_window(opposite, (0.5 * (lo + hi) - 0.6, 0.5 * (lo + hi) + 0.6))
+        return layout.walls.longest_stretch_m(side) + opposite_m - 1.5 * window + source.uniform(0.0, 1.5)
 
-    for side in sorted(SIDES, key=score, reverse=True):
+    return sorted(SIDES, key=score, reverse=True)
+
+
+def _place_sofa(layout: RoomLayout, source: FurnitureSource, item: Item, sides: Sequence[Side]) -> Placement | None:
+    """Places a sofa in the middle of the first wall that fits; in a deep room away from it, nearer to what it faces."""
+    for side in sides:
         depth_m = layout.inner.width_m if side in ("east", "west") else layout.inner.depth_m
-        spare_m = depth_m - 3.7
-        gap_m = WALL_GAP_M if spare_m < 1.0 or source.chance(0.6) else min(spare_m, source.uniform(0.9, 1.4))
+        gap_m = depth_m - item.size_m[0] - FOCUS_DEPTH_M - source.uniform(*VIEWING_M)
+        if gap_m < BEHIND_M or (depth_m < 5.5 and source.chance(0.6)):
+            gap_m = WALL_GAP_M
         sofa = put_against_wall(layout, source.rng, item, sides=[side], along="middle", front_m=1.0, gap_m=gap_m)
         if sofa is not None:
             return sofa
     return None
+
+
+def _place_hearth(layout: RoomLayout, source: FurnitureSource, sofa: Placement) -> bool:
+    """Places a fireplace opposite the sofa, with a screen, a picture or a mirror above it."""
+    hearth = source.make("fireplace")
+    if hearth is None or sofa.side is None:
+        return False
+    side = OPPOSITE[sofa.side]
+    placed = put_near(layout, hearth, side, 0.5 * sum(sofa.rect.span(side)), front_m=0.8, slide_m=0.6)
+    if placed is None:
+        return False
+    screen = source.make("tv_monitor", "tv_wall")
+    bottom_m = max(1.1, hearth.size_m[2] + 0.12)
+    if screen is None or not _hang_screen(layout, source, screen, side, placed, bottom_m):
+        hang_above(layout, source, placed, "picture" if source.chance(0.6) else "mirror")
+    return True
+
+
+def _place_opposite(layout: RoomLayout, source: FurnitureSource, sofa: Placement) -> bool:
+    """Places two armchairs that face the sofa."""
+    chair = source.make("chair", "arm")
+    if chair is None:
+        return False
+    ahead_m = sofa.item.size_m[0] / 2 + 1.35 + chair.size_m[0] / 2
+    across_m = chair.size_m[1] / 2 + 0.12
+    spots = [sofa.to_world(ahead_m, sign * across_m) for sign in (1.0, -1.0)]
+    return sum(put_at(layout, chair, x, y, sofa.placed.yaw_rad + math.pi) is not None for x, y in spots) > 0
 
 
 def _place_armchairs(layout: RoomLayout, source: FurnitureSource, sofa: Placement, ahead_m: float) -> None:
@@ -83,39 +149,39 @@ def _place_side_table(layout: RoomLayout, source: FurnitureSource, sofa: Placeme
             put_on_top(layout, source, table, ("lighting", "plant"), (0.6, 0.3))
 
 
-def _place_screen(layout: RoomLayout, source: FurnitureSource, sofa: Placement) -> None:
-    """Places a screen opposite the sofa: on a low cabinet, on the wall above it, or on a stand of its own."""
+def _place_screen(layout: RoomLayout, source: FurnitureSource, sofa: Placement) -> bool:
+    """Places a screen opposite the sofa, not before a window: on a low cabinet, above it on the wall, or on a stand."""
     if sofa.side is None:
-        return
-    side = OPPOSITE[sofa.side]
+        return False
+    side, before = OPPOSITE[sofa.side], layout.snapshot()
     middle = 0.5 * sum(sofa.rect.span(side))
     item = source.make("cabinet", "media", "sideboard")
     cabinet = put_near(layout, item, side, middle, front_m=0.5) if item is not None else None
+    if cabinet is not None and layout.walls.has_window(side, cabinet.rect.span(side)):
+        layout.restore(before)
+        cabinet = None
     mounts = ["wall", "top"] if cabinet is None or source.chance(0.4) else ["top", "wall", "wall"]
     for mount in mounts:
         screen = source.make("tv_monitor", "tv_wall" if mount == "wall" else "tv")
         if screen is None or screen.mount != mount:
             continue
-        if mount == "wall" and _hang_screen(layout, source, screen, side, middle, cabinet):
-            return
-        if mount == "top" and _put_screen(layout, source, screen, cabinet):
-            return
+        if mount == "wall":
+            bottom_m = max(0.85, (cabinet.item.size_m[2] + 0.12) if cabinet else 0.95)
+            if _hang_screen(layout, source, screen, side, cabinet or sofa, bottom_m):
+                return True
+        elif cabinet is not None and put_on_surface(layout, source.rng, cabinet, screen, face=0.0, back=True):
+            return True
     floor_screen = source.make("tv_monitor", "tv_floor")
-    if floor_screen is not None and floor_screen.mount == "floor":
-        put_near(layout, floor_screen, side, middle, front_m=0.4, slide_m=1.5)
-
-
-def _put_screen(layout: RoomLayout, source: FurnitureSource, screen: Item, cabinet: Placement | None) -> bool:
-    """Puts a screen on the cabinet, at its rear edge, if there is one."""
-    return cabinet is not None and put_on_surface(layout, source.rng, cabinet, screen, face=0.0, back=True)
+    if floor_screen is None or floor_screen.mount != "floor":
+        return False
+    return put_near(layout, floor_screen, side, middle, front_m=0.4) is not None
 
 
 def _hang_screen(
-    layout: RoomLayout, source: FurnitureSource, screen: Item, side: Side, middle: float, cabinet: Placement | None
+    layout: RoomLayout, source: FurnitureSource, screen: Item, side: Side, host: Placement, bottom_m: float
 ) -> bool:
-    """Hangs a screen on a wall, above the cabinet if there is one."""
-    at = middle if cabinet is None else 0.5 * sum(cabinet.rect.span(side))
-    bottom_m = max(0.85, (cabinet.item.size_m[2] + 0.12) if cabinet else 0.95)
+    """Hangs a screen on a wall in line with another item."""
+    at = 0.5 * sum(host.rect.span(side))
     return hang_on_wall(layout, source.rng, screen, sides=[side], at=at, bottom_m=bottom_m) is not None
 
 

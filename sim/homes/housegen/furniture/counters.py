@@ -96,7 +96,7 @@ def open_run(w: Workbench) -> None:
 
 
 def slab_run(w: Workbench) -> None:
-    """Builds a modern run with handleless drawers in two tiers, a thick top and its own splashback."""
+    """Builds a modern run with handleless drawers in two tiers, a thick top and a low upstand."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.64), w.height(0.89, 0.93)
     front, top = w.look("lacquer") if w.chance(0.5) else w.look("wood"), w.look("stone")
     x, y = parts.footprint(depth, width)
@@ -104,7 +104,7 @@ def slab_run(w: Workbench) -> None:
     under, face = height - _TOP, x[1] - 0.03
     _run_base(w, (x[0], face), y, under, w.look("dark"), hole)
     parts.worktop(w, x, y, (height - _TOP, height), top, hole)
-    w.box((x[0], x[0] + 0.018), y, (height, height + 0.12), top)
+    w.box((x[0], x[0] + 0.018), y, (height, height + 0.045), top)
     count = max(1, round(width / 0.9))
     pitch = width / count
     split = 0.11 + 0.62 * (under - 0.11)

@@ -17,6 +17,9 @@ from sim.homes.housegen.structure.parts import (
     visual_boxes,
 )
 
+SADDLE_M = (0.09, 0.003)
+"""Width and height of the strip that covers the joint of two floors in a doorway; it does not collide."""
+
 
 def place_in_wall(item: Item, hole: Opening) -> PlacedItem:
     """Returns an item that was designed for an opening in a north wall, turned to the wall of its opening."""
@@ -95,11 +98,12 @@ def place_leaf(hole: Opening, items: OpeningItems) -> PlacedItem:
 
 
 def _frame(width_m: float, top: float, outside: bool, looks: StructureLooks) -> Item:
-    """Returns a door frame: jambs that collide, and boards around them on each visible face of the wall."""
+    """Returns a door frame: jambs that collide, boards around them on each visible face of the wall, a flat saddle."""
     lo, hi = -0.5 * width_m, 0.5 * width_m
     inner, outer = -HALF_WALL_M - 0.004, OUTER_WALL_M if outside else HALF_WALL_M + 0.004
     jambs: list[Box3] = [(*span, inner, outer, 0.0, top) for span in ((lo, lo + JAMB_M), (hi - JAMB_M, hi))]
     boards: list[Box3] = [(lo + JAMB_M, hi - JAMB_M, inner, outer, top - JAMB_M, top)]
+    boards.append((lo + JAMB_M, hi - JAMB_M, -SADDLE_M[0] / 2, SADDLE_M[0] / 2, 0.0, SADDLE_M[1]))
     wide, thick = CASING_M
     reveal = JAMB_M - 0.008
     for face in (-1.0,) if outside else (-1.0, 1.0):

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.homes.housegen.floor_plan.rectangles import Rect
-from sim.homes.housegen.furnishing.placement.records import Placement, zone_in_front
+from sim.homes.housegen.floor_plan.rectangles import Interval, Rect, Side, subtract
+from sim.homes.housegen.furnishing.placement.records import Placement
 from sim.homes.housegen.furnishing.placement.walk_grid import WalkGrid
 from sim.homes.housegen.furnishing.placement.walls import RoomWalls
 from sim.homes.housegen.structure.openings import HALF_WALL_M, Opening, leaf_keep_out
@@ -37,6 +37,7 @@ class Snapshot:
     blocks: tuple[Block, ...]
     reserved: tuple[tuple[Rect, Rect], ...]
     occupied: NDArray[np.uint8]
+    on_surface: Mapping[tuple[int, int], tuple[Rect, ...]]
 
 
 LEAF_PIECES = 4
@@ -96,6 +97,13 @@ class RoomLayout:
         """Returns whether a rectangle overlaps a reserved zone; zones of the item at `ignore` are skipped."""
         return any(rect.overlaps(zone, 0.01) for owner, zone in self._reserved if owner != ignore)
 
+    def free_spans(self, side: Side, depth_m: float) -> list[Interval]:
+        """Returns the parts of a side in front of which a strip of floor has no doorway and no furniture."""
+        strip = self.inner.strip(side, self.inner.span(side), depth_m)
+        blocks = [block.rect for block in self._blocks if block.z0_m < ROBOT_HEIGHT_M]
+        holes = [rect.span(side) for rect in [*self._keep_out, *blocks] if rect.overlaps(strip, 0.005)]
+        return subtract(self.inner.span(side), [*holes, *self.walls.gaps(side)], 0.3)
+
     def is_zone_free(self, zone: Rect) -> bool:
         """Returns whether a zone lies in the room and nothing at the robot's height stands in it."""
         if not self.inner.grown(0.05).contains(zone, 0.06):
@@ -133,10 +141,9 @@ class RoomLayout:
         self._keep_out.append(passage)
         self.grid.occupy(rect)
 
-    def reserve_zone(self, placement: Placement, length_m: float) -> None:
-        """Keeps the floor free in front of an item that stands against a wall."""
-        if placement.side is not None:
-            self._reserved.append((placement.rect, zone_in_front(placement.rect, placement.side, length_m)))
+    def reserve(self, placement: Placement, zones: Sequence[Rect]) -> None:
+        """Keeps the floor of some zones free for an item."""
+        self._reserved += [(placement.rect, zone) for zone in zones]
 
     def release_zones(self, placement: Placement) -> None:
         """Frees the zones of an item for the items that belong there: a table in front of a sofa, chairs at a table."""
@@ -148,14 +155,15 @@ class RoomLayout:
 
     def snapshot(self) -> Snapshot:
         """Returns the present state of the layout, for `restore`."""
-        return Snapshot(tuple(self.placements), tuple(self._blocks), tuple(self._reserved), self.grid.occupied())
+        used = {key: tuple(rects) for key, rects in self._on_surface.items()}
+        return Snapshot(tuple(self.placements), tuple(self._blocks), tuple(self._reserved), self.grid.occupied(), used)
 
     def restore(self, state: Snapshot) -> None:
         """Removes everything that was added after a snapshot was taken."""
         self.placements[:] = state.placements
         self._blocks[:] = state.blocks
         self._reserved[:] = state.reserved
-        self._on_surface.clear()
+        self._on_surface = {key: list(rects) for key, rects in state.on_surface.items()}
         self.grid.set_occupied(state.occupied)
 
     # ---- inside --------------------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 import numpy as np
@@ -15,6 +16,10 @@ Along = Literal["any", "middle", "corner"]
 """Preferred position along a wall: anywhere, as near its middle as possible, or in a corner."""
 WALL_GAP_M = 0.016
 """Distance between furniture and wall: room for the baseboard."""
+NEVER_BELOW_WINDOWS = frozenset(("fireplace", "tv_monitor"))
+"""Categories that stand in front of no window, however low they are."""
+BEFORE_WINDOW_M = 0.45
+"""An item nearer to a wall than this hides a window in it."""
 LOW_M = 0.9
 """Furniture lower than this may stand in front of any window."""
 
@@ -34,10 +39,13 @@ class RoomWalls:
         """Returns the room's windows and the sides they are on."""
         return [(side, hole) for side in SIDES for hole in self._openings[side] if hole.kind == "window"]
 
+    def gaps(self, side: Side) -> list[Interval]:
+        """Returns the spans of the doors and passages of a side."""
+        return [hole.span for hole in self._openings[side] if hole.kind != "window"]
+
     def free_stretches(self, side: Side) -> list[Interval]:
         """Returns the parts of a side that have no door and no passage."""
-        holes = [hole.span for hole in self._openings[side] if hole.kind != "window"]
-        return subtract(self.inner.span(side), holes, 0.05)
+        return subtract(self.inner.span(side), self.gaps(side), 0.05)
 
     def longest_stretch_m(self, side: Side) -> float:
         """Returns the length of the longest part of a side without a door."""
@@ -76,15 +84,26 @@ class RoomWalls:
         return floor_placement(item, x, y, INWARD_YAW_RAD[side], side)
 
     def hides_window(self, placement: Placement) -> bool:
-        """Returns whether an item against a wall would stand in front of a window and is too high for that."""
-        assert placement.side is not None
-        lo, hi = placement.rect.span(placement.side)
+        """Returns whether an item would stand in front of a window, or beside it in a corner, and is too high."""
+        item, rect = placement.item, placement.rect
+        height_m = item.size_m[2]
+        if item.category == "counter":  # a tap may stand in front of a window
+            height_m = min(height_m, LOW_M)
+        elif item.category in NEVER_BELOW_WINDOWS:
+            height_m = math.inf
+        for side in SIDES:
+            near = side == placement.side or abs(rect.line(side) - self.inner.line(side)) < BEFORE_WINDOW_M
+            for hole in self._openings[side] if near else ():
+                too_high = hole.kind == "window" and height_m > max(hole.bottom_m, LOW_M) + 0.05
+                lo, hi = rect.span(side)
+                if too_high and hi > hole.span[0] - 0.02 and lo < hole.span[1] + 0.02:
+                    return True
+        return False
+
+    def has_window(self, side: Side, span: Interval) -> bool:
+        """Returns whether a window is in a part of a wall."""
         return any(
-            hole.kind == "window"
-            and placement.item.size_m[2] > max(hole.bottom_m, LOW_M) + 0.05
-            and hi > hole.span[0] - 0.02
-            and lo < hole.span[1] + 0.02
-            for hole in self._openings[placement.side]
+            hole.kind == "window" and span[1] > hole.span[0] and span[0] < hole.span[1] for hole in self._openings[side]
         )
 
     def meets_opening(self, side: Side, span: Interval, bottom_m: float, top_m: float) -> bool:

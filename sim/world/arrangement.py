@@ -1,0 +1,384 @@
+"""How the furniture of a generated house must stand: rules of dwelling design, and the check of them.
+
+Sources: NKBA Kitchen Planning Guidelines (work triangle, aisles, worktop next to appliances, 30 in in front of a
+toilet as recommended; here 0.6 m, the 24 in that the IRC asks for at least within 3 in); Neufert, Architects' Data
+(0.6 m beside a bed, seats that face each other or a focus, wardrobes away from windows). Everything is measured on the
+compiled model: instances with their everyday names, their boxes, and the heading of their bodies.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.gl import mujoco
+from sim.houses.house import Room
+from sim.houses.instance_facts import read_instance_facts
+from sim.houses.labels import Labels
+
+MIN_TRIANGLE_M, MAX_TRIANGLE_M = 4.0, 7.9
+"""Sum of the legs of the work triangle: 13 to 26 ft (NKBA guideline 3)."""
+MIN_LINE_M = 2.4
+"""The same sum in a single run: both legs of 4 ft, there and back."""
+AISLE_M = 1.0
+"""Width of the aisle between an island and a run (NKBA: 42 in, 1.07 m, for one cook)."""
+TOUCH_M = 0.08
+"""Units of a run have at most this gap."""
+BESIDE_BED_M, TOILET_FRONT_M = 0.6, 0.6
+MAX_TO_CHAIR_M, MAX_TO_NIGHTSTAND_M = 0.45, 0.4
+MIN_CHAIRS = 2
+FACING_M = (0.8, 6.0)
+"""Distances at which a sofa faces something."""
+TALL_M = 1.3
+"""Higher pieces hide a window."""
+BEFORE_WINDOW_M = 0.4
+"""An item nearer to a window than this stands in front of it."""
+SHALLOW_M = 0.13
+"""An item on a wall that is no deeper than this is not in the way."""
+CLOSED_DEG = 10.0
+"""A leaf that is open by less does not show into which room it swings."""
+SLACK_M = 0.03
+_RUN = frozenset(("kitchen counter", "counter", "cooker", "fridge", "dishwasher", "washing machine"))
+_ISLANDS = frozenset(("kitchen island", "breakfast bar", "kitchen trolley"))
+_FOCUS = frozenset(("television", "fireplace", "wood stove", "tiled stove", "armchair", "rocking chair"))
+_SOFAS = frozenset(("sofa", "corner sofa", "daybed"))
+_NEVER_AT_WINDOWS = frozenset(("fireplace", "wood stove", "tiled stove", "television"))
+_TALL = frozenset(("cabinet", "shelving", "appliances", "furniture"))
+_NOT_ON_FLOOR = frozenset(
+    ("floor", "wall", "ceiling", "window", "door", "curtain", "blinds", "void", "stairs", "railing")
+)
+_HARD_FLOORS = frozenset(("kitchen", "bathroom", "laundry", "hallway", "stair_hall"))
+"""Rooms without carpet on the whole floor."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """An instance where it stands."""
+
+    label: str
+    name: str
+    """Everyday name; the words of its category where the file has none."""
+    category: str
+    low: NDArray[np.float64]  # (3,) metres
+    high: NDArray[np.float64]  # (3,) metres
+    at: NDArray[np.float64]  # (2,) origin of its body, metres
+    front: NDArray[np.float64]  # (2,) unit vector: the heading of its body
+    geoms: tuple[int, ...] = ()
+
+    @property
+    def middle(self) -> NDArray[np.float64]:
+        """The middle (2,) of its box in plan."""
+        return 0.5 * (self.low + self.high)[:2]
+
+    def gap_m(self, other: Standing) -> float:
+        """Returns the distance between two boxes in plan, 0 where they overlap."""
+        return float(np.linalg.norm(np.maximum(0.0, np.maximum(self.low - other.high, other.low - self.high))[:2]))
+
+    def overlap_m(self, other: Standing) -> NDArray[np.float64]:
+        """Returns the overlap (3,) along each axis, negative for a gap."""
+        return np.minimum(self.high, other.high) - np.maximum(self.low, other.low)
+
+
+def arrangement_faults(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, rooms: Sequence[Room]) -> list[str]:
+    """Returns a sentence for each rule that the furniture of a compiled house does not follow.
+
+    Args:
+        model: the compiled house.
+        data: its state; kinematics must be computed.
+        labels: the labels of its geoms.
+        rooms: its rooms.
+
+    Raises:
+        HouseError: the text of an instance has another form than docs/houses.md describes.
+    """
+    standing = _standing(model, data, labels)
+    windows = [item for item in standing if item.category == "window"]
+    faults = [f"{item.label} stands in front of {window.label}" for item, window in _before_windows(standing, windows)]
+    faults += _blocked_swings(model, standing)
+    for room in rooms:
+        inside = [item for item in standing if _is_in(room, item)]
+        clauses = _seats_at_tables(inside)
+        if room.kind in ("kitchen", "studio"):
+            clauses += _kitchen(inside)
+        if room.kind in ("living_room", "studio"):
+            clauses += _sofas(inside, [*inside, *windows])
+        if room.kind == "bedroom":
+            clauses += _beds(room, inside)
+        clauses += _toilets(room, inside)
+        if room.kind in _HARD_FLOORS and _has_carpet(model, data, labels, room):
+            clauses.append("has carpet on its whole floor")
+        faults += [f"{room.name} {clause}" for clause in clauses]
+    return faults
+
+
+def _standing(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> list[Standing]:
+    """Returns all instances with their boxes."""
+    facts = read_instance_facts(model, labels)
+    low, high = _boxes(model, data)
+    items = []
+    for instance in labels.instances:
+        ids = np.array(instance.geom_ids)
+        body = int(model.geom_bodyid[ids[0]])
+        while body and model.body(body).name != instance.name:
+            body = int(model.body_parentid[body])
+        x_axis = data.xmat[body].reshape(3, 3)[:2, 0]
+        name = facts[instance.name].name if instance.name in facts else ""
+        items.append(
+            Standing(
+                instance.name,
+                name or instance.category.replace("_", " "),
+                instance.category,
+                low[ids].min(axis=0),
+                high[ids].max(axis=0),
+                data.xpos[body][:2].copy(),
+                x_axis / max(float(np.linalg.norm(x_axis)), 1e-9),
+                tuple(instance.geom_ids),
+            )
+        )
+    return items
+
+
+def _boxes(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Returns the lowest and highest corners (ngeom, 3) of the world-aligned boxes around all geoms, metres.
+
+    Those of meshes are of their vertices: the frame of a mesh is turned, which makes the box of its own box too large.
+    """
+    rotation = data.geom_xmat.reshape(-1, 3, 3)
+    middle = data.geom_xpos + np.einsum("nij,nj->ni", rotation, model.geom_aabb[:, :3])
+    reach = np.einsum("nij,nj->ni", np.abs(rotation), model.geom_aabb[:, 3:])
+    low, high = middle - reach, middle + reach
+    for geom in np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_MESH.value).tolist():
+        mesh = model.geom_dataid[geom]
+        first = model.mesh_vertadr[mesh]
+        vertices = model.mesh_vert[first : first + model.mesh_vertnum[mesh]] @ rotation[geom].T + data.geom_xpos[geom]
+        low[geom], high[geom] = vertices.min(axis=0), vertices.max(axis=0)
+    return low, high
+
+
+def _is_in(room: Room, item: Standing) -> bool:
+    z_m = 0.5 * float(item.low[2] + item.high[2])
+    return room.contains(*item.middle.tolist()) and any(abs(z_m - c[2]) <= h[2] + 0.05 for c, h in room.boxes)
+
+
+def _before_windows(items: Iterable[Standing], windows: Sequence[Standing]) -> Iterable[tuple[Standing, Standing]]:
+    """Yields fireplaces, screens and tall pieces that stand in front of a window, each with the window."""
+    for item in items:
+        always = item.name in _NEVER_AT_WINDOWS
+        if not always and not (item.category in _TALL and item.high[2] - item.low[2] > TALL_M):
+            continue
+        for window in windows:
+            across = int(np.argmin((window.high - window.low)[:2]))
+            overlap = item.overlap_m(window)
+            low_fire = always and item.name != "television"
+            seen_m = overlap[2] if not low_fire else window.high[2] - item.low[2]
+            if overlap[1 - across] > 0.1 and overlap[across] > -BEFORE_WINDOW_M and 0.1 < seen_m < 3.0:
+                yield item, window
+                break
+
+
+def _seats_at_tables(inside: Sequence[Standing]) -> list[str]:
+    """Returns clauses on dining tables without enough chairs and desks without a chair."""
+    chairs = [item for item in inside if item.category == "chair"]
+    clauses = []
+    for item in inside:
+        near = sum(item.gap_m(chair) <= MAX_TO_CHAIR_M for chair in chairs)
+        if item.name == "dining table":
+            laid = sum(o.name == "place setting" and item.gap_m(o) == 0.0 for o in inside)
+            if near < max(MIN_CHAIRS, laid):
+                clauses.append(f"has {item.label}, a dining table with {near} of {max(MIN_CHAIRS, laid)} chairs")
+        elif item.name == "desk" and near == 0:
+            clauses.append(f"has {item.label}, a desk without a chair")
+    return clauses
+
+
+def _kitchen(inside: Sequence[Standing]) -> list[str]:
+    """Returns clauses on the units of a kitchen."""
+    units = [item for item in inside if item.name in _RUN]
+    counters = [unit for unit in units if unit.category == "counter"]
+    clauses = []
+    fronts: list[NDArray[np.float64]] = []
+    hobs = [item for item in inside if item.name in ("hob", "cooker")]
+    for kind, found in (
+        ("fridge", [unit for unit in units if unit.name == "fridge"]),
+        ("sink", [item for item in inside if item.category == "sink"]),
+        ("cooker or hob", hobs),
+    ):
+        if not found or not counters:  # a requirement of its own
+            continue
+        item = found[0]
+        if min(item.gap_m(counter) for counter in counters) > TOUCH_M and not (
+            kind == "fridge" and _joined(item, units)
+        ):
+            clauses.append(f"has no worktop next to the {kind}")
+        holder = next((c for c in counters if kind != "fridge" and c.gap_m(item) == 0.0), item)
+        depth_m = 0.5 * float(np.abs(holder.high - holder.low)[:2] @ np.abs(holder.front))
+        fronts.append(item.middle + holder.front * (depth_m - float((item.middle - holder.middle) @ holder.front)))
+    if len(fronts) == 3:
+        triangle_m = sum(math.dist(a, b) for a, b in itertools.combinations(fronts, 2))
+        longest_m = max(math.dist(a, b) for a, b in itertools.combinations(fronts, 2))
+        least_m = MIN_LINE_M if triangle_m - 2 * longest_m < 0.1 else MIN_TRIANGLE_M
+        if not least_m - SLACK_M <= triangle_m <= MAX_TRIANGLE_M + SLACK_M:
+            clauses.append(
+                f"has a work triangle of {triangle_m:.1f} m, which must be {least_m:.1f} to {MAX_TRIANGLE_M:.1f} m"
+            )
+    for island in (item for item in inside if item.name in _ISLANDS):
+        aisle_m = min((island.gap_m(unit) for unit in units), default=AISLE_M)
+        if aisle_m < AISLE_M - SLACK_M:
+            clauses.append(f"has an aisle of {aisle_m:.2f} m at {island.label}, which must be {AISLE_M:.1f} m")
+    for cabinet in (item for item in inside if item.name == "wall cabinet"):
+        if any((cabinet.overlap_m(hob)[:2] > 0.1).all() for hob in hobs):
+            clauses.append(f"has {cabinet.label} above its hob")
+    return clauses
+
+
+def _joined(fridge: Standing, units: Sequence[Standing]) -> bool:
+    """Returns whether a fridge is joined to a worktop by a dishwasher or a washing machine between them."""
+    low = [unit for unit in units if unit.name in ("dishwasher", "washing machine")]
+    between = [unit for unit in low if fridge.gap_m(unit) <= TOUCH_M]
+    return any(a.gap_m(b) <= TOUCH_M for a in between for b in units if b.category == "counter")
+
+
+def _sofas(inside: Sequence[Standing], targets: Sequence[Standing]) -> list[str]:
+    """Returns clauses on the seats of a living room: a sofa or two armchairs, and a focus in front of the sofa."""
+    sofas = [item for item in inside if item.name in _SOFAS]
+    if not sofas:
+        chairs = sum(item.name in ("armchair", "rocking chair", "chair") for item in inside)
+        return [] if chairs >= 2 else ["has no sofa and no two armchairs"]
+    if any(_faces(sofa, target) for sofa in sofas for target in targets):
+        return []
+    return [f"has {sofas[0].label}, which faces neither a screen nor a fireplace, a seat or a window"]
+
+
+def _faces(sofa: Standing, target: Standing) -> bool:
+    if target.name not in _FOCUS and target.category != "window":
+        return False
+    away = target.middle - sofa.middle
+    ahead_m = float(away @ sofa.front)
+    aside_m = float(abs(away @ np.array([-sofa.front[1], sofa.front[0]])))
+    return FACING_M[0] <= ahead_m <= FACING_M[1] and aside_m <= 0.5 + 0.35 * ahead_m
+
+
+def _beds(room: Room, inside: Sequence[Standing]) -> list[str]:
+    """Returns clauses on beds without free floor along either long side, and on nightstands apart from them."""
+    seats = [item for item in inside if item.category in ("bed", "sofa", "chair")]
+    clauses = [
+        f"has {item.label}, a nightstand that is next to no bed and no seat"
+        for item in inside
+        if item.name == "nightstand" and min((item.gap_m(seat) for seat in seats), default=0.0) > MAX_TO_NIGHTSTAND_M
+    ]
+    for bed in (item for item in inside if item.category == "bed"):
+        left = np.array([-bed.front[1], bed.front[0]])
+        size = (bed.high - bed.low)[:2]
+        length_m, width_m = float(size @ np.abs(bed.front)), float(size @ np.abs(left))
+        middle_m = 0.5 * (0.6 - 0.05)  # from the end of a nightstand to the foot
+        if not any(
+            _is_free(
+                room,
+                inside,
+                bed.middle + bed.front * middle_m + left * sign * 0.5 * (width_m + BESIDE_BED_M),
+                np.abs(bed.front) * 0.5 * (length_m - 0.65) + np.abs(left) * 0.5 * (BESIDE_BED_M - SLACK_M),
+                bed,
+            )
+            for sign in (1.0, -1.0)
+        ):
+            clauses.append(f"has {bed.label} without {BESIDE_BED_M:.1f} m of free floor along a long side")
+    return clauses
+
+
+def _toilets(room: Room, inside: Sequence[Standing]) -> list[str]:
+    """Returns clauses on toilets without free floor in front of them."""
+    clauses = []
+    for toilet in (item for item in inside if item.category == "toilet"):
+        left = np.abs(np.array([-toilet.front[1], toilet.front[0]]))
+        depth_m = float((toilet.high - toilet.low)[:2] @ np.abs(toilet.front))
+        middle = toilet.middle + toilet.front * 0.5 * (depth_m + TOILET_FRONT_M)
+        half = np.abs(toilet.front) * 0.5 * (TOILET_FRONT_M - SLACK_M) + left * 0.18
+        if not _is_free(room, inside, middle, half, toilet):
+            clauses.append(f"has less than {TOILET_FRONT_M:.1f} m of free floor in front of {toilet.label}")
+    return clauses
+
+
+def _is_free(
+    room: Room, inside: Sequence[Standing], middle: NDArray[np.float64], half: NDArray[np.float64], owner: Standing
+) -> bool:
+    """Returns whether a rectangle of floor lies in the room and no furniture stands on it."""
+    low, high = middle - half, middle + half
+    corners = itertools.product((low[0] + SLACK_M, high[0] - SLACK_M), (low[1] + SLACK_M, high[1] - SLACK_M))
+    if not all(room.contains(float(x), float(y)) for x, y in corners):
+        return False
+    return not any(
+        item is not owner
+        and _blocks(item, room.floor_z_m)
+        and (np.minimum(item.high[:2], high) - np.maximum(item.low[:2], low) > SLACK_M).all()
+        for item in inside
+    )
+
+
+def _blocks(item: Standing, floor_z_m: float, up_to_m: float = 0.9) -> bool:
+    """Returns whether an item is in the way of a person: no rug, nothing high above, nothing shallow on a wall."""
+    if item.category in _NOT_ON_FLOOR or item.category == "objects":
+        return False
+    if item.low[2] > floor_z_m + 0.3 and (item.high - item.low)[:2].min() < SHALLOW_M:
+        return False
+    return item.low[2] < floor_z_m + up_to_m and item.high[2] > floor_z_m + 0.05
+
+
+def _blocked_swings(model: mujoco.MjModel, standing: Sequence[Standing]) -> list[str]:
+    """Returns a sentence for each piece of furniture in the quarter circle of a door leaf."""
+    doors = [item for item in standing if item.category == "door"]
+    leaves = [(door, width_m) for door in doors if (width_m := _leaf_width_m(model, door)) > 0.0]
+    of_leaves = {door.label for door, _ in leaves}
+    frames = [door for door in doors if door.label not in of_leaves]
+    faults = []
+    for leaf, width_m in leaves:
+        frame = min(frames, key=lambda frame: math.dist(frame.middle, leaf.at), default=None)
+        if frame is None or math.dist(frame.middle, leaf.at) > width_m:
+            continue
+        closed = frame.front * math.copysign(1.0, float((frame.middle - leaf.at) @ frame.front))
+        into = np.array([-closed[1], closed[0]])
+        into = into * math.copysign(1.0, float(leaf.front @ into))
+        if abs(float(leaf.front @ into)) < math.sin(math.radians(CLOSED_DEG)):
+            continue
+        radius, angle = np.meshgrid(np.linspace(0.15, width_m, 8), np.radians(np.arange(4.0, 90.0, 8.0)))
+        points = leaf.at + (radius * np.cos(angle))[..., None] * closed + (radius * np.sin(angle))[..., None] * into
+        floor_z_m = float(leaf.low[2])
+        for item in standing:
+            if not _blocks(item, floor_z_m, 1.9) or item.high[2] < floor_z_m:
+                continue
+            if ((points > item.low[:2] + 0.02) & (points < item.high[:2] - 0.02)).all(axis=-1).any():
+                faults.append(f"{item.label} stands where {leaf.label} swings")
+    return faults
+
+
+def _leaf_width_m(model: mujoco.MjModel, door: Standing) -> float:
+    """Returns the width of a door leaf, whose hinge is the origin of its body; 0 for a frame."""
+    for geom in door.geoms:
+        if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_BOX.value or not model.geom_contype[geom]:
+            continue
+        half_x, half_y, half_z = model.geom_size[geom]
+        if half_x > 0.25 and half_y < 0.04 and half_z > 0.8 and abs(model.geom_pos[geom][0] - half_x) < 0.05:
+            return float(2.0 * half_x)
+    return 0.0
+
+
+def _has_carpet(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, room: Room) -> bool:
+    """Returns whether the floor geom below the middle of a room has a texture of carpet."""
+    centre, _ = room.boxes[0]
+    ray = np.array([centre[0], centre[1], room.floor_z_m + 0.3])
+    for geom in (g for item in labels.instances if item.category == "floor" for g in item.geom_ids):
+        material = int(model.geom_matid[geom])
+        if material < 0 or model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_BOX.value:
+            continue
+        reach = np.abs(data.geom_xmat[geom].reshape(3, 3)) @ model.geom_size[geom]
+        offset = np.abs(ray - data.geom_xpos[geom])
+        if (offset[:2] > reach[:2]).any() or offset[2] > 0.3 + 2 * reach[2] + 0.05:
+            continue
+        textures = [int(t) for t in np.ravel(model.mat_texid[material]) if t >= 0]
+        if any(model.tex(t).name.startswith("carpet") for t in textures):
+            return True
+    return False
