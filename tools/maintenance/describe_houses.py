@@ -126,8 +126,9 @@ A split has a version, and every run records it with a hash over the houses and 
 a change does not affect agents, the middle number when results can no longer be compared, and the first number when
 older code cannot read the files. Results of two versions are never compared: 3.0.0 and 4.0.0 have no house in common.
 
-4.0.0: floor plans and furnishing by rules of dwelling design, homes of 60 to 250 m2 in `val` and `test`, door leaves on
-hinges, jammed doors among the hazards, no limit on the size of a file, and a name, colour and material of each instance.
+4.0.0: floor plans and furnishing by rules of dwelling design, homes of 60 to 250 m2 in `val` and `test`, door leaves
+on hinges, jammed doors among the hazards, no limit on the size of a file, and a name, colour and material of each
+instance.
 """
 
 
