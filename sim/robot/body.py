@@ -26,6 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.geometry.pose import BodyPose
 from sim.core.interface import wrap_angle
 from sim.gl import mujoco
 from sim.houses.labels import COVER_MASK, ROBOT_PREFIX, geoms_of
@@ -274,6 +275,16 @@ class Body:
             vx, vy, _, _, _, rate = self.qvel.tolist()
             yaw = _yaw_of(quat)
         return x, y, yaw, math.cos(yaw) * vx + math.sin(yaw) * vy, rate
+
+    def pose_above(self, floor_z_m: float) -> BodyPose:
+        """Returns the pose of the robot frame on a floor of this height, as it is now."""
+        x, y, z = self.qpos[:3].tolist()
+        if self.planar:
+            return BodyPose(x, y, wrap_angle(float(self.qpos[3])), floor_z_m, z - floor_z_m)
+        qw, qx, qy, qz = self.qpos[3:7].tolist()
+        pitch = math.asin(max(-1.0, min(1.0, 2.0 * (qw * qy - qx * qz))))
+        roll = math.atan2(2.0 * (qw * qx + qy * qz), 1.0 - 2.0 * (qx * qx + qy * qy))
+        return BodyPose(x, y, _yaw_of([qw, qx, qy, qz]), floor_z_m, z - floor_z_m, pitch, roll)
 
     @property
     def yaw_rad(self) -> float:

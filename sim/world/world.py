@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 
 from sim.core.errors import EpisodeError, PhysicsError
-from sim.core.geometry.pose import Pose
-from sim.core.interface import Action, SuccessRule, wrap_angle
+from sim.core.geometry.pose import BodyPose, Pose
+from sim.core.interface import Action, SuccessRule
 from sim.gl import mujoco
+from sim.houses.glass import clear_panes, picture_panes
 from sim.houses.house import House
 from sim.houses.labels import cover_geoms
 from sim.robot.body import Body
@@ -50,6 +50,8 @@ class World:
         self.rule = rule or SuccessRule()
         self.model, self.labels, self.rooms = compile_world(house, self.config)
         self.data = mujoco.MjData(self.model)
+        self.glass = picture_panes(self.model, self.labels) | clear_panes(self.model, self.labels)
+        """(ngeom,) True for panes of windows."""
         self._body = Body.find(self.model, self.data)
         log = ContactLog(self.model, self.data, self.labels, self._body)
         self._odometry = Odometry(self.config, self._body)
@@ -65,9 +67,14 @@ class World:
     @property
     def pose(self) -> Pose:
         """The robot's true pose; its `floor_z_m` is the height of the level of floors that the robot is on."""
-        x, y, yaw, _, _ = self._body.state()
+        body = self.body_pose
+        return Pose(body.x_m, body.y_m, body.yaw_rad, body.floor_z_m)
+
+    @property
+    def body_pose(self) -> BodyPose:
+        """The same, with the lean of the body and the height of the robot frame above that floor."""
         z = self._body.z_m
-        return Pose(x, y, wrap_angle(yaw), min(self._levels_m, key=lambda floor: abs(floor - z)))
+        return self._body.pose_above(min(self._levels_m, key=lambda floor: abs(floor - z)))
 
     @property
     def odometry(self) -> Pose:
@@ -75,13 +82,13 @@ class World:
         return self._odometry.since_start
 
     @property
-    def camera_pose(self) -> Pose:
-        """The robot's pose, moved ahead to the point on the floor below the camera."""
-        pose, ahead_m = self.pose, self.config.camera_forward_m
+    def camera_pose(self) -> BodyPose:
+        """The body's pose, moved ahead along its own axis to the point that is below an upright robot's camera."""
+        pose, ahead_m = self.body_pose, self.config.camera_forward_m
         if ahead_m == 0.0:
             return pose
-        x_m, y_m = pose.x_m + ahead_m * math.cos(pose.yaw_rad), pose.y_m + ahead_m * math.sin(pose.yaw_rad)
-        return Pose(x_m, y_m, pose.yaw_rad, pose.floor_z_m)
+        x_m, y_m, z_m = pose.point(ahead_m, 0.0, 0.0).tolist()
+        return replace(pose, x_m=x_m, y_m=y_m, rise_m=z_m - pose.floor_z_m)
 
     def reset(self, start: Pose, conditions: Conditions = NOMINAL) -> None:
         """Restores the state of the house's file, applies `conditions`, and puts the robot at rest at `start`.

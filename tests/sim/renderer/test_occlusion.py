@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.core.geometry.pose import Pose
+from sim.core.geometry.pose import BodyPose, Pose
 from sim.core.interface import CameraModel
 from sim.core.paths import assets_dir
 from sim.gl import mujoco
@@ -38,7 +38,7 @@ def rendered(house: House, *, eye: tuple[float, float, float] = (0.0, 0.0, 0.88)
     visibility = Visibility(model, rendered_geoms(model), CameraModel(), Z_NEAR_M)
     return {
         model.geom(geom).name or model.body(model.geom_bodyid[geom]).name
-        for geom in visibility.visible(data, np.array(eye), yaw_rad)
+        for geom in visibility.visible(data, np.array(eye), BodyPose(0.0, 0.0, yaw_rad).axes)
     }
 
 
@@ -210,7 +210,7 @@ def test_the_current_position_of_a_movable_object_counts() -> None:
     for x_m in (3.0, 1.2, 3.0):
         data.qpos[0] = x_m
         mujoco.mj_kinematics(model, data)
-        seen.append(model.geom("wall_90").id + 1 in visibility.visible(data, np.array([0, 0, 0.88]), 0.0))
+        seen.append(model.geom("wall_90").id + 1 in visibility.visible(data, np.array([0, 0, 0.88]), np.eye(3)))
     assert seen == [False, True, False]
 
 
