@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -26,6 +27,8 @@ from sim.world.support import FloorSupport
 
 _PLACE_ATTEMPTS = 3
 """Number of times that `reset` lifts the wheels out of a floor that they overlap; each rug on a rug needs one more."""
+_UPRIGHT_RAD = math.radians(2.3)
+"""A body that leans less than this stands on one floor."""
 _FLOOR_CONTACT_M = 0.0005
 """Wheels that overlap the floor by at most this stand on it."""
 
@@ -54,7 +57,7 @@ class World:
         """(ngeom,) True for panes of windows."""
         self._body = Body.find(self.model, self.data)
         log = ContactLog(self.model, self.data, self.labels, self._body)
-        self._odometry = Odometry(self.config, self._body)
+        self._odometry = Odometry(self.config, self.model, self.data, self._body)
         self._driver = Driver(self.config, self.model, self.data, self._body, self._odometry, log)
         self._velocity_drive = VelocityDrive(self.config, self.model, self.data, self._body, self._odometry, log)
         self._levels_m = floor_levels(self.model, self.labels)
@@ -98,6 +101,7 @@ class World:
         """
         mujoco.mj_resetData(self.model, self.data)
         self.model.geom_friction[self._ground, 0] = self._ground_friction * conditions.floor_friction_scale
+        self._driver.brake()
         self._place_on_floor(start)
         self._require_no_overlap(start)
         physics = self.config.physics
@@ -140,7 +144,7 @@ class World:
 
     def _note_floor(self) -> None:
         """Notes the height of an upright body: that of the floor that carries it."""
-        if self._body.tilt_rad <= self.config.drive.blocked_tilt_rad:
+        if self._body.tilt_rad <= _UPRIGHT_RAD:
             self._stood_at_m = self._body.z_m
 
     def _place_on_floor(self, start: Pose) -> None:
