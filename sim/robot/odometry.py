@@ -17,8 +17,8 @@ from sim.robot.variation import ActionErrors
 class Odometry:
     """Integrates wheel angles and turn rates, tick by tick. It never reads the true position.
 
-    Slip (`sim.robot.creep`), edges and springs make it differ from the truth, and so do the errors of encoders and gyro of an episode
-    (`sim.robot.conditions`) and of an action (`sim.robot.variation`).
+    Slip (`sim.robot.creep`), edges and springs make it differ from the truth, and so do the errors of encoders and gyro
+    of an episode (`sim.robot.conditions`) and of an action (`sim.robot.variation`).
     """
 
     def __init__(self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body) -> None:

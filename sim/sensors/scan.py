@@ -105,7 +105,7 @@ class ScanSensor:
 def _past_glass(
     context: SensorContext, eye_m: NDArray[np.float64], direction: NDArray[np.float64], distance_m: float
 ) -> float:
-    """Returns the distance of the first surface that is not glass on a ray that meets a pane at a distance; -1: none."""
+    """Returns the distance of the first surface that is not glass on a ray that meets a pane; -1: there is none."""
     geom = np.zeros((1, 1), np.int32)
     for _ in range(_MAX_PANES):
         start_m = distance_m + _PAST_M

