@@ -18,12 +18,15 @@ import math
 import numpy as np
 
 from sim.gl import mujoco
-from sim.robot.body import Body
+from sim.robot.body import GRAVITY_M_S2, Body
+from sim.robot.config import RobotConfig
 
 HARD_STIFFNESS, SOFT_STIFFNESS = 15.0, 7.0
 """Slip stiffness per load, c. Tyres of cars have 10 to 25; that of carpet is an assumption."""
 HARD_RESISTANCE, SOFT_RESISTANCE = 0.01, 0.05
 """Rolling resistance by load."""
+FREE_SLIP = 0.001
+"""Mean slip of forwards on a hard floor without a load, for which a base is calibrated; it was measured so."""
 SOFT_TEXTURES = ("carpet", "rug")
 """Floors with a texture of such a name are carpet, and so are geoms of the same instance that show nothing."""
 
@@ -35,19 +38,20 @@ SURFACE_TICKS = 5
 class Creep:
     """Computes the slip of both wheels from the forces and the surfaces at their tyres."""
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, body: Body) -> None:
-        self._data, self._body = data, body
+    def __init__(self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body) -> None:
+        self._data, self._body, self._tick_s = data, body, config.drive.tick_s
+        self._half_mass_kg, self._radius_m = 0.5 * config.body.mass_kg, config.wheels.radius_m
         self._side = {geom: int("right" in model.geom(geom).name) for geom in body.tyre_geoms}
         self._soft = frozenset(_soft_geoms(model))
         self.reset()
 
     def reset(self) -> None:
-        """Starts an episode."""
-        self._ticks = 0
+        """Starts an episode, at rest."""
+        self._ticks, self._speeds = 0, (0.0, 0.0)
         self._surfaces = [(1.0, HARD_STIFFNESS, HARD_RESISTANCE)] * 2  # friction, stiffness, resistance
 
     def slip(self) -> tuple[float, float]:
-        """Returns the slip of the left and the right wheel now, once a tick of the controller.
+        """Returns the slip of the left and the right wheel in the last tick of the controller.
 
         It is the share of the distance that a wheel rolls by which it turns more than it rolls: positive while the
         ground pushes the robot ahead. It is 0 for a wheel in the air.
@@ -56,13 +60,18 @@ class Creep:
             self._look()
         self._ticks += 1
         ahead, up = self._body.ahead_and_up()
+        before, self._speeds = self._speeds, self._body.wheel_speeds()
+        # Half of what the hull pushes and of what the slope takes; the rest accelerates the robot.
+        _, x_n, y_n, z_n = self._body.touch.tolist()
+        steady_n = 0.5 * (ahead[0] * x_n + ahead[1] * y_n + ahead[2] * z_n)
+        steady_n += self._half_mass_kg * GRAVITY_M_S2 * ahead[2]
         slips = []
-        for tread, speed, (friction, stiffness, resistance) in zip(
-            self._body.treads.tolist(), self._body.wheel_speeds(), self._surfaces, strict=True
+        for tread, last, speed, (friction, stiffness, resistance) in zip(
+            self._body.treads.tolist(), before, self._speeds, self._surfaces, strict=True
         ):
-            _, x_n, y_n, z_n = tread  # the tyre pushes the ground back and down
+            _, x_n, y_n, z_n = tread  # the tyre pushes the ground down
             load_n = -(up[0] * x_n + up[1] * y_n + up[2] * z_n)
-            force_n = -(ahead[0] * x_n + ahead[1] * y_n + ahead[2] * z_n)
+            force_n = steady_n + self._half_mass_kg * self._radius_m * (speed - last) / self._tick_s
             slips.append(slip_of(force_n + math.copysign(resistance * load_n, speed), load_n, friction, stiffness))
         return slips[0], slips[1]
 

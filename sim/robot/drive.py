@@ -25,6 +25,9 @@ from sim.robot.odometry import Odometry
 from sim.robot.profile import Trapezoid
 from sim.robot.variation import ActionErrors, Variation
 
+HELD_SHARE = 0.8
+"""A forward that an object opposes, and that covers less than this share of its distance, is blocked also if the wheels
+have covered it: they slip where the body leans back and unloads them."""
 Ended = Literal["reached", "blocked", "timeout"]
 
 
@@ -99,9 +102,13 @@ class Driver:
         self._motors.vary(self._errors)
         self._odometry.vary(self._errors)
         x0, y0, yaw0, _, _ = self._body.state()
+        since: int | None = None
         if action == Action.MOVE_FORWARD:
+            moved_m = self._true_progress()
             ended = self._forward()
             direction = math.cos(yaw0), math.sin(yaw0)
+            if ended != "blocked" and self._touched_until and moved_m() < HELD_SHARE * self._drive.forward_m:
+                ended, since = "blocked", 0  # it was held while its wheels slipped
         else:
             ended = self._turn(1 if action == Action.TURN_LEFT else -1)
             direction = 0.0, 0.0
@@ -110,7 +117,7 @@ class Driver:
             if self._touching:
                 self._realign()
         else:
-            since = self._ticks - self._blocked_ticks
+            since = self._ticks - self._blocked_ticks if since is None else since
             contacts = self._log.contacts_of_aborted(self._tick_s, self._ticks, since, direction)
             if action == Action.MOVE_FORWARD:
                 self._back_off()

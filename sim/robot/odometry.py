@@ -10,7 +10,7 @@ from sim.gl import mujoco
 from sim.robot.body import Body
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import RobotConfig
-from sim.robot.creep import Creep
+from sim.robot.creep import FREE_SLIP, Creep
 from sim.robot.variation import ActionErrors
 
 
@@ -23,7 +23,7 @@ class Odometry:
 
     def __init__(self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body) -> None:
         self._body = body
-        self._creep = Creep(model, data, body)
+        self._creep = Creep(config, model, data, body)
         self._gyro = config.drive.gyro
         self._tick_s = config.drive.tick_s
         self._radius_m, self._track_m = config.wheels.radius_m, 2.0 * config.wheels.half_track_m
@@ -35,13 +35,14 @@ class Odometry:
         Args:
             yaw_rad: the heading.
             conditions: errors of encoders and gyro.
-            compression_m: of the loaded tyres; a wheel rolls at the middle of it, for which a base is calibrated.
+            compression_m: of the loaded tyres; a wheel rolls at the middle of it. A base is calibrated for this, and for
+                the slip of wheels that roll freely on a hard floor.
         """
         self.x_m = self.y_m = 0.0
         self.yaw_rad = self._start_yaw_rad = yaw_rad
         self.speed_m_s = self.rate_rad_s = 0.0
         left, right = conditions.encoder_scale
-        rolling_m = self._radius_m - 0.5 * compression_m
+        rolling_m = (self._radius_m - 0.5 * compression_m) / (1.0 + FREE_SLIP)
         self._metres_per_rad = rolling_m * left, rolling_m * right
         self._gyro_scale, self._gyro_bias_rad_s = conditions.gyro_scale, conditions.gyro_bias_rad_s
         self._creep.reset()
