@@ -87,7 +87,7 @@ class Creep:
 
 
 def slip_of(force_n: float, load_n: float, friction: float, stiffness: float) -> float:
-    """Returns the slip of a wheel by the brush model, with the sign of the force; 3 mu / c when it is about to slide."""
+    """Returns the slip of a wheel by the brush model, with the sign of the force: at most 3 mu / c."""
     if load_n <= 0.0 or friction <= 0.0:
         return 0.0
     used = min(1.0, abs(force_n) / (friction * load_n))

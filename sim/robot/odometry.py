@@ -35,8 +35,8 @@ class Odometry:
         Args:
             yaw_rad: the heading.
             conditions: errors of encoders and gyro.
-            compression_m: of the loaded tyres; a wheel rolls at the middle of it. A base is calibrated for this, and for
-                the slip of wheels that roll freely on a hard floor.
+            compression_m: of the loaded tyres; a wheel rolls at the middle of it. A base is calibrated for
+                this, and for the slip of wheels that roll freely on a hard floor.
         """
         self.x_m = self.y_m = 0.0
         self.yaw_rad = self._start_yaw_rad = yaw_rad

@@ -1,8 +1,8 @@
 """Noise of the drive: floors, motors, encoders and gyros that differ from episode to episode and from action to action.
 
 The motions follow from physics: errors of motors show where the controller cannot correct them in time, errors of
-encoders and gyro in every motion, since the controller knows nothing else. An episode has the errors of one robot; those
-of its actions vary around them (`sim.robot.variation`).
+encoders and gyro in every motion, since the controller knows nothing else. An episode has the errors of one robot;
+those of its actions vary around them (`sim.robot.variation`).
 """
 
 from __future__ import annotations

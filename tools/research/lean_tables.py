@@ -5,7 +5,7 @@
 
 | table | measures |
 |---|---|
-| rest | pitch and roll at rest on a flat floor, on rugs and on ramps, and the height of the camera above the level one |
+| rest | the lean at rest on a flat floor, on rugs and on ramps, and what it makes of the floor 3 m ahead |
 | pushes | how far a forward moves legged chairs, by the height of the contact, against statics |
 | slopes | ramps: whether the robot climbs, its speed when it is left alone, and whether a stop is a collision |
 | ledges | displacement of the forward that leads over an edge down |
@@ -219,13 +219,7 @@ def surfaces() -> Iterator[Row]:
     ):  # fmt: skip
         row: Row = {"floor": name, "friction": friction}
         for load in ("free", "pushing"):
-            spec = floor(friction)
-            if carpet:
-                flat, plane = mujoco.mjtBuiltin.mjBUILTIN_FLAT, mujoco.mjtTexture.mjTEXTURE_2D
-                spec.add_texture(name="carpet_pile", type=plane, builtin=flat, width=4, height=4)
-                material = spec.add_material(name="pile")
-                material.textures[int(mujoco.mjtTextureRole.mjTEXROLE_RGB)] = "carpet_pile"
-                spec.geom("floor_00").material = "pile"
+            spec = carpet_floor(friction) if carpet else floor(friction)
             if load == "pushing":
                 body = spec.worldbody.add_body(name="stool_00", pos=(0.42, 0.0, 0.2))
                 body.add_freejoint()
@@ -238,6 +232,15 @@ def surfaces() -> Iterator[Row]:
             true_m, measured_m = world.pose.x_m, world.odometry.x_m
             row |= {f"{load}_true_m": true_m, f"{load}_odometry_is_long_by_%": 100.0 * (measured_m / true_m - 1.0)}
         yield row
+
+
+def carpet_floor(friction: float) -> mujoco.MjSpec:
+    """Returns an endless floor with a texture of carpet."""
+    spec, flat = floor(friction), mujoco.mjtBuiltin.mjBUILTIN_FLAT
+    spec.add_texture(name="carpet_pile", type=mujoco.mjtTexture.mjTEXTURE_2D, builtin=flat, width=4, height=4)
+    spec.add_material(name="pile").textures[int(mujoco.mjtTextureRole.mjTEXROLE_RGB)] = "carpet_pile"
+    spec.geom("floor_00").material = "pile"
+    return spec
 
 
 def drift() -> Iterator[Row]:
