@@ -238,7 +238,11 @@ def test_in_a_room_of_many_boxes_a_frame_differs_in_no_pixel() -> None:
         )
     world = World(house)
     poses = [Pose(float(x), float(y), float(yaw)) for x, y, yaw in rng.uniform(-5, 5, (60, 3))]
-    assert differing_pixels(world, poses, ("rgb", "depth", "geom")) == 0
+    leans = rng.uniform(-0.25, 0.25, (60, 3))
+    leaning = [
+        BodyPose(pose.x_m, pose.y_m, pose.yaw_rad, 0.0, *lean) for pose, lean in zip(poses, leans.tolist(), strict=True)
+    ]
+    assert differing_pixels(world, [*poses, *leaning], ("rgb", "depth", "geom")) == 0
 
 
 @functools.cache
