@@ -32,6 +32,14 @@ RUN_FILES = ("config.json", "results.jsonl")
 GROUND_TRUTH_KINDS = ("gt", "noisy")
 """Kinds of segmentation that are made from ground truth."""
 CHECKSUM_DIGITS = 8
+PREPARED = {
+    "transfer": (
+        "stubborn import furniture --source /usr/share/sweethome3d/furniture --out runs/models",
+        "stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer",
+        "stubborn episodes --split runs/transfer --recipe val",
+    )
+}
+"""Commands that make the splits that do not ship (docs/furniture.md)."""
 
 
 @dataclass(frozen=True)
@@ -77,11 +85,12 @@ class ArchivedRun:
         return str(self.run.config.get("files_sha256", {}).get("weights", ""))[:CHECKSUM_DIGITS]
 
     def command(self, episodes: int) -> str:
-        """Returns the command that runs the same episodes."""
+        """Returns the commands, with semicolons between, that run the same episodes."""
         source = self.run.recorded("split")
         setup = self.key.setup
         parts = ["stubborn run --agent", setup.agent, setup.options, "--semantics", setup.semantics]
-        return " ".join(filter(None, [*parts, "--split", shlex.quote(source), f"--episodes {episodes}"]))
+        run = " ".join(filter(None, [*parts, "--split", shlex.quote(source), f"--episodes {episodes}"]))
+        return "; ".join([*PREPARED.get(self.key.split, ()), run])
 
 
 def read_archive(archive: Path, folder: Path) -> dict[RunKey, ArchivedRun]:

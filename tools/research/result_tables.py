@@ -33,11 +33,12 @@ from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.comparison import require_same_episodes
 from sim.app.analysis.metrics import FIRST_SIGHT, difference_cell, episodes_of, houses_of, mean_cell, median_text
+from sim.app.commands.reproduce.paper_claims import MARGIN, JudgedTable, judged, overview
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, table_named
 from sim.app.commands.reproduce.reproduce import Args as ReproduceArgs
-from sim.app.commands.reproduce.reproduce import make_table, part_of
+from sim.app.commands.reproduce.reproduce import lines_of, make_table, part_of, shared_runs
 from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, file_name, run_in_turns, runs_in
-from sim.app.evaluation.intervals import Estimate, replicate_spread
+from sim.app.evaluation.intervals import Estimate, holm, replicate_spread
 from sim.core.errors import ConfigError
 from sim.core.files import csv_text, write_atomically, write_together
 from sim.core.reading import read_bytes, read_text
@@ -74,12 +75,21 @@ ABOUT_PAPER = f"""\
 # The paper's tables
 
 Columns that begin with *paper* are of Luo et al. (2022), from MP3D houses in Habitat; all others are measured here, in
-generated houses with contacts. Compare orders and differences of agents, not the figures. `gt` is ground-truth
-segmentation, `rednet` the network that ships. `cloned`, a small end-to-end agent, corresponds to the paper's EEAux
-and is not that agent.
+generated houses (splits {VERSION}) with contacts. Compare orders and differences of agents, not the figures. `gt` is
+ground-truth segmentation, `rednet` the network that ships. `cloned`, a small end-to-end agent, corresponds to the
+paper's EEAux and is not that agent.
 
 `stubborn reproduce all --episodes 200 --workers 2` runs all of it again, and resumes; each table states its hours. This
 page is made from the [result lines]({ARCHIVE.name}) by `python -m tools.research.result_tables`.
+
+## Verdicts
+
+A claim is a difference between two agents that the paper reports. It is *replicated* if the difference here is
+significant in the paper's direction (Holm's correction for the claims of its table), *not replicated* if it is not and
+its interval excludes the paper's difference, and *unresolved* otherwise. A claim that an agent is *not higher* is
+replicated if the interval ends below {100 * MARGIN:.0f} points, and not replicated if it begins above. The paper's own
+intervals (6 points to each side in Table IV) are not used. A table has the worst verdict on its claims.
+[Results](../results.md#the-papers-claims) says why Table IV is not replicated.
 
 """
 
@@ -193,12 +203,15 @@ def paper_page(folder: Path) -> str:
     """
     part = part_of(ReproduceArgs(table="all", episodes=PAPER_EPISODES, minutes=0.0, out=folder))
     pages: list[str] = []
+    claims: list[JudgedTable] = []
     for name in PAPER_TABLES:
-        page = make_table(part, name, table_named(name).setups(), Console(quiet=True))
+        setups = table_named(name).setups()
+        page = make_table(part, name, setups, Console(quiet=True))
         if page is None:
             raise ConfigError(f"'{ARCHIVE.name}' lacks a run of the paper's table '{name}'.")
         pages.append(page)
-    return ABOUT_PAPER + "\n".join(pages)
+        claims += filter(None, [judged(name, lines_of(*shared_runs(part, setups)))])
+    return f"{ABOUT_PAPER}{overview(claims)}\n" + "\n".join(pages)
 
 
 def row_keys(runs: Mapping[RunKey, ArchivedRun]) -> list[RowKey]:
@@ -288,15 +301,6 @@ def with_families(pairs: Sequence[Comparison], records: Sequence[Record]) -> lis
         for record in family:
             record |= {f"{column}_holm": f"{next(corrected):.6f}" for column in columns}
     return classified
-
-
-def holm(p_values: Sequence[float]) -> list[float]:
-    """Returns the p-values corrected for their number by Holm's method (1979)."""
-    corrected, least = [1.0] * len(p_values), 0.0
-    for rank, number in enumerate(sorted(range(len(p_values)), key=p_values.__getitem__)):
-        least = max(least, min(1.0, (len(p_values) - rank) * p_values[number]))
-        corrected[number] = least
-    return corrected
 
 
 def fill_page(text: str, results: Sequence[Record]) -> str:
