@@ -33,6 +33,7 @@ from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.comparison import require_same_episodes
 from sim.app.analysis.metrics import FIRST_SIGHT, difference_cell, episodes_of, houses_of, mean_cell, median_text
+from sim.app.analysis.tables import to_markdown
 from sim.app.commands.reproduce.paper_claims import MARGIN, JudgedTable, judged, overview
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, table_named
 from sim.app.commands.reproduce.reproduce import Args as ReproduceArgs
@@ -46,6 +47,7 @@ from sim.core.reading import read_csv as read_table
 from sim.episodes.splits import load_split
 from sim.task.failures import CAUSES
 from sim.task.result import EpisodeResult, Metric
+from tools.research.paper_reasons import reasons
 from tools.research.result_archive import ARCHIVE, ROOT, TABLES, VERSION, ArchivedRun, pack, read_archive, unpack
 from tools.research.result_definitions import (
     COMPARED,
@@ -89,7 +91,13 @@ significant in the paper's direction (Holm's correction for the claims of its ta
 its interval excludes the paper's difference, and *unresolved* otherwise. A claim that an agent is *not higher* is
 replicated if the interval ends below {100 * MARGIN:.0f} points, and not replicated if it begins above. The paper's own
 intervals (6 points to each side in Table IV) are not used. A table has the worst verdict on its claims.
-[Results](../results.md#the-papers-claims) says why Table IV is not replicated.
+
+"""
+ABOUT_REASONS = """\
+## Why Table IV is not replicated
+
+Differences with their intervals; *not significant* is meant after Holm's correction within each table. Exploratory: the
+questions were asked after the verdicts were known. Episodes in which an agent was trapped are not a random sample.
 
 """
 
@@ -132,7 +140,7 @@ def main(args: Args) -> int:
         results = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
         pairs = list(comparisons())
         compared = with_families(pairs, [comparison_record(pair, runs) for pair in pairs])
-        paper = paper_page(Path(folder))
+        paper = paper_page(Path(folder), runs)
     page = fill_page(read_text(args.page, what="--page"), results)
     contents = {
         args.tables / RESULTS: to_csv(results),
@@ -192,11 +200,12 @@ def table_run(args: Args, key: RunKey, episodes: int, folders: Mapping[RunKey, P
     return TableRun(options, split, split.episodes[:episodes])
 
 
-def paper_page(folder: Path) -> str:
+def paper_page(folder: Path, runs: Mapping[RunKey, ArchivedRun]) -> str:
     """Returns the page of the paper's tables, docs/tables/paper.md.
 
     Args:
         folder: the unpacked archive; it receives the tables, too.
+        runs: the runs in it.
 
     Raises:
         ConfigError: a run is missing.
@@ -211,7 +220,8 @@ def paper_page(folder: Path) -> str:
             raise ConfigError(f"'{ARCHIVE.name}' lacks a run of the paper's table '{name}'.")
         pages.append(page)
         claims += filter(None, [judged(name, lines_of(*shared_runs(part, setups)))])
-    return f"{ABOUT_PAPER}{overview(claims)}\n" + "\n".join(pages)
+    why = f"{ABOUT_REASONS}{to_markdown(reasons(runs))}\n## Tables\n\n"
+    return f"{ABOUT_PAPER}{overview(claims)}\n{why}" + "\n".join(pages)
 
 
 def row_keys(runs: Mapping[RunKey, ArchivedRun]) -> list[RowKey]:
