@@ -159,7 +159,7 @@ class StubbornAgent:
                 max_steps=max_steps,
             )
         )
-        self.untrap = Untrap(self.policies.untrap_after)
+        self.untrap = Untrap(self.policies.untrap_after, turns_reset=config.untrap.turns_reset)
         self.standstill = Standstill(config.standstill)
         self.reset(GOAL_CATEGORIES[0], 0)
 

@@ -250,7 +250,7 @@ class TargetSeeker:
         """Verifies the candidate at a map cell; a rejected one never counts again in this episode.
 
         Returns False without a candidate. A late candidate is accepted without verification, unless it touches a
-        rejected object.
+        rejected object (`TargetConfig.verify_late_fragments`).
         """
         whole = self._known(navmap)
         view, parts = navmap.view(whole), self.parts(navmap)
@@ -262,7 +262,8 @@ class TargetSeeker:
         best = _seen_best(view, instance)
         features = features_of(view, best)
         found_late = bool((view.found_step[instance] > self.config.verify_until_step).all())
-        if (found_late and not parts.touches_rejected[number]) or self.verifier.accepts(self.goal, features):
+        is_fragment = self.config.verify_late_fragments and bool(parts.touches_rejected[number])
+        if (found_late and not is_fragment) or self.verifier.accepts(self.goal, features):
             self.confidence = self._rated(features)
             row, col = divmod(best, view.frame.shape[1])
             self.accepted_cell = row + whole.rows.start, col + whole.cols.start

@@ -263,15 +263,16 @@ def cells_of_pixels(
 
 
 @njit(cache=True)
-def highest_scores(rows, cols, target, other, in_view, target_of, other_of):
-    """Reduces pixels to cells: the highest target score, and the highest other score where the target's is highest.
+def highest_scores(rows, cols, target, other, of_target_pixel, in_view, target_of, other_of):
+    """Reduces pixels to cells: the highest target score and the highest other score of the pixels in a cell.
 
     Args:
         rows: (h, w) row of each pixel's cell, -1: no cell; `cols` is its column.
         target: (h, w) float32 score of the target; `other` is the highest score of any other category.
+        of_target_pixel: True: other scores count only at the pixels of a cell that have its highest target score.
         in_view: (rows, cols) bool; it is set to True where a pixel lies.
         target_of: (rows, cols) float32 zeros; it is set to the highest target score.
-        other_of: (rows, cols) float32 zeros; it is set to the highest other score of the pixels with that target score.
+        other_of: (rows, cols) float32 zeros; it is set to the highest other score.
 
     Returns:
         True if a target score in a cell is more than 0.
@@ -284,10 +285,12 @@ def highest_scores(rows, cols, target, other, in_view, target_of, other_of):
                 continue
             in_view[row, col] = True
             if target[i, j] > target_of[row, col]:
-                target_of[row, col], other_of[row, col] = target[i, j], other[i, j]
-                scored = True
-            elif target[i, j] == target_of[row, col] and other[i, j] > other_of[row, col]:
-                other_of[row, col] = other[i, j]
+                target_of[row, col], scored = target[i, j], True
+                if of_target_pixel:
+                    other_of[row, col] = np.float32(0.0)
+            elif of_target_pixel and target[i, j] < target_of[row, col]:
+                continue
+            other_of[row, col] = max(other_of[row, col], other[i, j])
     return scored
 
 

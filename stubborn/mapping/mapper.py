@@ -39,6 +39,9 @@ class MappingConfig:
     """Step between the pixels, in rows and columns, that enter the object layers."""
     rim_px: int = 3
     """Width of the target's rim that does not count with inexact images, in pixels: depth and scores differ there."""
+    other_of_target_pixel: bool = False
+    """True: of the scores of other categories, a cell takes only those of the pixel with its highest target score. A
+    picture shares its cell with the wall above and below it. False: the highest of all its pixels, as in the paper."""
     candidate_score: float = 0.5
     """A cell with a higher target score is a candidate."""
     candidate_gap_m: float = 0.15
@@ -189,7 +192,14 @@ class Mapper:
         row, col = (indices.start for indices in cells.span)
         part = navmap.frame.part(*(_moved(indices, by) for indices, by in zip(cells.span, window.corner, strict=True)))
         navmap.grow_known(*part.index)
-        scored = FrameScores(part.frame.shape, cells.rows - row, cells.cols - col, target, other)
+        scored = FrameScores(
+            part.frame.shape,
+            cells.rows - row,
+            cells.cols - col,
+            target,
+            other,
+            other_of_target_pixel=self.config.other_of_target_pixel,
+        )
         self.layers.add(navmap.view(part), scored, step)
         shown = candidates & (cells.rows >= 0)
         if not shown.any():

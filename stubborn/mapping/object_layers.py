@@ -1,7 +1,6 @@
 """Enters the scores of one frame into the object layers of the map (paper: Mapping Module, channels 4 to 7).
 
-The pixel with the highest target score counts for a cell: a picture shares its cell with the wall above and below it,
-and the scores of the wall contain no information about the picture.
+A cell takes the highest score of its pixels, for the target and for the other categories.
 """
 
 from __future__ import annotations
@@ -46,16 +45,21 @@ class FrameScores:
         cols: Int[np.ndarray, "h w"],
         target: Float32[np.ndarray, "h w"],
         other: Float32[np.ndarray, "h w"],
+        *,
+        other_of_target_pixel: bool = False,
     ) -> None:
-        """`rows` and `cols` are the cell of each pixel (negative: no cell); `target` and `other` are in [0, 1]."""
+        """`rows` and `cols` are the cell of each pixel (negative: no cell); `target` and `other` are in [0, 1].
+
+        With `other_of_target_pixel`, other scores count only at the pixels of a cell with its highest target score.
+        """
         in_view, highest, other_of = np.zeros(shape, np.bool_), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
-        scored = highest_scores(rows, cols, target, other, in_view, highest, other_of)
+        scored = highest_scores(rows, cols, target, other, other_of_target_pixel, in_view, highest, other_of)
         self.in_view: Bool[np.ndarray, "rows cols"] = in_view
         """True where a pixel lies."""
         self.target: Float32[np.ndarray, "rows cols"] | None = highest if scored else None
         """Highest score of the target; 0 out of view. None: 0 everywhere."""
         self.other: Float32[np.ndarray, "rows cols"] = other_of
-        """Highest score of any other category where the target's is highest; 0 out of view."""
+        """Highest score of any other category; 0 out of view."""
 
 
 class AllFrames:

@@ -70,7 +70,7 @@ class CollisionPolicies:
     """Layers to plan on towards a candidate, in order of preference."""
     proven_ground: ProvenGround
     untrap_after: float
-    """Failed forwards in a row that begin the untrap mode; infinite: it never begins."""
+    """Failed forwards that begin the untrap mode (`UntrapConfig`); infinite: it never begins."""
 
 
 def collision_policies(avoidance: CollisionAvoidance, untrap: UntrapConfig) -> CollisionPolicies:

@@ -21,7 +21,10 @@ class UntrapConfig:
     """Defines when the mode begins."""
 
     failed_forwards: int = 10
-    """The mode begins after this many failed forwards in a row; turns in between do not reset the count."""
+    """The mode begins after this many failed forwards without one that moved the robot."""
+    turns_reset: bool = False
+    """True: a turn that turned the robot resets the count, so that the failed forwards are consecutive steps as in the
+    paper's text. False: only a forward that moved the robot does, as in the published code."""
 
     def __post_init__(self) -> None:
         if self.failed_forwards < 1:
@@ -34,9 +37,10 @@ class Untrap:
     The side of the turns alternates from one entry to the next, left first in every episode.
     """
 
-    def __init__(self, failed_forwards: float) -> None:
-        """The mode begins after `failed_forwards` failed forwards in a row; infinite: never."""
+    def __init__(self, failed_forwards: float, *, turns_reset: bool = False) -> None:
+        """The mode begins after `failed_forwards` failed forwards, see `UntrapConfig`; infinite: never."""
         self.failed_forwards = failed_forwards
+        self.turns_reset = turns_reset
         self.reset()
 
     def reset(self) -> None:
@@ -67,6 +71,8 @@ class Untrap:
                 self._begin(_OTHER_SIDE[self._side])
         elif action is Action.TURN_LEFT or action is Action.TURN_RIGHT:
             self._blocked_turns = self._blocked_turns + 1 if failed else 0
+            if self.turns_reset and not failed:
+                self._failed = 0
             if self._blocked_turns >= _BLOCKED_TURNS and math.isfinite(self.failed_forwards):
                 self._begin(_OTHER_SIDE[action])
 

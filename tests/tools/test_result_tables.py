@@ -3,23 +3,41 @@
 from __future__ import annotations
 
 import hashlib
+import importlib
 import json
 import re
+import shlex
 import shutil
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from sim.app import cli
+from sim.app.commands.main import COMMANDS
 from sim.app.commands.reproduce import runs as table_runs
 from sim.app.commands.reproduce.runs import AgentSetup, RunKey, runs_in
+from sim.app.composition.setup import resolve
+from sim.app.evaluation.intervals import holm
+from sim.app.options import RunOptions
+from sim.core.configuration import as_json, leaves_of
 from sim.core.errors import ConfigError
 from stubborn.segmentation.shipped import SHIPPED_REDNET
-from tests.helpers import wording
+from tests.helpers import documented, wording
 from tests.helpers.results import ENTRIES
 from tools.research import result_tables
-from tools.research.result_archive import ARCHIVE, CHECKSUM_DIGITS, VERSION, ArchivedRun, pack, read_archive, unpack
+from tools.research.result_archive import (
+    ARCHIVE,
+    CHECKSUM_DIGITS,
+    FORMER,
+    VERSION,
+    ArchivedRun,
+    pack,
+    read_archive,
+    unpack,
+)
 from tools.research.result_definitions import comparisons, needed_rows, page_tables
 from tools.research.result_tables import (
     COMPARISONS,
@@ -30,7 +48,6 @@ from tools.research.result_tables import (
     Args,
     comparison_record,
     fill_page,
-    holm,
     main,
     paper_page,
     read_csv,
@@ -77,11 +94,11 @@ def test_the_shipped_csv_files_are_those_of_the_archive(runs: Mapping[RunKey, Ar
 
 
 def test_the_page_of_the_paper_is_that_of_the_archive(tmp_path: Path) -> None:
-    read_archive(ARCHIVE, tmp_path)
-    assert (TABLES / PAPER).read_text(encoding="utf-8") == paper_page(tmp_path)
+    runs = read_archive(ARCHIVE, tmp_path)
+    assert (TABLES / PAPER).read_text(encoding="utf-8") == paper_page(tmp_path, runs)
     shutil.rmtree(tmp_path / "poni_rednet_none_val")
     with pytest.raises(ConfigError, match="'overall'"):
-        paper_page(tmp_path)
+        paper_page(tmp_path, runs)
 
 
 def test_holm_multiplies_the_smallest_p_value_by_their_number_and_keeps_the_order() -> None:
@@ -111,7 +128,7 @@ def test_check_reports_a_page_and_a_csv_file_that_differ(
 ) -> None:
     few = sorted({row for table in page_tables() for _, cells in table.rows for row, _ in cells})
     monkeypatch.setattr(result_tables, "read_archive", lambda *_: runs)
-    monkeypatch.setattr(result_tables, "paper_page", lambda _: "The tables.\n")
+    monkeypatch.setattr(result_tables, "paper_page", lambda *_: "The tables.\n")
     monkeypatch.setattr(result_tables, "row_keys", lambda _: few)
     monkeypatch.setattr(result_tables, "comparisons", lambda: [pair for pair in comparisons() if pair.primary][:1])
     page = tmp_path / "results.md"
@@ -236,6 +253,36 @@ def test_a_row_has_the_command_that_repeats_it(tmp_path: Path) -> None:
         "'agent.seeker.look.bar=[[0,0.05],[500,0.7]]' "
         "--semantics gt --split val --episodes 1"
     )
+
+
+def test_the_command_of_a_row_configures_the_agent_as_its_run_was(runs: Mapping[RunKey, ArchivedRun]) -> None:
+    for run in runs.values():
+        words = shlex.split(run.command(1).rpartition("; ")[2])
+        options = cli.parse(RunOptions, words[2:])
+        today = dict(leaves_of(as_json(resolve(replace(options, split="val")).config)))
+        recorded = dict(leaves_of(run.run.config["config"]))
+        differing = {path for path in today.keys() & recorded.keys() if today[path] != recorded[path]}
+        assert differing <= {"detector.weights"}, run.run.path.name  # the file is elsewhere, its checksum is equal
+        if run.network:
+            wanted = {path: value for path, (_, value) in FORMER.items() if path not in recorded and path in today}
+            assert {path: json.dumps(today[path]).removesuffix(".0") for path in wanted} == wanted, run.run.path.name
+
+
+COMMANDS_OF_TABLES = {
+    command: file.name
+    for file in sorted(TABLES.glob("*.csv"))
+    for record in read_csv(file)
+    for command in record.get("command", "").split("; ")
+    if command
+}
+"""Commands of the CSV files, and the file that each is in."""
+
+
+@pytest.mark.parametrize("command", COMMANDS_OF_TABLES)
+def test_every_command_of_a_csv_file_is_accepted_with_its_options(command: str) -> None:
+    program, words = documented.program_of(documented.canonical(shlex.split(command)))
+    module = importlib.import_module(COMMANDS[program].module if program in COMMANDS else program)
+    cli.parse(module.Args, words)
 
 
 def test_a_csv_file_read_again_has_the_same_rows(tmp_path: Path) -> None:

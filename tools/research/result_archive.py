@@ -16,8 +16,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim.app.analysis.comparison import Run, read_run
-from sim.app.commands.reproduce.runs import RunKey, runs_in
+from sim.app.commands.reproduce.runs import GROUND_TRUTH, RunKey, runs_in
 from sim.app.composition.agents import find_agent
+from sim.core.configuration import leaves_of
 from sim.core.errors import ConfigError
 from sim.core.reading import read_bytes
 from sim.episodes.replicates import episode_of
@@ -32,6 +33,20 @@ RUN_FILES = ("config.json", "results.jsonl")
 GROUND_TRUTH_KINDS = ("gt", "noisy")
 """Kinds of segmentation that are made from ground truth."""
 CHECKSUM_DIGITS = 8
+PREPARED = {
+    "transfer": (
+        "stubborn import furniture --source /usr/share/sweethome3d/furniture --out runs/models",
+        "stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer",
+        "stubborn episodes --split runs/transfer --recipe val",
+    )
+}
+"""Commands that make the splits that do not ship (docs/furniture.md)."""
+FORMER = {
+    "agent.mapping.other_of_target_pixel": ("agent.mapping.candidate_score", "true"),
+    "agent.seeker.context_share": ("agent.seeker.core_share", "0"),
+}
+"""Fields that `config.json` of older runs lacks: an older field of the same part of the agent, and the value that gives
+the behaviour of that time. Only agents with imperfect segmentation depend on them."""
 
 
 @dataclass(frozen=True)
@@ -77,11 +92,23 @@ class ArchivedRun:
         return str(self.run.config.get("files_sha256", {}).get("weights", ""))[:CHECKSUM_DIGITS]
 
     def command(self, episodes: int) -> str:
-        """Returns the command that runs the same episodes."""
+        """Returns the commands, with semicolons between, that run the same episodes."""
         source = self.run.recorded("split")
         setup = self.key.setup
-        parts = ["stubborn run --agent", setup.agent, setup.options, "--semantics", setup.semantics]
-        return " ".join(filter(None, [*parts, "--split", shlex.quote(source), f"--episodes {episodes}"]))
+        options = shlex.split(setup.options)
+        if former := self._former_settings():
+            options += former if "--config" in options else ["--config", *former]
+        words = ["stubborn", "run", "--agent", setup.agent, *options, "--semantics", setup.semantics]
+        run = shlex.join([*words, "--split", source, "--episodes", str(episodes)])
+        return "; ".join([*PREPARED.get(self.key.split, ()), run])
+
+    def _former_settings(self) -> list[str]:
+        """Returns the settings of `FORMER` that this run needs."""
+        if self.key.setup.semantics == GROUND_TRUTH:
+            return []
+        recorded = dict(leaves_of(self.run.config.get("config", {})))
+        missing = {path: value for path, (older, value) in FORMER.items() if older in recorded and path not in recorded}
+        return [f"{path}={value}" for path, value in missing.items()]
 
 
 def read_archive(archive: Path, folder: Path) -> dict[RunKey, ArchivedRun]:

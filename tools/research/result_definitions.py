@@ -16,7 +16,7 @@ from tools.research.result_archive import VERSION
 
 MEANS = (SUCCESS, SPL, METRICS["soft_spl"], METRICS["distance_to_goal"], EXPLORED, COLLISIONS, TRAPPED, STEPS)
 """Metrics whose mean and interval each row of results.csv has."""
-COMPARED = (SUCCESS, SPL, COLLISIONS, TRAPPED, FIRST_SIGHT, STEPS)
+COMPARED = (SUCCESS, SPL, EXPLORED, COLLISIONS, TRAPPED, FIRST_SIGHT, STEPS)
 """Metrics whose paired difference each row of comparisons.csv has."""
 PRIMARY_METRICS = (SUCCESS, SPL)
 """Metrics of the primary comparisons of a table; their p-values are corrected together (Holm 1979)."""

@@ -33,11 +33,13 @@ from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.comparison import require_same_episodes
 from sim.app.analysis.metrics import FIRST_SIGHT, difference_cell, episodes_of, houses_of, mean_cell, median_text
+from sim.app.analysis.tables import to_markdown
+from sim.app.commands.reproduce.paper_claims import MARGIN, JudgedTable, judged, overview
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, table_named
 from sim.app.commands.reproduce.reproduce import Args as ReproduceArgs
-from sim.app.commands.reproduce.reproduce import make_table, part_of
+from sim.app.commands.reproduce.reproduce import lines_of, make_table, part_of, shared_runs
 from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, file_name, run_in_turns, runs_in
-from sim.app.evaluation.intervals import Estimate, replicate_spread
+from sim.app.evaluation.intervals import Estimate, holm, replicate_spread
 from sim.core.errors import ConfigError
 from sim.core.files import csv_text, write_atomically, write_together
 from sim.core.reading import read_bytes, read_text
@@ -45,6 +47,7 @@ from sim.core.reading import read_csv as read_table
 from sim.episodes.splits import load_split
 from sim.task.failures import CAUSES
 from sim.task.result import EpisodeResult, Metric
+from tools.research.paper_reasons import reasons
 from tools.research.result_archive import ARCHIVE, ROOT, TABLES, VERSION, ArchivedRun, pack, read_archive, unpack
 from tools.research.result_definitions import (
     COMPARED,
@@ -74,12 +77,27 @@ ABOUT_PAPER = f"""\
 # The paper's tables
 
 Columns that begin with *paper* are of Luo et al. (2022), from MP3D houses in Habitat; all others are measured here, in
-generated houses with contacts. Compare orders and differences of agents, not the figures. `gt` is ground-truth
-segmentation, `rednet` the network that ships. `cloned`, a small end-to-end agent, corresponds to the paper's EEAux
-and is not that agent.
+generated houses (splits {VERSION}) with contacts. Compare orders and differences of agents, not the figures. `gt` is
+ground-truth segmentation, `rednet` the network that ships. `cloned`, a small end-to-end agent, corresponds to the
+paper's EEAux and is not that agent.
 
 `stubborn reproduce all --episodes 200 --workers 2` runs all of it again, and resumes; each table states its hours. This
 page is made from the [result lines]({ARCHIVE.name}) by `python -m tools.research.result_tables`.
+
+## Verdicts
+
+A claim is a difference between two agents that the paper reports. It is *replicated* if the difference here is
+significant in the paper's direction (Holm's correction for the claims of its table), *not replicated* if it is not and
+its interval excludes the paper's difference, and *unresolved* otherwise. A claim that an agent is *not higher* is
+replicated if the interval ends below {100 * MARGIN:.0f} points, and not replicated if it begins above. The paper's own
+intervals (6 points to each side in Table IV) are not used. A table has the worst verdict on its claims.
+
+"""
+ABOUT_REASONS = """\
+## Why Table IV is not replicated
+
+Differences with their intervals; *not significant* is meant after Holm's correction within each table. Exploratory: the
+questions were asked after the verdicts were known. Episodes in which an agent was trapped are not a random sample.
 
 """
 
@@ -122,7 +140,7 @@ def main(args: Args) -> int:
         results = [result_record(runs[key.run], key.episodes) for key in row_keys(runs)]
         pairs = list(comparisons())
         compared = with_families(pairs, [comparison_record(pair, runs) for pair in pairs])
-        paper = paper_page(Path(folder))
+        paper = paper_page(Path(folder), runs)
     page = fill_page(read_text(args.page, what="--page"), results)
     contents = {
         args.tables / RESULTS: to_csv(results),
@@ -182,23 +200,28 @@ def table_run(args: Args, key: RunKey, episodes: int, folders: Mapping[RunKey, P
     return TableRun(options, split, split.episodes[:episodes])
 
 
-def paper_page(folder: Path) -> str:
+def paper_page(folder: Path, runs: Mapping[RunKey, ArchivedRun]) -> str:
     """Returns the page of the paper's tables, docs/tables/paper.md.
 
     Args:
         folder: the unpacked archive; it receives the tables, too.
+        runs: the runs in it.
 
     Raises:
         ConfigError: a run is missing.
     """
     part = part_of(ReproduceArgs(table="all", episodes=PAPER_EPISODES, minutes=0.0, out=folder))
     pages: list[str] = []
+    claims: list[JudgedTable] = []
     for name in PAPER_TABLES:
-        page = make_table(part, name, table_named(name).setups(), Console(quiet=True))
+        setups = table_named(name).setups()
+        page = make_table(part, name, setups, Console(quiet=True))
         if page is None:
             raise ConfigError(f"'{ARCHIVE.name}' lacks a run of the paper's table '{name}'.")
         pages.append(page)
-    return ABOUT_PAPER + "\n".join(pages)
+        claims += filter(None, [judged(name, lines_of(*shared_runs(part, setups)))])
+    why = f"{ABOUT_REASONS}{to_markdown(reasons(runs))}\n## Tables\n\n"
+    return f"{ABOUT_PAPER}{overview(claims)}\n{why}" + "\n".join(pages)
 
 
 def row_keys(runs: Mapping[RunKey, ArchivedRun]) -> list[RowKey]:
@@ -288,15 +311,6 @@ def with_families(pairs: Sequence[Comparison], records: Sequence[Record]) -> lis
         for record in family:
             record |= {f"{column}_holm": f"{next(corrected):.6f}" for column in columns}
     return classified
-
-
-def holm(p_values: Sequence[float]) -> list[float]:
-    """Returns the p-values corrected for their number by Holm's method (1979)."""
-    corrected, least = [1.0] * len(p_values), 0.0
-    for rank, number in enumerate(sorted(range(len(p_values)), key=p_values.__getitem__)):
-        least = max(least, min(1.0, (len(p_values) - rank) * p_values[number]))
-        corrected[number] = least
-    return corrected
 
 
 def fill_page(text: str, results: Sequence[Record]) -> str:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from rich.table import Table
 
-from sim.app.evaluation.intervals import Estimate
+from sim.app.evaluation.intervals import Estimate, holm
 
 SIGNIFICANT, NOT_SIGNIFICANT = "significant", "not significant"
 CSV_COLUMNS = ("table", "row", "column", "value", "low95", "high95", "episodes", "houses", "verdict")
+SIGNIFICANCE = 0.05
+"""A difference is significant if its p-value, corrected for the number of differences, is smaller."""
 ONE_HOUSE = "*"
 """Marks an interval over the episodes of one house."""
 ONE_HOUSE_NOTE = f"{ONE_HOUSE} One house: the interval is over its episodes and says nothing about other houses."
@@ -30,13 +32,20 @@ class Cell:
     """A difference, shown with its sign, or a ratio; not significant where the interval holds `Estimate.neutral`."""
     say_significant: bool = False
     """A significant comparison is shown with that word too."""
+    p_holm: float | None = None
+    """The p-value of a difference after Holm's correction for the other differences of its table; None: uncorrected."""
+
+    @property
+    def is_significant(self) -> bool:
+        """True for a significant comparison, after the correction if it has one."""
+        return self.estimate.significant and (self.p_holm is None or self.p_holm < SIGNIFICANCE)
 
     @property
     def verdict(self) -> str:
         """`not significant`, `higher` or `lower` for a comparison; "" for a mean and for a comparison without pairs."""
         if not self.difference or self.estimate.mean is None:
             return ""
-        if not self.estimate.significant:
+        if not self.is_significant:
             return NOT_SIGNIFICANT
         return "higher" if self.estimate.mean > self.estimate.neutral else "lower"
 
@@ -87,6 +96,27 @@ class ResultTable:
         """The notes, and the meaning of the asterisk if a cell has one."""
         cells = [cell for _, row in self.rows for cell in row if isinstance(cell, Cell)]
         return (*self.notes, *((ONE_HOUSE_NOTE,) if any(ONE_HOUSE in cell.interval_text for cell in cells) else ()))
+
+
+def corrected(cells: Sequence[Cell]) -> list[Cell]:
+    """Returns the differences with their p-values corrected for their number by Holm's method."""
+    p_values = [1.0 if cell.estimate.p is None else cell.estimate.p for cell in cells]
+    return [replace(cell, p_holm=p) for cell, p in zip(cells, holm(p_values), strict=True)]
+
+
+def with_corrections(table: ResultTable) -> ResultTable:
+    """Returns a table with all its differences that have a p-value corrected as one family."""
+    tested = [cell for _, cells in table.rows for cell in cells if isinstance(cell, Cell) and _has_test(cell)]
+    rest = iter(corrected(tested))
+    rows = [
+        (label, [next(rest) if isinstance(cell, Cell) and _has_test(cell) else cell for cell in cells])
+        for label, cells in table.rows
+    ]
+    return replace(table, rows=rows)
+
+
+def _has_test(cell: Cell) -> bool:
+    return cell.difference and cell.estimate.p is not None
 
 
 def to_rich(table: ResultTable) -> Table:

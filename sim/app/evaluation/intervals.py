@@ -191,6 +191,15 @@ def ratio_of_medians(
     return Estimate(float(middle), float(low), float(high), *counts, neutral=1.0)
 
 
+def holm(p_values: Sequence[float]) -> list[float]:
+    """Returns the p-values corrected for their number by Holm's method (1979)."""
+    corrected, least = [1.0] * len(p_values), 0.0
+    for rank, number in enumerate(sorted(range(len(p_values)), key=p_values.__getitem__)):
+        least = max(least, min(1.0, (len(p_values) - rank) * p_values[number]))
+        corrected[number] = least
+    return corrected
+
+
 def replicate_spread(values: Sequence[Value], episodes: Sequence[str]) -> float | None:
     """Returns the standard deviation, over repetitions, of a mean that has one replicate of each episode.
 

@@ -37,8 +37,10 @@ def random_scores(seed: int) -> Scores:
     return Scores(target * (target > 0.3), rng.random(target.shape, np.float32))
 
 
-def brute_force(depth: np.ndarray, scores: Scores, pose: Pose) -> dict[tuple[int, int], tuple[float, float]]:
-    """Returns the highest target score of each cell in view, and the other score of the same pixel."""
+def brute_force(
+    depth: np.ndarray, scores: Scores, pose: Pose, *, of_target_pixel: bool
+) -> dict[tuple[int, int], tuple[float, float]]:
+    """Returns the highest target score of each cell in view, and the highest other score (of the same pixel)."""
     found: dict[tuple[int, int], tuple[float, float]] = {}
     for v in range(CAMERA.height_px):
         for u in range(CAMERA.width_px):
@@ -50,14 +52,16 @@ def brute_force(depth: np.ndarray, scores: Scores, pose: Pose) -> dict[tuple[int
             x = pose.x_m + d * math.cos(pose.yaw_rad) - left * math.sin(pose.yaw_rad)
             y = pose.y_m + d * math.sin(pose.yaw_rad) + left * math.cos(pose.yaw_rad)
             here = float(scores.target[v, u]), float(scores.best_other[v, u])
-            found[FRAME.cell(x, y)] = max(found.get(FRAME.cell(x, y), (0.0, 0.0)), here)
+            before = found.get(FRAME.cell(x, y), (0.0, 0.0))
+            separate = max(before[0], here[0]), max(before[1], here[1])
+            found[FRAME.cell(x, y)] = max(before, here) if of_target_pixel else separate
     return found
 
 
-def layers_by_brute_force(frames: list) -> dict[str, np.ndarray]:
+def layers_by_brute_force(frames: list, *, of_target_pixel: bool) -> dict[str, np.ndarray]:
     layers = {name: np.zeros(FRAME.shape) for name in ("frames_in_view", "score_sum", "score_max", "other_max")}
     for depth, scores, pose in frames:
-        for cell, (target, other) in brute_force(depth, scores, pose).items():
+        for cell, (target, other) in brute_force(depth, scores, pose, of_target_pixel=of_target_pixel).items():
             layers["frames_in_view"][cell] += 1
             layers["score_sum"][cell] += target
             layers["score_max"][cell] = max(layers["score_max"][cell], target)
@@ -65,15 +69,17 @@ def layers_by_brute_force(frames: list) -> dict[str, np.ndarray]:
     return layers
 
 
+@pytest.mark.parametrize("of_target_pixel", [False, True])
 @pytest.mark.parametrize("distance_m", [1.0, 2.5, 4.8])
-def test_the_four_layers_equal_a_projection_of_every_pixel(distance_m: float):
+def test_the_four_layers_equal_a_projection_of_every_pixel(distance_m: float, of_target_pixel: bool):
     frames = [(frame_at(pose, distance_m), random_scores(i), pose) for i, pose in enumerate(POSES)]
     navmap = NavMap.empty(FRAME)
-    config = MappingConfig(score_stride_px=1, occupancy=OccupancyConfig(neighbours=0))  # lone pixels count
+    occupancy = OccupancyConfig(neighbours=0)  # lone pixels count
+    config = MappingConfig(score_stride_px=1, occupancy=occupancy, other_of_target_pixel=of_target_pixel)
     mapper = Mapper(CAMERA, RobotModel(), config)
     for step, (depth, scores, pose) in enumerate(frames):
         mapper.add_scores(mapper.frame(navmap, pose), depth, scores, step)
-    expected = layers_by_brute_force(frames)
+    expected = layers_by_brute_force(frames, of_target_pixel=of_target_pixel)
     for name, layer in expected.items():
         ours = np.asarray(getattr(navmap, name), np.float64)
         differs = np.abs(ours - layer) > 1e-4

@@ -31,6 +31,19 @@ def test_ten_failed_forwards_start_it_and_nine_do_not():
     assert untrap.next_action() is L
 
 
+def test_with_turns_reset_only_consecutive_failed_forwards_count():
+    untrap = Untrap(UntrapConfig().failed_forwards, turns_reset=True)
+    fail(untrap, 9)
+    untrap.observe(L, False)
+    fail(untrap, 9)
+    untrap.observe(L, True)  # a turn that a contact stops changes nothing
+    assert not untrap.active
+    fail(untrap, 1)
+    assert untrap.active
+    untrap.observe(L, False)  # the turns of the mode do not end it
+    assert untrap.active
+
+
 def test_turns_between_do_not_reset_the_count_but_a_forward_that_moves_does():
     untrap = Untrap(UntrapConfig().failed_forwards)
     for _ in range(9):

@@ -35,7 +35,8 @@ from rich.console import Console
 from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.comparison import Run, code_of, read_run
-from sim.app.analysis.tables import ResultTable, to_csv, to_markdown, to_rich
+from sim.app.analysis.tables import SIGNIFICANCE, ResultTable, to_csv, to_markdown, to_rich, with_corrections
+from sim.app.commands.reproduce.paper_claims import judged
 from sim.app.commands.reproduce.paper_figures import beside_paper
 from sim.app.commands.reproduce.paper_tables import PAPER_TABLES, PaperTable, table_named
 from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, file_name, key_of, run_in_turns
@@ -138,14 +139,24 @@ def make_table(part: SplitEpisodes, name: str, setups: Sequence[AgentSetup], con
     Raises:
         ConfigError: the runs differ in conditions that must be equal.
     """
-    args = part.args
-    runs = {s: _read(args, s, part.split) for s in setups if (_folder(args, s) / "results.jsonl").is_file()}
-    common = common_episodes(runs, setups, part.episodes)
+    runs, common = shared_runs(part, setups)
     if not common:
         console.print(f"{name}: no episode that {', '.join(setup.label for setup in setups)} have all run.")
         return None
     require_same_conditions(list(runs.values()))
-    return write_table(args, name, table_named(name), runs, common, console)
+    return write_table(part.args, name, table_named(name), runs, common, console)
+
+
+def shared_runs(part: SplitEpisodes, setups: Sequence[AgentSetup]) -> tuple[dict[AgentSetup, Run], list[str]]:
+    """Returns the existing runs of some setups, and the ids of the episodes that all setups have run."""
+    args = part.args
+    runs = {s: _read(args, s, part.split) for s in setups if (_folder(args, s) / "results.jsonl").is_file()}
+    return runs, common_episodes(runs, setups, part.episodes)
+
+
+def lines_of(runs: Mapping[AgentSetup, Run], common: Sequence[str]) -> dict[AgentSetup, list[EpisodeResult]]:
+    """Returns the results of some episodes of each run, with the causes of failure by the current rules."""
+    return {setup: [with_cause(of, of.results[i]) for i in common] for setup, of in runs.items()}
 
 
 def common_episodes(
@@ -195,10 +206,12 @@ def write_table(
     console: Console,
 ) -> str:
     """Builds one table, prints it, and writes it as Markdown and CSV; returns the Markdown."""
-    lines = {setup: [with_cause(of, of.results[i]) for i in common] for setup, of in runs.items()}
-    parts = table.build(lines, list(runs))
+    lines = lines_of(runs, common)
+    parts = [with_corrections(part) for part in table.build(lines, list(runs))]
     if not args.agents:
         parts[0] = beside_paper(name, parts[0])
+        claims = judged(name, lines)
+        parts = parts if claims is None else [claims.table(name), *parts]
     notes = notes_of(args, name, runs, common)
     folder, stem = args.out / "tables", stem_of(args, name)
     page = to_markdown(parts) + "\n" + "\n\n".join(notes) + "\n"
@@ -251,8 +264,9 @@ def notes_of(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequ
     notes = [
         f"{len(common)} episodes in {houses} houses of {split['name']} {split['version']} ({split['sha256'][:8]}), "
         f"sensor noise {config['noise']}, seed {config['seed']}, mujoco {versions['mujoco']}.",
-        "Mean [95 % interval over houses]. Differences are paired by episode; not significant: the interval holds 0, "
-        f"or there are fewer than {MIN_PAIRS} pairs.",
+        "Mean [95 % interval over houses]. Differences are paired by episode; not significant: the p-value is at least "
+        f"{SIGNIFICANCE} after Holm's correction for the differences of the same table, or there are fewer than "
+        f"{MIN_PAIRS} pairs. Intervals are not corrected.",
         "`" + " ".join(["stubborn reproduce", name, *_named_options(args)]) + "`",
     ]
     spent_s = sum(of.results[i].wall_time_s or 0.0 for of in runs.values() for i in common)

@@ -19,7 +19,15 @@ from sim.app.analysis.comparison import (
     require_same_episodes,
 )
 from sim.app.analysis.replicates import replicate_note
-from sim.app.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_csv, to_markdown, to_rich
+from sim.app.analysis.tables import (
+    ONE_HOUSE_NOTE,
+    Cell,
+    ResultTable,
+    to_csv,
+    to_markdown,
+    to_rich,
+    with_corrections,
+)
 from sim.app.commands.compare import Args, compare, main, verdict
 from sim.app.evaluation.config_fields import ABSENT, run_differences
 from sim.app.evaluation.intervals import MIN_PAIRS, Estimate, estimate, paired_difference
@@ -89,6 +97,21 @@ def test_an_interval_that_holds_zero_or_has_few_pairs_is_not_significant(
     cell = Cell(Estimate(None if low is None else 0.2, low, high, pairs, pairs), difference=True)
     assert cell.estimate.significant == significant
     assert ("not significant" in cell.text()) == (not significant and low is not None)
+
+
+def test_differences_of_a_table_are_corrected_for_their_number_and_means_and_ratios_are_not() -> None:
+    weak, strong = (Cell(Estimate(0.2, 0.1, 0.3, 40, 40, p=p), difference=True) for p in (0.02, 0.001))
+    ratio = Cell(Estimate(0.5, 0.4, 0.6, 40, 40, neutral=1.0), difference=True)
+    mean = Cell(Estimate(0.2, 0.1, 0.3, 40, 40))
+    table = with_corrections(
+        ResultTable("t", "T", ("agent", "a", "b"), [("x", [weak, strong, ratio, mean, "text"]), ("y", [weak])])
+    )
+    (_, (first, second, third, *rest)), (_, (last,)) = table.rows
+    assert [cell.verdict for cell in (weak, strong)] == ["higher", "higher"]
+    assert [cell.p_holm for cell in (first, second, last)] == pytest.approx([0.04, 0.003, 0.04])
+    assert [*rest, third] == [mean, "text", ratio]
+    many = with_corrections(ResultTable("t", "T", ("agent", "a"), [("x", [weak])] * 3 + [("y", [strong])]))
+    assert [cell.verdict for _, (cell,) in many.rows] == ["not significant"] * 3 + ["higher"]
 
 
 def run_folder(folder: Path, ids: str, *, split: str = "val", **of_lines: object) -> Path:
