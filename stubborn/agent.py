@@ -47,7 +47,7 @@ from stubborn.planning.steering import next_action
 from stubborn.planning.untrap import Untrap, UntrapConfig
 
 BUMPER = "bumper"
-"""The sensor that `feel` reads if the observation holds it (`--config 'sensors=["depth", "semantic", "bumper"]'`)."""
+"""The sensor that `feel` reads if the observation holds it (`--config sensors=[...]` with `bumper`)."""
 _TREAD_M = 0.10
 """Half the width of the strip ahead that must have floor before the robot moves forward."""
 

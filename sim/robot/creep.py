@@ -25,14 +25,16 @@ HARD_STIFFNESS, SOFT_STIFFNESS = 15.0, 7.0
 """Slip stiffness per load, c. Tyres of cars have 10 to 25; that of carpet is an assumption."""
 HARD_RESISTANCE, SOFT_RESISTANCE = 0.01, 0.05
 """Rolling resistance by load."""
-FREE_SLIP = 0.001
+FREE_SLIP = 0.0017
 """Mean slip of forwards on a hard floor without a load, for which a base is calibrated; it was measured so."""
 SOFT_TEXTURES = ("carpet", "rug")
 """Floors with a texture of such a name are carpet, and so are geoms of the same instance that show nothing."""
 
 
-SURFACE_TICKS = 5
-"""The surface below the wheels is found again after so many ticks of the controller: 5 cm at full speed."""
+FORCE_TICKS = 2
+"""The forces are read again after so many ticks of the controller ..."""
+SURFACE_TICKS = 6
+"""... and the surface below the wheels after so many: 6 cm at full speed."""
 
 
 class Creep:
@@ -47,7 +49,7 @@ class Creep:
 
     def reset(self) -> None:
         """Starts an episode, at rest."""
-        self._ticks, self._speeds = 0, (0.0, 0.0)
+        self._ticks, self._speeds, self._slips = 0, (0.0, 0.0), (0.0, 0.0)
         self._surfaces = [(1.0, HARD_STIFFNESS, HARD_RESISTANCE)] * 2  # friction, stiffness, resistance
 
     def slip(self) -> tuple[float, float]:
@@ -59,6 +61,12 @@ class Creep:
         if self._ticks % SURFACE_TICKS == 0:
             self._look()
         self._ticks += 1
+        if self._ticks % FORCE_TICKS == 1:
+            self._slips = self._now()
+        return self._slips
+
+    def _now(self) -> tuple[float, float]:
+        """Returns the slip of both wheels since the forces were read last."""
         ahead, up = self._body.ahead_and_up()
         before, self._speeds = self._speeds, self._body.wheel_speeds()
         # Half of what the hull pushes and of what the slope takes; the rest accelerates the robot.
@@ -71,7 +79,7 @@ class Creep:
         ):
             _, x_n, y_n, z_n = tread  # the tyre pushes the ground down
             load_n = -(up[0] * x_n + up[1] * y_n + up[2] * z_n)
-            force_n = steady_n + self._half_mass_kg * self._radius_m * (speed - last) / self._tick_s
+            force_n = steady_n + self._half_mass_kg * self._radius_m * (speed - last) / (FORCE_TICKS * self._tick_s)
             slips.append(slip_of(force_n + math.copysign(resistance * load_n, speed), load_n, friction, stiffness))
         return slips[0], slips[1]
 

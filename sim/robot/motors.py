@@ -36,6 +36,7 @@ class Motors:
 
     def reset(self, conditions: Conditions) -> None:
         """Starts an episode."""
+        self._holds = True  # another drive may have locked the wheels
         self._scale = conditions.motor_gain_scale
         self.vary(ActionErrors())
         self._bias_rad_s = conditions.motor_bias_rad_s
@@ -67,6 +68,9 @@ class Motors:
         A servo of speed alone lets a robot on a slope roll: it needs an error of speed for its torque. A wheel that is
         held resists with the largest torque of the motor, as a servo of position does.
         """
+        if not (at_rest or self._holds):
+            return
+        self._holds = at_rest
         for dof, speed in zip(self._dofs, self._body.wheel_speeds(), strict=True):
             held = at_rest and abs(speed) < self._still_rad_s
             self._model.dof_frictionloss[dof] = self._max_torque_nm if held else 0.0

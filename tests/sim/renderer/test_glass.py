@@ -10,7 +10,6 @@ import pytest
 from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40_ID, CameraModel
 from sim.gl import mujoco
-from sim.houses.glass import RETURN_SHARE
 from sim.houses.house import House
 from sim.renderer.camera import Camera
 from sim.sensors.scan import ScanConfig, ScanSensor
@@ -57,7 +56,7 @@ def test_most_pixels_of_a_pane_show_what_is_behind_it(kind: str, behind_m: float
     assert pane[middle].all()
     depth_m = images["depth"][middle]
     returned = np.abs(depth_m - PANE_M) < 0.01
-    assert returned.mean() == pytest.approx(RETURN_SHARE, abs=0.03)
+    assert returned.mean() == pytest.approx(0.08, abs=0.03)
     np.testing.assert_allclose(depth_m[~returned], behind_m, atol=0.01)
     alone = look(kind, "depth")[1]["depth"]
     np.testing.assert_array_equal(alone, images["depth"])
@@ -79,4 +78,4 @@ def test_most_rays_of_a_lidar_go_on_behind_a_pane(kind: str, behind_m: float) ->
     distance_m = sensor.read(SensorContext(sensor, {}, **fields))[ahead] * np.cos(config.angles_rad[ahead])
     returned = np.abs(distance_m - PANE_M) < 0.01
     np.testing.assert_allclose(distance_m[~returned], behind_m, atol=0.03)
-    assert returned.mean() == pytest.approx(1.0 if kind == "solid" else RETURN_SHARE, abs=0.06)
+    assert returned.mean() == pytest.approx(1.0 if kind == "solid" else 0.08, abs=0.06)

@@ -62,7 +62,7 @@ def test_every_field_of_every_agent_can_be_set_to_its_own_value(agent: str, sema
         ("task.max_steps=0", "max_steps"),
         ("task.success.distance_m=-1", "distance_m"),
         ("sensors=[]", "needs depth"),
-        ('sensors=["depth", "semantic"]', "'semantic' is ground truth"),
+        ('sensors=["depth", "imu", "semantic"]', "'semantic' is ground truth"),
         ("detector.weights=none", "'detector' has no fields here"),
     ],
 )
