@@ -95,7 +95,7 @@ def _second_groups(layout: RoomLayout, source: FurnitureSource) -> None:
     """Places more groups in a large living room: one from 20 m2 on, two from 30, three from 40."""
     area = layout.inner.area_m2
     count = int(area > 20) + int(area > 30) + int(area > 40)
-    free = [armchair_circle, dining_group] if "dining_room" not in source.home_rooms or area > 38 else [armchair_circle]
+    free = [armchair_circle, dining_group] if "dining_room" not in source.home_rooms else [armchair_circle]
     by_wall = [reading_corner, desk_group]
     groups = [free[n] for n in source.rng.permutation(len(free)).tolist()]
     groups += [by_wall[n] for n in source.rng.permutation(2).tolist()]

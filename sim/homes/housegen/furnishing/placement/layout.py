@@ -112,11 +112,14 @@ class RoomLayout:
             return False
         return not any(block.rect.overlaps(zone, 0.02) and block.z0_m < ROBOT_HEIGHT_M for block in self._blocks)
 
-    def free_width_m(self, rect: Rect) -> float:
-        """Returns the width of the floor beside a rectangle, across the room."""
-        if self.inner.width_m < self.inner.depth_m:
-            return max(rect.x0 - self.inner.x0, self.inner.x1 - rect.x1)
-        return max(rect.y0 - self.inner.y0, self.inner.y1 - rect.y1)
+    def narrows_hallway(self, rect: Rect) -> bool:
+        """Returns whether the room is a hallway in which an item of this footprint leaves too little width."""
+        inner = self.inner
+        if inner.width_m < inner.depth_m:
+            free_m = max(rect.x0 - inner.x0, inner.x1 - rect.x1)
+        else:
+            free_m = max(rect.y0 - inner.y0, inner.y1 - rect.y1)
+        return self.kind == "hallway" and free_m < HALLWAY_PATH_M
 
     # ---- changes -------------------------------------------------------------------------------------------------
 
@@ -129,7 +132,7 @@ class RoomLayout:
         rect, height_m = placement.rect, placement.item.size_m[2]
         if not self.inner.contains(rect, 0.002) or not self.is_clear(rect, 0.0, height_m, ignore=ignore):
             return False
-        if self.kind == "hallway" and self.free_width_m(rect) < HALLWAY_PATH_M and placement.item.category != "objects":
+        if placement.item.category != "objects" and self.narrows_hallway(rect):
             return False
         if self.in_reserved_zone(rect, ignore=ignore) or not all(self.is_zone_free(zone) for zone in zones):
             return False
