@@ -11,15 +11,15 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.gl import mujoco
 from sim.houses.house import Room
-from sim.houses.instance_facts import read_instance_facts
 from sim.houses.labels import Labels
+from sim.world.room_arrangement import near_tables, room_clauses
+from sim.world.standing import Standing, blocks_floor, is_in, read_standing
 
 MIN_TRIANGLE_M, MAX_TRIANGLE_M = 4.0, 7.9
 """Sum of the legs of the work triangle: 13 to 26 ft (NKBA guideline 3)."""
@@ -38,10 +38,12 @@ TALL_M = 1.3
 """Higher pieces hide a window."""
 BEFORE_WINDOW_M = 0.4
 """An item nearer to a window than this stands in front of it."""
-SHALLOW_M = 0.13
-"""An item on a wall that is no deeper than this is not in the way."""
+FIXTURE_APART_M = 0.06
+"""Gap between a toilet or a basin and a door leaf at any angle, also where it stands wide open."""
 CLOSED_DEG = 10.0
 """A leaf that is open by less does not show into which room it swings."""
+WALL_M = 0.3
+"""Rooms with a smaller gap lie side by side."""
 SLACK_M = 0.03
 _RUN = frozenset(("kitchen counter", "counter", "cooker", "fridge", "dishwasher", "washing machine"))
 _ISLANDS = frozenset(("kitchen island", "breakfast bar", "kitchen trolley"))
@@ -49,39 +51,8 @@ _FOCUS = frozenset(("television", "fireplace", "wood stove", "tiled stove", "arm
 _SOFAS = frozenset(("sofa", "corner sofa", "daybed"))
 _NEVER_AT_WINDOWS = frozenset(("fireplace", "wood stove", "tiled stove", "television"))
 _TALL = frozenset(("cabinet", "shelving", "appliances", "furniture"))
-_NOT_ON_FLOOR = frozenset(
-    ("floor", "wall", "ceiling", "window", "door", "curtain", "blinds", "void", "stairs", "railing")
-)
-_HARD_FLOORS = frozenset(("kitchen", "bathroom", "laundry", "hallway", "stair_hall"))
+_HARD_FLOORS = frozenset(("kitchen", "bathroom", "laundry", "hallway", "stair_hall", "studio"))
 """Rooms without carpet on the whole floor."""
-
-
-@dataclass(frozen=True)
-class Standing:
-    """An instance where it stands."""
-
-    label: str
-    name: str
-    """Everyday name; the words of its category where the file has none."""
-    category: str
-    low: NDArray[np.float64]  # (3,) metres
-    high: NDArray[np.float64]  # (3,) metres
-    at: NDArray[np.float64]  # (2,) origin of its body, metres
-    front: NDArray[np.float64]  # (2,) unit vector: the heading of its body
-    geoms: tuple[int, ...] = ()
-
-    @property
-    def middle(self) -> NDArray[np.float64]:
-        """The middle (2,) of its box in plan."""
-        return 0.5 * (self.low + self.high)[:2]
-
-    def gap_m(self, other: Standing) -> float:
-        """Returns the distance between two boxes in plan, 0 where they overlap."""
-        return float(np.linalg.norm(np.maximum(0.0, np.maximum(self.low - other.high, other.low - self.high))[:2]))
-
-    def overlap_m(self, other: Standing) -> NDArray[np.float64]:
-        """Returns the overlap (3,) along each axis, negative for a gap."""
-        return np.minimum(self.high, other.high) - np.maximum(self.low, other.low)
 
 
 def arrangement_faults(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, rooms: Sequence[Room]) -> list[str]:
@@ -96,12 +67,13 @@ def arrangement_faults(model: mujoco.MjModel, data: mujoco.MjData, labels: Label
     Raises:
         HouseError: the text of an instance has another form than docs/houses.md describes.
     """
-    standing = _standing(model, data, labels)
+    standing = read_standing(model, data, labels)
     windows = [item for item in standing if item.category == "window"]
     faults = [f"{item.label} stands in front of {window.label}" for item, window in _before_windows(standing, windows)]
-    faults += _blocked_swings(model, standing)
+    faults += _blocked_swings(model, standing) + near_tables(standing)
+    floors = {room.name: _floor_look(model, data, labels, room) for room in rooms}
     for room in rooms:
-        inside = [item for item in standing if _is_in(room, item)]
+        inside = [item for item in standing if is_in(room, item)]
         clauses = _seats_at_tables(inside)
         if room.kind in ("kitchen", "studio"):
             clauses += _kitchen(inside)
@@ -110,59 +82,18 @@ def arrangement_faults(model: mujoco.MjModel, data: mujoco.MjData, labels: Label
         if room.kind == "bedroom":
             clauses += _beds(room, inside)
         clauses += _toilets(room, inside)
-        if room.kind in _HARD_FLOORS and _has_carpet(model, data, labels, room):
+        clauses += room_clauses(room, inside)
+        if room.kind in _HARD_FLOORS and any(name.startswith("carpet") for name in floors[room.name][0]):
             clauses.append("has carpet on its whole floor")
+        if room.kind == "kitchen":
+            clauses += [
+                f"has the floor of {other.name}"
+                for other in rooms
+                if other.kind == "living_room" and _is_beside(room, other) and floors[room.name] == floors[other.name]
+                if floors[room.name][0]
+            ]
         faults += [f"{room.name} {clause}" for clause in clauses]
     return faults
-
-
-def _standing(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> list[Standing]:
-    """Returns all instances with their boxes."""
-    facts = read_instance_facts(model, labels)
-    low, high = _boxes(model, data)
-    items = []
-    for instance in labels.instances:
-        ids = np.array(instance.geom_ids)
-        body = int(model.geom_bodyid[ids[0]])
-        while body and model.body(body).name != instance.name:
-            body = int(model.body_parentid[body])
-        x_axis = data.xmat[body].reshape(3, 3)[:2, 0]
-        name = facts[instance.name].name if instance.name in facts else ""
-        items.append(
-            Standing(
-                instance.name,
-                name or instance.category.replace("_", " "),
-                instance.category,
-                low[ids].min(axis=0),
-                high[ids].max(axis=0),
-                data.xpos[body][:2].copy(),
-                x_axis / max(float(np.linalg.norm(x_axis)), 1e-9),
-                tuple(instance.geom_ids),
-            )
-        )
-    return items
-
-
-def _boxes(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns the lowest and highest corners (ngeom, 3) of the world-aligned boxes around all geoms, metres.
-
-    Those of meshes are of their vertices: the frame of a mesh is turned, which makes the box of its own box too large.
-    """
-    rotation = data.geom_xmat.reshape(-1, 3, 3)
-    middle = data.geom_xpos + np.einsum("nij,nj->ni", rotation, model.geom_aabb[:, :3])
-    reach = np.einsum("nij,nj->ni", np.abs(rotation), model.geom_aabb[:, 3:])
-    low, high = middle - reach, middle + reach
-    for geom in np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_MESH.value).tolist():
-        mesh = model.geom_dataid[geom]
-        first = model.mesh_vertadr[mesh]
-        vertices = model.mesh_vert[first : first + model.mesh_vertnum[mesh]] @ rotation[geom].T + data.geom_xpos[geom]
-        low[geom], high[geom] = vertices.min(axis=0), vertices.max(axis=0)
-    return low, high
-
-
-def _is_in(room: Room, item: Standing) -> bool:
-    z_m = 0.5 * float(item.low[2] + item.high[2])
-    return room.contains(*item.middle.tolist()) and any(abs(z_m - c[2]) <= h[2] + 0.05 for c, h in room.boxes)
 
 
 def _before_windows(items: Iterable[Standing], windows: Sequence[Standing]) -> Iterable[tuple[Standing, Standing]]:
@@ -313,19 +244,10 @@ def _is_free(
         return False
     return not any(
         item is not owner
-        and _blocks(item, room.floor_z_m)
+        and blocks_floor(item, room.floor_z_m)
         and (np.minimum(item.high[:2], high) - np.maximum(item.low[:2], low) > SLACK_M).all()
         for item in inside
     )
-
-
-def _blocks(item: Standing, floor_z_m: float, up_to_m: float = 0.9) -> bool:
-    """Returns whether an item is in the way of a person: no rug, nothing high above, nothing shallow on a wall."""
-    if item.category in _NOT_ON_FLOOR or item.category == "objects":
-        return False
-    if item.low[2] > floor_z_m + 0.3 and (item.high - item.low)[:2].min() < SHALLOW_M:
-        return False
-    return item.low[2] < floor_z_m + up_to_m and item.high[2] > floor_z_m + 0.05
 
 
 def _blocked_swings(model: mujoco.MjModel, standing: Sequence[Standing]) -> list[str]:
@@ -344,15 +266,27 @@ def _blocked_swings(model: mujoco.MjModel, standing: Sequence[Standing]) -> list
         into = into * math.copysign(1.0, float(leaf.front @ into))
         if abs(float(leaf.front @ into)) < math.sin(math.radians(CLOSED_DEG)):
             continue
-        radius, angle = np.meshgrid(np.linspace(0.15, width_m, 8), np.radians(np.arange(4.0, 90.0, 8.0)))
-        points = leaf.at + (radius * np.cos(angle))[..., None] * closed + (radius * np.sin(angle))[..., None] * into
+        open_deg = math.degrees(math.acos(float(np.clip(leaf.front @ closed, -1.0, 1.0))))
+        swing, ends = (
+            leaf.at + (radius * np.cos(angle))[..., None] * closed + (radius * np.sin(angle))[..., None] * into
+            for radius, angle in (
+                np.meshgrid(np.linspace(0.15, width_m, 8), np.radians(degrees))
+                for degrees in (np.arange(4.0, 90.0, 8.0), (90.0, max(90.0, open_deg)))
+            )
+        )
         floor_z_m = float(leaf.low[2])
         for item in standing:
-            if not _blocks(item, floor_z_m, 1.9) or item.high[2] < floor_z_m:
+            if not blocks_floor(item, floor_z_m, 1.9) or item.high[2] < floor_z_m:
                 continue
-            if ((points > item.low[:2] + 0.02) & (points < item.high[:2] - 0.02)).all(axis=-1).any():
+            apart_m = FIXTURE_APART_M if _is_fixture(item) else -0.02
+            points = np.vstack((swing, ends)) if _is_fixture(item) else swing
+            if ((points > item.low[:2] - apart_m) & (points < item.high[:2] + apart_m)).all(axis=-1).any():
                 faults.append(f"{item.label} stands where {leaf.label} swings")
     return faults
+
+
+def _is_fixture(item: Standing) -> bool:
+    return item.category in ("toilet", "sink") or item.name == "vanity cabinet"
 
 
 def _leaf_width_m(model: mujoco.MjModel, door: Standing) -> float:
@@ -366,8 +300,10 @@ def _leaf_width_m(model: mujoco.MjModel, door: Standing) -> float:
     return 0.0
 
 
-def _has_carpet(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, room: Room) -> bool:
-    """Returns whether the floor geom below the middle of a room has a texture of carpet."""
+def _floor_look(
+    model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, room: Room
+) -> tuple[tuple[str, ...], tuple[float, ...]]:
+    """Returns the names of the textures and the colour of the floor geom below the middle of a room."""
     centre, _ = room.boxes[0]
     ray = np.array([centre[0], centre[1], room.floor_z_m + 0.3])
     for geom in (g for item in labels.instances if item.category == "floor" for g in item.geom_ids):
@@ -378,7 +314,17 @@ def _has_carpet(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, room
         offset = np.abs(ray - data.geom_xpos[geom])
         if (offset[:2] > reach[:2]).any() or offset[2] > 0.3 + 2 * reach[2] + 0.05:
             continue
-        textures = [int(t) for t in np.ravel(model.mat_texid[material]) if t >= 0]
-        if any(model.tex(t).name.startswith("carpet") for t in textures):
-            return True
-    return False
+        textures = tuple(model.tex(int(t)).name for t in np.ravel(model.mat_texid[material]) if t >= 0)
+        return textures, tuple(model.mat_rgba[material].tolist())
+    return (), ()
+
+
+def _is_beside(a: Room, b: Room) -> bool:
+    """Returns whether two rooms of a storey share a wall of 0.8 m, or no wall is between them."""
+    if a.floor_z_m != b.floor_z_m:
+        return False
+    overlaps = [
+        np.minimum(np.add(c, h), np.add(d, k))[:2] - np.maximum(np.subtract(c, h), np.subtract(d, k))[:2]
+        for (c, h), (d, k) in itertools.product(a.boxes, b.boxes)
+    ]
+    return any(overlap.min() > -WALL_M and overlap.max() > 0.8 for overlap in overlaps)

@@ -63,9 +63,12 @@ ROOM_SIZES: Mapping[str, RoomSize] = MappingProxyType(
 )
 """Size limits by kind of room; other kinds have none."""
 HALLWAY_M = (0.9, 15.0)
-"""Smallest width of a hallway between its walls, and its largest length in a storey of up to `USUAL_M2`."""
-USUAL_M2, M2_PER_M = 250.0, 60.0
+"""Smallest width of a hallway between its walls, and its largest length in a storey of up to `USUAL_M2`; hallways in
+one line count as one."""
+USUAL_M2, M2_PER_M = 300.0, 60.0
 """Area of a storey from which hallways may be longer, and by how many square metres for each metre."""
+IN_LINE_M = 0.8
+"""Width of a straight path through two hallways that makes them one line."""
 HALLWAY_SHARE = 0.2
 """Largest share of the hallways in the floor area of a storey."""
 NEEDED_ROOMS = ("bedroom", "bathroom", "kitchen", "living_room")
@@ -156,7 +159,8 @@ def plan_faults(rooms: Sequence[Room], doors: Iterable[Doorway], windows: Iterab
         halls_m2 = sum(room.area_m2 for room in storey if room.kind == "hallway")
         longest_m = HALLWAY_M[1] + max(0.0, whole_m2 - USUAL_M2) / M2_PER_M
         for room in storey:
-            faults += _hallway_faults(room, longest_m) if room.kind == "hallway" else _size_faults(room)
+            faults += _hallway_faults(room) if room.kind == "hallway" else _size_faults(room)
+        faults += _long_hallways([room for room in storey if room.kind == "hallway"], longest_m)
         if halls_m2 > HALLWAY_SHARE * whole_m2:
             faults.append(f"hallways take {halls_m2:.0f} of {whole_m2:.0f} m2")
     lit = {room.name for window in windows for sign in (-1.0, 1.0) if (room := _room_at(rooms, window, sign))}
@@ -254,16 +258,42 @@ def _size_faults(room: Room) -> list[str]:
     return faults
 
 
-def _hallway_faults(hallway: Room, longest_m: float) -> list[str]:
-    """Returns the faults in the width and the length of a hallway."""
+def _hallway_faults(hallway: Room) -> list[str]:
+    """Returns the faults in the width of a hallway."""
     x0, y0, x1, y1 = _extent(hallway)
-    short_m, long_m = sorted((x1 - x0, y1 - y0))
-    faults = []
+    short_m = min(x1 - x0, y1 - y0)
     if short_m < HALLWAY_M[0] - 0.005:
-        faults.append(f"{hallway.name} is only {short_m:.2f} m wide instead of {HALLWAY_M[0]:g} m")
-    if long_m > longest_m + 0.005:
-        faults.append(f"{hallway.name} is {long_m:.1f} m long instead of at most {longest_m:.1f} m")
-    return faults
+        return [f"{hallway.name} is only {short_m:.2f} m wide instead of {HALLWAY_M[0]:g} m"]
+    return []
+
+
+def _long_hallways(hallways: Sequence[Room], longest_m: float) -> list[str]:
+    """Returns the faults in the length of the straight lines of hallways of a storey."""
+    lengths_m: dict[frozenset[str], float] = {}
+    for axis, start in itertools.product((0, 1), hallways):
+        line = [start]
+        low, high = _extent(start)[axis], _extent(start)[axis + 2]
+        rest = [other for other in hallways if other is not start]
+        while more := [other for other in rest if _continues(start, (low, high), other, axis)]:
+            line += more
+            rest = [other for other in rest if other not in more]
+            low = min(low, *(_extent(other)[axis] for other in more))
+            high = max(high, *(_extent(other)[axis + 2] for other in more))
+        names = frozenset(room.name for room in line)
+        lengths_m[names] = max(lengths_m.get(names, 0.0), high - low)
+    return [
+        f"{' and '.join(sorted(names))} {'is' if len(names) == 1 else 'are'} {length_m:.1f} m long "
+        f"instead of at most {longest_m:.1f} m"
+        for names, length_m in lengths_m.items()
+        if length_m > longest_m + 0.005
+    ]
+
+
+def _continues(start: Room, span_m: tuple[float, float], other: Room, axis: int) -> bool:
+    """Returns whether a hallway lies in the line of another one, whose line reaches over `span_m` along an axis."""
+    a, b = _extent(start), _extent(other)
+    across_m = min(a[3 - axis], b[3 - axis]) - max(a[1 - axis], b[1 - axis])
+    return across_m > IN_LINE_M and b[axis] <= span_m[1] + _WALL_M and b[axis + 2] >= span_m[0] - _WALL_M
 
 
 def _door_faults(rooms: Sequence[Room], doors: Sequence[Doorway]) -> list[str]:
@@ -282,6 +312,8 @@ def _door_faults(rooms: Sequence[Room], doors: Sequence[Doorway]) -> list[str]:
         behind = [kind_of[name] for name in neighbours[room.name]]
         if room.kind == "bathroom":
             faults += [f"{room.name} opens off a {_words(kind)}" for kind in behind if kind not in TO_BATHROOM]
+        if room.kind == "bedroom" and behind.count("bathroom") > 1:
+            faults.append(f"{room.name} has doors to {behind.count('bathroom')} bathrooms")
         if room.kind in NOT_CAPTIVE and behind and not CIRCULATION.intersection(behind):
             faults.append(f"{room.name} is entered only through a {_words(behind[0])}")
     baths = [room.name for room in rooms if room.kind == "bathroom"]

@@ -72,7 +72,7 @@ _KITCHEN = (
 _USEFUL = Requirement(
     "useful piece (console, bench, shelf, chest, hooks or mirror)",
     ("table", "seating", "shelving", "cabinet", "chest_of_drawers", "clothes", "mirror", "stool", "chair"),
-    from_m2=8.0,
+    from_m2=5.0,
 )
 _STORAGE = ("cabinet", "chest_of_drawers", "shelving", "clothes")
 
@@ -86,7 +86,9 @@ REQUIREMENTS: Mapping[str, tuple[Requirement, ...]] = MappingProxyType(
         ),
         "bedroom": (
             Requirement("bed", ("bed",)),
-            Requirement("storage (wardrobe, dresser, shelf or clothes rack)", _STORAGE, longest_m=0.7),
+            Requirement(
+                "wardrobe or clothes rack", ("cabinet", "clothes"), longest_m=0.7, names=("wardrobe", "clothes rack")
+            ),
         ),
         "living_room": (
             Requirement("sofa or other seat", ("sofa", "seating", "chair")),

@@ -108,7 +108,7 @@ SCREEN = Piece("tv_monitor_00", "television", 2.8, 0.0, (0.1, 1.2, 0.7), WEST, 0
 
 def test_a_sofa_faces_something() -> None:
     assert faults("living_room", SOFA, SCREEN) == []
-    (fault,) = faults("living_room", SOFA, moved(SCREEN, -5.5, 0.0))
+    (fault,) = faults("living_room", SOFA, moved(SCREEN, -5.75, 0.0))
     assert "which faces neither" in fault
 
 
@@ -185,6 +185,145 @@ def test_nothing_stands_where_a_leaf_swings() -> None:
     assert swing(plant) == ["plant_00 stands where door_01 swings"]
     assert swing(moved(plant, 1.0, 0.0)) == []
     assert swing(moved(plant, 0.0, -1.0)) == []  # behind the hinge
+
+
+def test_furniture_leaves_a_path_in_a_hallway() -> None:
+    plant = Piece("plant_00", "potted plant", 1.0, 1.8, (0.4, 0.4, 1.4))
+    shelf = Piece("shelving_00", "bookcase", -1.0, -0.6, (2.8, 0.8, 1.8))
+    assert faults("hallway", plant) == []
+    assert faults("hallway", plant, moved(shelf, 0.0, -0.6)) == []
+    assert faults("hallway", replace(plant, y_m=0.0, size_m=(0.4, 2.4, 1.4))) == [
+        "room_hallway_00 has 0.80 m of free width beside plant_00, which must be 0.9 m"
+    ]
+
+
+TOILET = Piece("toilet_00", "toilet", -2.6, 0.0, (0.7, 0.38, 0.8))
+
+
+@pytest.mark.parametrize(
+    ("label", "name"), [("sink_00", "washbasin"), ("shower_00", "shower"), ("cabinet_00", "vanity cabinet")]
+)
+def test_a_toilet_stands_apart_from_other_fixtures(label: str, name: str) -> None:
+    fixture = Piece(label, name, -2.7, 0.68, (0.5, 0.5, 0.85))
+    assert faults("bathroom", TOILET, fixture) == []
+    assert faults("bathroom", TOILET, moved(fixture, 0.0, -0.14)) == [
+        f"room_bathroom_00 has 0.10 m between toilet_00 and {label}, which must be 0.2 m"
+    ]
+
+
+def test_a_bathroom_has_no_tall_plant() -> None:
+    plant = Piece("plant_00", "potted plant", 2.0, 1.5, (0.3, 0.3, 0.7))
+    assert faults("bathroom", TOILET, plant) == []
+    assert faults("bathroom", TOILET, replace(plant, size_m=(0.3, 0.3, 1.2))) == [
+        "room_bathroom_00 has plant_00, a plant 1.2 m high instead of at most 0.8 m"
+    ]
+
+
+BED = Piece("bed_00", "bed", -1.9, 0.0, (2.0, 1.4, 0.5))
+
+
+def test_a_bed_faces_the_screen_of_its_room() -> None:
+    assert faults("bedroom", BED, moved(SCREEN, 0.0, 1.2)) == []
+    beside = replace(SCREEN, x_m=-1.0, y_m=1.9, yaw_rad=SOUTH)
+    assert faults("bedroom", BED, beside) == ["room_bedroom_00 has tv_monitor_00, a screen that no bed faces"]
+
+
+@pytest.mark.parametrize("kind", ["bedroom", "living_room", "office"])
+def test_no_seat_stands_below_or_right_before_a_screen(kind: str) -> None:
+    chair = Piece("chair_00", "armchair", 2.0, 0.0, (0.8, 0.8, 0.9))
+    found = [fault for fault in faults(kind, SOFA, SCREEN, chair) if "chair_00" in fault]
+    assert found == [f"room_{kind}_00 has chair_00 in front of tv_monitor_00"]
+    for clear in (moved(chair, -0.6, 0.0), moved(chair, 0.0, 1.2)):
+        assert not any("chair_00" in fault for fault in faults(kind, SOFA, SCREEN, clear))
+
+
+def test_a_room_has_one_television() -> None:
+    second = replace(SCREEN, label="tv_monitor_01", y_m=1.4)
+    assert faults("gym", SCREEN) == []
+    assert faults("gym", SCREEN, second) == ["room_gym_00 has 2 televisions"]
+
+
+def test_only_a_coffee_table_stands_between_sofa_and_screen() -> None:
+    table = Piece("table_00", "coffee table", 0.0, 0.3, (0.6, 1.0, 0.4))
+    assert faults("living_room", SOFA, SCREEN, table) == []
+    desk = replace(table, name="console table")
+    assert faults("living_room", SOFA, SCREEN, desk) == [
+        "room_living_room_00 has table_00 between sofa_00 and tv_monitor_00"
+    ]
+    assert faults("living_room", SOFA, SCREEN, moved(desk, 0.0, 1.0)) == []
+
+
+def test_a_long_dining_table_has_chairs_on_both_sides() -> None:
+    table = Piece("table_00", "dining table", 0.0, 0.0, (0.8, 1.3, 0.75))
+    chairs = [Piece(f"chair_0{n}", "dining chair", 0.7, y, (0.5, 0.45, 0.9)) for n, y in enumerate((-0.3, 0.3))]
+    assert faults("dining_room", table, chairs[0], moved(chairs[1], -1.4, 0.0)) == []
+    assert faults("dining_room", table, *chairs) == [
+        "room_dining_room_00 has table_00, a dining table whose chairs stand on one side"
+    ]
+
+
+def test_two_dining_tables_stand_far_apart() -> None:
+    tables = [Piece(f"table_0{n}", "dining table", x, 0.0, (0.8, 0.8, 0.75)) for n, x in enumerate((-2.1, 2.0))]
+    chairs = [
+        Piece(f"chair_0{2 * n + m}", "dining chair", table.x_m, y, (0.5, 0.45, 0.9), NORTH)
+        for n, table in enumerate(tables)
+        for m, y in enumerate((-0.7, 0.7))
+    ]
+    assert faults("dining_room", *tables, *chairs) == []
+    near = [*tables[:1], *chairs[:2], *(moved(piece, -0.6, 0.0) for piece in (tables[1], *chairs[2:]))]
+    assert faults("dining_room", *near) == ["table_00 and table_01 are dining tables 3.5 m apart, which must be 4 m"]
+
+
+def test_worktop_lies_between_sink_and_cooker() -> None:
+    assert faults("kitchen", *KITCHEN) == []
+    assert faults("kitchen", FRIDGE, SINK_TOP, moved(SINK, 0.4, 0.0), COOKER, END_TOP) == [
+        "room_kitchen_00 has 0.15 m of worktop between sink_00 and appliances_01, which must be 0.3 m"
+    ]
+
+
+def test_a_kitchen_has_one_bin_and_no_gym_equipment() -> None:
+    bins = [Piece(f"objects_0{n}", "bin", 2.0 + 0.5 * n, 1.5, (0.3, 0.3, 0.5)) for n in range(2)]
+    assert faults("kitchen", *KITCHEN, bins[0]) == []
+    assert faults("kitchen", *KITCHEN, *bins) == ["room_kitchen_00 has 2 bins"]
+    mat = Piece("gym_equipment_00", "exercise ball", 2.0, 1.5, (0.6, 0.6, 0.6))
+    assert faults("kitchen", *KITCHEN, mat) == [
+        "room_kitchen_00 has gym_equipment_00, which does not belong in a kitchen"
+    ]
+
+
+def test_a_fixture_stands_apart_from_a_leaf_that_is_wide_open() -> None:
+    toilet = Piece("toilet_00", "", -2.1, -0.3, (0.38, 0.5, 0.8))
+    assert swing(moved(toilet, 0.0, -0.1)) == []
+    assert swing(toilet) == ["toilet_00 stands where door_01 swings"]
+    assert swing(replace(toilet, label="chest_of_drawers_00")) == []
+
+
+def floors(kind: str, texture: str) -> list[str]:
+    """Returns the faults of a room with this floor next to a living room with a floor of stone."""
+    spec = mujoco.MjSpec()
+    for name in {texture, "stone"}:
+        spec.add_texture(
+            name=name, type=mujoco.mjtTexture.mjTEXTURE_2D, builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT, width=8, height=8
+        )
+        spec.add_material(name=name).textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = name
+    box = mujoco.mjtGeom.mjGEOM_BOX
+    for n, (room_kind, floor) in enumerate(((kind, texture), ("living_room", "stone"))):
+        body = spec.worldbody.add_body(name=f"floor_0{n}", pos=(4.1 * n, 0.0, -0.05))
+        body.add_geom(type=box, size=(2.0, 2.0, 0.05), material=floor)
+        spec.worldbody.add_site(name=f"room_{room_kind}_00", type=box, pos=(4.1 * n, 0, 1.25), size=(2.0, 2.0, 1.25))
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    found = arrangement_faults(model, data, read_labels(model, ignore_prefix=""), read_rooms(model))
+    return [fault for fault in found if "sofa" not in fault]
+
+
+def test_the_floor_of_a_kitchen_is_hard_and_not_that_of_the_living_room() -> None:
+    assert floors("kitchen", "tiles_square") == []
+    assert floors("kitchen", "stone") == ["room_kitchen_00 has the floor of room_living_room_00"]
+    assert floors("dining_room", "stone") == []
+    for kind in ("kitchen", "studio"):
+        assert floors(kind, "carpet_loop") == [f"room_{kind}_00 has carpet on its whole floor"]
 
 
 @pytest.mark.parametrize("seed", [3, 20])

@@ -114,9 +114,24 @@ def test_hallways_that_take_a_large_share_are_reported() -> None:
 def test_a_long_hallway_suits_a_large_home_only() -> None:
     hallway: dict[str, Rect | None] = {"hallway_01": (0.0, 50.0, HALLWAY_M[1] + 1.0, 51.0)}
     assert any("instead of at most" in fault for fault in faults(hallway))
-    wings: dict[str, Rect | None] = {f"dining_room_0{n}": (20.0 + 6 * n, 0.0, 25.0 + 6 * n, 5.0) for n in range(10)}
+    wings: dict[str, Rect | None] = {f"dining_room_0{n}": (20.0 + 6 * n, 0.0, 25.0 + 6 * n, 5.0) for n in range(12)}
     assert sum(25.0 for _ in wings) >= USUAL_M2
     assert not any("m long" in fault for fault in faults(hallway | wings))
+
+
+def test_hallways_in_one_line_count_as_one() -> None:
+    line: dict[str, Rect | None] = {"hallway_01": (0.0, 50.0, 9.0, 51.0), "hallway_02": (9.1, 50.0, 17.0, 51.0)}
+    fault = "room_hallway_01 and room_hallway_02 are 17.0 m long instead of at most 15.0 m"
+    assert fault in faults(line)
+    assert not any("m long" in fault for fault in faults(line | {"hallway_02": (9.1, 51.0, 17.0, 52.0)}))
+
+
+def test_a_bedroom_has_one_bathroom_of_its_own() -> None:
+    doors: dict[str, Doorway] = {"first": Doorway((3.55, 2.8), 0.9, along_x=False)}
+    further: dict[str, Rect | None] = {"bathroom_01": (0.0, 5.4, 2.2, 7.5)}
+    assert faults(further, doors) == []
+    second = {"second": Doorway((1.0, 5.35), 0.9, along_x=True)}
+    assert faults(further, doors | second) == ["room_bedroom_00 has doors to 2 bathrooms"]
 
 
 def test_many_doors_in_one_wall_are_reported() -> None:

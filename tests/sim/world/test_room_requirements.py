@@ -61,3 +61,17 @@ def test_a_small_bathroom_needs_no_shower() -> None:
 
 def test_a_kind_of_room_without_requirements_needs_nothing() -> None:
     assert missing_pieces("attic", 20.0, []) == []
+
+
+def test_a_bedroom_with_a_chest_still_needs_a_wardrobe_or_a_rack() -> None:
+    pieces = [Piece("bed", 2.0, "bed"), Piece("chest_of_drawers", 1.0, "chest of drawers")]
+    for hanger in (Piece("cabinet", 1.2, "wardrobe"), Piece("clothes", 1.5, "clothes rack")):
+        assert missing_pieces("bedroom", 12.0, [*pieces, hanger]) == []
+    for other in (Piece("cabinet", 1.2, "sideboard"), Piece("clothes", 1.5, "coat stand")):
+        assert missing_pieces("bedroom", 12.0, [*pieces, other]) == ["has no wardrobe or clothes rack"]
+
+
+def test_a_hallway_of_5_m2_has_a_useful_piece() -> None:
+    assert missing_pieces("hallway", 4.9, []) == []
+    assert len(missing_pieces("hallway", 5.1, [Piece("plant", 1.0), Piece("picture", 0.8)])) == 1
+    assert missing_pieces("hallway", 5.1, [Piece("mirror", 0.8)]) == []

@@ -157,7 +157,7 @@ FILL_RULES: Mapping[str, FillRule] = MappingProxyType(
         "studio": FillRule(0.30, (reading_corner, _BOOKS, _PLANT, console, _OTTOMAN)),
         "office": FillRule(0.26, (_BOOKS, desk_group, reading_corner, _PLANT, console, pictures, middle_rug)),
         "gym": FillRule(0.26, (_machine, _machine, _PLAIN_BENCH, _PLANT, _OTTOMAN, _TOWELS, pictures)),
-        "bathroom": FillRule(0.27, (_PLANT, _BIN, _TOWELS, _STOOL, _BASKET), rounds=1),
+        "bathroom": FillRule(0.27, (_BIN, _TOWELS, _STOOL, _BASKET), rounds=1),
         "laundry": FillRule(0.27, (_BASKET, _BIN), rounds=1),
         "closet": FillRule(0.30, (_WARDROBE, _RACK, _chest, _BOX, _LINEN, _OTTOMAN), rounds=1),
     }

@@ -14,7 +14,7 @@ from sim.homes.housegen.furnishing.room_rules import RULES
 from sim.homes.housegen.furniture.item import Item
 from sim.world.room_requirements import Piece, missing_pieces
 
-MAX_TRIES = 6
+MAX_TRIES = 12
 """Largest number of times that one room is furnished."""
 ROUNDING_M, ROUNDING_M2 = 0.02, 0.05
 """Margins for lengths and areas, which the check of the finished house measures again on the geoms."""

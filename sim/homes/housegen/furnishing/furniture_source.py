@@ -15,7 +15,7 @@ from typing import TypeVar, Unpack
 
 import numpy as np
 
-from sim.homes.housegen.furnishing.placement import RoomLayout
+from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furniture import CATALOGUE
 from sim.homes.housegen.furniture.catalogue import Catalogue
 from sim.homes.housegen.furniture.item import Hints, Item, Look, Pool
@@ -133,6 +133,10 @@ class FurnitureSource:
             for use in uses or (None,)
             for style in self._catalogue.styles(category, self.pool, use)
         )
+
+    def placements(self) -> list[Placement]:
+        """Returns the items of the rooms so far."""
+        return [placement for layout in self._layouts for placement in layout.placements]
 
     def uses_of(self, item: Item) -> tuple[str, ...]:
         """Returns the uses of an item's style."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
 from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
@@ -16,11 +18,14 @@ from sim.homes.housegen.furnishing.placement.on_walls import hang_from_ceiling
 from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.homes.housegen.furnishing.steps import hang_above, lay_rug, place, place_beside, place_in_front, put_on_top
 from sim.homes.housegen.furniture.item import Hints, Item
+from sim.world import room_arrangement
 
 MIN_CHAIRS = 2
 """Least number of chairs at a dining table; a table for which fewer fit is not placed."""
 LARGE_DINING_M2, LONG_TABLE_M = 16.0, 2.0
 """Floor area from which a dining room gets a long table, and its length."""
+EVEN_M = 0.2
+"""Largest distance of the mean of the seats in use from the middle of a table for four or more."""
 PLACE_M = 0.58
 """Least length of table for one person: Neufert gives 0.6 m."""
 BESIDE_BED_M = 0.65
@@ -100,24 +105,16 @@ def _place_nightstands(layout: RoomLayout, source: FurnitureSource, bed: Placeme
 def dining_group(
     layout: RoomLayout, source: FurnitureSource, *, around_m: float = 0.75, near: tuple[float, float] | None = None
 ) -> Placement | None:
-    """Places a table with chairs at its sides, a lamp above it and perhaps a rug under it."""
-    chair, before = source.make("chair", "dining"), layout.snapshot()
+    """Places a table with chairs at its sides, a lamp above it and perhaps a rug under it.
+
+    Returns None also where the home has another dining table nearby.
+    """
     long_m = LONG_TABLE_M if layout.kind == "dining_room" and layout.inner.area_m2 > LARGE_DINING_M2 else None
     for width_m, least in ((long_m, 0.65), (1.3, 0.7), (0.85, 0.0)):
-        hints: Hints = {"width_m": width_m} if width_m else {}
-        item = source.make("table", "dining", **hints)
-        if item is None or chair is None:
-            return None
-        seats = _seats(source, item, chair)
-        half = chair.size_m[1] / 2
-        spots = [(x - 0.2 * math.cos(turn), y - 0.2 * math.sin(turn), half) for x, y, turn in seats]
-        table = put_in_middle(layout, source.rng, item, spots, around_m=around_m, least=least, apart_m=0.3, near=near)
+        table = _table_with_chairs(layout, source, width_m, least, around_m, near)
         if table is not None:
             break
     else:
-        return None
-    if sum(_put_chair(layout, source, table, chair, seat) for seat in seats) < MIN_CHAIRS:
-        layout.restore(before)
         return None
     put_on_top(layout, source, table, ("objects", "plant", "objects"), (0.6, 0.25, 0.3))
     lamp = source.make("lighting", "ceiling")
@@ -129,11 +126,53 @@ def dining_group(
     return table
 
 
+def _table_with_chairs(
+    layout: RoomLayout,
+    source: FurnitureSource,
+    width_m: float | None,
+    least: float,
+    around_m: float,
+    near: tuple[float, float] | None,
+) -> Placement | None:
+    """Places a table of a width away from the walls, with chairs on both sides; None if it does not fit."""
+    before = layout.snapshot()
+    hints: Hints = {"width_m": width_m} if width_m else {}
+    item, chair = source.make("table", "dining", **hints), source.make("chair", "dining")
+    if item is None or chair is None:
+        return None
+    seats = _seats(source, item, chair)
+    half = chair.size_m[1] / 2
+    spots = [(x - 0.2 * math.cos(turn), y - 0.2 * math.sin(turn), half) for x, y, turn in seats]
+    table = put_in_middle(layout, source.rng, item, spots, around_m=around_m, least=least, apart_m=0.3, near=near)
+    if table is None:
+        return None
+    if not _is_near_table(source, table):
+        taken = [(x, y) for x, y, turn in seats if _put_chair(layout, source, table, chair, (x, y, turn))]
+        off_m = math.dist((0.0, 0.0), np.mean(taken, axis=0)) if taken else 0.0
+        if len(taken) >= MIN_CHAIRS and (off_m < EVEN_M or max(item.size_m[:2]) < room_arrangement.LONG_TABLE_M):
+            return table
+    layout.restore(before)
+    return None
+
+
+def _is_near_table(source: FurnitureSource, table: Placement) -> bool:
+    """Returns whether another dining table of the home stands near a table."""
+    return any(
+        other is not table
+        and other.item.name == "dining table"
+        and math.dist(other.rect.centre, table.rect.centre) < room_arrangement.TABLES_APART_M
+        for other in source.placements()
+    )
+
+
 def breakfast_group(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     """Places a small table against a wall with chairs at its free sides."""
     chair, before = source.make("chair", "dining"), layout.snapshot()
     table = place(layout, source, "table", "dining", front_m=0.6, width_m=0.95, depth_m=0.7)
     if chair is None or table is None:
+        return None
+    if _is_near_table(source, table):
+        layout.restore(before)
         return None
     layout.release_zones(table)
     depth, width = table.item.size_m[:2]

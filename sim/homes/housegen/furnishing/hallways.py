@@ -13,9 +13,8 @@ from sim.homes.housegen.furnishing.placement.floor import put_near
 from sim.homes.housegen.furnishing.placement.walls import WALL_GAP_M
 from sim.homes.housegen.furnishing.steps import hang, hang_above, lay_rug, put_on_top
 from sim.homes.housegen.furniture.item import Item
+from sim.world.room_arrangement import HALLWAY_PATH_M
 
-PATH_M = 0.9
-"""Width kept free next to furniture."""
 INTERVAL_M = 2.4
 """Usual distance between two pieces of furniture."""
 KINDS = (
@@ -24,8 +23,9 @@ KINDS = (
     ("lighting", "floor"),
 )  # fmt: skip
 """Category and use of the furniture of hallways."""
-DECORATION = frozenset(("plant", "lighting"))
-"""Categories without a use in a hallway; a hallway with only such items gets a mirror."""
+DECORATION = frozenset(("plant", "lighting", "picture", "floor"))
+"""Categories without a use in a hallway; a hallway with only such items gets hooks, a mirror or a shelf."""
+ON_WALLS = (("clothes", "hooks"), ("mirror", "wall"), ("shelving", "wall"))
 
 
 def furnish_hallway(layout: RoomLayout, source: FurnitureSource) -> None:
@@ -34,7 +34,7 @@ def furnish_hallway(layout: RoomLayout, source: FurnitureSource) -> None:
         hang(layout, source, "clothes", "hooks")
     _place_at_intervals(layout, source)
     if all(placement.item.category in DECORATION for placement in layout.placements):
-        hang(layout, source, "mirror", "wall")
+        _ = any(hang(layout, source, *uses) is not None for uses in ON_WALLS)
     if source.chance(0.6):
         _lay_runners(layout, source)
 
@@ -73,10 +73,10 @@ def _place_near(
     layout: RoomLayout, source: FurnitureSource, item: Item | None, sides: tuple[Side, Side], at: float
 ) -> Placement | None:
     """Places an item near a position along one of the sides, with small items on it, if the path stays free."""
-    if item is None or item.mount != "floor" or layout.inner.short_m - item.size_m[0] - WALL_GAP_M < PATH_M:
+    if item is None or item.mount != "floor" or layout.inner.short_m - item.size_m[0] - WALL_GAP_M < HALLWAY_PATH_M:
         return None
     for side in sides:
-        placed = put_near(layout, item, side, at, front_m=PATH_M)
+        placed = put_near(layout, item, side, at, front_m=HALLWAY_PATH_M)
         if placed is None:
             continue
         if item.category in ("table", "cabinet", "chest_of_drawers"):

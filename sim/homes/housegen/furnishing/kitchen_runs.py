@@ -29,6 +29,8 @@ MIN_GALLEY_M = 2 * DEPTH_M + 0.95
 """Smallest distance between two walls with runs along both."""
 MARGIN_M = 0.15
 """The planned work triangle keeps this far from its limits, since the sink is not always in the middle of its unit."""
+BESIDE_COOKER_M = 1.2
+"""Smallest width of a unit with a sink in its middle that leaves 0.3 m of worktop before a cooker."""
 GAP_M = 0.003
 
 
@@ -88,7 +90,7 @@ TEMPLATES: Mapping[Shape, tuple[tuple[tuple[Unit, ...], ...], ...]] = MappingPro
     {
         "line": (
             ((FRIDGE, _sink(1.3, 2.0), COOKER, _top(0.4, 1.2)),),
-            ((FRIDGE, DISHWASHER, _sink(0.9, 1.7), COOKER, _top(0.4, 1.2)),),
+            ((FRIDGE, DISHWASHER, _sink(BESIDE_COOKER_M, 1.7), COOKER, _top(0.4, 1.2)),),
             ((FRIDGE, _sink(0.9, 1.2), _top(0.6, 1.4), COOKER, _top(0.4, 1.2)),),
         ),
         "L": (
@@ -108,7 +110,7 @@ TEMPLATES: Mapping[Shape, tuple[tuple[tuple[Unit, ...], ...], ...]] = MappingPro
             ((_top(0.4, 1.0), COOKER, _top(0.4, 1.0)), (_sink(0.9, 1.6), FRIDGE)),
         ),
         "apart": (
-            ((_sink(0.9, 1.6), COOKER, _top(0.4, 0.9)), (_top(0.4, 0.9), FRIDGE)),
+            ((_sink(BESIDE_COOKER_M, 1.6), COOKER, _top(0.4, 0.9)), (_top(0.4, 0.9), FRIDGE)),
             ((FRIDGE, _sink(0.9, 1.8)), (_top(0.4, 0.8), COOKER, _top(0.4, 0.8))),
         ),
     }
@@ -117,7 +119,7 @@ TEMPLATES: Mapping[Shape, tuple[tuple[tuple[Unit, ...], ...], ...]] = MappingPro
 FILLED = (1.0, 0.6, 0.2)
 """Shares of the spare length that the units take up: with another share, the cooker may stand between two windows."""
 SHORT: tuple[tuple[tuple[Unit, ...], ...], ...] = (
-    ((FRIDGE, _sink(1.0, 1.3), COOKER),),
+    ((FRIDGE, _sink(BESIDE_COOKER_M, 1.4), COOKER),),
     ((FRIDGE, Unit("sink_and_hob", 2.0, 2.4)),),
 )
 """Single runs for kitchens in which no other plan fits."""

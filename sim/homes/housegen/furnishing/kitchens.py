@@ -38,7 +38,7 @@ def furnish_kitchen(layout: RoomLayout, source: FurnitureSource) -> None:
     dining_elsewhere = "dining_room" in source.home_rooms
     kitchen_units(layout, source)
     island = _place_island(layout, source) if area > 12 and source.chance(0.6 if dining_elsewhere else 0.35) else None
-    if area > 8 and (island is None or area > 20):
+    if area > 8 and not dining_elsewhere and (island is None or area > 20):
         _ = dining_group(layout, source, around_m=0.55) or breakfast_group(layout, source)
 
 
@@ -54,6 +54,7 @@ def kitchen_units(layout: RoomLayout, source: FurnitureSource) -> bool:
     widths: dict[Kind, float] = {kind: item.size_m[1] for kind, item in appliances.items() if item is not None}
     jitter = [source.uniform(0.0, 1.0) for _ in range(_JITTER)]
     plans = kitchen_plans(layout, widths, jitter, longest_m=longest_m)
+    plans = [plan for plan in plans if _has_space(layout, plan, appliances)]
     for aisle_m in (AISLE_M, NARROW_AISLE_M):
         for plan in plans[:MAX_PLANS] + plans[-2:]:
             before = layout.snapshot()
@@ -63,6 +64,21 @@ def kitchen_units(layout: RoomLayout, source: FurnitureSource) -> bool:
                 return True
             layout.restore(before)
     return False
+
+
+def _has_space(layout: RoomLayout, plan: Sequence[Run], appliances: dict[Kind, Item | None]) -> bool:
+    """Returns whether all units of a plan lie in the room, on free floor, and its appliances before no window."""
+    for run in plan:
+        for kind, start_m, width_m in run.spans():
+            item, span = appliances.get(kind), sorted((run.leg.at(start_m), run.leg.at(start_m + width_m)))
+            if item is not None:
+                placement = layout.walls.placement(item, run.leg.side, 0.5 * sum(span))
+                if layout.walls.hides_window(placement):
+                    return False
+            rect = layout.inner.strip(run.leg.side, (span[0], span[1]), WORKTOP_M[0])
+            if not layout.inner.contains(rect, 0.002) or not layout.is_clear(rect, 0.0, WORKTOP_M[1]):
+                return False
+    return True
 
 
 def _looks(source: FurnitureSource) -> dict[str, Look]:

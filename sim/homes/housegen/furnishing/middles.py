@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
-from sim.homes.housegen.furnishing.groups import dining_group
 from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furnishing.placement.free_standing import put_in_middle
 from sim.homes.housegen.furnishing.seating_groups import armchair_circle
@@ -36,10 +35,6 @@ def fill_middle(layout: RoomLayout, source: FurnitureSource) -> None:
 
 def _seats(layout: RoomLayout, source: FurnitureSource, spot: Spot) -> Placement | None:
     return armchair_circle(layout, source, near=spot)
-
-
-def _table(layout: RoomLayout, source: FurnitureSource, spot: Spot) -> Placement | None:
-    return dining_group(layout, source, around_m=0.5, near=spot)
 
 
 def _machine(layout: RoomLayout, source: FurnitureSource, spot: Spot) -> Placement | None:
@@ -92,12 +87,11 @@ def _alone(
 
 MIDDLES: Mapping[str, tuple[Callable[[RoomLayout, FurnitureSource, Spot], Placement | None], ...]] = MappingProxyType(
     {
-        "living_room": (_seats, _table, _shelf, _low_table, _bench),
+        "living_room": (_seats, _shelf, _low_table, _bench),
         "bedroom": (_seats, _bench, _low_table),
-        "kitchen": (_table,),
-        "dining_room": (_seats, _table, _plant),
+        "dining_room": (_seats, _plant),
         "studio": (_seats, _low_table, _shelf),
-        "office": (_table, _seats, _shelf),
+        "office": (_seats, _shelf),
         "gym": (_machine, _machine, _bench),
         "hallway": (_bench, _plant, _low_table),
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, SIDES, Side
+from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, SIDES
 from sim.homes.housegen.furnishing.bathrooms import furnish_bathroom
 from sim.homes.housegen.furnishing.filling import middle_rug
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
@@ -15,7 +15,7 @@ from sim.homes.housegen.furnishing.kitchens import furnish_kitchen, kitchen_unit
 from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furnishing.placement.floor import put_against_wall
 from sim.homes.housegen.furnishing.seating_groups import armchair_circle, reading_corner, sofa_group
-from sim.homes.housegen.furnishing.steps import hang, hang_above, place, place_row, put_on_top
+from sim.homes.housegen.furnishing.steps import hang, hang_above, hang_screen, place, place_row, put_on_top
 
 BOXES_ON_FLOOR = frozenset(("bedroom", "closet", "studio"))
 """Rooms where suitcases and crates may stand; other rooms have bins and baskets."""
@@ -24,12 +24,11 @@ _DRESSER = ("chest_of_drawers", "dresser")
 
 def _bedroom(layout: RoomLayout, source: FurnitureSource) -> None:
     area = layout.inner.area_m2
+    wardrobe = _place_wardrobe(layout, source) if source.chance(0.3) else None
     bed = bed_group(layout, source, large=area > 10.5)
-    wardrobe = _place_wardrobe(layout, source)
-    wants_chest = source.chance(0.8) or wardrobe is None
-    chest = place(layout, source, "chest_of_drawers", "dresser", front_m=0.55) if wants_chest else None
-    if wardrobe is None and chest is None:
-        place(layout, source, "clothes", "rack", front_m=0.3, tries=3)
+    if wardrobe is None:
+        _place_wardrobe(layout, source)
+    chest = place(layout, source, "chest_of_drawers", "dresser", front_m=0.55) if source.chance(0.8) else None
     if chest is not None:
         put_on_top(layout, source, chest, ("objects", "plant", "objects", "lighting"), (0.6, 0.3, 0.4, 0.2))
         hang_above(layout, source, chest, "mirror" if source.chance(0.5) else "picture")
@@ -37,28 +36,37 @@ def _bedroom(layout: RoomLayout, source: FurnitureSource) -> None:
         desk_group(layout, source)
     if area > 13.5 and (area > 18 or source.chance(0.6)) and reading_corner(layout, source) is None:
         place(layout, source, "seating", "plain", front_m=0.4)
-    if source.chance(0.35):
-        hang(layout, source, "tv_monitor", "tv_wall", sides=_seen_from(bed))
+    if source.chance(0.35) and bed is not None:
+        _hang_screen(layout, source, bed)
     if source.clutter_chance(0.5):
         place(layout, source, "clothes", "rack", "floor", along="corner", front_m=0.3)
     _extras(layout, source, plants=0.5, pictures=(0, 1))
 
 
-def _seen_from(bed: Placement | None) -> list[Side] | None:
-    """Returns the walls that are seen from a bed, the opposite one first; None if the bed is not at a wall."""
-    if bed is None or bed.side is None:
-        return None
-    facing = OPPOSITE[bed.side]
-    return [facing, *(side for side in SIDES if side not in (facing, bed.side))]
+def _hang_screen(layout: RoomLayout, source: FurnitureSource, bed: Placement) -> None:
+    """Hangs a screen on the wall that a bed faces, not far from its middle."""
+    screen = source.make("tv_monitor", "tv_wall")
+    if screen is None or screen.mount != "wall" or bed.side is None:
+        return
+    side, middle = OPPOSITE[bed.side], bed.rect.span(bed.side)
+    for shift_m in (0.0, 0.4, -0.4, 0.8, -0.8):
+        if hang_screen(layout, source, screen, side, 0.5 * sum(middle) + shift_m):
+            return
 
 
 def _place_wardrobe(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
-    """Places a wardrobe in a corner, a narrow one where no wide one fits."""
+    """Places a wardrobe in a corner, a narrow one where no wide one fits, else a clothes rack."""
     for front_m in (0.7, 0.45):
         wardrobe = place(layout, source, "cabinet", "wardrobe", along="corner", front_m=front_m)
         if wardrobe is not None:
             return wardrobe
-    return place(layout, source, "cabinet", "wardrobe", along="corner", front_m=0.45, width_m=1.0)
+    for width_m in (1.0, 0.75):
+        wardrobe = place(layout, source, "cabinet", "wardrobe", along="corner", front_m=0.45, width_m=width_m)
+        if wardrobe is not None:
+            return wardrobe
+    racks = [source.make("clothes", "rack", fresh=True) for _ in range(3)]
+    rack = next((rack for rack in racks if rack is not None and rack.name == "clothes rack"), None)
+    return put_against_wall(layout, source.rng, rack, front_m=0.3) if rack is not None else None
 
 
 def _living_room(layout: RoomLayout, source: FurnitureSource) -> None:
@@ -87,7 +95,7 @@ def _second_groups(layout: RoomLayout, source: FurnitureSource) -> None:
     """Places more groups in a large living room: one from 20 m2 on, two from 30, three from 40."""
     area = layout.inner.area_m2
     count = int(area > 20) + int(area > 30) + int(area > 40)
-    free = [armchair_circle, dining_group] if "dining_room" not in source.home_rooms or area > 38 else [armchair_circle]
+    free = [armchair_circle, dining_group] if "dining_room" not in source.home_rooms else [armchair_circle]
     by_wall = [reading_corner, desk_group]
     groups = [free[n] for n in source.rng.permutation(len(free)).tolist()]
     groups += [by_wall[n] for n in source.rng.permutation(2).tolist()]
@@ -127,7 +135,7 @@ def _studio(layout: RoomLayout, source: FurnitureSource) -> None:
 
 def _bathroom(layout: RoomLayout, source: FurnitureSource) -> None:
     furnish_bathroom(layout, source)
-    _extras(layout, source, plants=0.3, pictures=(0, int(layout.inner.area_m2 > 6)), lamp=False, boxes=False)
+    _extras(layout, source, plants=0.0, pictures=(0, int(layout.inner.area_m2 > 6)), lamp=False, boxes=False)
 
 
 def _hallway(layout: RoomLayout, source: FurnitureSource) -> None:

@@ -13,11 +13,19 @@ from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
 from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furnishing.placement.floor import put_against_wall, put_at, put_near
 from sim.homes.housegen.furnishing.placement.free_standing import SeatSpot, put_in_middle
-from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
 from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.homes.housegen.furnishing.placement.walls import WALL_GAP_M
-from sim.homes.housegen.furnishing.steps import hang_above, lay_rug, place, place_beside, place_in_front, put_on_top
+from sim.homes.housegen.furnishing.steps import (
+    hang_above,
+    hang_screen,
+    lay_rug,
+    place,
+    place_beside,
+    place_in_front,
+    put_on_top,
+)
 from sim.homes.housegen.furniture.item import Hints, Item
+from sim.world.room_arrangement import SCREEN_FRONT_M
 
 VIEWING_M, FOCUS_DEPTH_M, BEHIND_M = (2.4, 3.2), 0.45, 0.9
 """Distance from a sofa to what it faces, the usual depth of that, and the least free floor behind a sofa."""
@@ -52,6 +60,10 @@ def sofa_group(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     if not (faces_seats and _place_opposite(layout, source, sofa)):
         _place_armchairs(layout, source, sofa, ahead_m + 0.1)
     _place_side_table(layout, source, sofa)
+    if not faces_seats and sofa.side is not None:
+        ahead = OPPOSITE[sofa.side]
+        to_wall_m = abs(layout.inner.line(ahead) - sofa.rect.line(ahead))
+        layout.reserve(sofa, [sofa.rect.strip(ahead, sofa.rect.span(ahead), 0.0, to_wall_m)])
     if source.chance(0.5):
         hang_above(layout, source, sofa, "picture")
     return sofa
@@ -174,15 +186,14 @@ def _place_screen(layout: RoomLayout, source: FurnitureSource, sofa: Placement) 
     floor_screen = source.make("tv_monitor", "tv_floor")
     if floor_screen is None or floor_screen.mount != "floor":
         return False
-    return put_near(layout, floor_screen, side, middle, front_m=0.4) is not None
+    return put_near(layout, floor_screen, side, middle, front_m=SCREEN_FRONT_M) is not None
 
 
 def _hang_screen(
     layout: RoomLayout, source: FurnitureSource, screen: Item, side: Side, host: Placement, bottom_m: float
 ) -> bool:
     """Hangs a screen on a wall in line with another item."""
-    at = 0.5 * sum(host.rect.span(side))
-    return hang_on_wall(layout, source.rng, screen, sides=[side], at=at, bottom_m=bottom_m) is not None
+    return hang_screen(layout, source, screen, side, 0.5 * sum(host.rect.span(side)), bottom_m) is not None
 
 
 def has_chair(source: FurnitureSource) -> bool:

@@ -17,6 +17,7 @@ from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
 from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.homes.housegen.furnishing.placement.walls import Along
 from sim.homes.housegen.furniture.item import Hints, Item
+from sim.world.room_arrangement import SCREEN_FRONT_M
 
 RUNNER_M = 1.0
 """Rugs narrower than this are runners."""
@@ -75,6 +76,23 @@ def hang_above(layout: RoomLayout, source: FurnitureSource, host: Placement, cat
     bottom_m = max(item.mount_height_m, host.item.size_m[2] + 0.15)
     lo, hi = host.rect.span(host.side)
     return hang_on_wall(layout, source.rng, item, sides=[host.side], at=0.5 * (lo + hi), bottom_m=bottom_m)
+
+
+def hang_screen(
+    layout: RoomLayout, source: FurnitureSource, screen: Item, side: Side, at: float, bottom_m: float | None = None
+) -> Placement | None:
+    """Hangs a screen at a position along a wall, and keeps the floor below and right in front of it free.
+
+    Returns None if it does not fit or a seat stands there.
+    """
+    half = screen.size_m[1] / 2
+    zone = layout.inner.strip(side, (at - half, at + half), screen.size_m[0] + SCREEN_FRONT_M)
+    if any(p.item.category in ("chair", "sofa") and p.rect.overlaps(zone, 0.0) for p in layout.placements):
+        return None
+    placed = hang_on_wall(layout, source.rng, screen, sides=[side], at=at, bottom_m=bottom_m)
+    if placed is not None:
+        layout.reserve(placed, [zone])
+    return placed
 
 
 def place_beside(

@@ -90,8 +90,8 @@ def open_run(w: Workbench) -> None:
         for side in (low, high):  # cheeks hide the bowl of the sink between the block and the top
             w.box((x[0] + 0.01, x[1] - 0.06), (side - 0.01, side + 0.01), (height - 0.20, height - _TOP), front)
         parts.plain_doors(w, x[1] - 0.06, (low, high), (0.205, height - _TOP), 1, front, steel, "none")
-    half = 0.5 * width
-    for c in (-0.7 * half, 0.0, 0.7 * half):
+    count = min(3, int((width - 0.02) / 0.38))
+    for c in ((n + 0.5) * width / count - 0.5 * width for n in range(count)):
         if hole is None or not hole[1][0] - 0.25 < c < hole[1][1] + 0.25:
             w.mesh(chamfered_box((0.40, 0.34, 0.26), 0.015), (0.0, c, 0.335), w.look("wicker"), solid=False)
     _free_tops(w, x, free, height)

@@ -228,7 +228,7 @@ _FLOORS: dict[str, Material] = {
 _FLOORS_OF_ROOM: dict[str, tuple[str, ...]] = {
     "living_room": ("boards", "boards", "boards", "carpet", "stone"),
     "bedroom": ("boards", "boards", "carpet", "carpet"),
-    "kitchen": ("tiles", "tiles", "boards", "stone"),
+    "kitchen": ("tiles", "tiles", "stone"),
     "bathroom": ("wet",),
     "hallway": ("boards", "tiles", "stone"),
     "office": ("boards", "carpet"),

@@ -46,7 +46,7 @@ def _floors(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> dict[str, 
     """Returns the floor of each room: a home has few, and they change at doors.
 
     Hallways and most living rooms have one hard floor; bedrooms have boards or carpet; rooms with water have tiles or
-    stone. Rooms without a wall between them share a hard floor, but for a kitchen with tiles of its own.
+    stone. Rooms without a wall between them share a hard floor, but for a kitchen, which has tiles or stone of its own.
     """
     main = materials.floor_look("hallway", rng, pool)
     while not _is_calm(main):
@@ -61,7 +61,8 @@ def _floors(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> dict[str, 
         private = main
     wet = [materials.floor_look("bathroom", rng, pool) for _ in range(2)]
     kitchen, laundry = (materials.floor_look(kind, rng, pool) for kind in ("kitchen", "laundry"))
-    kitchen_is_zone = rng.random() < 0.4
+    while kitchen == living:
+        kitchen = materials.floor_look("kitchen", rng, pool)
     shared, floors = _open_rooms(plan), {}
     for i, room in enumerate(plan.rooms):
         if room.kind in ("hallway", "stair_hall"):
@@ -70,11 +71,12 @@ def _floors(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> dict[str, 
             floor = wet[int(rng.integers(2))]
         elif room.kind in ("kitchen", "laundry"):
             floor = kitchen if room.kind == "kitchen" else laundry
-            floor = living if i in shared and not kitchen_is_zone else floor
+        elif room.kind == "studio":
+            floor = wooden if _is(living, "carpet") else living
         elif room.kind == "gym":
             floor = materials.floor_look("gym", rng, pool)
         else:
-            floor = living if i in shared or room.kind in ("living_room", "dining_room", "studio") else private
+            floor = living if i in shared or room.kind in ("living_room", "dining_room") else private
         floors[room.name] = floor
     return floors
 

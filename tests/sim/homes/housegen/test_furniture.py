@@ -239,6 +239,20 @@ def test_width_hint_is_kept(category, pool):
         assert item.size_m[1] == pytest.approx(1.23, abs=0.03), name
 
 
+@pytest.mark.parametrize("width_m", [0.4, 0.6, 1.0, 2.0])
+@pytest.mark.parametrize("pool", ["train", "heldout"])
+def test_a_worktop_is_as_wide_as_asked_and_keeps_its_hob_from_its_sink(pool, width_m):
+    for style, seed in itertools.product(names("counter", pool, "run"), range(6)):
+        item = CATALOGUE.make_item(
+            "counter", np.random.default_rng(seed), pool=pool, style=style, use="run", width_m=width_m,
+            with_sink=True, with_hob=True,
+        )  # fmt: skip
+        assert item.size_m[1] == pytest.approx(width_m, abs=0.03), style
+        at = {child.item.category: (child.pos_m[1], 0.5 * child.item.size_m[1]) for child in item.children}
+        if width_m == 2.0:
+            assert abs(at["sink"][0] - at["appliances"][0]) > at["sink"][1] + at["appliances"][1] + 0.29
+
+
 @pytest.mark.parametrize("pool", ["train", "heldout"])
 @pytest.mark.parametrize("use", ["run", "island"])
 def test_sink_of_a_counter_is_a_child_only_when_asked_for(pool, use):

@@ -14,6 +14,8 @@ from sim.homes.housegen.furnishing.placement.records import Placement
 from sim.homes.housegen.furnishing.placement.walk_grid import WalkGrid
 from sim.homes.housegen.furnishing.placement.walls import RoomWalls
 from sim.homes.housegen.structure.openings import HALF_WALL_M, Opening, leaf_keep_out
+from sim.world.arrangement import FIXTURE_APART_M
+from sim.world.room_arrangement import HALLWAY_PATH_M
 
 ROBOT_HEIGHT_M = 0.9
 DOORWAY_DEPTH_M, ENTRY_DEPTH_M = 0.7, 0.9
@@ -110,6 +112,15 @@ class RoomLayout:
             return False
         return not any(block.rect.overlaps(zone, 0.02) and block.z0_m < ROBOT_HEIGHT_M for block in self._blocks)
 
+    def narrows_hallway(self, rect: Rect) -> bool:
+        """Returns whether the room is a hallway in which an item of this footprint leaves too little width."""
+        inner = self.inner
+        if inner.width_m < inner.depth_m:
+            free_m = max(rect.x0 - inner.x0, inner.x1 - rect.x1)
+        else:
+            free_m = max(rect.y0 - inner.y0, inner.y1 - rect.y1)
+        return self.kind == "hallway" and free_m < HALLWAY_PATH_M
+
     # ---- changes -------------------------------------------------------------------------------------------------
 
     def try_put(self, placement: Placement, zones: Sequence[Rect] = (), *, ignore: Rect | None = None) -> bool:
@@ -120,6 +131,8 @@ class RoomLayout:
         """
         rect, height_m = placement.rect, placement.item.size_m[2]
         if not self.inner.contains(rect, 0.002) or not self.is_clear(rect, 0.0, height_m, ignore=ignore):
+            return False
+        if placement.item.category != "objects" and self.narrows_hallway(rect):
             return False
         if self.in_reserved_zone(rect, ignore=ignore) or not all(self.is_zone_free(zone) for zone in zones):
             return False
@@ -184,7 +197,8 @@ class RoomLayout:
         depth_m = DOORWAY_DEPTH_M if opening.kind != "entry" else ENTRY_DEPTH_M
         self._keep_out.append(self.inner.strip(side, (lo - 0.06, hi + 0.06), depth_m))
         if opening.leaf is not None and opening.leaf.room == index:
-            self._keep_out.append(leaf_keep_out(opening, rect))
+            apart_m = FIXTURE_APART_M if self.kind == "bathroom" else 0.0
+            self._keep_out.append(leaf_keep_out(opening, rect).grown(apart_m))
             for part in _leaf_rects(opening, rect):
                 self.grid.occupy(part)
         if opening.kind != "entry":

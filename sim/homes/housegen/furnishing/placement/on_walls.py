@@ -70,7 +70,11 @@ def _hang_at(
     if not layout.is_clear(padded, lowest_m, top_m + margin_m, doorways=bottom_m < 2.0):
         return None
     if bottom_m < ROBOT_HEIGHT_M and item.size_m[0] > SHALLOW_M:
-        if layout.in_reserved_zone(rect) or not layout.grid.stays_walkable(rect, [rect]):
+        if (
+            layout.in_reserved_zone(rect)
+            or layout.narrows_hallway(rect)
+            or not layout.grid.stays_walkable(rect, [rect])
+        ):
             return None
         layout.grid.occupy(rect)
     x, y = layout.walls.point(side, at, 0.0)

@@ -116,6 +116,10 @@ def worktop(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: tuple[
     w.box((hx1, x[1]), (hy0, hy1), z, look)
 
 
+_HOB_APART = 0.9
+"""Distance between the middles of a sink and a hob that leaves 0.3 m of worktop between them."""
+
+
 def worktop_fittings(w: Workbench, y: Range, z: float) -> tuple[tuple[Range, Range] | None, list[Range]]:
     """Adds a sink and a hob to a worktop with its upper face at z; hints `with_sink`, `with_hob`.
 
@@ -123,13 +127,19 @@ def worktop_fittings(w: Workbench, y: Range, z: float) -> tuple[tuple[Range, Ran
         The x and y ranges of the sink's hole, or None, and the y ranges that stay free.
     """
     width, taken, hole, sink_y = y[1] - y[0], [], None, None
-    if width >= 0.75 and w.flag("with_sink", 0.35):
-        sink_y = w.length(y[0] + 0.38, y[1] - 0.38) if width > 1.0 else 0.5 * (y[0] + y[1])
+    with_sink = width >= 0.75 and w.flag("with_sink", 0.35)
+    with_hob = width > 1.3 and w.flag("with_hob", 0.25)
+    if with_sink:
+        from_end = 0.38 if with_hob else 0.6  # 0.3 m of worktop before a cooker at the end
+        sink_y = w.length(y[0] + from_end, y[1] - from_end) if width > 2 * from_end else 0.5 * (y[0] + y[1])
+        low, high = y[1] - 0.36 - _HOB_APART, y[0] + 0.36 + _HOB_APART
+        if with_hob and y[0] + 0.3 < low < sink_y < high:
+            sink_y = low
         w.put(w.make("sink", use="inset"), (0.0, sink_y, z - 0.18))
         hole = ((-0.20, 0.20), (sink_y - 0.24, sink_y + 0.24))
         taken.append((sink_y - 0.30, sink_y + 0.30))
-    if width > 1.3 and w.flag("with_hob", 0.25):
-        places = [p for p in (y[0] + 0.36, y[1] - 0.36) if sink_y is None or abs(p - sink_y) > 0.62]
+    if with_hob:
+        places = [p for p in (y[0] + 0.36, y[1] - 0.36) if sink_y is None or abs(p - sink_y) > _HOB_APART - 0.01]
         if places:
             place = w.choice(places)
             w.put(w.make("appliances", use="hob"), (0.0, place, z))
