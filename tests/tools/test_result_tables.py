@@ -28,6 +28,7 @@ from stubborn.segmentation.shipped import SHIPPED_REDNET
 from tests.helpers import documented, wording
 from tests.helpers.results import ENTRIES
 from tools.research import result_tables
+from tools.research.paper_reasons import EPISODES, reasons
 from tools.research.result_archive import (
     ARCHIVE,
     CHECKSUM_DIGITS,
@@ -99,6 +100,18 @@ def test_the_page_of_the_paper_is_that_of_the_archive(tmp_path: Path) -> None:
     shutil.rmtree(tmp_path / "poni_rednet_none_val")
     with pytest.raises(ConfigError, match="'overall'"):
         paper_page(tmp_path, runs)
+
+
+def test_every_episode_is_in_one_third_by_distance_and_corners_are_trapped_or_not(
+    runs: Mapping[RunKey, ArchivedRun],
+) -> None:
+    by_length, by_trap = reasons(runs)
+    counts = {label: int(re.findall(r"\((\d+)\)", label)[0]) for label, _ in (*by_length.rows, *by_trap.rows)}
+    for split in EPISODES:
+        of_split = {label: count for label, count in counts.items() if label.startswith(f"{split}, ")}
+        assert len(of_split) == 4
+        assert sum(of_split.values()) == 2 * EPISODES[split]
+    assert sum(count for label, count in counts.items() if label.startswith("stubborn-i is")) == EPISODES["val"]
 
 
 def test_holm_multiplies_the_smallest_p_value_by_their_number_and_keeps_the_order() -> None:
