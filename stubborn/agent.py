@@ -36,6 +36,7 @@ from stubborn.exploration.explorer import ExplorerConfig, Ground, ReadsSemantics
 from stubborn.kernels.grids import MAX_REACH
 from stubborn.mapping.collision_marks import CollisionConfig, GpsNoise, is_collision, mark_collision, mark_visited
 from stubborn.mapping.felt import FeelConfig, FeltSurfaces, contact_direction
+from stubborn.mapping.levelling import LevelledSegmenter, Levelling, LevellingConfig
 from stubborn.mapping.mapper import Mapper, MappingConfig, Sighting
 from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.object_layers import ObjectLayersConfig
@@ -63,6 +64,8 @@ class AgentConfig:
     """Edge of the local window that is planned on."""
     recentre_every_steps: int = 1
     """The window is moved with the robot after this many steps: 1 in the paper, 25 in the published code."""
+    levelling: LevellingConfig = field(default_factory=LevellingConfig)
+    """With the sensor `imu`, the images of a camera that leans are levelled before they enter the map."""
     mapping: MappingConfig = field(default_factory=MappingConfig)
     collisions: CollisionConfig = field(default_factory=CollisionConfig)
     avoidance: CollisionAvoidance = field(default_factory=CollisionAvoidance)
@@ -134,7 +137,8 @@ class StubbornAgent:
         """
         self.config = config = config.for_robot(robot)
         self.robot = robot
-        self.segmenter = segmenter
+        self.levelling = Levelling(camera, robot.camera_forward_m, config.levelling)
+        self.segmenter = segmenter = LevelledSegmenter(segmenter, self.levelling)
         self.policies = collision_policies(config.avoidance, config.untrap)
         self.mapper = Mapper(camera, robot, config.mapping, config.layers.make(config.mapping.candidate_score))
         feel = config.feel if self.policies.marked else None
@@ -168,6 +172,7 @@ class StubbornAgent:
         self.pose: Pose | None = None
         self.last_action: Action | None = None
         self.gps_noise = GpsNoise()
+        self.levelling.reset()
         self.route: Route | None = None
         """The route that is followed; None: the agent turns or pushes."""
         self.approach: Approach | None = None
@@ -182,7 +187,7 @@ class StubbornAgent:
 
     def act(self, observation: Observation) -> Action:
         """Returns the next action."""
-        pose = read_pose(observation)
+        pose, observation = read_pose(observation), self.levelling.level(observation)
         self._learn_from_last_action(self.pose or pose, pose, observation)
         sighting = self._map(observation, pose)
         self.pose = pose
@@ -236,7 +241,7 @@ class StubbornAgent:
 
     def _map(self, observation: Observation, pose: Pose) -> Sighting:
         """Enters the frame into the map, and returns the target points in it."""
-        depth, frame = observation["depth"], self.mapper.frame(self.navmap, pose)
+        depth, frame = observation["depth"], self.mapper.frame(self.navmap, pose, self.levelling.eye(pose))
         exact_depth = self.mapper.add_depth(frame, depth)
         scores = self.segmenter.scores(observation, self.goal)
         rim_px = 0 if exact_depth and self.segmenter.spec.exact_outlines else self.config.mapping.rim_px

@@ -107,11 +107,14 @@ PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(
 )
 """The agents that build a map: description and configuration of each name. All of them are a `StubbornAgent`."""
 
+SENSORS = ("depth", "imu")
+"""What the agents that build a map read; the inertia sensor levels the images of a robot that leans."""
+
 SPECS: Mapping[str, AgentSpec] = MappingProxyType(
     {
         **{
             name: AgentSpec(
-                make=StubbornAgent, description=description, config=config, sensors=("depth",), painter=make_painter
+                make=StubbornAgent, description=description, config=config, sensors=SENSORS, painter=make_painter
             )
             for name, (description, config) in PRESETS.items()
         },

@@ -197,9 +197,11 @@ ROBOT_SENSORS: tuple[str, ...] = (SCAN, "bumper", "odometry", "imu")
 """The lidar and the sensors of the robot itself (`sim.sensors.measured`), in the observation only when requested."""
 POSE_SENSORS: tuple[str, ...] = ("gps", "compass", "objectgoal")
 """Always present."""
-CONTEXT_FIELDS: tuple[str, ...] = ("goal", "collided", "odometry", "pose", "start", "motion", "model", "data")
+CONTEXT_FIELDS: tuple[str, ...] = (
+    "goal", "collided", "odometry", "pose", "start", "motion", "model", "data", "glass",
+)  # fmt: skip
 """Fields of `sim.sensors.sensor.SensorContext` that a user's sensor may declare in `reads`."""
-TRUE_FIELDS = frozenset({"pose", "start", "motion", "model", "data"})
+TRUE_FIELDS = frozenset({"pose", "start", "motion", "model", "data", "glass"})
 """The fields that hold ground truth, which a robot cannot measure."""
 TRUE_IMAGES = frozenset({"semantic", "geom"})
 """Rendered images that hold ground truth."""

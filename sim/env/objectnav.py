@@ -308,11 +308,12 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             "goal": self.episode.goal,
             "collided": self._motion is not None and self._motion.collided,
             "odometry": world.odometry,
-            "pose": world.pose,
+            "pose": world.body_pose,
             "start": self.episode.start,
             "motion": self._motion,
             "model": world.model,
             "data": world.data,
+            "glass": world.glass,
         }
         readings = {sensor.name: sensor.read(SensorContext(sensor, images, **fields)) for sensor in self._noise.sensors}
         return self._noise.apply(readings, images), images["semantic"]

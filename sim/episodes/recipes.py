@@ -2,7 +2,7 @@
 
 | split | episodes of a house | rule | distance, m |
 |---|--:|---|---|
-| val, test | 34 | `any` | 2 to 30 |
+| val, test | 34 | `any` | 4 to 30 |
 | large, large-test | 30 | `hidden` | 12 to 60, 6 to 60 for the only reachable instance of its category |
 | hazards, hazards-test | 30 | `hazard` | 2 to 30 |
 | train | 10 | `any` | 2 to 30 |
@@ -61,8 +61,8 @@ _LARGE = EpisodeRecipe(
 _HAZARDS = EpisodeRecipe(per_house=30, rule="hazard")
 EPISODE_RECIPES: Mapping[str, EpisodeRecipe] = MappingProxyType(
     {
-        "val": EpisodeRecipe(per_house=34),
-        "test": EpisodeRecipe(per_house=34),
+        "val": EpisodeRecipe(per_house=34, min_distance_m=4.0),
+        "test": EpisodeRecipe(per_house=34, min_distance_m=4.0),
         "large": _LARGE,
         "hazards": _HAZARDS,
         "large-test": _LARGE,

@@ -3,6 +3,7 @@
 One pass renders colour. The other renders each geom in a colour that encodes its index; a single read of that frame
 buffer gives indices and depth, so that the edges of `depth` and `semantic` agree to the pixel. Only requested images
 are rendered. Geoms that cannot be visible (`sim.renderer.occlusion`) are left out of the scene, which changes no pixel.
+Depth is that of the surface behind a pane of glass, except for the share of the pixels that the pane returns.
 Colours are darkened in corners and in the shadow of the nearest lamp (`sim.renderer.shading`).
 """
 
@@ -16,9 +17,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.core.geometry.pose import Pose
+from sim.core.geometry.pose import Pose, as_body_pose
 from sim.core.interface import SENSORS, CameraModel, ConfigError
 from sim.gl import begin_rendering, mujoco
+from sim.houses.glass import clear_panes, picture_panes, returning
 from sim.houses.labels import Labels, rendered_geoms
 from sim.renderer.lamp_maps import MAP_PX, LampMaps
 from sim.renderer.lamps import Lamps
@@ -30,7 +32,7 @@ from sim.renderer.shading import make_shading
 
 
 class Camera:
-    """Renders the view of a level camera at a pose of the robot in one compiled model.
+    """Renders the view of a camera that is fixed to the robot's body, in one compiled model.
 
     It replaces the model's visual settings (clipping planes, quality, buffer size).
 
@@ -61,10 +63,13 @@ class Camera:
         visual = rendered_geoms(model)
         self._visual_ids = np.flatnonzero(visual)
         self._geom_category = labels.geom_category
+        self._pictures, self._clear = picture_panes(model, labels), clear_panes(model, labels)
         self._rect = mujoco.MjrRect(0, 0, self.camera.width_px, self.camera.height_px)
         shape = (self.camera.height_px, self.camera.width_px)
         self._color_buffer = np.zeros((*shape, 3), np.uint8)
         self._depth_buffer = np.zeros(shape, np.float32)
+        self._returned: NDArray[np.bool_] | None = None  # (h, w) pixels that panes return; made when one is visible
+        self._through_clear = np.zeros(shape, np.bool_)
         self._gl = make_gl_context(self.camera)
         # Id colours must not be blended at edges and need no vertices inside a flat face: they get their own buffer.
         id_profile = replace(self.profile, samples=0, quads=1)
@@ -89,7 +94,7 @@ class Camera:
 
         Args:
             data: state of the model; kinematics must be computed.
-            pose: the robot's pose; the camera looks along its heading, level.
+            pose: the robot's pose. A `BodyPose` leans, and the camera with it; at any other pose the camera is level.
             sensors: names from `SENSORS`, and `geom`: int32 (h, w), geom id or -1.
 
         Raises:
@@ -108,14 +113,20 @@ class Camera:
     def _render(self, data: mujoco.MjData, pose: Pose, sensors: Sequence[str]) -> dict[str, NDArray]:
         """Returns the images of some sensors; the OpenGL context is current."""
         images: dict[str, NDArray] = {}
-        eye_m, axes = _camera_frame(pose, self.camera)
-        visible = self._visibility.visible(data, eye_m, pose.yaw_rad) if self.cull else self._visual_ids
+        body = as_body_pose(pose)
+        eye_m, axes = body.point(0.0, 0.0, self.camera.height_m), body.axes
+        visible = self._visibility.visible(data, eye_m, axes) if self.cull else self._visual_ids
         lamps = self._lamps.choose(data, eye_m, axes[0]) if "rgb" in sensors else []
         first = lamps[0] if lamps and self.profile.shadows > 0.0 and self._lamps.casts_shadows(lamps[0]) else None
         lamp_map = None if first is None else self._maps.of(data, first, self._scene, self._id_context)
         self._fill(data, visible, eye_m, axes, lamps)
         if {"depth", "semantic", "geom"} & set(sensors):
             images |= self._render_ids_and_depth(visible, sensors)
+        if "depth" in sensors and self._clear[visible].any():
+            self._fill(data, visible[~self._clear[visible]], eye_m, axes, lamps)
+            self._see_through_clear_panes(images["depth"])
+            if "rgb" in sensors and not self._reflects:
+                self._fill(data, visible, eye_m, axes, lamps)
         if "rgb" in sensors:
             if self._reflects:
                 self._fill(data, self._visual_ids, eye_m, axes, lamps)
@@ -151,7 +162,24 @@ class Camera:
             images["geom"] = look_up(self._color_buffer, np.append(np.int32(-1), geoms.astype(np.int32)))
         if "depth" in sensors:
             images["depth"] = metric_depth(self._depth_buffer, self.camera)
+            if self._pictures[geoms].any():
+                images["depth"][self._passes(self._pictures[geoms])] = self.camera.max_depth_m
+            if self._clear[geoms].any():
+                self._through_clear = self._passes(self._clear[geoms])
         return images
+
+    def _passes(self, panes: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Returns (h, w) True where the rendered ids show one of these panes of the scene and light passes it."""
+        if self._returned is None:
+            self._returned = returning(self._depth_buffer.shape)
+        return look_up(self._color_buffer, np.append(False, panes)) & ~self._returned
+
+    def _see_through_clear_panes(self, depth_m: NDArray[np.float32]) -> None:
+        """Writes the depth of the scene, which must hold no such pane now, where light passes one."""
+        self._scene.render_ids(self._rect, self._id_context)
+        mujoco.mjr_readPixels(self._color_buffer, self._depth_buffer, self._rect, self._id_context)
+        through = self._through_clear
+        depth_m[through] = metric_depth(self._depth_buffer, self.camera)[through]
 
     def _render_color(self) -> None:
         """Renders the scene in colour into the buffers of colour and of depth, the bottom row first."""
@@ -168,10 +196,3 @@ class Camera:
         mujoco.mjr_render(self._rect, self._scene.scene, context)
         depth = None if self._shading is None else self._depth_buffer
         mujoco.mjr_readPixels(self._color_buffer, depth, self._rect, context)
-
-
-def _camera_frame(pose: Pose, camera: CameraModel) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns the optical centre in the world, and the axes (forward, left, up) as rows."""
-    c, s = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
-    axes = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-    return np.array([pose.x_m, pose.y_m, pose.floor_z_m + camera.height_m]), axes

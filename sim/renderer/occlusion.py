@@ -1,4 +1,7 @@
-"""Finds geoms that a level camera cannot see: those outside its view, and those completely behind walls.
+"""Finds geoms that a camera cannot see: those outside its view, and those completely behind walls.
+
+Bounds are those of a level camera. The view of one that leans lies within the wider view of a level one with the same
+eye and heading.
 
 The image is divided into strips of a few pixel columns. The *wall* of a strip is the nearest opaque upright box that
 covers the whole strip and the height of the eye. A geom is hidden in a strip when it is farther than the front of the
@@ -34,6 +37,11 @@ _SLACK_PX = 0.5
 """Geoms are grown by this much in the image, so that rounding in the rasteriser does not matter."""
 _SLACK_M = 0.01
 """A hidden geom is farther than the wall by at least this: many times the resolution of the depth buffer."""
+_SAME_EYE_M = 0.02
+"""Eyes whose heights differ by less have the same walls, which extend 5 cm above and below the eye."""
+_MIN_LEVEL = 0.3
+"""A camera whose rays are not at least this far ahead of a level one's eye, per metre of depth, sees every geom."""
+_SAME_STRIPS = 1e-6
 _MIN_SLAB_M = 0.2
 """The near plane may cut floors and ceilings nearer to the eye than this."""
 _BOX = int(mujoco.mjtGeom.mjGEOM_BOX)
@@ -52,6 +60,21 @@ class StripWalls(NamedTuple):
     """Slope of the upper edge."""
 
 
+class LevelView(NamedTuple):
+    """The view of a level camera that contains the view of a camera that may lean."""
+
+    right_max: float
+    """Slope of the right edge."""
+    up_max: float
+    """Slope of the upper edge."""
+    near_m: float
+    """Nothing is visible nearer than this."""
+    past_near_m: float
+    """Everything farther than this is beyond the near plane."""
+    edges: NDArray[np.float64]
+    """(strips + 1,) slopes to the right of the edges of the strips, one strip width apart."""
+
+
 class Visibility:
     """Finds the geoms of one model that may be visible; data of static geoms are computed once.
 
@@ -66,8 +89,6 @@ class Visibility:
         self._model = model
         self._ids = np.flatnonzero(visual)
         self._near_m = near_m
-        columns = np.append(np.arange(0, camera.width_px, STRIP_PX), camera.width_px)
-        self._edges = (columns - 0.5 * camera.width_px) / camera.focal_px  # (strips + 1,) to the right
         self._right_max = 0.5 * camera.width_px / camera.focal_px
         self._up_max = 0.5 * camera.height_px / camera.focal_px
         self._slack = _SLACK_PX / camera.focal_px
@@ -86,22 +107,26 @@ class Visibility:
         self._boxes = self._bounds.take((model.geom_type[solid] == _BOX) & opaque_geoms(model)[solid])
         self._walls_at = (math.nan, self._boxes)  # height of the eye and its walls
 
-    def visible(self, data: mujoco.MjData, eye_m: NDArray, yaw_rad: float) -> NDArray[np.intp]:
+    def visible(self, data: mujoco.MjData, eye_m: NDArray, axes: NDArray) -> NDArray[np.intp]:
         """Returns the ids, in ascending order, of the visual geoms that may be visible.
 
         Args:
             data: state of the model; kinematics must be computed.
             eye_m: (3,) optical centre in the world.
-            yaw_rad: heading; the camera is level.
+            axes: (3, 3) the camera's forward, left and up as rows.
         """
         if self._movable.size:
             self._corners[self._movable] = _corners(self._model, data, self._ids[self._movable])
-        yaw = math.cos(yaw_rad), math.sin(yaw_rad)
-        walls = self._strip_walls(eye_m, yaw)
-        view = (self._right_max, self._up_max, self._strip, self._slack, _SLACK_M, *walls)
-        seen = may_be_seen(self._corners, self._bounded, eye_m, yaw, self._near_m, *view)
+        level = self._level_view(axes)
+        if level is None:
+            return self._ids
+        length = math.hypot(axes[0, 0], axes[0, 1])
+        yaw = float(axes[0, 0]) / length, float(axes[0, 1]) / length
+        walls = self._strip_walls(eye_m, yaw, level)
+        view = (level.right_max, level.up_max, self._strip, self._slack, _SLACK_M, *walls)
+        seen = may_be_seen(self._corners, self._bounded, eye_m, yaw, level.near_m, *view)
         upright = np.flatnonzero(seen & (self._bound_of >= 0))
-        hidden = hidden_by_strip(self._bound_of[upright], *_arrays(self._bounds), eye_m, yaw, self._edges, *view)
+        hidden = hidden_by_strip(self._bound_of[upright], *_arrays(self._bounds), eye_m, yaw, level.edges, *view)
         seen[upright[hidden]] = False
         return self._ids[seen]
 
@@ -116,29 +141,51 @@ class Visibility:
             between = (entry > 0.0) & (leave < 1.0)
         return ~np.asarray(between.any(axis=0), np.bool_)
 
-    def _strip_walls(self, eye_m: NDArray, yaw: tuple[float, float]) -> StripWalls:
+    def _level_view(self, axes: NDArray) -> LevelView | None:
+        """Returns the view of a level camera that contains that of this one; None if a level one cannot see so far.
+
+        A projection between two cameras at one eye maps the image onto a quadrilateral, so that the four corners of the
+        image bound the slopes and the depths.
+        """
+        forward = axes[0]
+        length = math.hypot(forward[0], forward[1])
+        if length < _MIN_LEVEL:
+            return None
+        ahead = np.array([forward[0] / length, forward[1] / length, 0.0])
+        level = np.array([ahead, [-ahead[1], ahead[0], 0.0], [0.0, 0.0, 1.0]])
+        corners = np.array([[1.0, y * self._right_max, z * self._up_max] for y in (-1, 1) for z in (-1, 1)])
+        depth, left, up = level @ axes.T @ corners.T  # in the level camera's axes
+        if depth.min() < _MIN_LEVEL:
+            return None
+        right_max, up_max = float(np.abs(left / depth).max()), float(np.abs(up / depth).max())
+        strips = math.ceil(2.0 * right_max / self._strip - _SAME_STRIPS)
+        edges = np.minimum(np.arange(strips + 1) * self._strip - right_max, right_max)
+        near_m, past_near_m = self._near_m * float(depth.min()), self._near_m * float(depth.max())
+        return LevelView(right_max, up_max, near_m, past_near_m, edges)
+
+    def _strip_walls(self, eye_m: NDArray, yaw: tuple[float, float], view: LevelView) -> StripWalls:
         """Returns the wall of each strip.
 
         If the eye is above a floor, or below a ceiling, that reaches past the wall, nothing is visible below or
         above the wall either.
         """
-        walls, least_m = self._walls(float(eye_m[2])), self._near_m + _SLACK_M
+        walls, least_m = self._walls(float(eye_m[2])), view.past_near_m + _SLACK_M
         wall_m, wall = nearest_walls(
-            walls.centre, walls.axis, walls.half, eye_m, yaw, self._edges, self._right_max, least_m
+            walls.centre, walls.axis, walls.half, eye_m, yaw, view.edges, view.right_max, least_m
         )
         if len(walls.top) == 0:
             return StripWalls(wall_m, -wall_m, wall_m)
         high_m, low_m = walls.top[wall] - eye_m[2], walls.bottom[wall] - eye_m[2]
         high, low = high_m / wall_m, low_m / wall_m
         slabs = _arrays(self._boxes)
-        open_past_slabs(*slabs, eye_m, yaw, self._edges, _MIN_SLAB_M, self._slack, low_m, high_m, low, high)
-        high[high > self._up_max + 2 * self._slack] = np.inf
-        low[low < -self._up_max - 2 * self._slack] = -np.inf
+        open_past_slabs(*slabs, eye_m, yaw, view.edges, _MIN_SLAB_M, self._slack, low_m, high_m, low, high)
+        high[high > view.up_max + 2 * self._slack] = np.inf
+        low[low < -view.up_max - 2 * self._slack] = -np.inf
         return StripWalls(wall_m, low, high)
 
     def _walls(self, eye_z_m: float) -> UprightBoxes:
-        """Returns the walls for a height of the eye; they are kept, since the height changes only with the storey."""
-        if self._walls_at[0] != eye_z_m:
+        """Returns the walls for a height of the eye; they are kept while it changes by less than their slack."""
+        if not abs(self._walls_at[0] - eye_z_m) < _SAME_EYE_M:
             self._walls_at = (eye_z_m, self._boxes.tall(eye_z_m))
         return self._walls_at[1]
 

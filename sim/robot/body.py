@@ -26,11 +26,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.geometry.pose import BodyPose
 from sim.core.interface import wrap_angle
 from sim.gl import mujoco
 from sim.houses.labels import COVER_MASK, ROBOT_PREFIX, geoms_of
 from sim.robot.config import RobotConfig
 
+SIDES = ("left", "right")
 PREFIX = ROBOT_PREFIX
 """Prefix of every name of the robot in a compiled world."""
 ROBOT_GROUP = 5
@@ -65,6 +67,8 @@ def built_in_robot_spec(config: RobotConfig) -> mujoco.MjSpec:
         _add_caster(base, name, end, config)
     _add_hull(base, config)
     add_touch_sensor(spec, "touch", mujoco.mjtObj.mjOBJ_BODY, "hull")
+    for name in SIDES:
+        add_touch_sensor(spec, f"tread_{name}", mujoco.mjtObj.mjOBJ_GEOM, f"{name}_tyre")
     return spec
 
 
@@ -195,7 +199,10 @@ def _add_hull(base: mujoco.MjsBody, config: RobotConfig) -> None:
 
 
 def add_touch_sensor(spec: mujoco.MjSpec, name: str, part_type: mujoco.mjtObj, part: str) -> None:
-    """Adds a sensor of all contacts of a body or geom. `Body` reads all sensors with the name prefix `touch`."""
+    """Adds a sensor of all contacts of a body or geom.
+
+    `Body` reads all sensors with the name prefix `touch`, and those of the tyres, `tread_left` and `tread_right`.
+    """
     fields = (1 << int(mujoco.mjtConDataField.mjCONDATA_FOUND)) | (1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE))
     spec.add_sensor(
         name=name,
@@ -215,6 +222,7 @@ class Body:
     qvel: NDArray[np.float64]  # (4,) or (6,): a free joint's angular part is in the body's frame
     ctrl: NDArray[np.float64]  # (2,) left and right wheel, commanded rad/s
     touches: NDArray[np.float64]  # (parts, 4) for each touch sensor, as `touch` has it for the sum
+    treads: NDArray[np.float64]  # (2, 4) the same of the left and of the right tyre
     hull_geoms: tuple[int, ...]
     wheel_qpos: tuple[NDArray[np.float64], NDArray[np.float64]]  # (1,) angle of the left and the right wheel, rad
     wheel_qvel: tuple[NDArray[np.float64], NDArray[np.float64]]  # (1,) the same, rad/s
@@ -231,11 +239,12 @@ class Body:
         joint = model.body_jntadr[base]
         planar = model.body_jntnum[base] == 4
         q, v = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
-        motors = [model.actuator(f"{PREFIX}{name}_motor").id for name in ("left", "right")]
+        motors = [model.actuator(f"{PREFIX}{name}_motor").id for name in SIDES]
         wheels = [int(model.actuator_trnid[motor, 0]) for motor in motors]
         places = [(int(model.jnt_qposadr[wheel]), int(model.jnt_dofadr[wheel])) for wheel in wheels]
         sensors = [i for i in range(model.nsensor) if model.sensor(i).name.startswith(PREFIX + "touch")]
         touch = int(model.sensor_adr[sensors[0]])  # the sensors are consecutive
+        tread = int(model.sensor(f"{PREFIX}tread_left").adr[0])
         geoms = np.flatnonzero(geoms_of(model, PREFIX)).tolist()
         hull = tuple(geom for geom in geoms if model.geom_contype[geom] == HULL_MASK[0])
         return Body(
@@ -244,6 +253,7 @@ class Body:
             qvel=data.qvel[v : v + (4 if planar else 6)],
             ctrl=data.ctrl[motors[0] : motors[0] + 2],
             touches=data.sensordata[touch : touch + 4 * len(sensors)].reshape(-1, 4),
+            treads=data.sensordata[tread : tread + 8].reshape(2, 4),
             hull_geoms=hull,
             tyre_geoms=tuple(geom for geom in geoms if model.geom(geom).name.endswith("_tyre")),
             wheel_qpos=(data.qpos[places[0][0] :][:1], data.qpos[places[1][0] :][:1]),
@@ -274,6 +284,25 @@ class Body:
             vx, vy, _, _, _, rate = self.qvel.tolist()
             yaw = _yaw_of(quat)
         return x, y, yaw, math.cos(yaw) * vx + math.sin(yaw) * vy, rate
+
+    def pose_above(self, floor_z_m: float) -> BodyPose:
+        """Returns the pose of the robot frame on a floor of this height, as it is now."""
+        x, y, z = self.qpos[:3].tolist()
+        if self.planar:
+            return BodyPose(x, y, wrap_angle(float(self.qpos[3])), floor_z_m, z - floor_z_m)
+        qw, qx, qy, qz = self.qpos[3:7].tolist()
+        pitch = math.asin(max(-1.0, min(1.0, 2.0 * (qw * qy - qx * qz))))
+        roll = math.atan2(2.0 * (qw * qx + qy * qz), 1.0 - 2.0 * (qx * qx + qy * qy))
+        return BodyPose(x, y, _yaw_of([qw, qx, qy, qz]), floor_z_m, z - floor_z_m, pitch, roll)
+
+    def ahead_and_up(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """Returns the body's x and z axes in the world."""
+        if self.planar:
+            yaw = float(self.qpos[3])
+            return (math.cos(yaw), math.sin(yaw), 0.0), (0.0, 0.0, 1.0)
+        w, x, y, z = self.qpos[3:7].tolist()
+        ahead = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)
+        return ahead, (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y))
 
     @property
     def yaw_rad(self) -> float:

@@ -1,4 +1,4 @@
-"""Floor friction, and errors of motors, encoders and gyro, that can differ between episodes in one world."""
+"""Floor friction, and errors of motors, encoders and gyro, of one episode: constants, and what varies in it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ import math
 from dataclasses import dataclass
 
 from sim.core.errors import ConfigError
+
+MAX_STD = 0.3
+"""Largest standard deviation of an action's errors: three of them leave every scale positive."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,6 +29,18 @@ class Conditions:
     """Measured by true turn rate."""
     gyro_bias_rad_s: float = 0.0
     """Turn rate that the gyro measures at rest."""
+    stop_std_m: float = 0.0
+    """Standard deviation, from action to action, of the distance by which a forward stops too early or too late."""
+    stop_std_rad: float = 0.0
+    """The same of the heading that an action keeps or reaches; both errors are known to the odometry."""
+    wheel_std: float = 0.0
+    """The same of the relative error of the measured distance of both wheels, which the odometry does not know."""
+    gyro_std: float = 0.0
+    """The same of the relative error of the measured angle."""
+    motor_std: float = 0.0
+    """The same of the relative error of the speed of each motor."""
+    seed: int = 0
+    """The errors of the actions are drawn from it (`sim.robot.variation`)."""
 
     def __post_init__(self) -> None:
         for name, value in (
@@ -40,6 +55,9 @@ class Conditions:
                 raise ConfigError(f"Conditions.{name} must be finite and > 0, got {value}.")
         if not (math.isfinite(self.motor_latency_s) and self.motor_latency_s >= 0.0):
             raise ConfigError(f"Conditions.motor_latency_s must be finite and >= 0, got {self.motor_latency_s}.")
+        for name in ("stop_std_m", "stop_std_rad", "wheel_std", "gyro_std", "motor_std"):
+            if not 0.0 <= getattr(self, name) <= MAX_STD:
+                raise ConfigError(f"Conditions.{name} must lie in [0, {MAX_STD}], got {getattr(self, name)}.")
         if not all(map(math.isfinite, (*self.motor_bias_rad_s, self.gyro_bias_rad_s))):
             raise ConfigError(
                 "Conditions.motor_bias_rad_s and gyro_bias_rad_s must be finite, got "

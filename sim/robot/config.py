@@ -12,9 +12,9 @@ from typing import Literal, get_args
 
 from sim.core.interface import CLIMB_M, FORWARD_M, TURN_RAD, ConfigError, RobotModel
 
-PHYSICS_VERSION = 2
+PHYSICS_VERSION = 3
 """Results of different versions of the physics are not comparable, and runs are not resumed across them. 1: feedback of
-the true pose, wheels that collide with floors only."""
+the true pose, wheels that collide with floors only. 2: a level camera, a limit of the lean while pushing."""
 Base = Literal["planar", "free"]
 """`planar`: three slides and a vertical hinge keep the body upright; `free`: only its wheels and casters carry it."""
 
@@ -142,10 +142,6 @@ class DriveConfig:
     """... and the body has moved by less than this ..."""
     blocked_rad: float = math.radians(0.7)
     """... or has turned by less than this."""
-    blocked_tilt_rad: float = math.radians(2.3)
-    """A motion is also blocked when the body leans this much (a turn: this much more than at its start) ..."""
-    tipping_force_n: float = 5.0
-    """... and its hull pushes sideways more than this: it is about to tip over at a table top."""
     pushing_m_s: float = 0.05
     """Motors push while their commanded speed is at least this ..."""
     pushing_rad_s: float = 0.15

@@ -13,6 +13,8 @@ from sim.robot.body import Body
 
 SIDEWAYS = 0.3
 """Horizontal part of a unit normal: a wheel that stands on an edge lower than 5 % of its radius pushes less."""
+SLOPING = 0.1
+"""The same for a slope of 6 degrees, which stops a robot that nothing else has stopped."""
 
 
 @dataclass(frozen=True)
@@ -65,16 +67,16 @@ class ContactLog:
         depths = -contacts.dist[np.isin(contacts.geom, self._tyres).any(axis=1)]
         return float(depths.mean()) if len(depths) else 0.0
 
-    def sample(self, tick: int, *, all_parts: bool = False) -> None:
+    def sample(self, tick: int, *, sideways: float | None = None) -> None:
         """Adds the current contacts of the hull at the end of one tick of the action.
 
         Args:
             tick: number of the tick.
-            all_parts: True: also those of wheels and casters that push sideways more than `SIDEWAYS`, since they are
-                not those with the ground below.
+            sideways: also those of wheels and casters with normals whose horizontal part is at least this, since they
+                are not those with the ground below; None: only those of the hull.
         """
         contacts = self._data.contact
-        parts = self._all_parts if all_parts else self._hull
+        parts = self._hull if sideways is None else self._all_parts
         for index, (first, second) in enumerate(contacts.geom.tolist()):
             if first in parts:
                 part, other, sign = first, second, -1.0
@@ -82,7 +84,7 @@ class ContactLog:
                 part, other, sign = second, first, 1.0
             else:
                 continue
-            if part not in self._hull and math.hypot(*contacts.frame[index, :2].tolist()) < SIDEWAYS:
+            if part not in self._hull and math.hypot(*contacts.frame[index, :2].tolist()) < (sideways or 0.0):
                 continue
             mujoco.mj_contactForce(self._model, self._data, index, self._wrench)
             # The rows of `frame` are the axes of the contact; the force acts on the second geom.
@@ -104,15 +106,27 @@ class ContactLog:
         return tuple(self._contact(geom, touch, tick_s, stopped=False) for geom, touch in self._touches.items())
 
     def contacts_of_aborted(
-        self, tick_s: float, since_tick: int, direction: tuple[float, float]
+        self, tick_s: float, tick: int, since_tick: int, direction: tuple[float, float]
     ) -> tuple[Contact, ...]:
-        """Returns the contacts of an aborted motion.
+        """Returns the contacts of a motion that is aborted now, those of wheels and casters included.
 
         Args:
             tick_s: duration of one sample.
+            tick: number of the present tick.
             since_tick: contacts of this tick or later have `stopped` the motion, unless they pushed along with it.
             direction: direction of the motion in plan; (0, 0) for a turn, which any contact may have stopped.
         """
+        for sideways in (SIDEWAYS, SLOPING):
+            self.sample(tick, sideways=sideways)
+            contacts = self._contacts_of_aborted(tick_s, since_tick, direction)
+            if any(contact.stopped for contact in contacts):
+                break
+        return contacts
+
+    def _contacts_of_aborted(
+        self, tick_s: float, since_tick: int, direction: tuple[float, float]
+    ) -> tuple[Contact, ...]:
+        """Returns the contacts so far; see `contacts_of_aborted`."""
         turning = direction == (0.0, 0.0)
         contacts = []
         for geom, touch in self._touches.items():

@@ -23,7 +23,11 @@ from sim.robot.contacts import Contact, ContactLog
 from sim.robot.motors import Motors
 from sim.robot.odometry import Odometry
 from sim.robot.profile import Trapezoid
+from sim.robot.variation import ActionErrors, Variation
 
+HELD_SHARE = 0.8
+"""A forward that an object opposes, and that covers less than this share of its distance, is blocked also if the wheels
+have covered it: they slip where the body leans back and unloads them."""
 Ended = Literal["reached", "blocked", "timeout"]
 
 
@@ -74,13 +78,19 @@ class Driver:
         self._turns = 0
         self._ticks = 0
         self._touched_until = 0
-        self._tipping_rad = self._drive.blocked_tilt_rad
+        self._variation, self._errors = Variation(), ActionErrors()
 
     def reset(self, yaw_rad: float, conditions: Conditions = NOMINAL) -> None:
         """Starts a new episode: the headings are `yaw_rad` plus multiples of a turn."""
         self._motors.reset(conditions)
         self._odometry.reset(yaw_rad, conditions, self._log.compression_m())
+        self._variation.reset(conditions)
+        self._errors = ActionErrors()
         self._start_yaw, self._turns = yaw_rad, 0
+
+    def brake(self) -> None:
+        """Holds the wheels."""
+        self._motors.stop()
 
     def run(self, action: Action) -> Motion:
         """Performs one action, from rest to rest."""
@@ -88,11 +98,17 @@ class Driver:
             return Motion(action, 0.0, 0.0, 0.0, "reached", ())
         self._log.clear()
         self._ticks = self._touched_until = 0
-        self._tipping_rad = self._tipping_limit(turning=action != Action.MOVE_FORWARD)
+        self._errors = self._variation.draw()
+        self._motors.vary(self._errors)
+        self._odometry.vary(self._errors)
         x0, y0, yaw0, _, _ = self._body.state()
+        since: int | None = None
         if action == Action.MOVE_FORWARD:
+            moved_m = self._true_progress()
             ended = self._forward()
             direction = math.cos(yaw0), math.sin(yaw0)
+            if ended != "blocked" and self._touched_until and moved_m() < HELD_SHARE * self._drive.forward_m:
+                ended, since = "blocked", 0  # it was held while its wheels slipped
         else:
             ended = self._turn(1 if action == Action.TURN_LEFT else -1)
             direction = 0.0, 0.0
@@ -101,8 +117,8 @@ class Driver:
             if self._touching:
                 self._realign()
         else:
-            self._log.sample(self._ticks, all_parts=True)
-            contacts = self._log.contacts_of_aborted(self._tick_s, self._ticks - self._blocked_ticks, direction)
+            since = self._ticks - self._blocked_ticks if since is None else since
+            contacts = self._log.contacts_of_aborted(self._tick_s, self._ticks, since, direction)
             if action == Action.MOVE_FORWARD:
                 self._back_off()
             self._realign()
@@ -119,13 +135,13 @@ class Driver:
 
     @property
     def _reference(self) -> float:
-        return self._start_yaw + self._turns * self._drive.turn_rad
+        return self._start_yaw + self._turns * self._drive.turn_rad + self._errors.stop_rad
 
     def _forward(self) -> Ended:
         """Drives ahead along the heading reference."""
         drive, odometry = self._drive, self._odometry
         # A motion ends when it comes within its tolerance from below.
-        aim_m = drive.forward_m + 0.5 * drive.position_tolerance_m
+        aim_m = max(0.0, drive.forward_m + self._errors.stop_m) + 0.5 * drive.position_tolerance_m
         profile = Trapezoid(aim_m, drive.speed_m_s, drive.acceleration_m_s2)
         blocking, moved_m = Blocking(drive, turning=False), self._true_progress()
         remaining_m = self._remaining(aim_m)
@@ -137,7 +153,7 @@ class Driver:
                 return "reached"
             speed = profile.speed(time_s + drive.lookahead_s) + drive.position_gain_1_s * lag
             self._command(speed, drive.heading_gain_1_s * heading_error)
-            if blocking.add(speed, moved_m()) or self._is_tipping():
+            if blocking.add(speed, moved_m()):
                 return "blocked"
         return "reached" if abs(remaining_m()) <= drive.touching_tolerance_m else "timeout"
 
@@ -161,28 +177,12 @@ class Driver:
             self._command(drive.position_gain_1_s * behind_m(), rate)
             turned += wrap_angle(self._body.yaw_rad - true_yaw)
             true_yaw = self._body.yaw_rad
-            if blocking.add(sign * rate, sign * turned) or self._is_tipping():
+            if blocking.add(sign * rate, sign * turned):
                 ended = "blocked"
                 break
         if abs(wrap_angle(self._reference - odometry.yaw_rad)) > 0.5 * drive.turn_rad:
             self._turns -= side
         return ended
-
-    def _tipping_limit(self, *, turning: bool) -> float:
-        """Returns the lean from which a motion that starts now is about to tip the body over.
-
-        A body that came to rest against the edge of a table leans already. It must be able to leave: a turn pushes no
-        further, and a forward may lead along the edge, but must not add to the lean again and again.
-        """
-        leans, limit = self._body.tilt_rad, self._drive.blocked_tilt_rad
-        return leans + limit if turning else min(max(limit, 1.2 * leans), 2.0 * limit)
-
-    def _is_tipping(self) -> bool:
-        """Returns whether the body leans because of an object against which the hull pushes."""
-        if not self._touching or self._body.tilt_rad <= self._tipping_rad:
-            return False
-        _, x_n, y_n, _ = self._body.touch.tolist()
-        return math.hypot(x_n, y_n) > self._drive.tipping_force_n
 
     def _back_off(self) -> None:
         """Moves back by a few millimetres from the obstacle that blocked the motion."""

@@ -13,6 +13,7 @@ from sim.robot.body import (
     HULL_MASK,
     HULL_PRIORITY,
     ROBOT_GROUP,
+    SIDES,
     add_joints,
     add_motor,
     add_touch_sensor,
@@ -58,6 +59,8 @@ def _third_party_robot_spec(config: RobotConfig, file: RobotFile) -> mujoco.MjSp
         motor.gear[0] = wheel.sign
     for number, part in enumerate(hull):
         add_touch_sensor(spec, f"touch_{number}", mujoco.mjtObj.mjOBJ_GEOM, FILE_PREFIX + part)
+    for name in SIDES:
+        add_touch_sensor(spec, f"tread_{name}", mujoco.mjtObj.mjOBJ_GEOM, f"{FILE_PREFIX}{name}_tyre")
     return spec
 
 

@@ -24,6 +24,7 @@ from sim.robot.contacts import ContactLog
 from sim.robot.drive import Motion
 from sim.robot.motors import Motors
 from sim.robot.odometry import Odometry
+from sim.robot.variation import Variation
 
 FREE_SHARE = 0.5
 """A robot that was blocked is free again when it moves or turns by this share of the command."""
@@ -53,7 +54,7 @@ class VelocityDrive:
         self._radius_m, self._half_track_m = config.wheels.radius_m, config.wheels.half_track_m
         self._reach_rad_s = config.wheels.max_torque_nm / config.wheels.motor_gain_nm_s
         self._touch_ticks = math.ceil(self._drive.touch_memory_s / self._tick_s)
-        self._motors, self._odometry = Motors(config, model, body), odometry
+        self._motors, self._odometry, self._variation = Motors(config, model, body), odometry, Variation()
         self._moves: deque[float] = deque(maxlen=round(self._drive.blocked_s / self._tick_s))
         """Distance (m) or angle (rad), in the direction of the command, of the last ticks in which it pushed."""
         self.reset(NOMINAL)
@@ -61,6 +62,7 @@ class VelocityDrive:
     def reset(self, conditions: Conditions) -> None:
         """Starts a new episode, at rest."""
         self._motors.reset(conditions)
+        self._variation.reset(conditions)
         self._speed_m_s = self._rate_rad_s = 0.0
         self._blocked, self._last = False, Velocity(0.0, 0.0)
         self._moves.clear()
@@ -68,6 +70,9 @@ class VelocityDrive:
     def run(self, command: Velocity, period_s: float) -> Motion:
         """Holds a command for a period, which is a whole number of ticks of the controller."""
         self._log.clear()
+        errors = self._variation.draw(period_s)
+        self._motors.vary(errors)
+        self._odometry.vary(errors)
         if self._push_of(command) != self._push_of(self._last):  # nothing ahead blocks a robot that drives back
             self._moves.clear()
         self._last = command
@@ -84,10 +89,9 @@ class VelocityDrive:
         x, y, yaw, _, _ = self._body.state()
         contacts = self._log.contacts(self._tick_s)
         if begins:
-            self._log.sample(ticks, all_parts=True)
             side = math.copysign(1.0, command.speed_m_s) if self._pushes_forward(command) else 0.0
             direction = side * math.cos(yaw), side * math.sin(yaw)
-            contacts = self._log.contacts_of_aborted(self._tick_s, ticks - self._touch_ticks, direction)
+            contacts = self._log.contacts_of_aborted(self._tick_s, ticks, ticks - self._touch_ticks, direction)
             self._blocked = self._blocked and any(contact.stopped for contact in contacts)  # else wheels that spin
         return Motion(
             action=self._nearest_action(command),

@@ -1,7 +1,8 @@
-"""Noise of the drive: floors, motors, encoders and gyros that differ from episode to episode.
+"""Noise of the drive: floors, motors, encoders and gyros that differ from episode to episode and from action to action.
 
 The motions follow from physics: errors of motors show where the controller cannot correct them in time, errors of
-encoders and gyro in every motion, since the controller knows nothing else.
+encoders and gyro in every motion, since the controller knows nothing else. An episode has the errors of one robot;
+those of its actions vary around them (`sim.robot.variation`).
 """
 
 from __future__ import annotations
@@ -12,9 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.core.errors import ConfigError
-from sim.robot.conditions import NOMINAL, Conditions
+from sim.robot.conditions import MAX_STD, NOMINAL, Conditions
 
 _BOUNDS = (0.01, 10.0)
+VARIATIONS = ("stop_std_m", "stop_std_rad", "wheel_std", "gyro_std", "motor_std")
+"""Fields of `Conditions` that vary from action to action, copied from those of the same names."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +40,16 @@ class ActuationNoise:
     """Lowest and highest factor on the measured angle, sampled uniformly."""
     gyro_bias_rad_s: float = 0.0
     """Largest turn rate that the gyro measures at rest, sampled uniformly with either sign."""
+    stop_std_m: float = 0.0
+    """Standard deviation, from action to action, of where a forward stops by its own odometry."""
+    stop_std_rad: float = 0.0
+    """The same of the heading that an action keeps or reaches."""
+    wheel_std: float = 0.0
+    """The same of the measured by the true distance."""
+    gyro_std: float = 0.0
+    """The same of the measured by the true angle."""
+    motor_std: float = 0.0
+    """The same of the speed of each motor by its command."""
 
     def __post_init__(self) -> None:
         for name, value in (
@@ -55,6 +68,7 @@ class ActuationNoise:
             ("motor_latency_s", self.motor_latency_s, 0.2),
             ("encoder_mismatch", self.encoder_mismatch, 0.5),
             ("gyro_bias_rad_s", self.gyro_bias_rad_s, 1.0),
+            *((name, getattr(self, name), MAX_STD) for name in VARIATIONS),
         ):
             if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 <= value <= most:
                 raise ConfigError(f"ActuationNoise.{name} must be a number in [0, {most:g}], got {value!r}.")
@@ -77,6 +91,8 @@ class ActuationNoise:
             encoder_scale=(encoder * (1.0 - mismatch), encoder * (1.0 + mismatch)),
             gyro_scale=rng.uniform(*self.gyro_scale),
             gyro_bias_rad_s=self.gyro_bias_rad_s * rng.uniform(-1.0, 1.0),
+            seed=int(rng.integers(2**32)),
+            **{name: getattr(self, name) for name in VARIATIONS},
         )
 
 

@@ -68,7 +68,9 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
             ),
             rgb=RgbNoise(gain_std=0.02, shot_electrons_1=1 / 5000, read_std=1.0),
             pose=PoseNoise(from_odometry=True),
-            # About half of the errors of a LoCoBot with the ILQR controller (PyRobot): 14 mm a forward, 1.3 deg a turn.
+            # About half of the errors of a LoCoBot with the ILQR controller (PyRobot, `sim.robot.variation`): 14 mm a
+            # forward, 1.3 deg a turn, of which 6 mm and 0.7 deg vary from action to action. Half of this variance is
+            # in where the controller stops, which the odometry knows, and half in wheels and gyro, which it does not.
             actuation=ActuationNoise(
                 floor_friction_scale=(0.3, 1.1),
                 motor_gain_scale=(0.9, 1.1),
@@ -78,6 +80,11 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 encoder_mismatch=0.01,
                 gyro_scale=(0.97, 1.03),
                 gyro_bias_rad_s=math.radians(0.01),
+                stop_std_m=0.002,
+                stop_std_rad=0.003,
+                wheel_std=0.008,
+                gyro_std=0.008,
+                motor_std=0.02,
             ),
             scan=ScanNoise(std_share=0.01),
             # Noise densities of a Bosch BMI055, the IMU of a RealSense D435i, at 100 Hz: 0.014 deg/s and 150 ug per
@@ -118,6 +125,11 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 encoder_mismatch=0.03,
                 gyro_scale=(0.92, 1.08),
                 gyro_bias_rad_s=math.radians(0.03),
+                stop_std_m=0.004,
+                stop_std_rad=0.006,
+                wheel_std=0.016,
+                gyro_std=0.016,
+                motor_std=0.05,
             ),
             scan=ScanNoise(std_m=0.015, std_share=0.025, dropout=0.02),
             imu=ImuNoise(

@@ -17,7 +17,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from sim.core.geometry.pose import Pose
+from sim.core.geometry.pose import BodyPose, Pose
 from sim.core.interface import CONTEXT_FIELDS, CameraModel, ConfigError
 from sim.gl import mujoco
 from sim.robot.drive import Motion
@@ -34,22 +34,24 @@ class SensorContext:
     | goal | `reads` | category that the episode asks for |
     | collided | `reads` | whether a contact stopped the last action |
     | odometry | `reads` | pose by the robot's own odometry, relative to the start |
-    | pose | `reads`, truth | pose of the robot in the world |
+    | pose | `reads`, truth | pose of the robot's body in the world, with its lean |
     | start | `reads`, truth | pose of the robot in the world when the episode started |
     | motion | `reads`, truth | the last action as it was carried out, with its contacts; None before the first one |
     | model | `reads`, truth | the compiled world; read only |
     | data | `reads`, truth | state of the world; read only |
+    | glass | `reads`, truth | (ngeom,) True for panes of windows; read only |
     """
 
     images: Mapping[str, NDArray]
     goal: str
     collided: bool
     odometry: Pose
-    pose: Pose
+    pose: BodyPose
     start: Pose
     motion: Motion | None
     model: mujoco.MjModel
     data: mujoco.MjData
+    glass: NDArray[np.bool_]
 
     def __init__(self, sensor: Sensor, images: Mapping[str, NDArray], **fields: Any) -> None:
         """Keeps the declared part of the state.

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sim.core.geometry.convex import ConvexPolygon
 from sim.core.geometry.grid import GridFrame
-from sim.core.geometry.pose import Pose
+from sim.core.geometry.pose import Pose, as_body_pose
 from sim.core.interface import MPCAT40_ID, CameraModel
 
 CELL_M = 0.1
@@ -42,8 +42,7 @@ class SeenFloor:
         self._waiting = floor.copy()  # (rows, cols) True: floor that was not seen yet
         self._count = 0
         self._side = math.tan(0.5 * camera.hfov_rad)
-        below_m = camera.height_m / math.tan(0.5 * camera.vfov_rad)
-        self._near_m, self._far_m = max(camera.min_depth_m, below_m), camera.max_depth_m
+        self._rise = math.tan(0.5 * camera.vfov_rad)
 
     @property
     def area_m2(self) -> float:
@@ -52,36 +51,44 @@ class SeenFloor:
 
     def look(self, semantic: NDArray[np.uint8], camera_pose: Pose) -> None:
         """Counts the cells that one frame of true segmentation (h, w) shows for the first time."""
-        if abs(camera_pose.floor_z_m - self._floor_z_m) > _SAME_FLOOR_M or self._near_m >= self._far_m:
+        if abs(camera_pose.floor_z_m - self._floor_z_m) > _SAME_FLOOR_M:
             return
-        window = self.frame.index_of(self._bounds(camera_pose))
+        body, camera = as_body_pose(camera_pose), self._camera
+        eye_m = body.point(0.0, 0.0, camera.height_m)
+        window = self.frame.index_of(self._bounds(eye_m, body.yaw_rad))
         waiting = self._waiting[window]
         x, y = self.frame.axes(window)
-        c, s = math.cos(camera_pose.yaw_rad), math.sin(camera_pose.yaw_rad)
-        dx, dy = (x - camera_pose.x_m)[None, :], (y - camera_pose.y_m)[:, None]
-        ahead, sideways = c * dx + s * dy, c * dy - s * dx
-        inside = waiting & (ahead > self._near_m) & (ahead <= self._far_m) & (np.abs(sideways) < self._side * ahead)
+        to_x_m, to_y_m, to_z_m = (x - eye_m[0])[None, :], (y - eye_m[1])[:, None], self._floor_z_m - eye_m[2]
+        ahead, left, up = (axis[0] * to_x_m + axis[1] * to_y_m + axis[2] * to_z_m for axis in body.axes)
+        inside = waiting & (ahead > camera.min_depth_m) & (ahead <= camera.max_depth_m)
+        inside &= (np.abs(left) < self._side * ahead) & (np.abs(up) < self._rise * ahead)
         rows, cols = np.nonzero(inside)
-        shown = semantic[self._pixels(ahead[rows, cols], sideways[rows, cols], semantic.shape)] == _FLOOR
+        pixels = self._pixels(ahead[rows, cols], left[rows, cols], up[rows, cols], semantic.shape)
+        shown = semantic[pixels] == _FLOOR
         waiting[rows[shown], cols[shown]] = False
         self.cells[window][rows[shown], cols[shown]] = True
         self._count += int(np.count_nonzero(shown))
 
-    def _bounds(self, pose: Pose) -> tuple[float, float, float, float]:
-        """Returns the smallest and largest x and y of the floor in the camera's range."""
-        c, s = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
-        corners = [(d, side * d * self._side) for d in (self._near_m, self._far_m) for side in (-1.0, 1.0)]
-        x = [pose.x_m + c * ahead - s * sideways for ahead, sideways in corners]
-        y = [pose.y_m + s * ahead + c * sideways for ahead, sideways in corners]
+    def _bounds(self, eye_m: NDArray[np.float64], yaw_rad: float) -> tuple[float, float, float, float]:
+        """Returns the smallest and largest x and y of the floor in the camera's range; a leaning one sees no farther
+        than a level one by its height."""
+        c, s, far_m = math.cos(yaw_rad), math.sin(yaw_rad), self._camera.max_depth_m + self._camera.height_m
+        corners = [(0.0, 0.0), *((far_m, side * far_m * self._side) for side in (-1.0, 1.0))]
+        x = [eye_m[0] + c * ahead - s * sideways for ahead, sideways in corners]
+        y = [eye_m[1] + s * ahead + c * sideways for ahead, sideways in corners]
         return min(x), min(y), max(x), max(y)
 
     def _pixels(
-        self, ahead_m: NDArray[np.float64], left_m: NDArray[np.float64], shape: tuple[int, ...]
+        self,
+        ahead_m: NDArray[np.float64],
+        left_m: NDArray[np.float64],
+        up_m: NDArray[np.float64],
+        shape: tuple[int, ...],
     ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-        """Returns the rows and columns of the pixels that show points of the floor, in an image of any resolution."""
+        """Returns the rows and columns of the pixels that show some points, in an image of any resolution."""
         height, width = shape
         focal_px = self._camera.focal_px * width / self._camera.width_px
-        rows = (0.5 * height + focal_px * self._camera.height_m / ahead_m).astype(np.intp)
+        rows = (0.5 * height - focal_px * up_m / ahead_m).astype(np.intp)
         cols = (0.5 * width - focal_px * left_m / ahead_m).astype(np.intp)
         return np.minimum(rows, height - 1), np.minimum(cols, width - 1)
 

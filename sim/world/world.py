@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from sim.core.errors import EpisodeError, PhysicsError
-from sim.core.geometry.pose import Pose
-from sim.core.interface import Action, SuccessRule, wrap_angle
+from sim.core.geometry.pose import BodyPose, Pose
+from sim.core.interface import Action, SuccessRule
 from sim.gl import mujoco
+from sim.houses.glass import clear_panes, picture_panes
 from sim.houses.house import House
 from sim.houses.labels import cover_geoms
 from sim.robot.body import Body
@@ -26,6 +27,8 @@ from sim.world.support import FloorSupport
 
 _PLACE_ATTEMPTS = 3
 """Number of times that `reset` lifts the wheels out of a floor that they overlap; each rug on a rug needs one more."""
+_UPRIGHT_RAD = math.radians(2.3)
+"""A body that leans less than this stands on one floor."""
 _FLOOR_CONTACT_M = 0.0005
 """Wheels that overlap the floor by at most this stand on it."""
 
@@ -50,9 +53,11 @@ class World:
         self.rule = rule or SuccessRule()
         self.model, self.labels, self.rooms = compile_world(house, self.config)
         self.data = mujoco.MjData(self.model)
+        self.glass = picture_panes(self.model, self.labels) | clear_panes(self.model, self.labels)
+        """(ngeom,) True for panes of windows."""
         self._body = Body.find(self.model, self.data)
         log = ContactLog(self.model, self.data, self.labels, self._body)
-        self._odometry = Odometry(self.config, self._body)
+        self._odometry = Odometry(self.config, self.model, self.data, self._body)
         self._driver = Driver(self.config, self.model, self.data, self._body, self._odometry, log)
         self._velocity_drive = VelocityDrive(self.config, self.model, self.data, self._body, self._odometry, log)
         self._levels_m = floor_levels(self.model, self.labels)
@@ -65,9 +70,14 @@ class World:
     @property
     def pose(self) -> Pose:
         """The robot's true pose; its `floor_z_m` is the height of the level of floors that the robot is on."""
-        x, y, yaw, _, _ = self._body.state()
+        body = self.body_pose
+        return Pose(body.x_m, body.y_m, body.yaw_rad, body.floor_z_m)
+
+    @property
+    def body_pose(self) -> BodyPose:
+        """The same, with the lean of the body and the height of the robot frame above that floor."""
         z = self._body.z_m
-        return Pose(x, y, wrap_angle(yaw), min(self._levels_m, key=lambda floor: abs(floor - z)))
+        return self._body.pose_above(min(self._levels_m, key=lambda floor: abs(floor - z)))
 
     @property
     def odometry(self) -> Pose:
@@ -75,13 +85,13 @@ class World:
         return self._odometry.since_start
 
     @property
-    def camera_pose(self) -> Pose:
-        """The robot's pose, moved ahead to the point on the floor below the camera."""
-        pose, ahead_m = self.pose, self.config.camera_forward_m
+    def camera_pose(self) -> BodyPose:
+        """The body's pose, moved ahead along its own axis to the point that is below an upright robot's camera."""
+        pose, ahead_m = self.body_pose, self.config.camera_forward_m
         if ahead_m == 0.0:
             return pose
-        x_m, y_m = pose.x_m + ahead_m * math.cos(pose.yaw_rad), pose.y_m + ahead_m * math.sin(pose.yaw_rad)
-        return Pose(x_m, y_m, pose.yaw_rad, pose.floor_z_m)
+        x_m, y_m, z_m = pose.point(ahead_m, 0.0, 0.0).tolist()
+        return replace(pose, x_m=x_m, y_m=y_m, rise_m=z_m - pose.floor_z_m)
 
     def reset(self, start: Pose, conditions: Conditions = NOMINAL) -> None:
         """Restores the state of the house's file, applies `conditions`, and puts the robot at rest at `start`.
@@ -91,6 +101,7 @@ class World:
         """
         mujoco.mj_resetData(self.model, self.data)
         self.model.geom_friction[self._ground, 0] = self._ground_friction * conditions.floor_friction_scale
+        self._driver.brake()
         self._place_on_floor(start)
         self._require_no_overlap(start)
         physics = self.config.physics
@@ -133,7 +144,7 @@ class World:
 
     def _note_floor(self) -> None:
         """Notes the height of an upright body: that of the floor that carries it."""
-        if self._body.tilt_rad <= self.config.drive.blocked_tilt_rad:
+        if self._body.tilt_rad <= _UPRIGHT_RAD:
             self._stood_at_m = self._body.z_m
 
     def _place_on_floor(self, start: Pose) -> None:

@@ -126,11 +126,17 @@ class Mapper:
         self._occupancy = Occupancy(camera, config.occupancy, low_m)
         self._drops = Drops(camera, self._obstacle_rays, config.drops)
 
-    def frame(self, navmap: NavMap, pose: Pose) -> Frame:
-        """Returns the frame that the camera takes from a pose of the robot, for the methods below."""
-        x_m, y_m = pose.ahead(self.camera_forward_m)
+    def frame(self, navmap: NavMap, pose: Pose, eye: Pose | None = None) -> Frame:
+        """Returns the frame that the camera takes from a pose of the robot, for the methods below.
+
+        Args:
+            navmap: the map.
+            pose: of the robot.
+            eye: pose of the camera; None: that of an upright robot.
+        """
+        eye = eye or Pose(*pose.ahead(self.camera_forward_m), pose.yaw_rad)
         cells = sight_window_cells(self.camera, navmap.frame.cell_m)
-        return Frame(navmap, pose, Pose(x_m, y_m, pose.yaw_rad), navmap.frame.window_at(x_m, y_m, cells))
+        return Frame(navmap, pose, eye, navmap.frame.window_at(eye.x_m, eye.y_m, cells))
 
     def add_depth(self, frame: Frame, depth: Float32[np.ndarray, "height_px width_px"]) -> bool:
         """Enters one depth image in metres into the obstacle layers.

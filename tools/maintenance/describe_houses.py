@@ -68,8 +68,8 @@ folder.
 
 | split | purpose | episodes of a house | distance to the goal, m |
 |---|---|--:|---|
-| `val` | development and tuning | 34 | 2 to 30 |
-| `test` | a final measurement: nothing is chosen by its results | 34 | 2 to 30 |
+| `val` | development and tuning: homes of 60 to 250 m2, a third of them above 120 | 34 | 4 to 30 |
+| `test` | a final measurement: nothing is chosen by its results; sizes as in `val` | 34 | 4 to 30 |
 | `large` | houses of more than 300 m2, five of them with two storeys | 30 | 12 to 60 |
 | `hazards` | obstacles that depth misses or shows as passable | 30 | 2 to 30 |
 | `large-test`, `hazards-test` | other houses by the same rules, for a final measurement | 30 | as above |
@@ -94,8 +94,7 @@ stubborn episodes --split assets/mjcf_houses/val --workers 2
 
 ## The ground
 
-The seed of a house also chooses its ground: `val`, `test`, `large` and `hazards` keep the furniture and
-episodes of 2.1.0.
+The seed of a house also chooses its ground.
 
 | part | values |
 |---|---|
@@ -125,7 +124,11 @@ VERSIONS = """## Versions
 
 A split has a version, and every run records it with a hash over the houses and episodes. The last number increases when
 a change does not affect agents, the middle number when results can no longer be compared, and the first number when
-older code cannot read the files.
+older code cannot read the files. Results of two versions are never compared: 3.0.0 and 4.0.0 have no house in common.
+
+4.0.0: floor plans and furnishing by rules of dwelling design, homes of 60 to 250 m2 in `val` and `test`, door leaves
+on hinges, jammed doors among the hazards, no limit on the size of a file, and a name, colour and material of each
+instance.
 """
 
 

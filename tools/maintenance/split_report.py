@@ -2,11 +2,13 @@
 
     python -m tools.maintenance.split_report --splits val test large large-test --workers 2
     python -m tools.maintenance.split_report --splits large --episodes 60 --out /tmp/large.md
+    python -m tools.maintenance.split_report --workers 2 --published --out docs/tables/splits.md
 
 A row of the table has, for each split: medians (smallest to largest) over houses of floor area and rooms; medians over
 episodes of the geodesic distance and of the number of reachable instances of the goal; the share of episodes whose goal
 is in the first frame by the rule of GT exploration; the share of each quarter of the start headings, relative to the
-direction in plan to the nearest instance.
+direction in plan to the nearest instance. A second table counts the episodes of each goal category. With --published,
+the figures that papers give for ObjectNav on scans stand below.
 """
 
 from __future__ import annotations
@@ -15,7 +17,8 @@ import functools
 import math
 import statistics
 import sys
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,7 +28,7 @@ from sim.app import cli
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.files import write_atomically
 from sim.core.geometry.pose import Pose, wrap_angle
-from sim.core.interface import ConfigError
+from sim.core.interface import GOAL_CATEGORIES, ConfigError
 from sim.core.paths import assets_dir
 from sim.episodes.episode import Episode
 from sim.episodes.reachable_goals import storeys_of
@@ -41,6 +44,20 @@ HEADER = (
     "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"
 )
 
+PUBLISHED = """
+Published figures of ObjectNav on scans, for comparison. The papers give no distances to the goal.
+
+| data | scenes | navigable m2 a scene | rooms a scene | val scenes | val episodes | goal categories |
+|---|--:|--:|--:|--:|--:|--:|
+| HM3D | 1,000 | 112 | 14 | 20 | 2,000 | 6 |
+| MP3D | 90 | 338 | 23 | 11 | 2,195 | 21 |
+
+Sources: Ramakrishnan et al. 2021, *Habitat-Matterport 3D Dataset* (112,500 m2 of navigable space in 1,000 scenes, 3.7
+times that of MP3D); Yadav et al. 2022, *Habitat-Matterport 3D Semantics Dataset* (3,100 rooms in 216 scenes); Chang et
+al. 2017, *Matterport3D* (2,056 rooms in 90 buildings); Habitat Challenges 2021 and 2022 (episodes and categories).
+Scans span several storeys, and navigable area leaves out what furniture covers, so that areas compare only roughly.
+"""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
@@ -52,6 +69,8 @@ class Args:
     """The first N episodes of each split; by default all."""
     workers: cli.Count = 1
     """Number of processes."""
+    published: bool = False
+    """Add the published figures of other data."""
     out: cli.OutFile | None = None
     """Markdown file; it is only printed if not given."""
 
@@ -68,6 +87,8 @@ class HouseDifficulty:
     """Reachable instances of each episode's goal, on the storey of its start."""
     seen: tuple[bool, ...]
     """Whether the goal is in the first frame."""
+    goals: tuple[str, ...]
+    """Goal category of each episode."""
     quarters: tuple[int, ...]
     """Direction to the nearest instance from the start heading: 0 ahead, 1 left, 2 behind, 3 right."""
 
@@ -76,7 +97,10 @@ def main(args: Args) -> int:
     """Prints and writes the table."""
     if args.workers < 1 or (args.episodes is not None and args.episodes < 1):
         raise ConfigError("--workers and --episodes must be at least 1.")
-    page = HEADER + "".join(_row(name, difficulty_of(name, args)) for name in args.splits)
+    figures = {name: difficulty_of(name, args) for name in args.splits}
+    page = HEADER + "".join(_row(name, houses) for name, houses in figures.items()) + "\n" + _goals(figures)
+    if args.published:
+        page += PUBLISHED
     print(page)
     if args.out is not None:
         write_atomically(args.out, page)
@@ -114,6 +138,7 @@ def _measure(split_name: str, work: tuple[str, tuple[Episode, ...]]) -> HouseDif
         distances_m=tuple(episode.shortest_path_m for episode in episodes if episode.shortest_path_m is not None),
         instances=tuple(instances),
         seen=tuple(seen),
+        goals=tuple(episode.goal for episode in episodes),
         quarters=tuple(quarters),
     )
 
@@ -147,6 +172,19 @@ def _row(split: str, houses: Sequence[HouseDifficulty]) -> str:
         ", ".join(_percent([quarter == which for quarter in quarters]) for which in range(4)),
     )
     return f"| {' | '.join(cells)} |\n"
+
+
+def _goals(figures: Mapping[str, Sequence[HouseDifficulty]]) -> str:
+    """Returns the table of the episodes of each goal category, in the contract's order."""
+    counts = {name: Counter(goal for house in houses for goal in house.goals) for name, houses in figures.items()}
+    names = [Path(name).name for name in counts]
+    lines = [f"| episodes of the goal | {' | '.join(names)} |", f"|---|{'--:|' * len(names)}"]
+    lines += [
+        f"| {goal} | {' | '.join(str(count[goal]) for count in counts.values())} |"
+        for goal in GOAL_CATEGORIES
+        if any(count[goal] for count in counts.values())
+    ]
+    return "\n".join(lines) + "\n"
 
 
 def _spread(values: Sequence[float]) -> str:

@@ -18,6 +18,7 @@ import math
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,8 @@ from sim.world.world import World
 Row = dict[str, str | float]
 LOCOBOT = {"forward_mm": 14.0, "sideways_mm": 9.0, "turn_deg": math.degrees(0.023)}
 """Mean errors of a forward and a turn that PyRobot publishes for a LoCoBot with the controller ILQR."""
+LOCOBOT_STD = {"forward_std_mm": 6.0, "sideways_std_mm": 5.0, "turn_std_deg": math.degrees(0.012)}
+"""Their standard deviations."""
 EPISODES = 30
 """Draws of an episode's conditions for each preset."""
 HEIGHTS_M = (0.006, 0.010, 0.012, 0.014, 0.016, 0.018, 0.020, 0.025, 0.030)
@@ -60,13 +63,18 @@ class Args:
 
 def main(args: Args) -> int:
     """Measures and prints the tables; returns the exit status."""
-    rows_of = {}
-    for name in cli.chosen(args.tables, TABLES, option="--tables"):
-        rows_of[name] = list(TABLES[name]())
-        show(name, rows_of[name])
-    if args.out is not None:
-        write_atomically(args.out, json.dumps(rows_of, indent=2) + "\n")
+    write_tables({name: TABLES[name] for name in cli.chosen(args.tables, TABLES, option="--tables")}, args.out)
     return 0
+
+
+def write_tables(tables: Mapping[str, Callable[[], Iterator[Row]]], out: Path | None) -> None:
+    """Measures and prints tables, and writes their rows to a JSON file unless it is None."""
+    rows_of = {}
+    for name, rows in tables.items():
+        rows_of[name] = list(rows())
+        show(name, rows_of[name])
+    if out is not None:
+        write_atomically(out, json.dumps(rows_of, indent=2) + "\n")
 
 
 def show(name: str, rows: list[Row]) -> None:
@@ -88,23 +96,28 @@ def floor(friction: float) -> mujoco.MjSpec:
 
 
 def motions() -> Iterator[Row]:
-    """Yields the mean absolute errors of forwards and turns with each noise preset, on a floor of friction 0.7."""
+    """Yields the mean absolute errors of forwards and turns with each noise preset, on a floor of friction 0.7, and the
+    standard deviations within an episode."""
     world = World(House("floor", floor(0.7)))
     for name, noise in NOISE_PRESETS.items():
-        errors: dict[str, list[float]] = {key: [] for key in LOCOBOT}
+        errors: dict[str, list[list[float]]] = {key: [] for key in LOCOBOT}  # by episode
         for number in range(EPISODES):
             world.reset(Pose(0.0, 0.0, 0.0), noise.actuation.draw(np.random.default_rng(number)))
-            for action in map(Action, (1, 2, 1, 3, 1, 1, 2, 2)):
+            for values in errors.values():
+                values.append([])
+            for action in map(Action, (1, 2, 1, 3, 1, 1, 2, 2, 1, 3, 1, 3, 1, 1)):
                 before = world.pose
                 world.move(action)
                 moved = world.pose.relative_to(before)
                 if action == Action.MOVE_FORWARD:
-                    errors["forward_mm"].append(1000.0 * abs(moved.x_m - FORWARD_M))
-                    errors["sideways_mm"].append(1000.0 * abs(moved.y_m))
+                    errors["forward_mm"][-1].append(1000.0 * (moved.x_m - FORWARD_M))
+                    errors["sideways_mm"][-1].append(1000.0 * moved.y_m)
                 else:
-                    errors["turn_deg"].append(math.degrees(abs(abs(moved.yaw_rad) - TURN_RAD)))
-        yield {"preset": name, **{key: float(np.mean(values)) for key, values in errors.items()}}
-    yield {"preset": "LoCoBot, published", **LOCOBOT}
+                    errors["turn_deg"][-1].append(math.degrees(abs(moved.yaw_rad) - TURN_RAD))
+        means = {key: float(np.abs(values).mean()) for key, values in errors.items()}
+        within = [float(np.std(values, axis=1, ddof=1).mean()) for values in errors.values()]
+        yield {"preset": name, **means, **dict(zip(LOCOBOT_STD, within, strict=True))}
+    yield {"preset": "LoCoBot, published", **LOCOBOT, **LOCOBOT_STD}
 
 
 def edges(

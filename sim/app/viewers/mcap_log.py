@@ -181,7 +181,8 @@ class McapLog:
         if SCAN in moment.observation:
             return moment.observation[SCAN]
         world = self._env.scene.world
-        return self._scan.read(SensorContext(self._scan, {}, pose=world.pose, model=world.model, data=world.data))
+        fields = {"pose": world.body_pose, "model": world.model, "data": world.data, "glass": world.glass}
+        return self._scan.read(SensorContext(self._scan, {}, **fields))
 
     def _command(self, action: Action) -> messages.Message:
         """Returns the velocity that the drive aims at in an action."""

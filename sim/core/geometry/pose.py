@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 
 @dataclass(frozen=True)
 class Pose:
@@ -46,6 +49,46 @@ class Pose:
     def distance_to(self, other: Pose) -> float:
         """Returns the distance in plan, metres."""
         return math.hypot(self.x_m - other.x_m, self.y_m - other.y_m)
+
+
+@dataclass(frozen=True)
+class BodyPose(Pose):
+    """The pose of a body that leans: yaw, then pitch about its y axis (left), then roll about its x axis (REP-103).
+
+    The rotation is Rz(yaw) Ry(pitch) Rx(roll). A body with a positive pitch looks down, one with a positive roll leans
+    to the right.
+    """
+
+    rise_m: float = 0.0
+    """Height of the origin of the robot frame above `floor_z_m`."""
+    pitch_rad: float = 0.0
+    roll_rad: float = 0.0
+
+    @property
+    def axes(self) -> NDArray[np.float64]:
+        """(3, 3) the body's axes in the world as rows: ahead, left, up."""
+        (cy, sy), (cp, sp), (cr, sr) = (
+            (math.cos(angle), math.sin(angle)) for angle in (self.yaw_rad, self.pitch_rad, self.roll_rad)
+        )
+        return np.array(
+            [
+                [cy * cp, sy * cp, -sp],
+                [cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr],
+                [cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr],
+            ]
+        )
+
+    def point(self, forward_m: float, left_m: float, up_m: float) -> NDArray[np.float64]:
+        """Returns (3,) the position in the world of a point that is fixed to the body."""
+        origin = np.array([self.x_m, self.y_m, self.floor_z_m + self.rise_m])
+        return origin + np.array([forward_m, left_m, up_m]) @ self.axes
+
+
+def as_body_pose(pose: Pose) -> BodyPose:
+    """Returns the pose of a body; one without a lean stands upright on its floor."""
+    if isinstance(pose, BodyPose):
+        return pose
+    return BodyPose(pose.x_m, pose.y_m, pose.yaw_rad, pose.floor_z_m)
 
 
 def wrap_angle(angle_rad: float) -> float:

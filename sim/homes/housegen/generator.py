@@ -38,7 +38,7 @@ from sim.homes.housegen.upper_storey import Stairs, UpperStorey, draw_stairs, dr
 from sim.houses.writing import house_text
 from sim.world.check import check_house
 
-GENERATOR_VERSION = 5
+GENERATOR_VERSION = 6
 """Increased whenever the same seed gives another house; the effect of `HouseConfig.exact` is recorded separately."""
 MAX_TRIES = 12
 MAX_REASONS = 3

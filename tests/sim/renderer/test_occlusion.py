@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.core.geometry.pose import Pose
+from sim.core.geometry.pose import BodyPose, Pose
 from sim.core.interface import CameraModel
 from sim.core.paths import assets_dir
 from sim.gl import mujoco
@@ -38,7 +38,7 @@ def rendered(house: House, *, eye: tuple[float, float, float] = (0.0, 0.0, 0.88)
     visibility = Visibility(model, rendered_geoms(model), CameraModel(), Z_NEAR_M)
     return {
         model.geom(geom).name or model.body(model.geom_bodyid[geom]).name
-        for geom in visibility.visible(data, np.array(eye), yaw_rad)
+        for geom in visibility.visible(data, np.array(eye), BodyPose(0.0, 0.0, yaw_rad).axes)
     }
 
 
@@ -210,7 +210,7 @@ def test_the_current_position_of_a_movable_object_counts() -> None:
     for x_m in (3.0, 1.2, 3.0):
         data.qpos[0] = x_m
         mujoco.mj_kinematics(model, data)
-        seen.append(model.geom("wall_90").id + 1 in visibility.visible(data, np.array([0, 0, 0.88]), 0.0))
+        seen.append(model.geom("wall_90").id + 1 in visibility.visible(data, np.array([0, 0, 0.88]), np.eye(3)))
     assert seen == [False, True, False]
 
 
@@ -238,7 +238,11 @@ def test_in_a_room_of_many_boxes_a_frame_differs_in_no_pixel() -> None:
         )
     world = World(house)
     poses = [Pose(float(x), float(y), float(yaw)) for x, y, yaw in rng.uniform(-5, 5, (60, 3))]
-    assert differing_pixels(world, poses, ("rgb", "depth", "geom")) == 0
+    leans = rng.uniform(-0.25, 0.25, (60, 3))
+    leaning = [
+        BodyPose(pose.x_m, pose.y_m, pose.yaw_rad, 0.0, *lean) for pose, lean in zip(poses, leans.tolist(), strict=True)
+    ]
+    assert differing_pixels(world, [*poses, *leaning], ("rgb", "depth", "geom")) == 0
 
 
 @functools.cache

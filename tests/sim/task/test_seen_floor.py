@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim.core.geometry.grid import GridFrame
-from sim.core.geometry.pose import Pose
+from sim.core.geometry.pose import BodyPose, Pose
 from sim.core.interface import MPCAT40_ID, Action, CameraModel
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
@@ -129,3 +129,16 @@ def test_a_goal_that_was_never_seen_has_the_step_limit_as_its_time(tmp_path):
     assert "first_seen_step" not in info
     assert info["steps_to_first_sight"] == 50
     assert info["gt_explored"] is False
+
+
+@pytest.mark.parametrize("pitch_deg", [-10.0, 0.0, 10.0])
+def test_a_camera_that_leans_sees_the_floor_from_where_its_lowest_ray_meets_it(pitch_deg):
+    frame = GridFrame(origin_xy_m=(-8.0, -8.0), shape=(160, 160), cell_m=0.1)
+    seen = SeenFloor(frame, np.ones(frame.shape, np.bool_), 0.0, CAMERA)
+    body = BodyPose(0.0, 0.0, 0.0, pitch_rad=math.radians(pitch_deg))
+    seen.look(np.full((480, 640), MPCAT40_ID["floor"], np.uint8), body)
+    rows, cols = np.nonzero(seen.cells)
+    x_m, y_m = frame.centres(rows, cols)
+    eye_m = body.point(0.0, 0.0, CAMERA.height_m)
+    nearest_m = eye_m[0] + eye_m[2] / math.tan(0.5 * CAMERA.vfov_rad + body.pitch_rad)
+    assert x_m[np.abs(y_m) < 0.1].min() == pytest.approx(nearest_m, abs=0.1)

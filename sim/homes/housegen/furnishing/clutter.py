@@ -34,10 +34,10 @@ ON_FLOOR: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "laundry": ("box", "shoes"),
         "gym": ("bag", "shoes"),
         "dining_room": ("toy", "bag"),
-        "kitchen": ("bag",),
+        "kitchen": ("bag", "box"),
     }
 )
-"""Uses of the small objects on the floor by kind of room."""
+"""Uses of the small objects on the floor by kind of room; a room has each at most as often as it is listed."""
 _FLAT_TRIES = 6
 
 
@@ -54,8 +54,11 @@ def add_clutter(layout: RoomLayout, source: FurnitureSource) -> None:
     if uses is None:
         return
     count = source.clutter * min(FLOOR_PER_M2 * layout.inner.area_m2, MAX_ON_FLOOR)
-    for _ in range(int(count + source.uniform(0.0, 1.0))):
-        _put_on_floor(layout, source, source.pick(uses))
+    left = list(uses)
+    for _ in range(min(int(count + source.uniform(0.0, 1.0)), len(left))):
+        use = source.pick(tuple(left))
+        left.remove(use)
+        _put_on_floor(layout, source, use)
 
 
 def _fill_tops(layout: RoomLayout, source: FurnitureSource, host: Placement) -> None:

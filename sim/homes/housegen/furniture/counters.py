@@ -87,6 +87,8 @@ def open_run(w: Workbench) -> None:
     if hole is not None:
         low, high = hole[1][0] - 0.04, hole[1][1] + 0.04
         w.box((x[0] + 0.01, x[1] - 0.06), (low, high), (0.205, height - 0.20), front)
+        for side in (low, high):  # cheeks hide the bowl of the sink between the block and the top
+            w.box((x[0] + 0.01, x[1] - 0.06), (side - 0.01, side + 0.01), (height - 0.20, height - _TOP), front)
         parts.plain_doors(w, x[1] - 0.06, (low, high), (0.205, height - _TOP), 1, front, steel, "none")
     half = 0.5 * width
     for c in (-0.7 * half, 0.0, 0.7 * half):
