@@ -297,9 +297,8 @@ def test_the_command_of_a_row_configures_the_agent_as_its_run_was(runs: Mapping[
         recorded = dict(leaves_of(run.run.config["config"]))
         both = {path for path in today.keys() & recorded.keys() if path.startswith("agent.")}
         assert [path for path in both if today[path] != recorded[path]] == [], run.run.path.name
-        if run.network:
-            wanted = {path: value for path, (_, value) in FORMER.items() if path not in recorded and path in today}
-            assert {path: json.dumps(today[path]).removesuffix(".0") for path in wanted} == wanted, run.run.path.name
+        wanted = {path: value for path, (_, value) in FORMER.items() if path not in recorded and path in today}
+        assert {path: json.dumps(today[path]).removesuffix(".0") for path in wanted} == wanted, run.run.path.name
 
 
 COMMANDS_OF_TABLES = {
