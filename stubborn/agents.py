@@ -24,6 +24,7 @@ from stubborn.exploration.semexp import SemExpConfig
 from stubborn.exploration.tour import INFORMED_TOUR, TourConfig
 from stubborn.mapping.felt import FeelConfig
 from stubborn.mapping.object_layers import ObjectLayersConfig
+from stubborn.planning.untrap import UntrapConfig
 
 NO_AVOIDANCE = CollisionAvoidance(
     untrap=False, collision_layers=False, averse_exploration=False, optimistic_fallback=False, visited_is_free=False
@@ -63,7 +64,12 @@ EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
 """The explorers by name, for `AgentConfig.explorer`: a configuration with `make`, which returns the explorer."""
 
 
-PLUS = AgentConfig(explorer=INFORMED_TOUR, seeker=TrackSeekerConfig(), feel=FeelConfig())
+PLUS = AgentConfig(
+    explorer=INFORMED_TOUR,
+    seeker=TrackSeekerConfig(),
+    feel=FeelConfig(),
+    untrap=UntrapConfig(turns_reset=False),  # its traps were measured with it
+)
 """`stubborn-plus`: the paper's agent with object tracks. It explores by a tour over the unseen areas. It infers from
 collisions the surfaces that depth does not show."""
 

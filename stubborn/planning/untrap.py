@@ -22,7 +22,7 @@ class UntrapConfig:
 
     failed_forwards: int = 10
     """The mode begins after this many failed forwards without one that moved the robot."""
-    turns_reset: bool = False
+    turns_reset: bool = True
     """True: a turn that turned the robot resets the count, so that the failed forwards are consecutive steps as in the
     paper's text. False: only a forward that moved the robot does, as in the published code."""
 
@@ -37,7 +37,7 @@ class Untrap:
     The side of the turns alternates from one entry to the next, left first in every episode.
     """
 
-    def __init__(self, failed_forwards: float, *, turns_reset: bool = False) -> None:
+    def __init__(self, failed_forwards: float, *, turns_reset: bool = True) -> None:
         """The mode begins after `failed_forwards` failed forwards, see `UntrapConfig`; infinite: never."""
         self.failed_forwards = failed_forwards
         self.turns_reset = turns_reset

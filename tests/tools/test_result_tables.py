@@ -17,6 +17,7 @@ import pytest
 
 from sim.app import cli
 from sim.app.commands.main import COMMANDS
+from sim.app.commands.reproduce import reproduce
 from sim.app.commands.reproduce import runs as table_runs
 from sim.app.commands.reproduce.runs import AgentSetup, RunKey, runs_in
 from sim.app.composition.setup import resolve
@@ -24,10 +25,12 @@ from sim.app.evaluation.intervals import holm
 from sim.app.options import RunOptions
 from sim.core.configuration import as_json, leaves_of
 from sim.core.errors import ConfigError
+from sim.episodes.splits import load_split
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 from tests.helpers import documented, wording
 from tests.helpers.results import ENTRIES
 from tools.research import result_tables
+from tools.research.paper_reasons import EPISODES, reasons
 from tools.research.result_archive import (
     ARCHIVE,
     CHECKSUM_DIGITS,
@@ -93,12 +96,32 @@ def test_the_shipped_csv_files_are_those_of_the_archive(runs: Mapping[RunKey, Ar
     assert read_csv(TABLES / COMPARISONS) == with_families(pairs, [comparison_record(pair, runs) for pair in pairs])
 
 
-def test_the_page_of_the_paper_is_that_of_the_archive(tmp_path: Path) -> None:
+def test_the_page_of_the_paper_is_that_of_the_archive_also_when_the_split_is_newer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def newer(args: reproduce.Args) -> reproduce.SplitEpisodes:
+        part = reproduce.part_of(args)
+        return replace(part, split=replace(part.split, version="9.0.0", sha256="0" * 64))
+
+    monkeypatch.setattr(result_tables, "part_of", newer)
     runs = read_archive(ARCHIVE, tmp_path)
     assert (TABLES / PAPER).read_text(encoding="utf-8") == paper_page(tmp_path, runs)
     shutil.rmtree(tmp_path / "poni_rednet_none_val")
     with pytest.raises(ConfigError, match="'overall'"):
         paper_page(tmp_path, runs)
+
+
+def test_every_episode_is_in_one_third_by_distance_and_corners_are_trapped_or_not(
+    runs: Mapping[RunKey, ArchivedRun],
+) -> None:
+    by_length, by_trap = reasons(runs)
+    counts = {label: int(re.findall(r"\((\d+)\)", label)[0]) for label, _ in (*by_length.rows, *by_trap.rows)}
+    for split in EPISODES:
+        of_split = {label: count for label, count in counts.items() if label.startswith(f"{split}, ")}
+        *thirds, total = of_split.values()
+        assert (len(thirds), sum(thirds), total) == (3, EPISODES[split], EPISODES[split])
+        assert max(thirds) - min(thirds) <= 1
+    assert sum(count for label, count in counts.items() if label.startswith("stubborn-i is")) == EPISODES["val"]
 
 
 def test_holm_multiplies_the_smallest_p_value_by_their_number_and_keeps_the_order() -> None:
@@ -221,7 +244,7 @@ def test_rows_take_turns_until_all_are_complete_and_the_archive_has_them(
     assert "val: oracle, gt: 0 of 200 episodes" in printed
     assert [key.setup.agent for key in read_archive(args.archive, tmp_path / "read")] == ["poni"]
     monkeypatch.setattr(result_tables, "VERSION", "2.0.0")
-    with pytest.raises(ConfigError, match=r"'val' has version 3.0.0, the tables 2.0.0"):
+    with pytest.raises(ConfigError, match=rf"'val' has version {load_split('val').version}, the tables 2.0.0"):
         main(args)
 
 
@@ -255,17 +278,27 @@ def test_a_row_has_the_command_that_repeats_it(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.parametrize("settings", [{}, {"agent.seeker.verify": False}])
+def test_the_command_of_an_older_row_sets_what_its_agent_did(tmp_path: Path, settings: dict[str, object]) -> None:
+    config = {"agent": {"mapping": {"candidate_score": 0.5}}}
+    write_run(tmp_path / "a", [LINE], semantics="rednet", settings=settings, config=config)
+    own = "".join(f"{path}={json.dumps(value)} " for path, value in settings.items())
+    assert archived(tmp_path).command(1) == (
+        f"stubborn run --agent stubborn --config {own}agent.mapping.other_of_target_pixel=true "
+        "--semantics rednet --split val --episodes 1"
+    )
+
+
 def test_the_command_of_a_row_configures_the_agent_as_its_run_was(runs: Mapping[RunKey, ArchivedRun]) -> None:
     for run in runs.values():
         words = shlex.split(run.command(1).rpartition("; ")[2])
         options = cli.parse(RunOptions, words[2:])
         today = dict(leaves_of(as_json(resolve(replace(options, split="val")).config)))
         recorded = dict(leaves_of(run.run.config["config"]))
-        differing = {path for path in today.keys() & recorded.keys() if today[path] != recorded[path]}
-        assert differing <= {"detector.weights"}, run.run.path.name  # the file is elsewhere, its checksum is equal
-        if run.network:
-            wanted = {path: value for path, (_, value) in FORMER.items() if path not in recorded and path in today}
-            assert {path: json.dumps(today[path]).removesuffix(".0") for path in wanted} == wanted, run.run.path.name
+        both = {path for path in today.keys() & recorded.keys() if path.startswith("agent.")}
+        assert [path for path in both if today[path] != recorded[path]] == [], run.run.path.name
+        wanted = {path: value for path, (_, value) in FORMER.items() if path not in recorded and path in today}
+        assert {path: json.dumps(today[path]).removesuffix(".0") for path in wanted} == wanted, run.run.path.name
 
 
 COMMANDS_OF_TABLES = {

@@ -26,7 +26,7 @@ def reasons(runs: Mapping[RunKey, ArchivedRun]) -> list[ResultTable]:
     rows: list[tuple[str, list[Cell | str]]] = []
     for split, count in EPISODES.items():
         corners, frontier = (_lines(runs, split, agent, "", count) for agent in ("stubborn", "frontier-avoid"))
-        lengths_m = [result.shortest_path for result in corners]
+        lengths_m = np.array([result.shortest_path for result in corners], np.float64)
         edges_m = np.percentile(lengths_m, [0.0, 100 / 3, 200 / 3, 100.0])
         third = np.clip(np.searchsorted(edges_m, lengths_m, side="right") - 1, 0, 2)
         for number, name in enumerate(THIRDS):

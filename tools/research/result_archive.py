@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim.app.analysis.comparison import Run, read_run
-from sim.app.commands.reproduce.runs import GROUND_TRUTH, RunKey, runs_in
+from sim.app.commands.reproduce.runs import RunKey, runs_in
 from sim.app.composition.agents import find_agent
 from sim.core.configuration import leaves_of
 from sim.core.errors import ConfigError
@@ -42,11 +42,12 @@ PREPARED = {
 }
 """Commands that make the splits that do not ship (docs/furniture.md)."""
 FORMER = {
+    "agent.untrap.turns_reset": ("agent.untrap.failed_forwards", "false"),
     "agent.mapping.other_of_target_pixel": ("agent.mapping.candidate_score", "true"),
     "agent.seeker.context_share": ("agent.seeker.core_share", "0"),
 }
 """Fields that `config.json` of older runs lacks: an older field of the same part of the agent, and the value that gives
-the behaviour of that time. Only agents with imperfect segmentation depend on them."""
+the behaviour of that time."""
 
 
 @dataclass(frozen=True)
@@ -104,8 +105,6 @@ class ArchivedRun:
 
     def _former_settings(self) -> list[str]:
         """Returns the settings of `FORMER` that this run needs."""
-        if self.key.setup.semantics == GROUND_TRUTH:
-            return []
         recorded = dict(leaves_of(self.run.config.get("config", {})))
         missing = {path: value for path, (older, value) in FORMER.items() if older in recorded and path not in recorded}
         return [f"{path}={value}" for path, value in missing.items()]

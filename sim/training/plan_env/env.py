@@ -159,7 +159,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
         self.action_space = spaces.Discrete(len(Action)) if primitive else spaces.Box(0.0, 1.0, (2,), np.float32)
         self._episode: PlanEpisode | None = None
         self._navmap: NavMap | None = None
-        self._untrap = Untrap(self.config.untrap.failed_forwards)
+        self._untrap = Untrap(self.config.untrap.failed_forwards, turns_reset=self.config.untrap.turns_reset)
         self._pose = Pose(0.0, 0.0, 0.0)
         """The robot's pose in the start frame."""
         self._last: Action | None = None
@@ -190,7 +190,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
         number, goal, start = self._choose(options or {})
         self._episode = PlanEpisode(self.camera(number), goal, start, max_steps=self.config.max_steps)
         self._navmap = NavMap.empty(self._frame)
-        self._untrap = Untrap(self.config.untrap.failed_forwards)
+        self._untrap = Untrap(self.config.untrap.failed_forwards, turns_reset=self.config.untrap.turns_reset)
         self._last, self._failed = None, False
         self._pose = self.episode.pose
         self._mark_driven(self._pose)

@@ -31,8 +31,8 @@ def test_ten_failed_forwards_start_it_and_nine_do_not():
     assert untrap.next_action() is L
 
 
-def test_with_turns_reset_only_consecutive_failed_forwards_count():
-    untrap = Untrap(UntrapConfig().failed_forwards, turns_reset=True)
+def test_only_consecutive_failed_forwards_count():
+    untrap = Untrap(UntrapConfig().failed_forwards)
     fail(untrap, 9)
     untrap.observe(L, False)
     fail(untrap, 9)
@@ -44,8 +44,8 @@ def test_with_turns_reset_only_consecutive_failed_forwards_count():
     assert untrap.active
 
 
-def test_turns_between_do_not_reset_the_count_but_a_forward_that_moves_does():
-    untrap = Untrap(UntrapConfig().failed_forwards)
+def test_turns_between_need_not_reset_the_count_but_a_forward_that_moves_does():
+    untrap = Untrap(UntrapConfig().failed_forwards, turns_reset=False)
     for _ in range(9):
         untrap.observe(F, True)
         untrap.observe(L, False)

@@ -171,7 +171,9 @@ class JudgedTable:
 
 def judged(name: str, lines: Lines) -> JudgedTable | None:
     """Returns the verdicts on the claims of a table, or None where the lines lack the agents of the paper."""
-    by_name = {setup.name: results for setup, results in reversed(lines.items())}  # the first setup of each name
+    by_name: dict[str, Sequence[EpisodeResult]] = {}
+    for setup, results in lines.items():
+        by_name.setdefault(setup.name, results)  # `cloned` is there with two kinds of segmentation
     title, claims = CLAIMS.get(name, ("", ()))
     agents = {agent for claim in claims for agent in (claim.first, claim.second)} - {NEXT_CAUSE}
     if not agents or not agents <= by_name.keys():

@@ -6,10 +6,11 @@
     stubborn reproduce splits --splits val large hazards --episodes 200 --workers 2
 
 The tables of the paper are failures, ablation, exploration, categories and overall, and `controls` is its figure of
-SemExp; `all` makes these six, and one page of all of them. Columns with the paper's figures follow ours. The table
-`verification` compares the methods of verification. `splits` compares the rows of the ablation and two explorers on
-each of several splits. `explorers` compares all explorers, also by the median time to first sight, and the learned ones
-with their controls.
+SemExp; `all` makes these six, and one page of all of them. Columns with the paper's figures follow ours, and the
+paper's claims come first, each replicated, not replicated or unresolved (`paper_claims`). The table `verification`
+compares the methods of verification. `splits` compares the rows of the ablation and two explorers on each of several
+splits. `explorers` compares all explorers, also by the median time to first sight, and the learned ones with their
+controls.
 
 Each run has a folder `<out>/<agent>_<semantics>_...`, as `stubborn run --record` writes it; the tables share the runs.
 The agents take turns: each runs a chunk of episodes of every split. All agents have therefore run the same first

@@ -18,7 +18,7 @@ from sim.app.commands.reproduce.paper_claims import (
 from sim.app.commands.reproduce.paper_figures import FIGURES
 from sim.app.commands.reproduce.paper_tables import ABLATION, PAPER_TABLES, table_named
 from sim.app.commands.reproduce.runs import AgentSetup
-from sim.task.result import EpisodeResult
+from sim.task.result import EpisodeResult, Metric
 from tests.helpers.results import a_result
 
 EPISODES, HOUSES = 200, 20
@@ -104,6 +104,7 @@ def test_the_papers_differences_are_those_of_its_figures(name: str) -> None:
         if name == "categories":
             return float(columns["Stubborn" if agent == "stubborn" else "Single-Frame"]["all"])
         row = {named: numeral for numeral, named in ABLATION.items()}[agent] if name == "ablation" else agent
+        assert isinstance(claim.of, Metric)
         title = {EXPLORED: "GT exploration %", TRAPPED: "trapped %", SUCCESS: "success %", SPL: "SPL"}[claim.of]
         return float(columns[title][row])
 
