@@ -55,7 +55,7 @@ def test_no_place_over_the_stairwell_or_on_the_stairs_is_free(world: World):
     for floor_z_m in (0.0, up_m):
         space = FreeSpace.from_world(world, floor_z_m)
         assert not space.is_free(*centre)
-        assert space.largest_part().sum() > 0.85 * space.free.sum()  # rooms behind leaves that are ajar are left out
+        assert space.largest_part().sum() > 0.7 * space.free.sum()  # rooms behind leaves that are ajar are left out
 
 
 def test_both_stair_halls_have_lamps_and_the_landing_is_free(world: World):
