@@ -184,6 +184,7 @@ _ENTRY = (
 _SUBMIT = "stubborn submit {tmp}/entry --name 'My agent' --authors 'A. Author' --out {tmp}/my_agent.json.gz"
 _ROWS = "a row needs 50 episodes; tests/sim/app/submissions/test_submission_commands.py makes tables of fewer"
 _SEAL = "stubborn seal make --out {tmp}/sealed2027 --secret-file {tmp}/secret --houses 1 --episodes 2"
+_ANNOUNCED = Only("tests/sim/app/submissions/test_sealing.py announces, makes and reveals a split of one house")
 TRIALS: dict[str, tuple[str, ...] | Only] = {
     "make run": _NEEDS_SETUP,
     "make test": _NEEDS_SETUP,
@@ -354,6 +355,13 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _SEAL,
         "stubborn seal reveal {tmp}/sealed2027.sealed.json --secret-file {tmp}/secret --out {tmp}/revealed/sealed2027",
     ),
+    "stubborn seal announce --out challenge/mine --agent-commit COMMIT --houses 20 --episodes 200 --beacon 'the first "
+    "commit on master of https://github.com/torvalds/linux after 2026-12-24 00:00 UTC'": _ANNOUNCED,
+    "stubborn seal make --out challenge/mine --announced challenge/mine.announced.json --beacon HASH": _ANNOUNCED,
+    "stubborn run --agent 'process:python my_agent.py' --split challenge/mine --episodes 200 --record "
+    "--out runs/mine": (_ANNOUNCED),
+    "stubborn seal reveal challenge/mine.sealed.json --announced challenge/mine.announced.json --repository . --out "
+    "again/mine": _ANNOUNCED,
     "stubborn leaderboard leaderboard": Only(_ROWS),
     "stubborn leaderboard challenge --splits revealed/sealed2027": Only(_ROWS),
     # docs/traps.md

@@ -219,7 +219,7 @@ def test_the_ground_truth_scores_the_goal_and_all_other_categories_but_void() ->
 
 
 @pytest.mark.parametrize("hits", [0.0, 0.2])
-def test_a_cell_has_the_other_score_of_the_pixel_with_its_highest_target_score(hits: float) -> None:
+def test_a_cell_has_the_highest_target_score_and_the_highest_other_score_of_its_pixels(hits: float) -> None:
     rng = np.random.default_rng(2)
     flat = rng.integers(-1, 40, (10, 20)).astype(np.int32)
     rows, cols = np.where(flat < 0, -1, flat // 8), np.where(flat < 0, -1, flat % 8)
@@ -229,9 +229,8 @@ def test_a_cell_has_the_other_score_of_the_pixel_with_its_highest_target_score(h
     for cell in range(40):
         here = np.flatnonzero(flat == cell)
         highest = target[here].max(initial=0.0)
-        speaking = here[target[here] == highest]
         assert frame.in_view.reshape(-1)[cell] == bool(here.size)
-        assert frame.other.reshape(-1)[cell] == other[speaking].max(initial=0.0)
+        assert frame.other.reshape(-1)[cell] == other[here].max(initial=0.0)
         if frame.target is not None:
             assert frame.target.reshape(-1)[cell] == highest
     assert (frame.target is None) == (hits == 0.0)

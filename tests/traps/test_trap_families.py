@@ -17,6 +17,7 @@ from sim.core.paths import assets_dir
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import load_split
 from sim.gl import mujoco
+from sim.homes.housegen.splits.recipes import SPLIT_VERSION
 from sim.homes.housegen.traps.families.catalogue import FAMILIES, HELD_OUT
 from sim.homes.housegen.traps.families.contact_splits import CONTACT_SPLITS, TrapKey
 from sim.homes.housegen.traps.families.draw import DETOUR_M, MARGIN_M, draw_trap
@@ -69,6 +70,8 @@ def test_a_shipped_split_has_one_episode_for_each_of_its_traps_in_order(split: s
 
 @pytest.mark.parametrize(("split", "key"), sample(SHIPPED, 1))
 def test_a_shipped_trap_is_what_its_family_difficulty_and_seed_draw(split: str, key: TrapKey, tmp_path):
+    if load_split(split).version != SPLIT_VERSION:
+        pytest.skip("the shipped traps are those of another version")
     write_family_trap(tmp_path / "again" / split, key)
     for suffix in ("json", "xml"):
         again = (tmp_path / "again" / split / f"{name_of(key)}.{suffix}").read_text()
