@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from sim.gl import mujoco
 from sim.houses.house import Room
 from sim.houses.labels import Labels
+from sim.world.leaves import Leaf, hinged_leaves
 from sim.world.room_arrangement import near_tables, room_clauses
-from sim.world.standing import Standing, blocks_floor, is_in, read_standing
+from sim.world.standing import Standing, blocks_floor, is_in
 
 MIN_TRIANGLE_M, MAX_TRIANGLE_M = 4.0, 7.9
 """Sum of the legs of the work triangle: 13 to 26 ft (NKBA guideline 3)."""
@@ -40,8 +41,6 @@ BEFORE_WINDOW_M = 0.4
 """An item nearer to a window than this stands in front of it."""
 FIXTURE_APART_M = 0.06
 """Gap between a toilet or a basin and a door leaf at any angle, also where it stands wide open."""
-CLOSED_DEG = 10.0
-"""A leaf that is open by less does not show into which room it swings."""
 WALL_M = 0.3
 """Rooms with a smaller gap lie side by side."""
 SLACK_M = 0.03
@@ -55,7 +54,9 @@ _HARD_FLOORS = frozenset(("kitchen", "bathroom", "laundry", "hallway", "stair_ha
 """Rooms without carpet on the whole floor."""
 
 
-def arrangement_faults(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, rooms: Sequence[Room]) -> list[str]:
+def arrangement_faults(
+    model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, rooms: Sequence[Room], standing: Sequence[Standing]
+) -> list[str]:
     """Returns a sentence for each rule that the furniture of a compiled house does not follow.
 
     Args:
@@ -63,14 +64,11 @@ def arrangement_faults(model: mujoco.MjModel, data: mujoco.MjData, labels: Label
         data: its state; kinematics must be computed.
         labels: the labels of its geoms.
         rooms: its rooms.
-
-    Raises:
-        HouseError: the text of an instance has another form than docs/houses.md describes.
+        standing: its instances (`sim.world.standing`).
     """
-    standing = read_standing(model, data, labels)
     windows = [item for item in standing if item.category == "window"]
     faults = [f"{item.label} stands in front of {window.label}" for item, window in _before_windows(standing, windows)]
-    faults += _blocked_swings(model, standing) + near_tables(standing)
+    faults += _blocked_swings(model, data, labels, standing) + near_tables(standing)
     floors = {room.name: _floor_look(model, data, labels, room) for room in rooms}
     for room in rooms:
         inside = [item for item in standing if is_in(room, item)]
@@ -250,54 +248,39 @@ def _is_free(
     )
 
 
-def _blocked_swings(model: mujoco.MjModel, standing: Sequence[Standing]) -> list[str]:
-    """Returns a sentence for each piece of furniture in the quarter circle of a door leaf."""
-    doors = [item for item in standing if item.category == "door"]
-    leaves = [(door, width_m) for door in doors if (width_m := _leaf_width_m(model, door)) > 0.0]
-    of_leaves = {door.label for door, _ in leaves}
-    frames = [door for door in doors if door.label not in of_leaves]
+def _blocked_swings(
+    model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, standing: Sequence[Standing]
+) -> list[str]:
+    """Returns a sentence for each piece of furniture in the quarter circle of a door leaf, or fixture at its end."""
     faults = []
-    for leaf, width_m in leaves:
-        frame = min(frames, key=lambda frame: math.dist(frame.middle, leaf.at), default=None)
-        if frame is None or math.dist(frame.middle, leaf.at) > width_m:
-            continue
-        closed = frame.front * math.copysign(1.0, float((frame.middle - leaf.at) @ frame.front))
-        into = np.array([-closed[1], closed[0]])
-        into = into * math.copysign(1.0, float(leaf.front @ into))
-        if abs(float(leaf.front @ into)) < math.sin(math.radians(CLOSED_DEG)):
-            continue
-        open_deg = math.degrees(math.acos(float(np.clip(leaf.front @ closed, -1.0, 1.0))))
-        swing, ends = (
-            leaf.at + (radius * np.cos(angle))[..., None] * closed + (radius * np.sin(angle))[..., None] * into
-            for radius, angle in (
-                np.meshgrid(np.linspace(0.15, width_m, 8), np.radians(degrees))
-                for degrees in (np.arange(4.0, 90.0, 8.0), (90.0, max(90.0, open_deg)))
-            )
-        )
-        floor_z_m = float(leaf.low[2])
+    for leaf in hinged_leaves(model, data, labels):
+        body = int(model.jnt_bodyid[leaf.joint])
+        widest_deg = math.degrees(leaf.widest_rad - leaf.closed_rad)
+        swing = _swept(model, data, leaf, np.arange(4.0, 90.0, 8.0))
+        ends = _swept(model, data, leaf, np.array([90.0, max(90.0, widest_deg)]))
+        floor_z_m = float(data.xpos[body, 2])
         for item in standing:
             if not blocks_floor(item, floor_z_m, 1.9) or item.high[2] < floor_z_m:
                 continue
             apart_m = FIXTURE_APART_M if _is_fixture(item) else -0.02
             points = np.vstack((swing, ends)) if _is_fixture(item) else swing
             if ((points > item.low[:2] - apart_m) & (points < item.high[:2] + apart_m)).all(axis=-1).any():
-                faults.append(f"{item.label} stands where {leaf.label} swings")
+                faults.append(f"{item.label} stands where {model.body(body).name} swings")
     return faults
+
+
+def _swept(model: mujoco.MjModel, data: mujoco.MjData, leaf: Leaf, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns points (n, 2) along a leaf at some angles from where it closes the doorway, metres."""
+    x, y = data.xmat[model.jnt_bodyid[leaf.joint]].reshape(3, 3)[:2, 0]
+    turns = float(data.xaxis[leaf.joint, 2])
+    closed_rad = math.atan2(y, x) + turns * (leaf.closed_rad - float(data.qpos[leaf.qpos]))
+    radius, angle = np.meshgrid(np.linspace(0.15, leaf.width_m, 8), closed_rad + turns * np.radians(degrees))
+    along = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    return (data.xanchor[leaf.joint, :2] + radius[..., None] * along).reshape(-1, 2)
 
 
 def _is_fixture(item: Standing) -> bool:
     return item.category in ("toilet", "sink") or item.name == "vanity cabinet"
-
-
-def _leaf_width_m(model: mujoco.MjModel, door: Standing) -> float:
-    """Returns the width of a door leaf, whose hinge is the origin of its body; 0 for a frame."""
-    for geom in door.geoms:
-        if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_BOX.value or not model.geom_contype[geom]:
-            continue
-        half_x, half_y, half_z = model.geom_size[geom]
-        if half_x > 0.25 and half_y < 0.04 and half_z > 0.8 and abs(model.geom_pos[geom][0] - half_x) < 0.05:
-            return float(2.0 * half_x)
-    return 0.0
 
 
 def _floor_look(

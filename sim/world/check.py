@@ -26,6 +26,7 @@ from sim.world.arrangement import arrangement_faults
 from sim.world.freespace import FreeSpace, connected_to
 from sim.world.plan_requirements import unmet_plan_requirements
 from sim.world.room_requirements import unmet_requirements
+from sim.world.standing import read_standing
 
 MAX_OVERLAP_M = 0.01
 """Largest overlap of two objects that is allowed."""
@@ -66,9 +67,10 @@ def check_house(
         return [f"it does not compile: {error}"]
     faults = _overlaps(house) + _without_support(house) + _unstable(house.model)
     if furnished:
-        faults += unmet_requirements(house.model, house.data, house.labels, house.rooms)
+        standing = read_standing(house.model, house.data, house.labels)
+        faults += unmet_requirements(standing, house.rooms)
         faults += unmet_plan_requirements(house.model, house.data, house.labels, house.rooms)
-        faults += arrangement_faults(house.model, house.data, house.labels, house.rooms)
+        faults += arrangement_faults(house.model, house.data, house.labels, house.rooms, standing)
     if not house.rooms:
         return [*faults, "it has no room sites"]
     return faults + _unreachable(house, rule or SuccessRule(), robot or RobotModel())

@@ -11,16 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
-import numpy as np
-from numpy.typing import NDArray
-
-from sim.gl import mujoco
 from sim.houses.house import Room
-from sim.houses.instance_facts import read_instance_facts
-from sim.houses.labels import Labels
-
-SITE_MARGIN_M = 0.05
-"""The middle of an instance may lie this far above or below a room's site."""
+from sim.world.standing import Standing, is_in
 
 
 @dataclass(frozen=True)
@@ -139,48 +131,20 @@ def missing_pieces(kind: str, area_m2: float, pieces: Sequence[Piece]) -> list[s
     return faults
 
 
-def unmet_requirements(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, rooms: Sequence[Room]) -> list[str]:
+def unmet_requirements(standing: Sequence[Standing], rooms: Sequence[Room]) -> list[str]:
     """Returns a sentence for each requirement that a room of a compiled house does not meet.
 
     Args:
-        model: the compiled house.
-        data: its state; kinematics must be computed.
-        labels: the labels of its geoms.
+        standing: the instances of the house.
         rooms: its rooms.
-
-    Raises:
-        HouseError: the text of an instance has another form than docs/houses.md describes.
     """
-    pieces: dict[str, list[Piece]] = {room.name: [] for room in rooms}
-    facts = read_instance_facts(model, labels)
-    categories = {name for room in rooms for need in REQUIREMENTS.get(room.kind, ()) for name in need.categories}
-    for instance in labels.instances:
-        if instance.category not in categories:
-            continue
-        low, high = _box(model, data, instance.geom_ids)
-        for room in rooms:
-            if _holds(room, 0.5 * (low + high)):
-                name = facts[instance.name].name if instance.name in facts else ""
-                pieces[room.name].append(Piece(instance.category, float((high - low).max()), name))
     return [
         f"{room.name} {clause}"
         for room in rooms
-        for clause in missing_pieces(room.kind, room.area_m2, pieces[room.name])
+        for clause in missing_pieces(room.kind, room.area_m2, [_piece(item) for item in standing if is_in(room, item)])
     ]
 
 
-def _box(
-    model: mujoco.MjModel, data: mujoco.MjData, geoms: Sequence[int]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns the lowest and highest corner (3,) of the world-aligned box around some geoms, metres."""
-    ids = np.array(geoms)
-    rotation = data.geom_xmat[ids].reshape(-1, 3, 3)
-    middle = data.geom_xpos[ids] + np.einsum("nij,nj->ni", rotation, model.geom_aabb[ids, :3])
-    reach = np.einsum("nij,nj->ni", np.abs(rotation), model.geom_aabb[ids, 3:])
-    return (middle - reach).min(axis=0), (middle + reach).max(axis=0)
-
-
-def _holds(room: Room, point_m: NDArray[np.float64]) -> bool:
-    """Returns whether a point (3,) lies in one of the boxes of a room."""
-    slack = np.array([0.0, 0.0, SITE_MARGIN_M])
-    return any(bool((np.abs(point_m - centre) <= np.add(half, slack)).all()) for centre, half in room.boxes)
+def _piece(item: Standing) -> Piece:
+    name = "" if item.name == item.category.replace("_", " ") else item.name
+    return Piece(item.category, float((item.high - item.low).max()), name)

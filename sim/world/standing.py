@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.gl import mujoco
+from sim.houses.geoms import world_boxes
 from sim.houses.house import Room
 from sim.houses.instance_facts import read_instance_facts
 from sim.houses.labels import Labels
@@ -31,7 +32,6 @@ class Standing:
     high: NDArray[np.float64]  # (3,) metres
     at: NDArray[np.float64]  # (2,) origin of its body, metres
     front: NDArray[np.float64]  # (2,) unit vector: the heading of its body
-    geoms: tuple[int, ...] = ()
 
     @property
     def middle(self) -> NDArray[np.float64]:
@@ -50,7 +50,7 @@ class Standing:
 def read_standing(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> list[Standing]:
     """Returns all instances with their boxes."""
     facts = read_instance_facts(model, labels)
-    low, high = _boxes(model, data)
+    low, high = world_boxes(model, data, np.arange(model.ngeom))
     items = []
     for instance in labels.instances:
         ids = np.array(instance.geom_ids)
@@ -68,27 +68,9 @@ def read_standing(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) ->
                 high[ids].max(axis=0),
                 data.xpos[body][:2].copy(),
                 x_axis / max(float(np.linalg.norm(x_axis)), 1e-9),
-                tuple(instance.geom_ids),
             )
         )
     return items
-
-
-def _boxes(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns the lowest and highest corners (ngeom, 3) of the world-aligned boxes around all geoms, metres.
-
-    Those of meshes are of their vertices: the frame of a mesh is turned, which makes the box of its own box too large.
-    """
-    rotation = data.geom_xmat.reshape(-1, 3, 3)
-    middle = data.geom_xpos + np.einsum("nij,nj->ni", rotation, model.geom_aabb[:, :3])
-    reach = np.einsum("nij,nj->ni", np.abs(rotation), model.geom_aabb[:, 3:])
-    low, high = middle - reach, middle + reach
-    for geom in np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_MESH.value).tolist():
-        mesh = model.geom_dataid[geom]
-        first = model.mesh_vertadr[mesh]
-        vertices = model.mesh_vert[first : first + model.mesh_vertnum[mesh]] @ rotation[geom].T + data.geom_xpos[geom]
-        low[geom], high[geom] = vertices.min(axis=0), vertices.max(axis=0)
-    return low, high
 
 
 def is_in(room: Room, item: Standing) -> bool:

@@ -31,7 +31,7 @@ COMMANDS: Mapping[str, Command] = {
     "submit": Command("sim.app.commands.submit", "Pack a recorded run into one file that anybody can check"),
     "verify": Command("sim.app.commands.verify", "Replay the actions of a submission and check its results"),
     "leaderboard": Command("sim.app.commands.leaderboard", "Write the table of the verified submissions in a folder"),
-    "seal announce": Command("sim.app.commands.seal.announce", "Announce a sealed split whose seed nobody can know"),
+    "seal announce": Command("sim.app.commands.seal.announce", "Announce a sealed split before its seed exists"),
     "seal make": Command("sim.app.commands.seal.make", "Make a sealed split from a secret or an announcement"),
     "seal publish": Command("sim.app.commands.seal.publish", "Write the hash of a split, to be published"),
     "seal reveal": Command("sim.app.commands.seal.reveal", "Check a revealed split against its published hash"),

@@ -1,4 +1,4 @@
-"""Sealed splits without an organiser: the seed is derived from something that nobody could know before.
+"""Sealed splits without an organiser: the seed is derived from a hash that did not exist before.
 
 The authors freeze their agent, announce where the seed will come from, and commit both. The seed is then derived from
 the announcement and from a beacon, a hash that did not exist at that time: that of a later commit of a repository that
@@ -18,10 +18,9 @@ import msgspec
 
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
-from sim.core.reading import Count, Name, read_bytes, read_json
+from sim.core.reading import Count, Name, read_json
 
 FORMAT: Literal["stubborn-announcement-1"] = "stubborn-announcement-1"
-MAX_BYTES = 1 << 16
 Commit = Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{40}\Z")]
 """The hash of a commit, or another number of 40 hexadecimal digits."""
 Statement = Annotated[str, msgspec.Meta(min_length=10, max_length=500, pattern=r"^[^\x00-\x1f\x7f-\x9f]*\Z")]
@@ -44,15 +43,15 @@ class Announcement(msgspec.Struct, forbid_unknown_fields=True):
     episodes: Count
 
 
-def write_announcement(file: Path, announcement: Announcement) -> None:
-    """Writes an announcement to a new file.
+def write_published(file: Path, content: msgspec.Struct, what: str) -> None:
+    """Writes what will be published, such as "an announcement", to a new file.
 
     Raises:
         ConfigError: the file exists.
     """
     if file.exists():
-        raise ConfigError(f"'{file}' exists: it may have been committed; name another file.")
-    write_atomically(file, msgspec.json.format(msgspec.json.encode(announcement), indent=2) + b"\n")
+        raise ConfigError(f"'{file}' exists: it may be {what} that was published; remove it, or name another file.")
+    write_atomically(file, msgspec.json.format(msgspec.json.encode(content), indent=2) + b"\n")
 
 
 def read_announcement(file: Path) -> Announcement:
@@ -62,15 +61,6 @@ def read_announcement(file: Path) -> Announcement:
         ConfigError: it cannot be read, or has another form.
     """
     return read_json(file, Announcement, what="Announcement")
-
-
-def digest_of(file: Path) -> str:
-    """Returns the SHA-256 of the bytes of an announcement.
-
-    Raises:
-        ConfigError: it cannot be read.
-    """
-    return hashlib.sha256(read_bytes(file, what="Announcement", most=MAX_BYTES)).hexdigest()
 
 
 def secret_of(announcement_sha256: str, beacon: str) -> str:
@@ -91,7 +81,7 @@ def faults_of_order(announcement: Path, seal: Path, beacon: str, repository: Pat
         repository: a folder of the repository.
 
     Raises:
-        ConfigError: the folder is no git repository, or a file is not committed.
+        ConfigError: the folder is not in a git repository, or a file is not committed.
     """
     announced, sealed = (_commit_that_added(file, repository) for file in (announcement, seal))
     agent = read_announcement(announcement).agent_commit

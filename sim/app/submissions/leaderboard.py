@@ -144,8 +144,8 @@ _TITLES: Mapping[Origin, str] = {
 _MEANINGS: Mapping[Origin, str] = {
     "organiser": "An organiser made the houses from a secret and ran the agents, which could not know them.",
     "beacon": "The houses come from a hash, made by others, that did not exist when the agent was frozen.",
-    "authors": "The houses come from a later commit of the authors: they could choose it, and nobody else drew them.",
-    "private": "Nobody can tell who knew these houses before the run.",
+    "authors": "The houses come from a later commit that the authors could choose: no third party drew them.",
+    "private": "It is not known who saw these houses before the run.",
     "public": (
         "Houses and episodes are public. A replay proves what the actions achieve, and not that the agent searched: "
         "one that repeats stored actions gets the same row. Sealed rows count."

@@ -18,10 +18,8 @@ from typing import Annotated, Literal
 import msgspec
 
 from sim.app.submissions.announcement import Commit, read_announcement
-from sim.app.submissions.announcement import digest_of as announcement_digest
 from sim.core.errors import ConfigError
-from sim.core.files import write_atomically
-from sim.core.reading import Count, Name, read_json, read_text
+from sim.core.reading import Count, Name, read_json, read_text, sha256_of
 from sim.episodes.house_list import house_maker
 from sim.episodes.splits import Split
 from sim.homes.housegen.splits.recipes import SPLITS, Recipe
@@ -37,8 +35,8 @@ TRIES = 20
 """Seeds of one house that are tried until one gives a house."""
 
 Origin = Literal["public", "private", "organiser", "beacon", "authors"]
-"""Who knew a split before the run: everybody; nobody can tell; an organiser; nobody, since a later hash of others drew
-it; nobody, but the authors could choose the later hash."""
+"""How a split was made: it ships; it is not sealed; an organiser sealed it; a later hash of others drew it; a later
+hash drew it that the authors could choose."""
 Digest = Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{64}\Z")]
 
 
@@ -93,7 +91,8 @@ def seal_of(split: Split, secret: str | None, announced: tuple[Path, str] | None
     )
     if announced is not None:
         file, seal.beacon = announced
-        seal.announcement_sha256, seal.beacon_by = announcement_digest(file), read_announcement(file).beacon_by
+        seal.announcement_sha256 = sha256_of(file, what="Announcement")
+        seal.beacon_by = read_announcement(file).beacon_by
     return seal
 
 
@@ -120,17 +119,6 @@ def origin_of(split: Split, folder: Path | None) -> Origin:
 def seal_file(folder: Path) -> Path:
     """Returns the file of the seal next to the folder of a split."""
     return folder.with_name(f"{folder.name}.sealed.json")
-
-
-def write_seal(file: Path, seal: Seal) -> None:
-    """Writes a seal to a new file.
-
-    Raises:
-        ConfigError: the file exists.
-    """
-    if file.exists():
-        raise ConfigError(f"'{file}' exists: it may be a seal that was published; remove it, or name another file.")
-    write_atomically(file, msgspec.json.format(msgspec.json.encode(seal), indent=2) + b"\n")
 
 
 def read_seal(file: Path) -> Seal:

@@ -12,6 +12,7 @@ from sim.homes.housegen.generator import generate
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels
 from sim.world.arrangement import arrangement_faults
+from sim.world.standing import read_standing
 from tests.helpers.worlds import room
 
 NORTH, SOUTH, WEST = math.pi / 2, -math.pi / 2, math.pi
@@ -48,7 +49,7 @@ def faults(kind: str, *pieces: Piece) -> list[str]:
     model = spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    return arrangement_faults(model, data, read_labels(model, ignore_prefix=""), read_rooms(model))
+    return faults_of(model, data)
 
 
 # A run along the south wall: fridge, worktop with a sink, cooker, worktop.
@@ -159,6 +160,11 @@ def test_nothing_tall_and_no_fireplace_stands_before_a_window() -> None:
         assert faults("dining_room", window, moved(piece, 1.9, 0.0)) == []
 
 
+def faults_of(model: mujoco.MjModel, data: mujoco.MjData) -> list[str]:
+    labels = read_labels(model, ignore_prefix="")
+    return arrangement_faults(model, data, labels, read_rooms(model), read_standing(model, data, labels))
+
+
 def swing(*pieces: Piece) -> list[str]:
     """Returns the faults of a room with a door in the west wall, its leaf open by 80 degrees into the room."""
     spec = room(6, 4).spec
@@ -170,6 +176,8 @@ def swing(*pieces: Piece) -> list[str]:
         name="door_01", pos=(-2.95, 0.0, 0.0), quat=(math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2))
     )
     leaf.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, pos=(0.42, 0.0, 1.0), size=(0.42, 0.02, 1.0))
+    limits = mujoco.mjtLimited.mjLIMITED_TRUE
+    leaf.add_joint(type=mujoco.mjtJoint.mjJNT_HINGE, axis=(0.0, 0.0, -1.0), limited=limits, range=(-80.0, 0.0))
     for piece in pieces:
         half = [0.5 * size for size in piece.size_m]
         body = spec.worldbody.add_body(name=piece.label, pos=(piece.x_m, piece.y_m, half[2]))
@@ -177,7 +185,7 @@ def swing(*pieces: Piece) -> list[str]:
     model = spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    return arrangement_faults(model, data, read_labels(model, ignore_prefix=""), read_rooms(model))
+    return faults_of(model, data)
 
 
 def test_nothing_stands_where_a_leaf_swings() -> None:
@@ -314,7 +322,7 @@ def floors(kind: str, texture: str) -> list[str]:
     model = spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    found = arrangement_faults(model, data, read_labels(model, ignore_prefix=""), read_rooms(model))
+    found = faults_of(model, data)
     return [fault for fault in found if "sofa" not in fault]
 
 
@@ -336,5 +344,5 @@ def test_a_generated_house_follows_all_rules_until_a_chair_is_taken_away(seed: i
         model = spec.compile()
         data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, data)
-        found = arrangement_faults(model, data, read_labels(model, ignore_prefix=""), read_rooms(model))
+        found = faults_of(model, data)
         assert (found == []) == kept

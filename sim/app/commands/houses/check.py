@@ -39,7 +39,7 @@ from sim.gl import mujoco
 from sim.homes.housegen.floor_plan.rooms import PlanKind
 from sim.homes.housegen.furniture.item import Pool
 from sim.homes.housegen.generator import HouseConfig, generate_house
-from sim.homes.housegen.splits.recipes import SPLITS
+from sim.homes.housegen.splits.recipes import SPLIT_VERSION, SPLITS
 from sim.houses.house import House
 from sim.houses.writing import house_text
 from sim.robot.config import RobotConfig
@@ -68,7 +68,7 @@ class Args(HouseFile):
     """Name of a split, or a folder of houses with or without episodes, which are checked instead of fresh ones."""
 
     furnished: bool = False
-    """Apply all rules of generated houses to a split or house of your own; they always apply to the shipped splits."""
+    """Apply all rules of generated houses to a house or split of your own; shipped splits of this version always are."""
     views: cli.Amount = 12
     """Number of views in each house that are searched for void."""
     workers: cli.Count = 1
@@ -146,7 +146,12 @@ def _check_split(args: Args, split: str) -> Iterator[Checked]:
 
 
 def _is_generated(split: Split) -> bool:
-    """Returns whether all houses of a split come from the generator: each shipped split except for the traps."""
+    """Returns whether all houses of a split are by the rules of today: those of a shipped split of this version.
+
+    Traps are not.
+    """
+    if split.version != SPLIT_VERSION:
+        return False
     shipped = any(path.parent.parent == assets_dir().resolve() for path in split.house_paths.values())
     return split.house_list is not None or (shipped and split.name in SPLITS)
 

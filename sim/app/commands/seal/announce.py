@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 from sim.app import cli
-from sim.app.submissions.announcement import FORMAT, Announcement, write_announcement
+from sim.app.submissions.announcement import FORMAT, Announcement, write_published
 from sim.core.reading import convert
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Announce a sealed split whose seed nobody can know yet."""
+    """Announce a sealed split before its seed exists."""
 
     out: cli.OutFolder
     """Folder of the later split; the announcement is written next to it."""
@@ -47,6 +47,6 @@ def main(args: Args) -> int:
         Announcement,
         where="The announcement",
     )  # fmt: skip
-    write_announcement(file, announcement)
+    write_published(file, announcement, "an announcement")
     print(f"{file}: commit and publish it now, before the beacon exists.")
     return 0

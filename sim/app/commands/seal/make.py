@@ -18,8 +18,7 @@ from pathlib import Path
 from sim.app import cli
 from sim.app.commands import episodes
 from sim.app.evaluation.parallel import ordered_map
-from sim.app.submissions.announcement import Commit, read_announcement, secret_of
-from sim.app.submissions.announcement import digest_of as announcement_digest
+from sim.app.submissions.announcement import Commit, read_announcement, secret_of, write_published
 from sim.app.submissions.sealing import (  # fmt: skip
     LIKE,
     VERSION,
@@ -29,11 +28,10 @@ from sim.app.submissions.sealing import (  # fmt: skip
     recipes,
     seal_file,
     seal_of,
-    write_seal,
 )
 from sim.core.errors import ConfigError, HouseError
 from sim.core.files import write_atomically
-from sim.core.reading import convert
+from sim.core.reading import convert, sha256_of
 from sim.episodes.house_list import copy_textures
 from sim.episodes.splits import Split, load_split
 from sim.houses.references import SHARED_TEXTURES
@@ -73,7 +71,7 @@ def main(args: Args) -> int:
         raise ConfigError("Give --secret-file FILE, or --announced FILE together with --beacon HASH.")
     secret = read_secret(args.secret_file) if args.from_secret else new_secret(args.secret_file)
     split = make_split(args.out, secret, houses=args.houses, episode_count=args.episodes, workers=args.workers)
-    write_seal(seal_file(args.out), seal_of(split, secret))
+    write_published(seal_file(args.out), seal_of(split, secret), "a seal")
     print(f"{args.out}: {args.houses} houses, {args.episodes} episodes, sha256 {split.sha256}.")
     print(f"Publish {seal_file(args.out)}; keep {args.out} and {args.secret_file} until the deadline.")
     return 0
@@ -87,7 +85,7 @@ def _make_announced(args: Args, file: Path) -> int:
     if args.out.resolve().name != announcement.name:
         raise ConfigError(f"--out must be a folder named '{announcement.name}', as '{file}' announces.")
     split, secret = make_announced_split(args.out, file, args.beacon, workers=args.workers)
-    write_seal(seal_file(args.out), seal_of(split, secret, (file, args.beacon)))
+    write_published(seal_file(args.out), seal_of(split, secret, (file, args.beacon)), "a seal")
     print(f"{args.out}: {announcement.houses} houses, {announcement.episodes} episodes, sha256 {split.sha256}.")
     print(f"Commit {seal_file(args.out)}, then run the agent that was frozen.")
     return 0
@@ -97,11 +95,11 @@ def make_announced_split(folder: Path, file: Path, beacon: str, *, workers: int)
     """Writes the split of an announcement and a beacon; returns it with its secret.
 
     Raises:
-        ConfigError: the announcement cannot be read, or the beacon is no hash of 40 hexadecimal digits.
+        ConfigError: the announcement cannot be read, or the beacon is not a hash of 40 hexadecimal digits.
         HouseError: no seed of a house gives a house.
     """
     announcement, beacon = read_announcement(file), convert(beacon, Commit, where="--beacon")
-    secret = secret_of(announcement_digest(file), beacon)
+    secret = secret_of(sha256_of(file, what="Announcement"), beacon)
     houses, episode_count = announcement.houses, announcement.episodes
     return make_split(folder, secret, houses=houses, episode_count=episode_count, workers=workers), secret
 

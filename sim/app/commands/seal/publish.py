@@ -14,7 +14,8 @@ from typing import Annotated
 import tyro
 
 from sim.app import cli
-from sim.app.submissions.sealing import seal_file, seal_of, write_seal
+from sim.app.submissions.announcement import write_published
+from sim.app.submissions.sealing import seal_file, seal_of
 from sim.episodes.splits import load_split
 
 
@@ -32,6 +33,6 @@ def main(args: Args) -> int:
     """Writes the seal; returns the exit status."""
     split = load_split(args.split)
     seal, out = seal_of(split, None), args.out or seal_file(args.split.resolve())
-    write_seal(out, seal)
+    write_published(out, seal, "a seal")
     print(f"{out}: {seal.houses} houses, {seal.episodes} episodes, sha256 {seal.split_sha256}.")
     return 0

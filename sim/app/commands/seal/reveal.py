@@ -20,10 +20,10 @@ import tyro
 
 from sim.app import cli
 from sim.app.commands.seal.make import make_split, require_empty
-from sim.app.submissions.announcement import digest_of as announcement_digest
 from sim.app.submissions.announcement import faults_of_order, secret_of
 from sim.app.submissions.sealing import Seal, digest_of, other_versions, read_seal, read_secret, require_sealed
 from sim.core.errors import ConfigError
+from sim.core.reading import sha256_of
 from sim.episodes.splits import Split, load_split
 
 
@@ -63,7 +63,7 @@ def main(args: Args) -> int:
     if args.split is not None and seal.secret_sha256 is not None:
         print("Only the secret (--secret-file, --announced) shows that its houses were drawn from it.")
     if seal.beacon_by == "authors":
-        print("The authors could choose the beacon: nobody else drew this split.")
+        print("The authors could choose the beacon: no third party drew this split.")
     return 0
 
 
@@ -97,9 +97,9 @@ def _made(args: Args, seal: Seal) -> Split:
 def _secret(args: Args, seal: Seal) -> str:
     """Returns the sealed secret, from its file or from announcement and beacon."""
     if args.announced is not None:
-        if announcement_digest(args.announced) != seal.announcement_sha256 or seal.beacon is None:
+        if sha256_of(args.announced, what="Announcement") != seal.announcement_sha256 or seal.beacon is None:
             raise ConfigError(f"'{args.announced}' is not the announcement of '{args.seal}'.")
-        secret = secret_of(announcement_digest(args.announced), seal.beacon)
+        secret = secret_of(sha256_of(args.announced, what="Announcement"), seal.beacon)
     else:
         assert args.secret_file is not None
         secret = read_secret(args.secret_file)

@@ -179,6 +179,9 @@ def curtained_run(w: Workbench) -> None:
         c = y[0] + 0.05 + i * pitch
         beside_sink = hole is None or not hole[1][0] - 0.06 < c < hole[1][1] + 0.06
         w.box((x[0] + 0.03 if beside_sink else x[1] - 0.10, x[1] - 0.03), (c - 0.05, c + 0.05), (0.0, under), pier)
+    if width <= 0.3:  # two piers, without a curtain between them
+        _free_tops(w, x, free, height)
+        return
     w.rod(
         (x[1] - 0.05, y[0] + 0.1, under - 0.03),
         (x[1] - 0.05, y[1] - 0.1, under - 0.03),

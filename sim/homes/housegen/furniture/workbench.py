@@ -213,6 +213,8 @@ def _between(a: Point, b: Point) -> tuple[Point, float, NDArray]:
     start, end = np.asarray(a, float), np.asarray(b, float)
     along = end - start
     length = float(np.linalg.norm(along))
+    if length == 0.0:
+        raise ValueError("A rod or a bar needs two different ends.")
     along /= length
     if abs(along[1]) > 0.999:
         rotation = np.column_stack([(1.0, 0.0, 0.0), np.cross(along, (1.0, 0.0, 0.0)), along])

@@ -7,7 +7,6 @@ import math
 from sim.homes.housegen.furniture.item import Geom, Look
 from sim.homes.housegen.hazards.floor_map import FloorMap
 from sim.homes.housegen.hazards.hazard import Sketch, box
-from sim.homes.housegen.structure.openings import HALF_WALL_M
 
 GLASS_M, HIGH_M, PROFILE_M = 0.012, 2.05, 0.03
 """Thickness and height of panes, and the thickness of their frames."""
@@ -54,21 +53,14 @@ def screen(s: Sketch, floor: FloorMap) -> bool:
 
 def door_leaf(s: Sketch, floor: FloorMap) -> bool:
     """Adds a glass leaf to a doorway that has none: ajar, or closed where another route exists."""
-    doors = [opening for opening in floor.openings if opening.kind == "door" and opening.leaf is None]
-    if not doors:
+    clear_m = s.move_into_bare_doorway(floor.openings)
+    if clear_m is None:
         return False
-    opening = doors[int(s.rng.integers(len(doors)))]
-    low, high = opening.clear_span()
-    s.move_into(opening, 0.5 * (low + high))
-    width = high - low - 0.09
+    width = clear_m - 0.09
     if s.rng.random() < 0.3:
         _leaf(s, width, (0.0, -0.5 * width), math.pi / 2)
-        return True
-    hinge, into = (1 if s.rng.random() < 0.5 else -1), (1 if s.rng.random() < 0.5 else -1)
-    angle = float(s.rng.uniform(*LEAF_RAD))
-    # The closed leaf points along -hinge * y from its hinge; it opens towards into * x.
-    closed = -hinge * math.pi / 2
-    _leaf(s, width, (into * (HALF_WALL_M + 0.05), hinge * 0.5 * width), closed + hinge * into * angle)
+    else:
+        _leaf(s, width, *s.draw_hinge(width, float(s.rng.uniform(*LEAF_RAD))))
     return True
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
@@ -19,7 +19,7 @@ from sim.homes.housegen.mjcf.merging import collision_geoms
 from sim.homes.housegen.mjcf.movables import Movable, as_movable
 from sim.homes.housegen.mjcf.placed import PlacedItem
 from sim.homes.housegen.mjcf.triangles import facets
-from sim.homes.housegen.structure.openings import Opening
+from sim.homes.housegen.structure.openings import HALF_WALL_M, Opening
 from sim.homes.housegen.surfaces.materials import look
 
 if TYPE_CHECKING:
@@ -103,6 +103,26 @@ class Sketch:
         level = opening.side in ("north", "south")
         self.x_m, self.y_m = (at_m, opening.line_m) if level else (opening.line_m, at_m)
         self.yaw_rad = (math.pi / 2 if level else 0.0) + (math.pi if self.rng.random() < 0.5 else 0.0)
+
+    def move_into_bare_doorway(self, openings: Sequence[Opening]) -> float | None:
+        """Moves the sketch into a doorway without a leaf; returns its clear width, or None if there is none."""
+        bare = [opening for opening in openings if opening.kind == "door" and opening.leaf is None]
+        if not bare:
+            return None
+        opening = bare[int(self.rng.integers(len(bare)))]
+        low, high = opening.clear_span()
+        self.move_into(opening, 0.5 * (low + high))
+        return high - low
+
+    def draw_hinge(self, width_m: float, angle_rad: float) -> tuple[tuple[float, float], float]:
+        """Returns place and yaw, in the sketch's frame, of a leaf that is open by an angle in the doorway at it.
+
+        Its hinge is at either jamb, and it opens to either side.
+        """
+        hinge, into = (1 if self.rng.random() < 0.5 else -1), (1 if self.rng.random() < 0.5 else -1)
+        # The closed leaf points along -hinge * y from its hinge; it opens towards into * x.
+        closed = -hinge * math.pi / 2
+        return (into * (HALF_WALL_M + 0.05), hinge * 0.5 * width_m), closed + hinge * into * angle_rad
 
     def add(
         self, category: str, visible: list[Geom], hidden: tuple[Geom, ...] = (), *,

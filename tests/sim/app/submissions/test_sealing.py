@@ -15,6 +15,7 @@ import pytest
 from sim.app.commands.seal import announce, make, publish, reveal
 from sim.app.submissions import announcement, sealing
 from sim.core.errors import ConfigError
+from sim.core.reading import sha256_of
 from sim.episodes.splits import load_split
 from sim.homes.housegen.splits.recipes import Recipe
 from tests.helpers import wording
@@ -82,7 +83,9 @@ def test_a_seal_of_another_form_is_refused(tmp_path: Path, change: dict[str, Any
 
 
 def test_another_secret_or_another_name_is_refused_before_houses_are_made(tmp_path: Path) -> None:
-    sealing.write_seal(tmp_path / "tiny.sealed.json", sealing.seal_of(load_split(tiny_split(tmp_path)), OTHER))
+    announcement.write_published(
+        tmp_path / "tiny.sealed.json", sealing.seal_of(load_split(tiny_split(tmp_path)), OTHER), "a seal"
+    )
     seal, secret = tmp_path / "tiny.sealed.json", tmp_path / "secret"
     secret.write_text(SECRET)
     cases: tuple[tuple[dict[str, Any], str], ...] = (
@@ -146,7 +149,7 @@ def test_an_announcement_without_a_commit_or_a_rule_is_refused(
 
 
 def test_the_secret_of_an_announced_split_depends_on_the_announcement_and_on_the_beacon(tmp_path: Path) -> None:
-    digest = announcement.digest_of(announced(tmp_path))
+    digest = sha256_of(announced(tmp_path), what="Announcement")
     secrets = {announcement.secret_of(digest, BEACON), announcement.secret_of(digest, "0" * 40)}
     secrets.add(announcement.secret_of("0" * 64, BEACON))
     assert len(secrets) == 3

@@ -200,6 +200,18 @@ def test_meshes_are_closed_and_face_outwards(style):
         assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0.0, f"{shape.name} is inside out"
 
 
+@pytest.mark.parametrize("style", CATALOGUE.styles("counter", use="run"), ids=lambda style: style.name)
+@pytest.mark.parametrize("width_m", [0.2, 0.25, 0.4, 0.9])
+def test_a_worktop_of_any_width_is_as_wide_as_asked_for(style: Style, width_m: float) -> None:
+    """Kitchens have worktops of 0.2 m between two appliances."""
+    for seed in SEEDS:
+        rng = np.random.default_rng(seed)
+        item = CATALOGUE.make_item(
+            "counter", rng, pool=style.pool, style=style.name, width_m=width_m, with_sink=False, with_hob=False
+        )
+        assert item.size_m[1] == pytest.approx(width_m, abs=0.02)
+
+
 def test_every_goal_has_enough_styles_in_both_pools():
     for category in GOAL_CATEGORIES:
         assert len(CATALOGUE.styles(category, "train")) >= 4, category
