@@ -65,7 +65,7 @@ ROOM_SIZES: Mapping[str, RoomSize] = MappingProxyType(
 HALLWAY_M = (0.9, 15.0)
 """Smallest width of a hallway between its walls, and its largest length in a storey of up to `USUAL_M2`; hallways in
 one line count as one."""
-USUAL_M2, M2_PER_M = 300.0, 60.0
+USUAL_M2, M2_PER_M = 300.0, 40.0
 """Area of a storey from which hallways may be longer, and by how many square metres for each metre."""
 IN_LINE_M = 0.8
 """Width of a straight path through two hallways that makes them one line."""
@@ -148,6 +148,13 @@ def plan_faults(rooms: Sequence[Room], doors: Iterable[Doorway], windows: Iterab
         doors: their doors and front doors, without wide openings.
         windows: their windows.
     """
+    lit = {room.name for window in windows for sign in (-1.0, 1.0) if (room := _room_at(rooms, window, sign))}
+    dark = [f"{room.name} has no window" for room in rooms if room.kind in LIT and room.name not in lit]
+    return [*room_faults(rooms), *dark, *_door_faults(rooms, tuple(doors))]
+
+
+def room_faults(rooms: Sequence[Room]) -> list[str]:
+    """Returns a sentence for each rule on number and size of rooms that is violated by the rooms of all storeys."""
     home_m2 = sum(room.area_m2 for room in rooms)
     faults = _number_faults(Counter(room.kind for room in rooms), home_m2)
     living_m2 = max((room.area_m2 for room in rooms if room.kind == "living_room"), default=LIVING_M2)
@@ -163,9 +170,7 @@ def plan_faults(rooms: Sequence[Room], doors: Iterable[Doorway], windows: Iterab
         faults += _long_hallways([room for room in storey if room.kind == "hallway"], longest_m)
         if halls_m2 > HALLWAY_SHARE * whole_m2:
             faults.append(f"hallways take {halls_m2:.0f} of {whole_m2:.0f} m2")
-    lit = {room.name for window in windows for sign in (-1.0, 1.0) if (room := _room_at(rooms, window, sign))}
-    faults += [f"{room.name} has no window" for room in rooms if room.kind in LIT and room.name not in lit]
-    return faults + _door_faults(rooms, tuple(doors))
+    return faults
 
 
 def unmet_plan_requirements(

@@ -31,7 +31,14 @@ from sim.homes.housegen.hazards import PlacedHazard, draw_hazards
 from sim.homes.housegen.mjcf.builder import HouseBuilder
 from sim.homes.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
 from sim.homes.housegen.structure.building import build_structure
-from sim.homes.housegen.structure.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings, plan_rule_faults
+from sim.homes.housegen.structure.openings import (
+    HALF_WALL_M,
+    OUTER_WALL_M,
+    Opening,
+    cut_openings,
+    plan_rule_faults,
+    size_rule_faults,
+)
 from sim.homes.housegen.surfaces.lighting import DAYLIGHT, draw_lamps
 from sim.homes.housegen.surfaces.structure_looks import draw_structure_looks
 from sim.homes.housegen.upper_storey import Stairs, UpperStorey, draw_stairs, draw_upper_storey, lifted
@@ -211,6 +218,8 @@ def _draw_plan(
             plan = draw_floor_plan(rng, kind, drawn_m2, rooms)
             if config.exact:
                 _require_as_asked(plan, area_m2 if must_match else None, rooms)
+            if faults := size_rule_faults(plan):
+                raise PlanError(faults[0])
             openings = cut_openings(rng, plan)
             if faults := plan_rule_faults(plan, openings):
                 raise PlanError(faults[0])

@@ -68,7 +68,7 @@ class Args(HouseFile):
     """Name of a split, or a folder of houses with or without episodes, which are checked instead of fresh ones."""
 
     furnished: bool = False
-    """Apply all rules of generated houses to a house or split of your own; shipped splits of this version always are."""
+    """Apply all rules of generated houses to a house or split of your own; shipped ones of this version always are."""
     views: cli.Amount = 12
     """Number of views in each house that are searched for void."""
     workers: cli.Count = 1

@@ -109,6 +109,8 @@ def frame_around(outer: Rect, hole: Rect) -> list[Rect]:
 
 def shared_side(a: Rect, b: Rect) -> tuple[Side, Interval] | None:
     """Returns the side of `a` on which `b` lies and the interval that both share; None if they do not touch."""
+    if max(a.x0, b.x0) - min(a.x1, b.x1) > EPS_M or max(a.y0, b.y0) - min(a.y1, b.y1) > EPS_M:
+        return None  # apart
     for side in SIDES:
         if abs(a.line(side) - b.line(OPPOSITE[side])) < EPS_M:
             lo, hi = max(a.span(side)[0], b.span(side)[0]), min(a.span(side)[1], b.span(side)[1])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -12,7 +12,7 @@ from sim.homes.housegen.floor_plan import FloorPlan, Join, PlanError
 from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, SIDES, Interval, Rect, Side, shared_side, subtract
 from sim.homes.housegen.floor_plan.rooms import ROOM_RULES
 from sim.houses.house import Room
-from sim.world.plan_requirements import SWING_M, Doorway, plan_faults
+from sim.world.plan_requirements import SWING_M, Doorway, plan_faults, room_faults
 
 HALF_WALL_M = 0.06
 """Thickness of one room's half of a wall, inside the room's rectangle."""
@@ -136,10 +136,7 @@ def plan_rule_faults(
     windows: list[Doorway] = []
     for storey, (level, holes) in enumerate(((plan, openings), *further)):
         z_m = storey * _STOREY_M
-        for room in level.rooms:
-            inner = room.rect.grown(-HALF_WALL_M)
-            half = (0.5 * inner.width_m, 0.5 * inner.depth_m, 1.0)
-            rooms.append(Room(room.name, room.kind, (((*inner.centre, z_m + 1.0), half),)))
+        rooms += _rooms(level, z_m)
         for hole in holes:
             if hole.kind in ("door", "entry", "window"):
                 along_x = hole.side in ("north", "south")
@@ -148,6 +145,19 @@ def plan_rule_faults(
                     Doorway(centre, hole.span[1] - hole.span[0], along_x, z_m)
                 )
     return plan_faults(rooms, doors, windows)
+
+
+def size_rule_faults(plan: FloorPlan) -> list[str]:
+    """Returns the faults of a plan that openings do not change, which many plans have."""
+    return room_faults(list(_rooms(plan, 0.0)))
+
+
+def _rooms(plan: FloorPlan, z_m: float) -> Iterator[Room]:
+    """Yields the rooms of a plan between their walls."""
+    for room in plan.rooms:
+        inner = room.rect.grown(-HALF_WALL_M)
+        half = (0.5 * inner.width_m, 0.5 * inner.depth_m, 1.0)
+        yield Room(room.name, room.kind, (((*inner.centre, z_m + 1.0), half),))
 
 
 def _cut_apart(
