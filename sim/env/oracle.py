@@ -2,9 +2,10 @@
 
 The oracle heads for the goal of its episode. It is an upper bound: if it fails, the task, the free space or the robot
 is wrong. A `Follower` heads for any destination, and is the oracle's way of driving. It finds its route by weighted A*
-over steps of "turn, then drive 0.25 m" on the 12 headings, with the geodesic distance as heuristic. It searches again
-if the robot is not where the route expects it; a step that was blocked is not tried again. Where whole steps do not
-lead to the goal, as in a narrow gap between furniture, the route also has steps that an obstacle ends.
+over steps of "turn, then drive ahead" on the headings of the robot (12 of them, and 0.25 m, by default), with the
+geodesic distance as heuristic. It searches again if the robot is not where the route expects it; a step that was
+blocked is not tried again. Where whole steps do not lead to the goal, as in a narrow gap between furniture, the route
+also has steps that an obstacle ends.
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.core.interface import FORWARD_M, TURN_RAD, Action, Observation
+from sim.core.interface import Action, Observation
 from sim.task.objectnav import Task
 from sim.world.freespace import CELL_M, FreeSpace
+from sim.world.world import World
 
-HEADINGS = round(math.tau / TURN_RAD)
 HEURISTIC_WEIGHT = 1.5
 """Weight of the heuristic: routes are slightly longer than the shortest one and are found many times faster."""
 TURN_COST_M = 0.02
@@ -92,7 +93,7 @@ class Oracle:
         floor_z_m = task.start.floor_z_m
         space, target = task.truth.space(floor_z_m), task.truth.target(goal, floor_z_m)
         places = Destination(space, target.reached, target.distance_m, target.region.succeeds)
-        self._follower = Follower(self._env, places)
+        self._follower = Follower(task.world, task.start.yaw_rad, places)
 
     def act(self, observation: Observation) -> Action:
         """Returns the next action of the route; STOP as soon as it succeeds."""
@@ -106,17 +107,25 @@ class Oracle:
 
 
 class Follower:
-    """Follows the shortest path from where the robot is to a destination."""
+    """Follows the shortest path from where the robot is to a destination.
 
-    def __init__(self, env: HasScene, to: Destination) -> None:
-        self._env = env
+    Args:
+        world: with the robot.
+        start_yaw_rad: a heading of the robot, from which the others differ by whole turns.
+        to: the destination.
+    """
+
+    def __init__(self, world: World, start_yaw_rad: float, to: Destination) -> None:
+        self._world, self._start_yaw_rad = world, start_yaw_rad
+        self._forward_m, self._turn_rad = world.config.drive.forward_m, world.config.drive.turn_rad
+        self._headings = round(math.tau / self._turn_rad)
         self._reached = to.reached
         self._frame, self._distance_m = to.space.frame, to.distance_m
         free = to.space.free.astype(np.uint8)
         self._clearance_m = cv2.distanceTransform(free, cv2.DIST_L2, 5) * CELL_M  # 0: not free
         inner = cv2.erode(to.cells.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(np.bool_)
         self._goal_cells = inner if inner.any() else to.cells
-        self._swept_m = np.zeros((HEADINGS, 0, 2))
+        self._swept_m = np.zeros((self._headings, 0, 2))
         self._route: deque[tuple[Action, Node]] = deque()
         self._expected: Node | None = None
         self._blocked: set[Key] = set()
@@ -138,18 +147,16 @@ class Follower:
         return action
 
     def _here(self) -> Node:
-        pose = self._env.scene.task.world.pose
-        turned = (pose.yaw_rad - self._env.scene.task.start.yaw_rad) / TURN_RAD
-        return pose.x_m, pose.y_m, round(turned) % HEADINGS
+        pose = self._world.pose
+        return pose.x_m, pose.y_m, round((pose.yaw_rad - self._start_yaw_rad) / self._turn_rad) % self._headings
 
     def _swept(self, heading: int) -> NDArray[np.float64]:
         """Returns the positions (headings, samples, 2) of a MOVE_FORWARD on each heading, relative to its start.
 
         The headings are turns away from the present one, since a gyro with an error makes turns of another angle.
         """
-        yaw_rad = self._env.scene.task.world.pose.yaw_rad
-        yaws = yaw_rad + (np.arange(HEADINGS) - heading) * TURN_RAD
-        along = np.linspace(CELL_M, FORWARD_M, round(FORWARD_M / CELL_M))
+        yaws = self._world.pose.yaw_rad + (np.arange(self._headings) - heading) * self._turn_rad
+        along = np.linspace(CELL_M, self._forward_m, round(self._forward_m / CELL_M))
         return along[None, :, None] * np.stack([np.cos(yaws), np.sin(yaws)], axis=1)[:, None, :]
 
     def _search(self, begin: Node, *, whole: bool) -> tuple[list[tuple[Action, Node]], bool]:
@@ -184,7 +191,7 @@ class Follower:
         while nodes[-1] != begin:
             nodes.append(came[_key(nodes[-1])])
         steps = itertools.pairwise(nodes[::-1])
-        return [action for node, after in steps for action in _actions(node, after)], reached
+        return [action for node, after in steps for action in self._actions(node, after)], reached
 
     def _steps(self, node: Node, *, whole: bool) -> Iterator[tuple[float, Node, float]]:
         """Yields cost, end and remaining distance of each step from a node: a turn, then MOVE_FORWARD."""
@@ -199,30 +206,28 @@ class Follower:
             left_m = float(self._distance_m[row[k, last], col[k, last]])
             if not math.isfinite(left_m) or _key((x, y, k)) in self._blocked:
                 continue
-            step_m = FORWARD_M + TURN_COST_M * abs(_turns(heading, k))
+            step_m = self._forward_m + TURN_COST_M * abs(self._turns(heading, k))
             step_m += TIGHT_COST_M * (clearance_m[k, : last + 1].min() < MARGIN_M)
             step_m += BLOCKED_COST_M * (free[k] < samples)
             dx, dy = self._swept_m[k, last]
             yield step_m, (x + dx, y + dy, k), left_m
+
+    def _turns(self, heading: int, to: int) -> int:
+        """Returns the number of left turns from one heading to another; negative: right turns."""
+        return (to - heading + self._headings // 2) % self._headings - self._headings // 2
+
+    def _actions(self, node: Node, after: Node) -> Iterator[tuple[Action, Node]]:
+        """Yields the turns and the MOVE_FORWARD from a node to the next, each with the node that it leads to."""
+        turns = self._turns(node[2], after[2])
+        turn, sign = (Action.TURN_LEFT, 1) if turns > 0 else (Action.TURN_RIGHT, -1)
+        for i in range(1, abs(turns) + 1):
+            yield turn, (node[0], node[1], (node[2] + sign * i) % self._headings)
+        yield Action.MOVE_FORWARD, after
 
 
 def _key(node: Node) -> Key:
     return round(node[0] / NODE_M), round(node[1] / NODE_M), node[2]
 
 
-def _turns(heading: int, to: int) -> int:
-    """Returns the number of left turns from one heading to another; negative: right turns."""
-    return (to - heading + HEADINGS // 2) % HEADINGS - HEADINGS // 2
-
-
 def _same(here: Node, expected: Node) -> bool:
     return here[2] == expected[2] and math.hypot(here[0] - expected[0], here[1] - expected[1]) <= DRIFT_M
-
-
-def _actions(node: Node, after: Node) -> Iterator[tuple[Action, Node]]:
-    """Yields the turns and the MOVE_FORWARD from a node to the next, each with the node that it leads to."""
-    turns = _turns(node[2], after[2])
-    turn, sign = (Action.TURN_LEFT, 1) if turns > 0 else (Action.TURN_RIGHT, -1)
-    for i in range(1, abs(turns) + 1):
-        yield turn, (node[0], node[1], (node[2] + sign * i) % HEADINGS)
-    yield Action.MOVE_FORWARD, after

@@ -17,6 +17,7 @@ PHYSICS_VERSION = 3
 the true pose, wheels that collide with floors only. 2: a level camera, a limit of the lean while pushing."""
 Base = Literal["planar", "free"]
 """`planar`: three slides and a vertical hinge keep the body upright; `free`: only its wheels and casters carry it."""
+MotionKind = Literal["contacts", "no-sliding", "sliding"]
 
 
 def _require_positive(config: object, *names: str) -> None:
@@ -241,8 +242,14 @@ class RobotConfig:
     """A third-party body, which `body` and `wheels` then describe; None: the default body, which is built from them."""
     camera_forward_m: float = 0.0
     """Distance of the camera ahead of the axle."""
+    motion: MotionKind = "contacts"
+    """How actions move the robot: `contacts` is physics. The other two are those of Habitat: a disc glides over the
+    free space without physics, and an obstacle ends its motion (`no-sliding`) or deflects it (`sliding`)."""
 
     def __post_init__(self) -> None:
+        if self.motion not in get_args(MotionKind):
+            kinds = ", ".join(get_args(MotionKind))
+            raise ConfigError(f"RobotConfig.motion must be one of {kinds}, got '{self.motion}'.")
         if self.base not in get_args(Base):
             raise ConfigError(f"RobotConfig.base must be one of {', '.join(get_args(Base))}, got '{self.base}'.")
         if self.file is not None and self.base == "free":

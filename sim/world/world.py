@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sim.core.errors import EpisodeError, PhysicsError
+from sim.core.errors import ConfigError, EpisodeError, PhysicsError
 from sim.core.geometry.pose import BodyPose, Pose
 from sim.core.interface import Action, SuccessRule
 from sim.gl import mujoco
@@ -22,6 +22,8 @@ from sim.robot.drive import Driver, Motion
 from sim.robot.odometry import Odometry
 from sim.robot.velocity import Velocity, VelocityDrive
 from sim.world.compile import compile_world
+from sim.world.freespace import FreeSpace
+from sim.world.kinematic import Glide, performed
 from sim.world.storeys import floor_geoms, floor_levels
 from sim.world.support import FloorSupport
 
@@ -60,12 +62,15 @@ class World:
         self._odometry = Odometry(self.config, self.model, self.data, self._body)
         self._driver = Driver(self.config, self.model, self.data, self._body, self._odometry, log)
         self._velocity_drive = VelocityDrive(self.config, self.model, self.data, self._body, self._odometry, log)
-        self._levels_m = floor_levels(self.model, self.labels)
+        self.floor_levels_m = floor_levels(self.model, self.labels)
+        """Heights of the levels of floors, from the lowest on."""
         self._floors = floor_geoms(self.model, self.labels)
         self._support = FloorSupport(self.model, self.data, self._floors, self.config)
         self._ground = np.concatenate([self._floors, np.flatnonzero(cover_geoms(self.model))])
         self._ground_friction = self.model.geom_friction[self._ground, 0].copy()
         self._stood_at_m = 0.0  # the height of the body when it was last upright after a motion
+        self._start, self._conditions = Pose(0.0, 0.0, 0.0), NOMINAL
+        self._glides: dict[float, Glide] = {}
 
     @property
     def pose(self) -> Pose:
@@ -77,12 +82,12 @@ class World:
     def body_pose(self) -> BodyPose:
         """The same, with the lean of the body and the height of the robot frame above that floor."""
         z = self._body.z_m
-        return self._body.pose_above(min(self._levels_m, key=lambda floor: abs(floor - z)))
+        return self._body.pose_above(min(self.floor_levels_m, key=lambda floor: abs(floor - z)))
 
     @property
     def odometry(self) -> Pose:
-        """The robot's pose by its own odometry, relative to the start of the episode."""
-        return self._odometry.since_start
+        """The robot's pose by its own odometry, relative to the start of the episode; without physics, the true one."""
+        return self._odometry.since_start if self._has_physics else self.pose.relative_to(self._start)
 
     @property
     def camera_pose(self) -> BodyPose:
@@ -99,9 +104,26 @@ class World:
         Raises:
             EpisodeError: the hull would overlap an object there, or the floor is missing.
         """
-        mujoco.mj_resetData(self.model, self.data)
+        self.restore()
         self.model.geom_friction[self._ground, 0] = self._ground_friction * conditions.floor_friction_scale
+        self._conditions = conditions
+        self.put(start)
+
+    def restore(self) -> None:
+        """Restores the state of the house's file; the robot is then at the origin."""
+        mujoco.mj_resetData(self.model, self.data)
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_camlight(self.model, self.data)
+
+    def put(self, start: Pose) -> None:
+        """Puts the robot at rest at `start`, where it begins to count its motion; objects stay where they are.
+
+        Raises:
+            EpisodeError: the hull would overlap an object there, or the floor is missing.
+        """
+        self._start = start
         self._driver.brake()
+        self._body.qvel[:] = 0.0
         self._place_on_floor(start)
         self._require_no_overlap(start)
         physics = self.config.physics
@@ -109,8 +131,8 @@ class World:
         if not any(not geoms.isdisjoint(self._wheels) for geoms, _ in self._contacts()):
             raise EpisodeError(f"{self._describe(start)}: there is no floor at z = {start.floor_z_m:.2f} m.")
         self._note_floor()
-        self._driver.reset(start.yaw_rad, conditions)
-        self._velocity_drive.reset(conditions)
+        self._driver.reset(start.yaw_rad, self._conditions)
+        self._velocity_drive.reset(self._conditions)
 
     def move(self, action: Action) -> Motion:
         """Performs one action in physics, from rest to rest. STOP is a motion of zero.
@@ -122,6 +144,8 @@ class World:
         Raises:
             PhysicsError: NaN, an unstable state, or a robot that tipped over without an edge.
         """
+        if not self._has_physics:
+            return self._glide(Action(action))
         z_before = self._body.z_m
         return self._checked(self._driver.run(Action(action)), z_before)
 
@@ -129,9 +153,29 @@ class World:
         """Holds a velocity for a period (`sim.robot.velocity`); the robot need not be at rest before or after.
 
         `fell` and errors are those of `move`. An episode is driven either by `move` or by `hold`.
+
+        Raises:
+            ConfigError: `RobotConfig.motion` is without physics.
         """
+        if not self._has_physics:
+            raise ConfigError(f"Velocities need the motion 'contacts'; this robot has '{self.config.motion}'.")
         z_before = self._body.z_m
         return self._checked(self._velocity_drive.run(command, period_s), z_before)
+
+    @property
+    def _has_physics(self) -> bool:
+        return self.config.motion == "contacts"
+
+    def _glide(self, action: Action) -> Motion:
+        """Performs one action without physics, over the free space as it was at the first one on a storey."""
+        pose, rise_m = self.pose, self.body_pose.rise_m
+        if pose.floor_z_m not in self._glides:
+            self._glides[pose.floor_z_m] = Glide(FreeSpace.from_world(self, pose.floor_z_m))
+        glide, sliding = self._glides[pose.floor_z_m], self.config.motion == "sliding"
+        after, motion = performed(glide, pose, action, self.config.drive, sliding=sliding)
+        self._body.place(after.x_m, after.y_m, after.floor_z_m + rise_m, after.yaw_rad)
+        mujoco.mj_forward(self.model, self.data)
+        return motion
 
     def _checked(self, motion: Motion, z_before: float) -> Motion:
         """Returns the motion, with `fell` set; see `move`."""

@@ -1,0 +1,486 @@
+"""Habitat's `Simulator`: one house with one robot and its cameras; habitat-lab's class `HabitatSim` is made from it."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.app.bridges.habitat_sim.agent import Agent, AgentState
+from sim.app.bridges.habitat_sim.maths import Deg, Quaternion, Vector3, quat_from_coeffs
+from sim.app.bridges.habitat_sim.pathfinder import GreedyGeodesicFollower, PathFinder
+from sim.app.bridges.habitat_sim.semantics import SemanticScene, semantic_scene
+from sim.app.bridges.habitat_sim.settings import (
+    ActionSpec,
+    AgentConfiguration,
+    CameraSensorSpec,
+    Configuration,
+    SensorSpec,
+    SensorSubType,
+    SensorType,
+)
+from sim.core.errors import ConfigError, HouseError
+from sim.core.interface import Action, CameraModel
+from sim.episodes.habitat import to_rotation
+from sim.episodes.splits import load_split, shipped_splits
+from sim.houses.house import House
+from sim.houses.load import load_house
+from sim.renderer.camera import Camera
+from sim.renderer.gloss import geom_gloss
+from sim.robot.conditions import NOMINAL
+from sim.robot.config import DriveConfig, MotionKind, RobotConfig
+from sim.sensors.noise import SensorNoise, get_noise
+from sim.sensors.standard import resolve_sensors
+from sim.task.ground_truth import GroundTruth
+from sim.world.world import World
+
+FAR_M = 100.0
+"""Depth of surfaces that are farther away, and of no surface."""
+VARIABLE = "STUBBORN_HABITAT"
+"""Environment variable with options, such as `motion=sliding,noise=realsense`; `configure` has priority."""
+_IMAGES = {SensorType.COLOR: "rgb", SensorType.DEPTH: "depth", SensorType.SEMANTIC: "geom"}
+_ACTIONS = {
+    "stop": Action.STOP,
+    "move_forward": Action.MOVE_FORWARD,
+    "turn_left": Action.TURN_LEFT,
+    "turn_right": Action.TURN_RIGHT,
+}
+
+
+@dataclass(frozen=True)
+class Options:
+    """What Habitat's configuration has no entry for."""
+
+    motion: MotionKind = "contacts"
+    """`contacts`: physics. `no-sliding` and `sliding`: Habitat's kinematic motion over the robot's free space."""
+    noise: str = "none"
+    """Noise of cameras and drive, a preset of `sim.sensors.noise`. habitat-lab's gps and compass stay exact."""
+    profile: str = "fast"
+    """Rendering profile, `fast` or `good`."""
+
+    def __post_init__(self) -> None:
+        if self.motion not in get_args(MotionKind):
+            raise ConfigError(f"motion must be one of {', '.join(get_args(MotionKind))}, got '{self.motion}'.")
+        get_noise(self.noise)
+
+
+_chosen: dict[str, str] = {}
+
+
+def configure(**options: str) -> Options:
+    """Sets options of each simulator that is made later in this process, and returns all of them.
+
+    Args:
+        options: fields of `Options`.
+
+    Raises:
+        ConfigError: an unknown option or value.
+    """
+    known = {field.name for field in fields(Options)}
+    unknown = sorted(set(options) - known)
+    if unknown:
+        raise ConfigError(f"Unknown option '{unknown[0]}' of stubborn_habitat. Available: {', '.join(sorted(known))}.")
+    Options(**{**_chosen, **options})  # pyright: ignore[reportArgumentType]
+    _chosen.update(options)
+    return current_options()
+
+
+def current_options() -> Options:
+    """Returns the options of `configure`, else those of the environment variable.
+
+    Raises:
+        ConfigError: an unknown option or value.
+    """
+    pairs = [part.partition("=")[::2] for part in os.environ.get(VARIABLE, "").split(",") if part.strip()]
+    given = {name.strip(): value.strip() for name, value in pairs} | _chosen
+    unknown = sorted(set(given) - {field.name for field in fields(Options)})
+    if unknown:
+        raise ConfigError(f"{VARIABLE}: unknown option '{unknown[0]}'.")
+    return Options(**given)  # pyright: ignore[reportArgumentType]
+
+
+class Simulator:
+    """One house, one robot.
+
+    Args:
+        config: house, cameras and actions. An action moves by its `ActuationSpec.amount`, metres or degrees.
+
+    Raises:
+        HouseError: there is no such house.
+        ConfigError: something that is not here, such as a fisheye camera or a second agent.
+    """
+
+    def __init__(self, config: Configuration) -> None:
+        self._options = current_options()
+        self._scene_id = ""
+        self._cameras: dict[CameraModel, Camera] = {}
+        self._seed = int(config.sim_cfg.random_seed)
+        self._configure(config)
+
+    def _configure(self, config: Configuration) -> None:
+        self.config = config
+        if len(config.agents) != 1:
+            raise ConfigError(f"There is one robot here; the configuration has {len(config.agents)} agents.")
+        scene = config.sim_cfg.scene_id
+        if scene in ("", "NONE"):
+            raise HouseError("scene_id must name a house: an MJCF file, or split/house.xml.")
+        self.agents = [Agent(config.agents[0])]
+        if scene != self._scene_id:
+            self._load(scene, _robot(config.agents[0], self._options.motion))
+            self._scene_id = scene
+        self.agents[0].enter(self.world)
+        self._groups = _cameras(config.agents[0].sensor_specifications)
+        self._noises: dict[CameraModel, SensorNoise] = {}
+        self._fresh, self._collided = True, False
+        self._put_initially()
+
+    def _load(self, scene: str, robot: RobotConfig) -> None:
+        """Compiles a house with the robot in it."""
+        self._free_cameras()
+        self.world = World(find_house(scene), robot=robot)
+        self.world.restore()
+        self._gloss = geom_gloss(self.world.model, self.world.labels)
+        self._truth = GroundTruth(self.world)
+        self.pathfinder = PathFinder(self._truth, self._seed)
+        self._semantic_scene: SemanticScene | None = None
+        instances = np.append(self.world.labels.geom_instance + 1, 0)  # the last entry is that of geom -1
+        self._semantic_ids = instances.astype(np.uint32)
+
+    def _put_initially(self) -> None:
+        """Puts the agent at a random place, as Habitat does, until it is put elsewhere."""
+        place = self.pathfinder.get_random_navigable_point()
+        self.agents[0].set_state(AgentState(np.asarray(place), quat_from_coeffs(to_rotation(0.5 * math.pi))))
+
+    @property
+    def semantic_scene(self) -> SemanticScene:
+        """The labelled objects, rooms and storeys."""
+        if self._semantic_scene is None:
+            self._semantic_scene = semantic_scene(self.world)
+        return self._semantic_scene
+
+    @property
+    def previous_step_collided(self) -> bool:
+        """Whether a contact ended the last action early."""
+        return self._collided
+
+    def seed(self, new_seed: int) -> None:
+        """Seeds random places and noise."""
+        self._seed = int(new_seed)
+        self.pathfinder.seed(self._seed)
+
+    def reset(self, agent_ids: int | Sequence[int] | None = None) -> dict[str, Any]:
+        """Restores the house; returns what the cameras see. Physics restarts at the next action or observation."""
+        self.world.restore()
+        self.agents[0].reset()
+        self._fresh, self._collided = True, False
+        if self.agents[0].put is None:
+            self.agents[0].set_state(self.agents[0].get_state(), reset_sensors=False)
+        return self._render()
+
+    def reconfigure(self, config: Configuration) -> None:
+        """Takes another configuration; the house is loaded only if it is another one."""
+        self._configure(config)
+
+    def step(self, action: Any, dt: float = 1.0 / 60.0) -> dict[str, Any]:
+        """Performs an action from rest to rest; returns what the cameras then see, and `collided`.
+
+        Args:
+            action: a key of the agent's `action_space`.
+            dt: exists for scripts that give it; an action takes the time that the robot needs.
+        """
+        if isinstance(action, Mapping):
+            (action,) = action.values()
+        space = self.agents[0].agent_config.action_space
+        if action not in space:
+            raise ConfigError(f"Unknown action {action!r}. Available: {', '.join(map(repr, space))}.")
+        self.act(space[action])
+        observations = self._render()
+        observations["collided"] = self._collided
+        return observations
+
+    def act(self, spec: ActionSpec) -> None:
+        """Performs an action without looking."""
+        if spec.name in ("look_up", "look_down"):
+            amount = spec.actuation.amount if spec.actuation else 0.0
+            self._look(amount if spec.name == "look_up" else -amount)
+            return
+        if spec.name not in _ACTIONS:
+            raise ConfigError(f"Unknown action '{spec.name}'. Available: {', '.join(_ACTIONS)}, look_up, look_down.")
+        self._settle()
+        motion = self.world.move(_ACTIONS[spec.name])
+        self._collided = motion.collided
+
+    def _look(self, degrees: float) -> None:
+        self._collided = False
+        for sensor in self.agents[0].sensors.values():
+            sensor.node.rotation = sensor.node.rotation * Quaternion.rotation(Deg(degrees), Vector3.x_axis())
+
+    def _settle(self) -> None:
+        """Puts the robot where the agent was put, in physics."""
+        agent = self.agents[0]
+        if self._fresh:
+            pose = agent.pose if agent.put is None else agent.put
+            self.world.reset(pose, self._conditions())
+            self._fresh = False
+        elif agent.put is not None:
+            self.world.put(agent.put)
+        agent.enter(self.world)
+
+    def _conditions(self) -> Any:
+        """Begins the noise of an episode; returns the conditions of its physics."""
+        rng, conditions = np.random.default_rng(self._seed), NOMINAL
+        self._seed += 1
+        self._noises = {}
+        for model, (_, names) in self._groups.items():
+            sensors = resolve_sensors([name for name in names if name in ("rgb", "depth")])
+            noise = SensorNoise(get_noise(self._options.noise), model, sensors)
+            conditions = noise.begin(rng.spawn(1)[0], self._gloss)
+            self._noises[model] = noise
+        return conditions
+
+    def get_sensor_observations(self, agent_ids: int | Sequence[int] = 0) -> dict[str, Any]:
+        """Returns what the cameras see: uint8 (h, w, 4), metres float32 (h, w), object indices uint32 (h, w)."""
+        if self._fresh:
+            self._settle()
+        self._collided = False
+        return self._render()
+
+    def _render(self) -> dict[str, Any]:
+        """Returns the image of each camera."""
+        agent, observations = self.agents[0], dict[str, Any]()
+        for model, (specs, _) in self._groups.items():
+            for seen in _by_eye(agent, specs):
+                names = sorted({_IMAGES[spec.sensor_type] for spec in seen})
+                images = self._images(model, agent.eye(seen[0].uuid, model.height_m), names)
+                observations |= {spec.uuid: self._observation(spec, images) for spec in seen}
+        return observations
+
+    def _images(self, model: CameraModel, eye: Any, names: Sequence[str]) -> dict[str, NDArray]:
+        if model not in self._cameras:
+            self._cameras[model] = Camera(
+                self.world.model, self.world.labels, camera=model, profile=self._options.profile
+            )
+        noise = self._noises.get(model)
+        wanted = {*names, *(noise.images if noise is not None else ())}
+        images = self._cameras[model].render(self.world.data, eye, sorted(wanted))
+        if noise is None:
+            return images
+        read = {name: images[name] for name in names if name in ("rgb", "depth")}
+        return images | noise.apply(read, images)
+
+    def _observation(self, spec: SensorSpec, images: Mapping[str, NDArray]) -> NDArray:
+        """Returns the image of one camera in Habitat's form."""
+        image = images[_IMAGES[spec.sensor_type]]
+        if spec.sensor_type == SensorType.COLOR:
+            opaque = np.full((*image.shape[:2], 1), 255, np.uint8)
+            return np.concatenate([image, opaque], axis=2)
+        return self._semantic_ids[image] if spec.sensor_type == SensorType.SEMANTIC else image
+
+    def get_agent(self, agent_id: int) -> Agent:
+        """Returns the agent."""
+        return self.agents[agent_id]
+
+    def initialize_agent(self, agent_id: int, initial_state: AgentState | None = None) -> Agent:
+        """Puts the agent at a state, or at a random place."""
+        if initial_state is None:
+            self._put_initially()
+        else:
+            self.agents[agent_id].set_state(initial_state, is_initial=True)
+        return self.agents[agent_id]
+
+    def last_state(self, agent_id: int = 0) -> AgentState:
+        """Returns the state of the agent."""
+        return self.agents[agent_id].get_state()
+
+    def make_greedy_follower(
+        self, agent_id: int = 0, goal_radius: float | None = None, **keys: Any
+    ) -> GreedyGeodesicFollower:
+        """Returns a follower of shortest paths; `keys` are those of `GreedyGeodesicFollower`."""
+        self._settle()
+        return GreedyGeodesicFollower(self.pathfinder, self.agents[agent_id], goal_radius, **keys)
+
+    def step_filter(self, start_pos: Any, end_pos: Any) -> Vector3:
+        """Returns where a kinematic motion ends; it slides if `allow_sliding` is set."""
+        sliding = self.config.sim_cfg.allow_sliding
+        step = self.pathfinder.try_step if sliding else self.pathfinder.try_step_no_sliding
+        return step(start_pos, end_pos)
+
+    def step_physics(self, dt: float = 1.0 / 60.0, scene_id: int = 0) -> None:
+        """Does nothing: an action includes the time until the robot is at rest."""
+
+    def step_world(self, dt: float = 1.0 / 60.0) -> float:
+        """Does nothing, and returns the simulated time, seconds."""
+        return self.get_world_time()
+
+    def get_world_time(self) -> float:
+        """Returns the simulated time since the episode began, seconds."""
+        return float(self.world.data.time)
+
+    def add_sensor(self, sensor_spec: SensorSpec, agent_id: int | None = None) -> None:
+        """Adds a camera."""
+        config = self.agents[0].agent_config
+        self._change_sensors([*config.sensor_specifications, sensor_spec])
+
+    def remove_sensor(self, sensor_uuid: str, agent_id: int | None = None) -> None:
+        """Removes a camera."""
+        config = self.agents[0].agent_config
+        self._change_sensors([spec for spec in config.sensor_specifications if spec.uuid != sensor_uuid])
+
+    def _change_sensors(self, specs: list[SensorSpec]) -> None:
+        agent = self.agents[0]
+        self._groups = _cameras(specs)
+        agent.agent_config.sensor_specifications = specs
+        kept = agent.sensors
+        agent.sensors = Agent(agent.agent_config).sensors
+        agent.sensors |= {uuid: sensor for uuid, sensor in kept.items() if uuid in agent.sensors}
+
+    def get_sensor(self, sensor_uuid: str) -> _View:
+        """Returns a camera that can be asked for its image alone."""
+        return _View(self, sensor_uuid)
+
+    def get_object_template_manager(self) -> _NoObjects:
+        """Returns a manager without objects: houses hold their furniture."""
+        return _NoObjects()
+
+    get_rigid_object_manager = get_articulated_object_manager = get_object_template_manager
+
+    def recompute_navmesh(self, pathfinder: PathFinder, navmesh_settings: Any = None) -> bool:
+        """Returns True: the free space is always that of the house and the robot."""
+        return True
+
+    @property
+    def curr_scene_name(self) -> str:
+        """The house."""
+        return self._scene_id
+
+    @property
+    def gfx_replay_manager(self) -> Any:
+        """Is not here."""
+        raise NotImplementedError("There is no replay of graphics here: `stubborn run --record` writes videos.")
+
+    def close(self, destroy: bool = True) -> None:
+        """Frees the cameras."""
+        self._free_cameras()
+
+    def _free_cameras(self) -> None:
+        for camera in self._cameras.values():
+            camera.close()
+        self._cameras = {}
+
+    def __enter__(self) -> Simulator:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+class _View:
+    """One camera of a simulator."""
+
+    def __init__(self, simulator: Simulator, uuid: str) -> None:
+        self._simulator, self._uuid = simulator, uuid
+        self.node = simulator.agents[0].sensors[uuid].node
+
+    def draw_observation(self) -> None:
+        """Does nothing: `get_observation` renders."""
+
+    def get_observation(self) -> NDArray:
+        """Returns the image."""
+        return self._simulator._render()[self._uuid]
+
+
+class _NoObjects:
+    """A manager of objects that has none."""
+
+    def load_configs(self, path: str) -> list[int]:
+        """Raises ConfigError: objects of Habitat's data sets cannot be loaded."""
+        raise ConfigError(f"'{path}': objects of Habitat's data sets cannot be added to a house here.")
+
+    def get_num_objects(self) -> int:
+        """Returns 0."""
+        return 0
+
+    def remove_all_objects(self) -> None:
+        """Does nothing."""
+
+
+def find_house(scene_id: str) -> House:
+    """Returns the house of a scene.
+
+    Args:
+        scene_id: an MJCF file, or a path that ends in `split/house.xml` with a shipped split.
+
+    Raises:
+        HouseError: there is no such house.
+    """
+    path = Path(scene_id)
+    parts = path.with_suffix("").parts[-2:]
+    if len(parts) == 2 and parts[0] in shipped_splits():
+        split = load_split(parts[0])
+        if parts[1] in split.houses and (not path.is_file() or split.house_list is not None):
+            return split.load_house(parts[1])
+    if path.is_file():
+        return load_house(path)
+    raise HouseError(
+        f"There is no house '{scene_id}': neither a file, nor SPLIT/HOUSE.xml of a shipped split "
+        f"({', '.join(shipped_splits())}). Scenes of other simulators must be imported first (docs/worlds.md)."
+    )
+
+
+def _robot(agent: AgentConfiguration, motion: MotionKind) -> RobotConfig:
+    """Returns the robot with the lengths of the agent's actions."""
+    amounts = {
+        spec.name: float(spec.actuation.amount) for spec in agent.action_space.values() if spec.actuation is not None
+    }
+    turns = {amounts.get("turn_left"), amounts.get("turn_right")} - {None}
+    if len(turns) > 1:
+        raise ConfigError(f"turn_left and turn_right must turn by one angle, got {amounts}.")
+    drive = DriveConfig()
+    if "move_forward" in amounts:
+        drive = replace(drive, forward_m=amounts["move_forward"])
+    if turns:
+        drive = replace(drive, turn_rad=math.radians(turns.pop() or 0.0))
+    return RobotConfig(drive=drive, motion=motion)
+
+
+def _cameras(specs: Sequence[SensorSpec]) -> dict[CameraModel, tuple[list[SensorSpec], list[str]]]:
+    """Returns the sensors by the camera that renders them, with the names of its images."""
+    groups: dict[CameraModel, tuple[list[SensorSpec], list[str]]] = defaultdict(lambda: ([], []))
+    for spec in specs:
+        if type(spec) is not CameraSensorSpec or spec.sensor_subtype != SensorSubType.PINHOLE:
+            raise ConfigError(f"Sensor '{spec.uuid}': cameras here are pinhole cameras.")
+        if spec.sensor_type not in _IMAGES:
+            raise ConfigError(f"Sensor '{spec.uuid}': there are colour, depth and semantic cameras here.")
+        if spec.noise_model not in ("None", "", None):
+            raise ConfigError(
+                f"Sensor '{spec.uuid}': noise model '{spec.noise_model}' of habitat-sim is not here; "
+                "stubborn_habitat.configure(noise='realsense') has noise of its own."
+            )
+        height_px, width_px = (int(side) for side in np.asarray(spec.resolution).tolist())
+        hfov_deg = float(np.asarray(spec.hfov).item())
+        up_m = max(0.01, float(np.asarray(spec.position)[1]))
+        model = CameraModel(
+            width_px=width_px, height_px=height_px, hfov_rad=math.radians(hfov_deg), height_m=up_m, min_depth_m=0.0,
+            max_depth_m=FAR_M,
+        )  # fmt: skip
+        groups[model][0].append(spec)
+        groups[model][1].append(_IMAGES[spec.sensor_type])
+    return dict(groups)
+
+
+def _by_eye(agent: Agent, specs: Sequence[SensorSpec]) -> list[list[SensorSpec]]:
+    """Returns the sensors that look from one place in one direction together."""
+    together: dict[Any, list[SensorSpec]] = defaultdict(list)
+    for spec in specs:
+        node = agent.sensors[spec.uuid].node
+        rotation = node.rotation
+        key = (*node.translation.tolist(), *np.round(rotation.vector, 6).tolist(), round(rotation.scalar, 6))
+        together[key].append(spec)
+    return list(together.values())
