@@ -4,6 +4,7 @@ from setuptools import find_packages, setup
 
 setup(
     packages=[*find_packages(include=["sim*", "stubborn*"]), "sim.assets"],
+    py_modules=["stubborn_habitat"],
     package_dir={"sim.assets": "assets"},
     package_data={
         "sim.assets": ["mjcf_houses/**/*"],

@@ -1,25 +1,33 @@
-"""`import stubborn_habitat` runs habitat-lab on the houses and the physics of this project.
+"""`import stubborn_habitat`, before `import habitat`, runs habitat-lab on the houses and the physics of this project.
 
-It provides `habitat_sim` to this process; habitat-lab's own simulator, tasks, measures and data sets are then used
-unchanged. `configure(motion="sliding", noise="realsense")` sets what Habitat's configuration has no entry for;
-docs/habitat.md describes all of it. Where habitat-lab is installed, the splits are registered as data sets.
+It provides `habitat_sim` to this process; habitat-lab's own simulator class, tasks, measures and data sets then run
+unchanged, and the splits are registered as data sets (docs/habitat.md). In the environment that
+`stubborn habitat setup` makes, this happens in every process, so that scripts need not import it.
 """
 
-import importlib.util
+from collections.abc import Sequence
 from typing import Any
 
 from sim.app.bridges.habitat_sim.finder import install
 
 install()
 
-if importlib.util.find_spec("habitat") is not None:
-    from sim.app.bridges.habitat_sim.lab import register
-
-    register()
-
 
 def configure(**options: str) -> Any:
-    """Sets `motion`, `noise` and `profile` of simulators that are made later; see `Options` of the simulator."""
+    """Sets `motion`, `noise` and `profile` of simulators that are made later in this process; returns all three.
+
+    The environment variable STUBBORN_HABITAT does the same for all processes: `motion=sliding,noise=realsense`.
+
+    Raises:
+        ConfigError: an unknown option or value.
+    """
     from sim.app.bridges.habitat_sim.simulator import configure as configure_simulator
 
     return configure_simulator(**options)
+
+
+def get_config(split: str = "val", overrides: Sequence[str] = (), **others: str) -> Any:
+    """Returns habitat-lab's configuration for a shipped split; see `sim.app.bridges.habitat_sim.lab.get_config`."""
+    from sim.app.bridges.habitat_sim.lab import get_config as lab_config
+
+    return lab_config(split, overrides, **others)

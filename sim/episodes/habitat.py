@@ -44,8 +44,10 @@ class Goal(TypedDict):
 
     position: list[float]
     radius: None
-    object_id: str
+    object_id: int
+    """Place of the instance among the labels of its house, from 1: its value in Habitat's semantic images."""
     object_name: str
+    """Name of the instance in the house file."""
     object_name_id: None
     object_category: str
     room_id: str | None

@@ -42,12 +42,26 @@ def storeys_of(task: Task) -> tuple[float, ...]:
     return tuple(heights) or (0.0,)
 
 
-def find_reachable_goals(task: Task, *, max_view_points: int = MAX_VIEW_POINTS, floor_z_m: float = 0.0) -> HouseGoals:
-    """Returns the goals of a storey that a robot in its largest free space can reach, and those it cannot."""
+def find_reachable_goals(
+    task: Task,
+    *,
+    max_view_points: int = MAX_VIEW_POINTS,
+    step_cells: int = VIEW_STEP_CELLS,
+    floor_z_m: float = 0.0,
+) -> HouseGoals:
+    """Returns the goals of a storey that a robot in its largest free space can reach, and those it cannot.
+
+    Args:
+        task: of the house.
+        max_view_points: most view points of an instance.
+        step_cells: distance of the places that may be view points, in cells of the free space.
+        floor_z_m: height of the storey's floor.
+    """
     rooms = [room for room in task.world.rooms if abs(room.floor_z_m - floor_z_m) < task.config.success.same_storey_m]
     space = task.truth.space(floor_z_m)
     inside = space.largest_part()
-    coarse_m = space.frame.to_metres(_spread(inside))
+    coarse_m = space.frame.to_metres(_spread(inside, step_cells))
+    numbers = {instance.name: number for number, instance in enumerate(task.world.labels.instances, start=1)}
     listed: dict[str, list[habitat.Goal]] = {}
     unreachable: list[str] = []
     for goal in task.truth.goals():
@@ -57,7 +71,8 @@ def find_reachable_goals(task: Task, *, max_view_points: int = MAX_VIEW_POINTS, 
             if not len(views):
                 views = view_points(region, footprint, _near(space, inside, region, footprint), at_most=max_view_points)
             if len(views):
-                listed.setdefault(goal, []).append(_to_habitat(footprint, views, rooms))
+                number = numbers[footprint.instance.name]
+                listed.setdefault(goal, []).append(_to_habitat(footprint, number, views, rooms))
             else:
                 unreachable.append(footprint.instance.name)
     return HouseGoals(listed, tuple(unreachable))
@@ -81,14 +96,17 @@ def _near(space: FreeSpace, inside: NDArray[np.bool_], region: GoalRegion, footp
     return space.frame.to_metres(np.argwhere(inside[rows, cols]) + corner)
 
 
-def _spread(mask: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _spread(mask: NDArray[np.bool_], step_cells: int) -> NDArray[np.int64]:
     """Returns (n, 2) the True cells on the coarse grid of view points."""
     cells = np.argwhere(mask)
-    return cells[np.all(cells % VIEW_STEP_CELLS == VIEW_STEP_CELLS // 2, axis=1)]
+    return cells[np.all(cells % step_cells == step_cells // 2, axis=1)]
 
 
-def _to_habitat(footprint: Footprint, views_m: NDArray[np.float64], rooms: Iterable[Room]) -> habitat.Goal:
-    """Returns an instance as an entry of Habitat's `goals_by_category`."""
+def _to_habitat(footprint: Footprint, number: int, views_m: NDArray[np.float64], rooms: Iterable[Room]) -> habitat.Goal:
+    """Returns an instance as an entry of Habitat's `goals_by_category`; `number` is its place among the labels, from 1.
+
+    That is its number in images of Habitat's semantic sensors.
+    """
     x0, y0, x1, y1 = footprint.bounds_m
     x, y, z = 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * sum(footprint.z_m)
     room = next((room.name for room in rooms if room.contains(x, y)), None)
@@ -96,7 +114,7 @@ def _to_habitat(footprint: Footprint, views_m: NDArray[np.float64], rooms: Itera
     return {
         "position": _rounded(habitat.to_position(x, y, z)),
         "radius": None,
-        "object_id": footprint.instance.name,
+        "object_id": number,
         "object_name": footprint.instance.name,
         "object_name_id": None,
         "object_category": footprint.instance.category,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sim.app.bridges import habitat
-from sim.app.bridges.habitat import HabitatSimActions
+from sim.app.bridges.habitat.conversions import HabitatSimActions
 
 SEEN: list[dict[str, Any]] = []
 """Observations that a `Wanderer` got in this process."""

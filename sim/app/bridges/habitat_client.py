@@ -71,6 +71,10 @@ class Config(dict):
     def __setattr__(self, name: str, value: object) -> None:
         self[name] = value
 
+    def merge_from_list(self, pairs: "Iterable[object]") -> None:
+        """Changes the configuration by paths and values alternately."""
+        override(self, pairs)
+
     def clone(self) -> "Config":
         """Returns a copy that shares nothing with this one."""
         return copy.deepcopy(self)
@@ -293,7 +297,7 @@ class _Env:
 
     def __init__(self, *_: object, **__: object) -> None:
         raise RuntimeError(
-            "Episodes and shortest paths are in the simulator's process: stubborn habitat 'SCRIPT ARGUMENTS'"
+            "An agent has no episodes of its own here: `stubborn habitat setup` makes an environment with habitat-lab"
         )
 
 
@@ -326,10 +330,12 @@ class _Record(SimpleNamespace):
     """An object with attributes, in place of Habitat's classes of episodes."""
 
 
-def _get_config(config_paths=None, overrides=None, *_: object, **__: object) -> Config:
+def _get_config(config_path=None, overrides=None, configs_dir=None, *, config_paths=None, opts=None):
     """Returns the configuration of the run, with what YAML files add to it, changed by overrides."""
+    config_path = config_paths if config_path is None else config_path
+    overrides = opts if overrides is None else overrides
     config = _config_of_the_run()
-    paths = config_paths.split(",") if isinstance(config_paths, str) else [str(path) for path in config_paths or ()]
+    paths = config_path.split(",") if isinstance(config_path, str) else [str(path) for path in config_path or ()]
     for path in paths:
         if not os.path.isfile(path):
             LOG.warning("There is no configuration file '%s': the task of the run is used.", path)
@@ -364,13 +370,19 @@ def _provide_habitat():
     LOG.addHandler(logging.StreamHandler())
     LOG.setLevel(logging.INFO)
     LOG.info("Habitat is not installed: stubborn_client.py provides those of its names that are imported.")
+    sys.meta_path.insert(0, StandIn(stand_ins(get_config=_get_config)))
+
+
+def stand_ins(**others):
+    """Returns the objects of the stand-in by their names; `others` replace or complete them."""
     objects = {
         "Agent": Agent, "Benchmark": _Benchmark, "Challenge": _Challenge, "Config": Config, "Env": _Env,
         "HabitatSimActions": HabitatActions(), "ObjectGoal": _Record, "ObjectGoalNavEpisode": _Record,
-        "Observations": Observation, "RLEnv": _Env, "ShortestPathFollower": _Env, "get_config": _get_config,
-        "logger": LOG, "read_write": read_write,
+        "Observations": Observation, "RLEnv": _Env, "ShortestPathFollower": _Env, "logger": LOG,
+        "read_write": read_write,
     }  # fmt: skip
-    sys.meta_path.insert(0, StandIn(objects))
+    objects.update(others)
+    return objects
 
 
 def _maker_of(name, words):

@@ -21,6 +21,8 @@ class Command:
     """One line of the list of commands."""
     stopped: str = "Stopped."
     """The message that is printed after Ctrl-C or SIGTERM."""
+    takes_words: bool = False
+    """True: words that begin with no dash may follow it, although it is also the name of a group."""
 
 
 COMMANDS: Mapping[str, Command] = {
@@ -35,7 +37,11 @@ COMMANDS: Mapping[str, Command] = {
     "seal make": Command("sim.app.commands.seal.make", "Make a sealed split from a secret or an announcement"),
     "seal publish": Command("sim.app.commands.seal.publish", "Write the hash of a split, to be published"),
     "seal reveal": Command("sim.app.commands.seal.reveal", "Check a revealed split against its published hash"),
-    "habitat": Command("sim.app.commands.habitat", "Run an evaluation script that is written for Habitat"),
+    "habitat": Command(
+        "sim.app.commands.habitat.script", "Run a script for Habitat with habitat-lab", takes_words=True
+    ),
+    "habitat setup": Command("sim.app.commands.habitat.setup", "Make an environment with habitat-lab"),
+    "habitat dataset": Command("sim.app.commands.habitat.dataset", "Write a split as Habitat's ObjectNav files"),
     "web": Command("sim.app.commands.web", "Watch an agent, or drive the robot, in the browser"),
     "gallery": Command("sim.app.commands.gallery", "Render pictures of houses and sheets of furniture"),
     "houses generate": Command("sim.app.commands.houses.generate", "Generate houses"),
@@ -93,7 +99,8 @@ def entry(argv: Sequence[str] | None = None) -> int:
         return cli.leave_soon(entry(sys.argv[1:]))
     words = list(argv)
     name, rest = split(words)
-    if name in COMMANDS and not (name in _groups() and rest and not rest[0].startswith("-")):
+    is_word = bool(rest) and not rest[0].startswith("-")
+    if name in COMMANDS and not (name in _groups() and is_word and not COMMANDS[name].takes_words):
         return _run(name, rest)
     if not words or words[0] in ("-h", "--help"):
         print(_text_of_list())

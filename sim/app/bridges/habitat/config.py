@@ -1,20 +1,16 @@
-"""Habitat's configuration: one tree with attribute access, in the layouts of its old and new versions.
+"""Habitat's configuration of a run: one tree with attribute access, in the layouts of its old and new versions.
 
-Agents read it. An environment takes from it the values that can be set (`SETTINGS`): the split, the number of steps and
-the camera. All other values describe this project's task and change nothing.
+Agents read it; to change it changes nothing.
 """
 
 from __future__ import annotations
 
-import functools
 import logging
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from sim.app.bridges.habitat_client import Config, add, merge, override, remove_other_actions, to_config
-from sim.core.configuration import leaves_of
 from sim.core.errors import ConfigError
 from sim.core.interface import FORWARD_M, MAX_STEPS, TURN_RAD, Action, CameraModel, RobotModel, SuccessRule
 from sim.core.reading import read_bytes
@@ -23,29 +19,6 @@ _LOG = logging.getLogger("habitat")
 _MAX_BYTES = 1 << 20
 _MAX_VALUES = 20_000
 """Largest number of values of a file; a value that aliases repeat counts each time."""
-MAX_NAMED = 6
-"""A warning names so many entries."""
-_OLD, _NEW = "SIMULATOR.{}_SENSOR.{}", "habitat.simulator.agents.main_agent.sim_sensors.{}_sensor.{}"
-
-
-def _places(field: str, *sensors: str) -> tuple[str, ...]:
-    """Returns the paths of a field of cameras in both layouts."""
-    old = [_OLD.format(sensor.upper(), field.upper()) for sensor in sensors]
-    return (*old, *(_NEW.format(sensor, field) for sensor in sensors))
-
-
-SETTINGS: Mapping[str, tuple[str, ...]] = {
-    "split": ("DATASET.SPLIT", "habitat.dataset.split"),
-    "max_steps": ("ENVIRONMENT.MAX_EPISODE_STEPS", "habitat.environment.max_episode_steps"),
-    "width_px": _places("width", "rgb", "depth"),
-    "height_px": _places("height", "rgb", "depth"),
-    "hfov_deg": _places("hfov", "rgb", "depth"),
-    "position": _places("position", "rgb", "depth"),
-    "min_depth_m": _places("min_depth", "depth"),
-    "max_depth_m": _places("max_depth", "depth"),
-    "normalize_depth": _places("normalize_depth", "depth"),
-}
-"""The values that an environment takes from a configuration, with the paths of each in both layouts."""
 
 
 def make_config(
@@ -78,22 +51,29 @@ def make_config(
     task = {"type": "ObjectNav-v1", "success_distance": distance_m, "goal_sensor_uuid": "objectgoal"}
     measurements = {"distance_to_goal": {}, "success": {"success_distance": distance_m}}
     measurements |= {"spl": {}, "soft_spl": {}, "collisions": {}}
-    steps, order = {"max_episode_steps": max_steps}, {"iterator_options": {"shuffle": False}}
-    data = {"type": "ObjectNav-v1", "split": split}
+    steps = {"max_episode_steps": max_steps, "max_episode_seconds": 10_000_000}
+    order = {"cycle": True, "shuffle": False, "group_by_scene": False, "max_scene_repeat_steps": -1}
+    order |= {"max_scene_repeat_episodes": -1, "num_episode_sample": -1, "step_repetition_range": 0.2}
+    data = {"type": "ObjectNav-v1", "split": split, "data_path": "", "scenes_dir": "", "content_scenes": ["*"]}
+    engine = {"gpu_device_id": 0, "gpu_gpu": False, "allow_sliding": False, "enable_physics": True}
     old = {
-        "ENVIRONMENT": _upper(steps),
+        "SEED": 100,
+        "ENVIRONMENT": _upper(steps) | {"ITERATOR_OPTIONS": _upper(order)},
         "SIMULATOR": _upper(motion)
-        | {"RGB_SENSOR": _upper(rgb), "DEPTH_SENSOR": _upper(depth)}
+        | {"RGB_SENSOR": _upper(rgb), "DEPTH_SENSOR": _upper(depth), "SEMANTIC_SENSOR": _upper(rgb)}
+        | {"HABITAT_SIM_V0": _upper(engine)}
         | {"AGENT_0": _upper(body) | {"SENSORS": ["RGB_SENSOR", "DEPTH_SENSOR"]}},
         "TASK": _upper(task)
         | {"POSSIBLE_ACTIONS": actions, "MEASUREMENTS": [name.upper() for name in measurements]}
-        | {"SENSORS": ["OBJECTGOAL_SENSOR", "COMPASS_SENSOR", "GPS_SENSOR"]},
+        | {"SENSORS": ["OBJECTGOAL_SENSOR", "COMPASS_SENSOR", "GPS_SENSOR"]}
+        | {"SUCCESS": {"SUCCESS_DISTANCE": distance_m}},
         "DATASET": _upper(data),
     }
-    sensors = {"rgb_sensor": rgb, "depth_sensor": depth}
+    sensors = {"rgb_sensor": rgb, "depth_sensor": depth, "semantic_sensor": rgb}
     habitat = {
-        "environment": steps | order,
-        "simulator": motion | {"agents": {"main_agent": body | {"sim_sensors": sensors}}},
+        "seed": 100,
+        "environment": steps | {"iterator_options": order},
+        "simulator": motion | {"habitat_sim_v0": engine, "agents": {"main_agent": body | {"sim_sensors": sensors}}},
         "task": task | {"actions": {name.lower(): {} for name in actions}, "measurements": measurements},
         "dataset": data,
     }
@@ -101,20 +81,30 @@ def make_config(
 
 
 def get_config(
-    config_paths: str | Sequence[str] | None = None, overrides: Sequence[object] | None = None, *_: object, **__: Any
+    config_path: str | Sequence[str] | None = None,
+    overrides: Sequence[object] | None = None,
+    configs_dir: str | None = None,
+    *,
+    config_paths: str | Sequence[str] | None = None,
+    opts: Sequence[object] | None = None,
 ) -> Config:
     """Returns the configuration of this project's task, changed by files and by overrides.
 
     Args:
-        config_paths: YAML files of either layout; several are separated by commas. A relative path whose folder does
+        config_path: YAML files of either layout; several are separated by commas. A relative path whose folder does
             not exist names a configuration that comes with Habitat: it changes nothing, and a warning is logged.
         overrides: texts `path=value`, or paths and values alternately.
+        configs_dir: exists for agents that give it.
+        config_paths: the name of `config_path` until 2021.
+        opts: the name of `overrides` until 2021.
 
     Raises:
         ConfigError: a file does not exist or cannot be read, or an override has another form.
     """
+    overrides = opts if overrides is None else overrides
+    config_path = config_paths if config_path is None else config_path
     config = make_config()
-    paths = config_paths.split(",") if isinstance(config_paths, str) else [str(path) for path in config_paths or ()]
+    paths = config_path.split(",") if isinstance(config_path, str) else [str(path) for path in config_path or ()]
     for path in paths:
         if Path(path).is_file():
             merge(config, _read_yaml(Path(path)))
@@ -143,78 +133,8 @@ def with_entries_of(config: Config, file: Path) -> Config:
     return merged
 
 
-def settings_of(config: Mapping[str, object]) -> dict[str, object]:
-    """Returns the entries of `SETTINGS` whose values differ from those of this project's task.
-
-    The tree under `habitat`, which scripts of the new layout also give, will do.
-
-    Raises:
-        ConfigError: two paths of one setting have different values, such as the widths of RGB and depth, or the
-            configuration has no section of either layout.
-    """
-    default, settings = make_config(), dict[str, object]()
-    config = _whole(config, default)
-    for name, paths in SETTINGS.items():
-        values = {path: _at(config, path) for path in paths}
-        changed = {path: value for path, value in values.items() if value not in (None, _at(default, path))}
-        for path, value in changed.items():
-            if settings.setdefault(name, value) != value:
-                first = next(iter(changed))
-                why = "all images have one camera" if "sensor" in path.lower() else "both layouts must agree"
-                raise ConfigError(f"The configuration has {first}={settings[name]!r} and {path}={value!r}; {why}.")
-    return settings
-
-
-def log_ignored(config: Mapping[str, object]) -> None:
-    """Logs the entries that change nothing: those with another value than this project's task, and unknown ones."""
-    default = make_config()
-    taken = {path for paths in SETTINGS.values() for path in paths}
-    others, unknown = [], []
-    for path, value in leaves_of(_whole(config, default)):
-        here = _at(default, path)
-        if path in taken or value == here:
-            continue
-        if here is None:
-            unknown.append(path)
-        else:
-            others.append(f"{path}={value!r} (here {here!r})")
-    for what, entries in (("have no effect", others), ("are unknown here", unknown)):
-        if entries:
-            more = f" and {len(entries) - MAX_NAMED} more" if len(entries) > MAX_NAMED else ""
-            _warn_once(f"These entries of the configuration {what}: {', '.join(entries[:MAX_NAMED])}{more}.")
-
-
-@functools.cache
-def _warn_once(text: str) -> None:
-    _LOG.warning("%s", text)
-
-
-def _whole(config: Mapping[str, object], default: Config) -> Mapping[str, object]:
-    """Returns a configuration, or that whose tree under `habitat` is given.
-
-    Raises:
-        ConfigError: it has no section of either layout.
-    """
-    if not config or any(section in config for section in default):
-        return config
-    if not any(section in config for section in default["habitat"]):
-        raise ConfigError(
-            f"The configuration needs one of the sections {', '.join(default)}, or those of `habitat` "
-            f"({', '.join(default['habitat'])}); it has {', '.join(map(str, config))}."
-        )
-    return {"habitat": config}
-
-
 def _upper(tree: Mapping[str, object]) -> dict[str, object]:
     return {name.upper(): value for name, value in tree.items()}
-
-
-def _at(config: Mapping[str, object], path: str) -> Any:
-    """Returns the value at a dotted path; None if the configuration has no such path."""
-    value: Any = config
-    for name in path.split("."):
-        value = value.get(name) if isinstance(value, Mapping) else None
-    return value
 
 
 def _read_yaml(file: Path) -> Mapping[str, object]:

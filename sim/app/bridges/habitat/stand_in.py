@@ -1,4 +1,4 @@
-"""A stand-in for the package `habitat`, which cannot be installed from PyPI: it has the few names that agents import.
+"""A stand-in for the package `habitat`, for agents in a Python without it: it has the few names that agents import.
 
 `install` makes `import habitat` work in this process if the package is not installed. The import of a name that the
 stand-in does not have fails as usual, and `lacking` returns a sentence that names it. `sim.app.bridges.habitat_client`
@@ -13,13 +13,14 @@ import logging
 import re
 import sys
 
-from sim.app.bridges import habitat as ours
-from sim.app.bridges.habitat_client import HABITAT_MODULES, NOT_IN_THE_STAND_IN, EmptyModules, StandIn
+from sim.app.bridges.habitat.config import get_config
+from sim.app.bridges.habitat.conversions import Observations
+from sim.app.bridges.habitat_client import HABITAT_MODULES, NOT_IN_THE_STAND_IN, EmptyModules, StandIn, stand_ins
 
 NOTE = "Habitat is not installed: a stand-in of this project provides those of its names that are imported."
 """The sentence that a run prints if it uses the stand-in."""
 _LOG = logging.getLogger("habitat")
-_FINDER = StandIn({name: getattr(ours, name) for name in ours.__all__} | {"logger": _LOG})
+_FINDER = StandIn(stand_ins(get_config=get_config, Observations=Observations))
 _EMPTY = EmptyModules()
 
 

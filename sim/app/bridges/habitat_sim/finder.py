@@ -12,7 +12,7 @@ import importlib.util
 import sys
 from collections.abc import Mapping
 from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec
+from importlib.machinery import ModuleSpec, PathFinder
 from types import MappingProxyType, ModuleType
 from typing import Any
 
@@ -63,19 +63,15 @@ PACKAGES = ("habitat_sim", "magnum", "corrade")
 
 
 class NotHere(type):
-    """The class of classes that stand for names without meaning here; so are their attributes."""
+    """The class of classes that stand for names without meaning here; so are their attributes.
+
+    They can be named, derived from and made, as modules do when they are imported; what was made cannot be used.
+    """
 
     def __getattr__(cls, name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
         return _not_here(f"{cls.__qualname__}.{name}")
-
-    def __call__(cls, *args: Any, **kwargs: Any) -> Any:
-        if cls.__dict__.get("_stands_for") is None:  # a class of the user's, derived from one
-            return super().__call__(*args, **kwargs)
-        raise NotImplementedError(
-            f"{cls.__qualname__} is not part of the habitat_sim that runs on MuJoCo (docs/habitat.md)."
-        )
 
     def __or__(cls, other: Any) -> Any:
         return Any
@@ -83,15 +79,37 @@ class NotHere(type):
     __ror__ = __or__
 
 
+class _Unusable:
+    """The base of these classes."""
+
+    _stands_for = ""
+
+    def __init__(self, *_: object, **__: object) -> None:
+        pass
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        raise NotImplementedError(
+            f"'{self._stands_for}' is not part of the habitat_sim that runs on MuJoCo (docs/habitat.md)."
+        )
+
+
 def _not_here(name: str) -> Any:
-    return NotHere(name.rpartition(".")[2], (), {"__qualname__": name, "_stands_for": name})
+    return NotHere(name.rpartition(".")[2], (_Unusable,), {"__qualname__": name, "_stands_for": name})
 
 
 class Finder(MetaPathFinder, Loader):
     """The entry of `sys.meta_path`."""
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        """Returns the specification of a module of the three packages; None for any other."""
+        """Returns the specification of a module of the three packages, and of habitat-lab, which is then registered
+        with; None for any other."""
+        if fullname == "habitat":
+            spec = PathFinder.find_spec(fullname, path)
+            if spec is not None and spec.loader is not None and spec.origin is not None:
+                spec.loader = _Registering(spec.loader)
+            return spec
         if fullname.partition(".")[0] not in PACKAGES:
             return None
         return ModuleSpec(fullname, self, is_package=True)
@@ -114,6 +132,25 @@ class Finder(MetaPathFinder, Loader):
             from sim.app.bridges.habitat_sim.maths import colours
 
             module.d3_40_colors_rgb = colours()  # pyright: ignore[reportAttributeAccessIssue]
+
+
+class _Registering(Loader):
+    """Loads habitat-lab, and registers data sets and measures with it."""
+
+    def __init__(self, loader: Loader) -> None:
+        self._loader = loader
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
+        """Returns the module, still empty."""
+        return self._loader.create_module(spec)
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Fills it."""
+        self._loader.exec_module(module)
+        importlib.import_module(f"{_HERE}.lab").register()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._loader, name)  # such as the source, which tracebacks show
 
 
 class _Module(ModuleType):

@@ -33,6 +33,11 @@ class Vector3(np.ndarray):
         return np.broadcast_to(np.asarray(given, np.float32), (3,)).copy().view(cls)
 
     @classmethod
+    def zero_init(cls) -> Vector3:
+        """Returns the vector of zeros."""
+        return cls(0.0)
+
+    @classmethod
     def x_axis(cls, length: float = 1.0) -> Vector3:
         """Returns the vector to the right."""
         return cls(length, 0.0, 0.0)
@@ -84,6 +89,11 @@ class Quaternion:
             vector, scalar = vector  # magnum takes one tuple of both, too
         self.vector = Vector3(vector)
         self.scalar = 1.0 if scalar is None else float(scalar)
+
+    @classmethod
+    def identity_init(cls) -> Quaternion:
+        """Returns no rotation."""
+        return cls()
 
     @classmethod
     def rotation(cls, angle: float, axis: ArrayLike) -> Quaternion:

@@ -7,7 +7,8 @@ one to another. Positions are (3,) in Habitat's frame, metres.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import cv2
@@ -32,19 +33,8 @@ class GreedyFollowerError(Exception):
     """No path leads to the goal of a follower."""
 
 
-@dataclass
-class ShortestPath:
-    """A question to `PathFinder.find_path`, and its answer."""
-
-    requested_start: Any = None
-    requested_end: Any = None
-    points: list[Vector3] = field(default_factory=list)
-    """The corners of the path, start and end included; empty without a path."""
-    geodesic_distance: float = math.inf
-
-
 class MultiGoalShortestPath:
-    """The same with several ends; `geodesic_distance` is that to the nearest one.
+    """A question to `PathFinder.find_path`, and its answer.
 
     Distances to the last ends are kept, so that the same object answers for other starts at once.
     """
@@ -52,10 +42,11 @@ class MultiGoalShortestPath:
     def __init__(self) -> None:
         self.requested_start: Any = None
         self.geodesic_distance = math.inf
-        self.closest_end_point_index = -1
-        self.points: list[Vector3] = []
+        """Length of the path to the nearest end, metres; inf: there is none."""
         self._ends: NDArray[np.float64] = np.zeros((0, 3))
         self.kept: dict[Any, Any] = {}
+        self.trace: Callable[[], list[Vector3]] | None = None
+        """Returns the corners of the path; None: there is none."""
 
     @property
     def requested_ends(self) -> NDArray[np.float64]:
@@ -66,6 +57,33 @@ class MultiGoalShortestPath:
     def requested_ends(self, ends: ArrayLike) -> None:
         self._ends = np.asarray(ends, np.float64).reshape(-1, 3)
         self.kept = {}
+
+    @property
+    def points(self) -> list[Vector3]:
+        """The corners of the path, start and end included; empty without a path."""
+        return [] if self.trace is None else self.trace()
+
+    @property
+    def closest_end_point_index(self) -> int:
+        """The number of the end that the path leads to; -1 without a path."""
+        corners = self.points
+        if not corners:
+            return -1
+        away = self._ends - np.asarray(corners[-1], np.float64)
+        return int(np.argmin(np.linalg.norm(away, axis=1)))
+
+
+class ShortestPath(MultiGoalShortestPath):
+    """The same with one end."""
+
+    @property
+    def requested_end(self) -> NDArray[np.float64]:
+        """The end (3,)."""
+        return self._ends[0]
+
+    @requested_end.setter
+    def requested_end(self, end: ArrayLike) -> None:
+        self.requested_ends = np.asarray(end, np.float64).reshape(1, 3)
 
 
 @dataclass
@@ -206,10 +224,10 @@ class PathFinder:
             island_index: exists for scripts that give it; -1.
         """
         x_m, y_m, z_m = from_position(_three(point))
-        found = self._snapped(x_m, y_m, z_m)
+        found = self.snapped(x_m, y_m, z_m)
         return Vector3(np.nan) if found is None else Vector3(to_position(*found[1], found[0].floor_z_m))
 
-    def _snapped(self, x_m: float, y_m: float, z_m: float) -> tuple[Storey, tuple[float, float]] | None:
+    def snapped(self, x_m: float, y_m: float, z_m: float) -> tuple[Storey, tuple[float, float]] | None:
         """Returns the storey and the nearest point on it."""
         storey = self._storey_at(z_m, SNAP_M)
         if storey is None:
@@ -220,42 +238,32 @@ class PathFinder:
                 return storey, place
         return None
 
-    def find_path(self, path: ShortestPath | MultiGoalShortestPath) -> bool:
+    def find_path(self, path: MultiGoalShortestPath) -> bool:
         """Answers a question; returns whether there is a path."""
-        several = isinstance(path, MultiGoalShortestPath)
-        ends = path.requested_ends if several else np.asarray(path.requested_end, np.float64).reshape(1, 3)
-        path.points, path.geodesic_distance = [], math.inf
-        start = self._snapped(*from_position(_three(path.requested_start)))
+        path.trace, path.geodesic_distance = None, math.inf
+        start = self.snapped(*from_position(_three(path.requested_start)))
         if start is None:
             return False
         storey, place = start
-        kept = path.kept if several else {}
-        if storey not in kept:
-            kept[storey] = self._field(storey, ends)
-        distance_m, reached = kept[storey]
-        length_m = storey.space.distance_at(distance_m, *place)
-        path.geodesic_distance = length_m
-        if not math.isfinite(length_m):
+        if storey not in path.kept:
+            path.kept[storey] = self.distances(storey, path.requested_ends)
+        distance_m: NDArray[np.float32] = path.kept[storey]
+        path.geodesic_distance = storey.space.distance_at(distance_m, *place)
+        if not math.isfinite(path.geodesic_distance):
             return False
-        corners = storey.path(distance_m, *place)
-        path.points = [Vector3(to_position(x, y, storey.floor_z_m)) for x, y in corners]
-        if isinstance(path, MultiGoalShortestPath):
-            last = np.array(corners[-1])
-            path.closest_end_point_index = reached[int(np.argmin([math.dist(last, xy) for _, xy in reached]))][0]
+        path.trace = lambda: [
+            Vector3(to_position(x_m, y_m, storey.floor_z_m)) for x_m, y_m in storey.path(distance_m, *place)
+        ]
         return True
 
-    def _field(
-        self, storey: Storey, ends: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float32], list[tuple[int, tuple[float, float]]]]:
-        """Returns the distance of each cell (rows, cols) to the nearest end, and the ends that can be reached."""
-        reached = []
+    def distances(self, storey: Storey, ends: NDArray[np.float64]) -> NDArray[np.float32]:
+        """Returns the distance of each cell (rows, cols) of a storey to the nearest of ends (n, 3)."""
         sources = np.zeros(storey.space.free.shape, np.bool_)
-        for index, end in enumerate(ends):
-            found = self._snapped(*from_position(_three(end)))
+        for end in ends:
+            found = self.snapped(*from_position(_three(end)))
             if found is not None and found[0] is storey:
                 sources[storey.space.frame.cell(*found[1])] = True
-                reached.append((index, found[1]))
-        return storey.space.geodesic(sources), reached
+        return storey.space.geodesic(sources)
 
     def try_step(self, start: ArrayLike, end: ArrayLike) -> Vector3:
         """Returns where a motion ends that slides along obstacles, without physics."""
@@ -325,7 +333,7 @@ class PathFinder:
     def get_island(self, point: ArrayLike) -> int:
         """Returns the number of the connected part that holds a point; -1: none."""
         first = 0
-        found = self._snapped(*from_position(_three(point)))
+        found = self.snapped(*from_position(_three(point)))
         for storey in self.storeys:
             if found is not None and storey is found[0]:
                 return first + int(storey.parts[storey.space.frame.cell(*found[1])]) - 1
@@ -410,11 +418,11 @@ class GreedyGeodesicFollower:
         return self._keys[action]
 
     def _towards(self, goal: tuple[float, float, float]) -> Follower:
-        start = self._pathfinder._snapped(*from_position(_three(self._agent.state.position)))
+        start = self._pathfinder.snapped(*from_position(_three(self._agent.state.position)))
         if start is None:
             raise GreedyFollowerError(f"The agent at {self._agent.state.position.tolist()} is not on the free space.")
         storey = start[0]
-        distance_m, _ = self._pathfinder._field(storey, np.array([goal]))
+        distance_m = self._pathfinder.distances(storey, np.array([goal]))
         space, radius_m = storey.space, self._radius_m
         left_m = np.maximum(distance_m - radius_m, 0.0).astype(np.float32)
         near = Destination(

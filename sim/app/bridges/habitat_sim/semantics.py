@@ -1,7 +1,7 @@
 """Habitat's semantic scene of a house: its storeys, rooms and labelled objects.
 
-The object with index `i` has the id `CATEGORY_i`, and `i` is its value in images of semantic sensors; index 0 is what has
-no label.
+The object with index `i` has the id `CATEGORY_i`, and `i` is its value in images of semantic sensors; index 0 is what
+has no label.
 """
 
 from __future__ import annotations
@@ -172,8 +172,9 @@ def semantic_scene(world: World) -> SemanticScene:
     objects = [SemanticObject(f"{VOID}_0", 0, Category(VOID, 0), nothing)]
     for index, instance in enumerate(world.labels.instances, start=1):
         category = Category(instance.category, MPCAT40_ID[instance.category])
-        objects.append(SemanticObject(f"{instance.category}_{index}", index, category, boxes[instance.name], instance.name))
-    whole = _around([box for box in boxes.values()]) if boxes else nothing
+        box, name = boxes[instance.name], instance.name
+        objects.append(SemanticObject(f"{instance.category}_{index}", index, category, box, name))
+    whole = _around(list(boxes.values())) if boxes else nothing
     levels: dict[float, SemanticLevel] = {}
     regions = []
     for number, room in enumerate(world.rooms):

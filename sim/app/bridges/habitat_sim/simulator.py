@@ -38,7 +38,7 @@ from sim.robot.conditions import NOMINAL
 from sim.robot.config import DriveConfig, MotionKind, RobotConfig
 from sim.sensors.noise import SensorNoise, get_noise
 from sim.sensors.standard import resolve_sensors
-from sim.task.ground_truth import GroundTruth
+from sim.task.objectnav import Task
 from sim.world.world import World
 
 FAR_M = 100.0
@@ -147,8 +147,8 @@ class Simulator:
         self.world = World(find_house(scene), robot=robot)
         self.world.restore()
         self._gloss = geom_gloss(self.world.model, self.world.labels)
-        self._truth = GroundTruth(self.world)
-        self.pathfinder = PathFinder(self._truth, self._seed)
+        self._task = Task(self.world)
+        self.pathfinder = PathFinder(self._task.truth, self._seed)
         self._semantic_scene: SemanticScene | None = None
         instances = np.append(self.world.labels.geom_instance + 1, 0)  # the last entry is that of geom -1
         self._semantic_ids = instances.astype(np.uint32)
@@ -169,6 +169,21 @@ class Simulator:
     def previous_step_collided(self) -> bool:
         """Whether a contact ended the last action early."""
         return self._collided
+
+    def distance_to_goal_m(self, category: str) -> float | None:
+        """Returns the distance to the nearest place where a STOP for a category succeeds (docs/task.md); None: no path.
+
+        Objects count where the house file puts them, except that the distance is 0 where a STOP succeeds now.
+
+        Raises:
+            EpisodeError: the house has no instance.
+        """
+        return 0.0 if self.stop_succeeds(category) else self._task.distance_from(category, self.agents[0].pose)
+
+    def stop_succeeds(self, category: str) -> bool:
+        """Returns whether a STOP for a category succeeds now: a visible point of an instance is within 1 m."""
+        pose = self.agents[0].pose
+        return self._task.truth.succeeds_now(category, pose.x_m, pose.y_m, pose.floor_z_m)
 
     def seed(self, new_seed: int) -> None:
         """Seeds random places and noise."""

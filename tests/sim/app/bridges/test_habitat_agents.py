@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 import torch
 
-from sim.app.bridges.habitat import HabitatSimActions, stand_in
+from sim.app.bridges.habitat import stand_in
 from sim.app.bridges.habitat.agents import HabitatAgent, spec_of
-from sim.app.bridges.habitat.conversions import Conversion, to_action
+from sim.app.bridges.habitat.conversions import Conversion, HabitatSimActions, to_action
 from sim.app.commands.run import entry
 from sim.app.composition.agents import find_agent
 from sim.app.composition.record import code_of

@@ -1,0 +1,158 @@
+"""Registers with habitat-lab: the shipped splits as data sets, and this project's measures.
+
+A data set `stubborn-val` has the goals of MP3D in their order, `stubborn-val-hm3d` only the six of HM3D. The measures
+`StubbornDistanceToGoal` and `StubbornSuccess` take the place of Habitat's `distance_to_goal` and `success`: the
+distance is that to the nearest place where a STOP succeeds, by the rule of docs/task.md, in place of that to a listed
+view point.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from habitat.config.default import get_config as lab_config
+from habitat.config.read_write import read_write
+from habitat.core.registry import registry
+from habitat.datasets.object_nav.object_nav_dataset import ObjectNavDatasetV1
+from habitat.tasks.nav.nav import DistanceToGoal, Success
+
+from sim.app.bridges.habitat.conversions import CATEGORIES
+from sim.core.errors import ConfigError
+from sim.core.interface import MPCAT40_ID
+from sim.core.paths import assets_dir
+from sim.episodes.habitat import read_episodes
+from sim.episodes.splits import load_split, shipped_splits
+
+ALL = "*"
+NUMBERINGS = {"": "mp3d", "-hm3d": "hm3d"}
+"""Ends of the names of data sets, and the numbering of goals that each has."""
+
+
+def register() -> None:
+    """Registers data sets and measures; a second call is harmless."""
+    for split in shipped_splits():
+        for ending in NUMBERINGS:
+            _register(split, ending)
+    if registry.get_measure("StubbornSuccess") is None:
+        registry.register_measure(_StubbornDistanceToGoal, name="StubbornDistanceToGoal")
+        registry.register_measure(_StubbornSuccess, name="StubbornSuccess")
+
+
+def _register(split: str, ending: str) -> str:
+    """Registers the data set of a split, if it is not; returns its name."""
+    name = f"stubborn-{split}{ending}"
+    if registry.get_dataset(name) is None:
+        registry.register_dataset(_dataset(split, NUMBERINGS[ending]), name=name)
+    return name
+
+
+def get_config(
+    split: str = "val",
+    overrides: Sequence[str] = (),
+    *,
+    base: str = "benchmark/nav/objectnav/objectnav_hm3d.yaml",
+    rule: str = "stubborn",
+) -> Any:
+    """Returns habitat-lab's configuration for a split.
+
+    Args:
+        split: name of a shipped split, or the folder of another one; with `-hm3d` at the end, only the six goals of
+            HM3D.
+        overrides: changes such as `habitat.environment.max_episode_steps=100`.
+        base: habitat-lab's configuration of the benchmark.
+        rule: `stubborn`: distance and success by this project's rule; `view_points`: Habitat's, within 0.1 m of a
+            listed view point.
+
+    Raises:
+        ConfigError: there is no such split or rule.
+    """
+    ending = max((end for end in NUMBERINGS if split.endswith(end)), key=len)
+    name = split.removesuffix(ending)
+    load_split(name)
+    if rule not in ("stubborn", "view_points"):
+        raise ConfigError(f"rule must be stubborn or view_points, got '{rule}'.")
+    config = lab_config(base, list(overrides))
+    with read_write(config):
+        config.habitat.dataset.type = _register(name, ending)
+        if rule == "stubborn":
+            config.habitat.task.measurements.distance_to_goal.type = "StubbornDistanceToGoal"
+            config.habitat.task.measurements.success.type = "StubbornSuccess"
+    return config
+
+
+def _dataset(split_name: str, numbering: str) -> type[ObjectNavDatasetV1]:
+    """Returns the class of the data set of a split."""
+
+    class StubbornDataset(ObjectNavDatasetV1):
+        """The episodes of a split."""
+
+        def __init__(self, config: Any = None) -> None:
+            self.goals_by_category, self.episodes = {}, []
+            if config is None:
+                return
+            split, goals = load_split(split_name), CATEGORIES[numbering]
+            shipped = split_name in shipped_splits()
+            folder = assets_dir() / split_name if shipped else Path(split_name)
+            chosen = [str(house) for house in config.content_scenes]
+            own_ids = []
+            for house in split.houses if ALL in chosen else chosen:
+                file = folder / "content" / f"{house}.json.gz"
+                if not file.is_file() and ALL in chosen:
+                    continue
+                if not file.is_file():
+                    raise ConfigError(f"Split '{split_name}' has no episodes in a house '{house}'.")
+                own_ids += [str(entry.episode_id) for entry in read_episodes(file)]
+                self._load_from_file(str(file), None)
+            places = {episode.episode_id: place for place, episode in enumerate(split.episodes)}
+            for own_id, episode in zip(own_ids, self.episodes, strict=True):
+                episode.episode_id = str(places[own_id])
+                episode.info = {**(episode.info or {}), "stubborn_id": own_id}
+                if not shipped:
+                    episode.scene_id = str(split.house_paths[Path(episode.scene_id).stem])
+            self.episodes = sorted(
+                (episode for episode in self.episodes if episode.object_category in goals),
+                key=lambda episode: int(episode.episode_id),
+            )
+            if not self.episodes:
+                raise ConfigError(f"Split '{split_name}' has no episodes with a goal of {numbering} in these houses.")
+            self.category_to_task_category_id = {goal: number for number, goal in enumerate(goals)}
+            self.category_to_scene_annotation_category_id = {goal: MPCAT40_ID[goal] for goal in goals}
+
+        @staticmethod
+        def check_config_paths_exist(config: Any) -> bool:
+            """Returns True: the split was found."""
+            return True
+
+        @classmethod
+        def get_scenes_to_load(cls, config: Any) -> list[str]:
+            """Returns the names of the houses."""
+            return sorted({episode.house for episode in load_split(split_name).episodes})
+
+    StubbornDataset.__name__ = f"Stubborn{Path(split_name).name.title().replace('-', '')}{numbering.title()}"
+    StubbornDataset.__doc__ = f"The split '{split_name}' with the goals of {numbering}."
+    return StubbornDataset
+
+
+class _StubbornDistanceToGoal(DistanceToGoal):
+    """The distance to the nearest place where a STOP succeeds, metres."""
+
+    def reset_metric(self, episode: Any, *args: Any, **kwargs: Any) -> None:
+        """Begins an episode."""
+        self.update_metric(episode=episode)
+
+    def update_metric(self, episode: Any, *args: Any, **kwargs: Any) -> None:
+        """Takes the distance from where the robot is."""
+        distance_m = self._sim.distance_to_goal_m(episode.object_category)
+        self._metric = math.inf if distance_m is None else distance_m
+
+
+class _StubbornSuccess(Success):
+    """Whether STOP was called where it succeeds: a visible point of an instance is within 1 m."""
+
+    def update_metric(self, episode: Any, task: Any, *args: Any, **kwargs: Any) -> None:
+        """Takes whether a STOP was called and succeeds."""
+        stopped = bool(getattr(task, "is_stop_called", False))
+        self._metric = float(stopped and self._sim.stop_succeeds(episode.object_category))

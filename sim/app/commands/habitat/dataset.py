@@ -1,0 +1,105 @@
+"""Writes a split as Habitat's ObjectNav files, with view points as dense as those of HM3D.
+
+    stubborn habitat dataset --split val --out data/datasets/objectnav/stubborn/v1/val
+
+habitat-lab's own class of data sets reads them (`habitat.dataset.data_path=.../{split}/{split}.json.gz`). The view
+points of a goal are the places on a grid of 0.1 m where a STOP succeeds for it, so that Habitat's rule, at most 0.1 m
+from a view point, accepts nearly the same places as that of docs/task.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from sim.app import cli
+from sim.app.bridges.habitat.conversions import CATEGORIES
+from sim.app.evaluation.parallel import ordered_map
+from sim.core.files import write_together
+from sim.core.interface import MPCAT40_ID
+from sim.episodes import habitat
+from sim.episodes.reachable_goals import find_reachable_goals
+from sim.episodes.splits import load_split
+from sim.task.objectnav import Task
+from sim.world.world import World
+
+STEP_CELLS = 4
+"""Distance of the view points, in cells of the free space (0.025 m)."""
+MAX_VIEW_POINTS = 100_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Write a split as Habitat's ObjectNav files."""
+
+    out: cli.OutFolder
+    """Folder for the files; its name is that of the split for Habitat."""
+    split: str = "val"
+    """A shipped split, or a folder laid out like one."""
+    format: Literal["v1", "v2"] = "v1"
+    """v1: goals of MP3D (21 categories); v2: those of HM3D (6)."""
+    workers: cli.Count = 1
+    """Number of processes."""
+
+
+def main(args: Args) -> int:
+    """Writes the files; returns the exit status."""
+    split = load_split(args.split)
+    goals = CATEGORIES["mp3d" if args.format == "v1" else "hm3d"]
+    tables = {
+        "category_to_task_category_id": {goal: number for number, goal in enumerate(goals)},
+        "category_to_mp3d_category_id": {goal: MPCAT40_ID[goal] for goal in goals},
+    }
+    numbers = {episode.episode_id: number for number, episode in enumerate(split.episodes)}
+    houses = [house for house in split.houses if any(episode.house == house for episode in split.episodes)]
+    jobs = [(args.split, house) for house in houses]
+    files: dict[Path, bytes | str] = {
+        args.out / f"{args.out.name}.json.gz": habitat.zipped_json({**tables, "episodes": []})
+    }
+    points = count = 0
+    for house, listed in zip(houses, ordered_map(_goals, jobs, workers=args.workers), strict=True):
+        scene = f"{Path(args.split).name}/{house}.xml"
+        episodes = [
+            {
+                "episode_id": str(numbers[episode.episode_id]),
+                "scene_id": f"stubborn/{scene}",
+                "scene_dataset_config": "default",
+                **_start(episode.start),
+                "object_category": episode.goal,
+                "info": {"geodesic_distance": episode.shortest_path_m, "stubborn_id": episode.episode_id},
+                "goals": [],
+            }
+            for episode in split.episodes
+            if episode.house == house and episode.goal in goals
+        ]
+        kept = {habitat.goals_key(house, goal): entries for goal, entries in listed.items() if goal in goals}
+        points += sum(len(entry["view_points"]) for entries in kept.values() for entry in entries)
+        count += len(episodes)
+        content = {**tables, "goals_by_category": kept, "episodes": episodes}
+        files[args.out / "content" / f"{house}.json.gz"] = habitat.zipped_json(content)
+    write_together(files)
+    size = sum(file.stat().st_size for file in files) / 1e6
+    print(f"{args.out}: {len(houses)} houses, {count} episodes, {points} view points, {size:.1f} MB.")
+    return 0
+
+
+def _start(start: Any) -> dict[str, list[float]]:
+    state = habitat.to_agent_state(start)
+    return {"start_position": state["position"], "start_rotation": state["rotation"]}
+
+
+def _goals(job: tuple[str, str]) -> dict[str, list[habitat.Goal]]:
+    """Returns the goals of a house with all their view points."""
+    name, house = job
+    split = load_split(name)
+    task = Task(World(split.load_house(house)))
+    floors_m = sorted({episode.start.floor_z_m for episode in split.episodes if episode.house == house})
+    listed: dict[str, list[habitat.Goal]] = {}
+    for floor_z_m in floors_m:
+        found = find_reachable_goals(
+            task, max_view_points=MAX_VIEW_POINTS, step_cells=STEP_CELLS, floor_z_m=floor_z_m
+        ).listed
+        for goal, entries in found.items():
+            listed.setdefault(goal, []).extend(entries)
+    return listed
