@@ -8,6 +8,7 @@ from typing import Annotated
 
 from sim.app import cli
 from sim.core.option_types import Option, meanings
+from sim.robot.config import MotionKind
 
 HABITAT = "habitat:"
 """Beginning of the names of agents with Habitat's interface."""
@@ -84,6 +85,9 @@ class RunOptions:
     """Rendering quality: fast or good."""
     noise: Annotated[str, _PRESET] = "none"
     """Noise of sensors and drive: none, realsense or harsh."""
+    motion: Annotated[MotionKind, _PRESET] = "contacts"
+    """How the robot moves: contacts (physics), or as in Habitat without physics, where an obstacle ends a motion
+    (no-sliding) or deflects it (sliding)."""
     config: Annotated[tuple[str, ...], _NOT_RECORDED] = ()
     """FIELD=VALUE ...: fields of the configuration, for example task.max_steps=300 agent.planning.dilation_m=0.1."""
     config_file: Annotated[Path | None, _NOT_RECORDED] = None

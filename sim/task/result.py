@@ -20,6 +20,7 @@ import msgspec
 from msgspec import UNSET, Meta, UnsetType
 
 from sim.core.reading import Count, Metres, Name, Number, Seed
+from sim.robot.config import MotionKind
 
 EndReason = Literal["stop", "max_steps", "fallen", "error"]
 Share = Annotated[float, Meta(ge=0.0, le=1.0)]
@@ -157,6 +158,8 @@ class EpisodeResult(RolloutResult, frozen=True, kw_only=True):
     semantics: str
     seed: Seed
     """Seed of the run."""
+    motion: MotionKind = "contacts"
+    """How the robot moved, see `sim.robot.config.RobotConfig`; runs of older versions had physics."""
     person_steps: Count | UnsetType = UNSET
     """Actions that a person chose; this and the next two are set where a person drove."""
     hint_steps: Count | UnsetType = UNSET

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from sim.app.bridges import habitat
 from sim.app.bridges.habitat.conversions import HabitatSimActions
+from sim.app.bridges.habitat_client import Agent
 
 SEEN: list[dict[str, Any]] = []
 """Observations that a `Wanderer` got in this process."""
 
 
-class Wanderer(habitat.Agent):
+class Wanderer(Agent):
     """Turns where the depth ahead is small, and now and then at random; stops after some steps."""
 
     def __init__(self, stop_after: int = 100, keep: float = 0.1, **others: Any) -> None:

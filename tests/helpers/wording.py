@@ -30,7 +30,7 @@ EASY_MEDIUM_HARD = "easy, medium, hard"
 ENCODING_IS_NOT_READ_NOT_WELL_FORMED_NOT_AN_MJCF = (
     r"encoding '.*' is not read|not well-formed|not an MJCF file|is not text in"
 )
-EPISODES_AND_SHORTEST_PATHS_ARE_IN_THE_SIMULATOR = "Episodes and shortest paths are in the simulator's process"
+AN_AGENT_HAS_NO_EPISODES_OF_ITS_OWN = "An agent has no episodes of its own here"
 EPISODES_MUST_BE_1_TO_3_GOT_4 = "episodes must be 1 to 3, got 4"
 EPISODES_MUST_BE_AT_LEAST_1_GOT = "episodes must be at least 1, got"
 EXCLUDE_EACH_OTHER = "exclude each other"

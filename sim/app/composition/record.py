@@ -113,6 +113,7 @@ def result_of(setup: Setup, episode: Episode, result: RolloutResult) -> EpisodeR
         isolated=is_process(setup.options.agent),
         semantics=setup.options.semantics,
         seed=setup.options.seed,
+        motion=setup.config.robot.motion,
     )
 
 

@@ -287,7 +287,7 @@ def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKin
         agent=_agent_config(options, spec),
         detector=detector_config(segmentation, options.weights),
         verification=VerificationConfig(method=options.verification, parameters=options.verifier),
-        robot=robot,
+        robot=replace(robot, motion=options.motion),
         camera=camera,
         sensors=_sensor_names(spec, segmentation),
         scan=ScanConfig(),

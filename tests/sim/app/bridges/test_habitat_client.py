@@ -130,7 +130,7 @@ def test_a_use_of_a_package_that_is_not_installed_is_an_error_that_names_it() ->
     [
         ("own.py", "import habitat.utils.visualizations", r"'habitat\.utils'"),
         ("own.py", "from habitat import make_dataset", r"'make_dataset'.*'habitat'"),
-        ("own.py", "import habitat\nhabitat.Env()", wording.EPISODES_AND_SHORTEST_PATHS_ARE_IN_THE_SIMULATOR),
+        ("own.py", "import habitat\nhabitat.Env()", wording.AN_AGENT_HAS_NO_EPISODES_OF_ITS_OWN),
         ("own.py", "import habitat\nhabitat.Challenge(eval_remote=True)", wording.THERE_IS_NO_EVALUATION_SERVER),
         ("own.py", "print('nothing')", r"'own\.py'.*habitat\.Benchmark.*habitat\.Challenge"),
         ("published:Own", "", r"1.*'args'"),

@@ -1,0 +1,237 @@
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sim.app.bridges.habitat_sim.agent import AgentState
+from sim.app.bridges.habitat_sim.maths import Deg, Quaternion, Vector3, quat_from_coeffs, quat_rotate_vector
+from sim.app.bridges.habitat_sim.pathfinder import GreedyFollowerError, MultiGoalShortestPath, ShortestPath
+from sim.app.bridges.habitat_sim.settings import (
+    ActionSpec,
+    ActuationSpec,
+    AgentConfiguration,
+    CameraSensorSpec,
+    Configuration,
+    SensorType,
+    SimulatorConfiguration,
+)
+from sim.app.bridges.habitat_sim.simulator import Simulator, configure
+from sim.core.errors import ConfigError, HouseError
+from sim.houses.house import House
+from sim.houses.writing import house_text
+from tests.helpers.worlds import bed_behind_a_wall, room, with_box
+
+AHEAD = quat_from_coeffs([0.0, 0.0, 0.0, 1.0])
+"""Looks along -z, which is +y in the frame of the house."""
+
+
+def camera(uuid: str, kind: SensorType, **others: Any) -> CameraSensorSpec:
+    return CameraSensorSpec(uuid, kind, resolution=[48, 64], position=[0.0, 0.88, 0.0], hfov=79.0, **others)
+
+
+def simulator(tmp_path: Path, house: House, *, turn_deg: float = 30.0, **cameras: Any) -> Simulator:
+    file = tmp_path / "house.xml"
+    file.write_text(house_text(house.spec))
+    specs = [
+        camera("rgb", SensorType.COLOR),
+        camera("depth", SensorType.DEPTH, **cameras),
+        camera("semantic", SensorType.SEMANTIC),
+    ]
+    actions = {
+        0: ActionSpec("stop"),
+        1: ActionSpec("move_forward", ActuationSpec(0.25)),
+        2: ActionSpec("turn_left", ActuationSpec(turn_deg)),
+        3: ActionSpec("turn_right", ActuationSpec(turn_deg)),
+        4: ActionSpec("look_up", ActuationSpec(30.0)),
+    }
+    agent = AgentConfiguration(sensor_specifications=specs, action_space=actions)
+    return Simulator(Configuration(SimulatorConfiguration(scene_id=str(file)), [agent]))
+
+
+def put(sim: Simulator, x: float, z: float, rotation: Any = AHEAD) -> None:
+    sim.agents[0].set_state(AgentState(np.array([x, 0.0, z]), rotation))
+
+
+@pytest.fixture
+def empty(tmp_path: Path) -> Iterator[Simulator]:
+    with simulator(tmp_path, room(4, 4)) as sim:
+        put(sim, 0.0, 0.0)
+        yield sim
+
+
+def test_an_action_moves_the_agent_in_habitats_frame(empty: Simulator) -> None:
+    empty.step(1)
+    state = empty.agents[0].state
+    assert state.position == pytest.approx([0.0, 0.0, -0.25], abs=0.01)
+    assert empty.step(2)["collided"] is False
+    turned = quat_rotate_vector(empty.agents[0].state.rotation, [0.0, 0.0, -1.0])
+    assert turned == pytest.approx([-0.5, 0.0, -math.cos(math.radians(30.0))], abs=0.01)
+
+
+def test_the_angle_of_turns_is_that_of_the_action(tmp_path: Path) -> None:
+    with simulator(tmp_path, room(4, 4), turn_deg=10.0) as sim:
+        put(sim, 0.0, 0.0)
+        sim.step(3)
+        turned = quat_rotate_vector(sim.agents[0].state.rotation, [0.0, 0.0, -1.0])
+        assert turned[0] == pytest.approx(math.sin(math.radians(10.0)), abs=0.01)
+
+
+def test_a_wall_ends_the_action_by_contact(empty: Simulator) -> None:
+    put(empty, 0.0, -1.75)
+    assert empty.step(1)["collided"] is True
+    assert empty.previous_step_collided
+    assert empty.agents[0].state.position[2] == pytest.approx(-1.82, abs=0.01)
+
+
+def test_cameras_look_from_where_they_are_mounted(tmp_path: Path) -> None:
+    for position, orientation, depth_m in (
+        ([0.0, 0.88, 0.0], [0.0, 0.0, 0.0], 2.0),
+        ([0.0, 0.88, -0.1], [0.0, 0.0, 0.0], 1.9),
+        ([0.5, 0.88, 0.0], [0.0, math.pi / 2, 0.0], 2.5),
+        ([0.0, 1.0, 0.0], [-math.pi / 2, 0.0, 0.0], 1.0),
+    ):
+        with simulator(tmp_path, room(4, 4)) as sim:
+            sim.add_sensor(
+                CameraSensorSpec(
+                    "own", SensorType.DEPTH, resolution=[31, 31], position=position, orientation=orientation, hfov=60.0
+                )
+            )
+            put(sim, 0.0, 0.0)
+            assert sim.get_sensor_observations()["own"][15, 15] == pytest.approx(depth_m, abs=0.01)
+
+
+def test_looking_up_tilts_all_cameras_until_the_next_reset(empty: Simulator) -> None:
+    level = empty.get_sensor_observations()["depth"][24, 32]
+    assert empty.step(4)["depth"][24, 32] == pytest.approx(level / math.cos(math.radians(30.0)), abs=0.03)
+    assert empty.agents[0].state.sensor_states["depth"].rotation.x == pytest.approx(math.sin(math.radians(15.0)))
+    assert empty.reset()["depth"][24, 32] == pytest.approx(level, abs=0.01)
+
+
+def test_a_pose_that_is_set_and_set_back_leaves_physics_untouched(empty: Simulator) -> None:
+    empty.step(1)
+    before, here = empty.world.data.qpos.copy(), empty.agents[0].state
+    put(empty, 1.0, 1.0)
+    seen = empty.get_sensor_observations()["depth"][24, 32]
+    empty.agents[0].set_state(here)
+    assert seen == pytest.approx(3.0, abs=0.02)
+    assert (empty.world.data.qpos == before).all()
+    put(empty, 1.0, 1.0)
+    empty.step(1)
+    assert empty.agents[0].state.position == pytest.approx([1.0, 0.0, 0.75], abs=0.01)
+
+
+def test_semantic_images_hold_indices_of_the_semantic_scene(tmp_path: Path) -> None:
+    house = with_box(room(6, 6), "sofa_00", centre_m=(0, 2.5, 0.4), half_m=(0.8, 0.4, 0.4))
+    with simulator(tmp_path, house) as sim:
+        put(sim, 0.0, 0.0)
+        scene = sim.semantic_scene
+        sofa = next(thing for thing in scene.objects if thing.category.name() == "sofa")
+        assert sofa.semantic_id == scene.objects.index(sofa) == int(sofa.id.split("_")[-1])
+        assert sofa.semantic_id in sim.get_sensor_observations()["semantic"]
+        assert sofa.aabb.center() == pytest.approx([0.0, 0.4, -2.5])
+        assert sofa.aabb.sizes == pytest.approx([1.6, 0.8, 0.8])
+        assert sofa.region is not None
+        assert sofa.region.category.name() == "living"
+        assert scene.get_regions_for_point(np.array([0.0, 1.0, 0.0])) == [0]
+
+
+def test_paths_lead_around_walls(tmp_path: Path) -> None:
+    with simulator(tmp_path, bed_behind_a_wall()) as sim:
+        path = ShortestPath()
+        path.requested_start, path.requested_end = [-1.0, 0.0, -1.0], [2.0, 0.0, -1.0]
+        assert sim.pathfinder.find_path(path)
+        corner = math.dist((-1.0, 1.0), (0.27, -0.2)) + math.dist((0.73, -0.2), (2.0, 1.0)) + 0.5
+        assert path.geodesic_distance == pytest.approx(corner, abs=0.15)
+        points = np.array(path.points)
+        assert np.linalg.norm(np.diff(points, axis=0), axis=1).sum() == pytest.approx(path.geodesic_distance, abs=0.1)
+        assert 3 <= len(points) <= 6
+        several = MultiGoalShortestPath()
+        several.requested_start = [-1.0, 0.0, -1.0]
+        several.requested_ends = [[2.0, 0.0, -1.0], [-2.0, 0.0, -1.0]]
+        assert sim.pathfinder.find_path(several)
+        assert several.geodesic_distance == pytest.approx(1.0, abs=0.03)
+        assert several.closest_end_point_index == 1
+        path.requested_start = [0.0, 5.0, 0.0]
+        assert not sim.pathfinder.find_path(path)
+        assert math.isinf(path.geodesic_distance)
+        assert path.points == []
+
+
+def test_the_follower_drives_to_a_place_and_stops_there(tmp_path: Path) -> None:
+    with simulator(tmp_path, bed_behind_a_wall()) as sim:
+        put(sim, -1.0, -1.0)
+        follower = sim.make_greedy_follower(0, 0.2, stop_key=0, forward_key=1, left_key=2, right_key=3)
+        for _ in range(60):
+            action = follower.next_action_along([2.0, 0.0, -1.0])
+            if action == 0:
+                break
+            sim.step(action)
+        assert action == 0
+        assert sim.agents[0].state.position == pytest.approx([2.0, 0.0, -1.0], abs=0.3)
+        with pytest.raises(GreedyFollowerError):
+            follower.next_action_along([30.0, 0.0, 0.0])
+
+
+def test_the_pathfinder_knows_where_the_robot_fits(empty: Simulator) -> None:
+    finder, reach_m = empty.pathfinder, 2.0 - empty.world.robot.radius_m
+    low, high = finder.get_bounds()
+    assert (low.x, low.z, high.x, high.z) == pytest.approx((-reach_m, -reach_m, reach_m, reach_m), abs=0.03)
+    assert finder.is_navigable([1.7, 0.0, 0.0])
+    assert not finder.is_navigable([1.9, 0.0, 0.0])
+    assert not finder.is_navigable([0.0, 1.0, 0.0])
+    assert finder.snap_point([1.95, 0.3, 0.0]) == pytest.approx([reach_m, 0.0, 0.0], abs=0.03)
+    assert np.isnan(finder.snap_point([9.0, 0.0, 0.0])).all()
+    assert finder.distance_to_closest_obstacle([1.0, 0.0, 0.0]) == pytest.approx(reach_m - 1.0, abs=0.03)
+    view = finder.get_topdown_view(0.1, 0.0)
+    assert view.shape == pytest.approx((36, 36), abs=1)
+    assert view.all()
+    assert finder.island_radius([0.0, 0.0, 0.0]) == pytest.approx(reach_m * math.sqrt(2.0), abs=0.05)
+    finder.seed(7)
+    assert all(finder.is_navigable(finder.get_random_navigable_point()) for _ in range(5))
+    near = finder.get_random_navigable_point_near([1.0, 0.0, 1.0], 0.3)
+    assert math.dist(near, (1.0, 0.0, 1.0)) <= 0.3
+
+
+def test_steps_without_physics_stop_or_slide(empty: Simulator) -> None:
+    finder, reach_m = empty.pathfinder, 2.0 - empty.world.robot.radius_m
+    start, end = [1.7, 0.0, 0.0], [1.95, 0.0, -0.25]
+    stopped, slid = finder.try_step_no_sliding(start, end), finder.try_step(start, end)
+    assert stopped == pytest.approx([reach_m, 0.0, -(reach_m - 1.7)], abs=0.03)
+    assert slid == pytest.approx([reach_m, 0.0, -0.25], abs=0.03)
+
+
+def test_options_apply_to_simulators_that_are_made_later(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sim.app.bridges.habitat_sim.simulator._chosen", {})
+    monkeypatch.setenv("STUBBORN_HABITAT", "motion=no-sliding")
+    with simulator(tmp_path, room(4, 4)) as sim:
+        put(sim, 0.0, -1.75)
+        assert sim.step(1)["collided"]
+        assert sim.world.config.motion == "no-sliding"
+    configure(motion="contacts", noise="realsense")
+    with simulator(tmp_path, room(4, 4)) as sim:
+        put(sim, 0.0, 0.0)
+        first, second = (sim.get_sensor_observations()["depth"] for _ in range(2))
+        assert (first != second).any()
+    with pytest.raises(ConfigError, match="motion must be"):
+        configure(motion="hovering")
+    with pytest.raises(ConfigError, match="'speed'"):
+        configure(speed="high")
+
+
+def test_what_is_not_here_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(HouseError, match="no house"):
+        Simulator(Configuration(SimulatorConfiguration(scene_id="mp3d/17DRP/17DRP.glb"), [AgentConfiguration()]))
+    with pytest.raises(ConfigError, match="noise model 'Redwood"):
+        simulator(tmp_path, room(4, 4), noise_model="RedwoodDepthNoiseModel")
+    with simulator(tmp_path, room(4, 4)) as sim, pytest.raises(ConfigError, match="Unknown action 9"):
+        sim.step(9)
+
+
+def test_quaternions_of_both_kinds_agree() -> None:
+    turn = Quaternion.rotation(Deg(90.0), Vector3.y_axis())
+    assert turn.transform_vector([0.0, 0.0, -1.0]) == pytest.approx([-1.0, 0.0, 0.0], abs=1e-6)
+    both = turn * Quaternion.rotation(Deg(90.0), Vector3.x_axis())
+    assert both.transform_vector([0.0, 0.0, -1.0]) == pytest.approx([0.0, 1.0, 0.0], abs=1e-6)

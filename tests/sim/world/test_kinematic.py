@@ -1,0 +1,50 @@
+import math
+
+import pytest
+
+from sim.core.errors import ConfigError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import Action
+from sim.robot.config import MotionKind, RobotConfig
+from sim.robot.velocity import Velocity
+from sim.world.world import World
+from tests.helpers.worlds import room
+
+REACH_M = 2.0 - RobotConfig().model.radius_m
+"""How far from the middle of a room of 4 x 4 m the middle of the robot can be."""
+
+
+def moved(motion: MotionKind, start: Pose, *actions: Action) -> tuple[World, list[bool]]:
+    world = World(room(4, 4), robot=RobotConfig(motion=motion))
+    world.reset(start)
+    return world, [world.move(action).collided for action in actions]
+
+
+@pytest.mark.parametrize("motion", ["no-sliding", "sliding"])
+def test_motion_without_physics_is_exact(motion: MotionKind) -> None:
+    world, collided = moved(motion, Pose(0.0, 0.0, 0.0), Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP)
+    assert collided == [False, False, False]
+    assert world.pose.xy_m == pytest.approx((0.25, 0.0), abs=1e-9)
+    assert world.pose.yaw_rad == pytest.approx(math.radians(30.0), abs=1e-9)
+    assert world.odometry.x_m == pytest.approx(0.25, abs=1e-9)
+
+
+def test_a_wall_ends_a_motion_or_deflects_it() -> None:
+    start = Pose(REACH_M - 0.05, 0.0, math.radians(30.0))
+    stopped, hit = moved("no-sliding", start, Action.MOVE_FORWARD)
+    slid, touched = moved("sliding", start, Action.MOVE_FORWARD)
+    assert hit == touched == [True]
+    assert stopped.pose.xy_m == pytest.approx((REACH_M, 0.05 * math.tan(math.radians(30.0))), abs=0.03)
+    assert slid.pose.xy_m == pytest.approx((REACH_M, 0.125), abs=0.03)
+    assert slid.pose.yaw_rad == pytest.approx(start.yaw_rad)
+
+
+def test_velocities_need_physics() -> None:
+    world, _ = moved("sliding", Pose(0.0, 0.0, 0.0))
+    with pytest.raises(ConfigError, match="'contacts'"):
+        world.hold(Velocity(0.1, 0.0), 0.1)
+
+
+def test_another_kind_of_motion_is_refused() -> None:
+    with pytest.raises(ConfigError, match="sliding"):
+        RobotConfig(motion="flying")  # pyright: ignore[reportArgumentType]
