@@ -10,7 +10,7 @@ TORCH_INDEX :=
 unexport PYTHONDONTWRITEBYTECODE
 TORCH := $(shell grep '^torch==' constraints.txt)
 
-.PHONY: setup system-libraries run test test-all lint types docs clean
+.PHONY: setup system-libraries run test test-all lint types docs habitat test-habitat clean
 
 setup: system-libraries $(STAMP)
 
@@ -37,6 +37,14 @@ test: setup
 test-all: setup
 	@echo "== every test, every case"
 	$(BIN)/python -m pytest -n 2 --dist worksteal --all-cases
+
+habitat: setup
+	@test -d .venv-habitat || $(BIN)/stubborn habitat setup
+
+test-habitat: habitat
+	@echo "== the tests with the real habitat-lab, in its own environment"
+	@.venv-habitat/bin/python -c "import pytest" 2> /dev/null || .venv-habitat/bin/python -m pip install --quiet pytest
+	.venv-habitat/bin/python -m pytest -q -c /dev/null --rootdir . --import-mode=importlib --noconftest -p no:cacheprovider tests/habitat_lab
 
 lint: setup
 	$(BIN)/ruff check .

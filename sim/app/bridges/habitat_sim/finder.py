@@ -7,6 +7,7 @@ these is a class that can be named and derived from, and that says at its first 
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import importlib.util
 import sys
@@ -110,6 +111,8 @@ class Finder(MetaPathFinder, Loader):
             if spec is not None and spec.loader is not None and spec.origin is not None:
                 spec.loader = _Registering(spec.loader)
             return spec
+        if fullname == "torchvision":
+            _declare_operators()
         if fullname.partition(".")[0] not in PACKAGES:
             return None
         return ModuleSpec(fullname, self, is_package=True)
@@ -132,6 +135,21 @@ class Finder(MetaPathFinder, Loader):
             from sim.app.bridges.habitat_sim.maths import colours
 
             module.d3_40_colors_rgb = colours()  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def _declare_operators() -> None:
+    """Declares two operators that the wheel of torchvision on PyPI has only beside a torch with CUDA.
+
+    habitat-baselines imports torchvision and does not use them; without them that import fails.
+    """
+    import torch
+
+    if torch.version.cuda is None:
+        for name in ("nms", "qnms"):
+            with contextlib.suppress(RuntimeError):  # it is declared
+                torch.library.define(
+                    f"torchvision::{name}", "(Tensor dets, Tensor scores, float iou_threshold) -> Tensor"
+                )
 
 
 class _Registering(Loader):

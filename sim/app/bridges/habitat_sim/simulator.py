@@ -29,7 +29,7 @@ from sim.app.bridges.habitat_sim.settings import (
 from sim.core.errors import ConfigError, HouseError
 from sim.core.interface import Action, CameraModel
 from sim.episodes.habitat import to_rotation
-from sim.episodes.splits import load_split, shipped_splits
+from sim.episodes.splits import HOUSE_SUFFIXES, load_split, shipped_splits
 from sim.houses.house import House
 from sim.houses.load import load_house
 from sim.renderer.camera import Camera
@@ -430,7 +430,8 @@ def find_house(scene_id: str) -> House:
     """Returns the house of a scene.
 
     Args:
-        scene_id: an MJCF file, or a path that ends in `split/house.xml` with a shipped split.
+        scene_id: an MJCF file, a path that ends in `split/house.xml` with a shipped split, or a scene of another format
+            (`X.glb`) with a house `X.xml` beside it.
 
     Raises:
         HouseError: there is no such house.
@@ -441,8 +442,9 @@ def find_house(scene_id: str) -> House:
         split = load_split(parts[0])
         if parts[1] in split.houses and (not path.is_file() or split.house_list is not None):
             return split.load_house(parts[1])
-    if path.is_file():
-        return load_house(path)
+    for file in (path, path.with_suffix(".xml")):
+        if file.suffix in HOUSE_SUFFIXES and file.is_file():
+            return load_house(file)
     raise HouseError(
         f"There is no house '{scene_id}': neither a file, nor SPLIT/HOUSE.xml of a shipped split "
         f"({', '.join(shipped_splits())}). Scenes of other simulators must be imported first (docs/worlds.md)."

@@ -26,7 +26,7 @@ from sim.core.errors import ConfigError, ObjectNavError
 from sim.core.invocation import command
 from sim.robot.config import MotionKind
 
-FOLDER = Path("habitat")
+FOLDER = Path(".venv-habitat")
 """Folder of the environment that `stubborn habitat setup` makes."""
 
 

@@ -1,7 +1,7 @@
 """Makes an environment with habitat-lab and habitat-baselines, in which both run on this project.
 
     stubborn habitat setup
-    habitat/bin/python my_script.py
+    .venv-habitat/bin/python my_script.py
 
 habitat-lab needs NumPy 1.26 and OpenCV 4, so it gets an environment of its own. `import habitat` finds this project's
 `habitat_sim` there, in each process.
