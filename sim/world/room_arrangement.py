@@ -12,13 +12,17 @@ from types import MappingProxyType
 
 import numpy as np
 
-from sim.houses.house import Room
+from sim.houses.house import Box, Room
 from sim.world.standing import Standing, blocks_floor
 
 HALLWAY_PATH_M = 0.9
 """Width that furniture leaves free in a hallway (Approved Document M, England)."""
 TOILET_APART_M = 0.2
 """Gap between a toilet and a basin, a shower or a bathtub; the IRC (R307) asks for 15 in from its middle line."""
+OFF_BASIN_M = 0.15
+"""Largest distance along the wall between the middles of a mirror in a bathroom and of the basin below it."""
+SHOWER_TO_WALL_M = 0.05
+"""Largest gap between a shower and each of the two walls of its corner."""
 LOW_PLANT_M = 0.8
 """Height of the tallest plant in a bathroom."""
 SCREEN_DEG = 45.0
@@ -77,7 +81,7 @@ def _hallway(room: Room, inside: Sequence[Standing]) -> list[str]:
 
 
 def _bathroom(room: Room, inside: Sequence[Standing]) -> list[str]:
-    """Returns clauses on toilets close to other fixtures, and on tall plants."""
+    """Returns clauses on toilets close to other fixtures, mirrors over no basin, loose showers and tall plants."""
     fixtures = [i for i in inside if i.category in ("sink", "shower", "bathtub") or i.name == "vanity cabinet"]
     clauses = []
     for toilet in (item for item in inside if item.category == "toilet"):
@@ -87,11 +91,34 @@ def _bathroom(room: Room, inside: Sequence[Standing]) -> list[str]:
                 clauses.append(
                     f"has {gap_m:.2f} m between {toilet.label} and {fixture.label}, which must be {TOILET_APART_M:g} m"
                 )
+    basins = [item for item in fixtures if item.category == "sink" or item.name == "vanity cabinet"]
+    clauses += [
+        f"has {mirror.label}, a mirror that hangs over no basin"
+        for mirror in (item for item in inside if item.category == "mirror")
+        if not any(_hangs_over(mirror, basin) for basin in basins)
+    ]
+    clauses += [
+        f"has {shower.label}, a shower that stands in no corner"
+        for shower in (item for item in inside if item.category == "shower")
+        if not any(_is_in_corner(box, shower) for box in room.boxes)
+    ]
     for plant in (item for item in inside if item.category == "plant"):
         height_m = float(plant.high[2] - plant.low[2])
         if height_m > LOW_PLANT_M + SLACK_M:
             clauses.append(f"has {plant.label}, a plant {height_m:.1f} m high instead of at most {LOW_PLANT_M:g} m")
     return clauses
+
+
+def _hangs_over(mirror: Standing, basin: Standing) -> bool:
+    away = basin.middle - mirror.middle
+    beside_m = abs(float(away @ np.array([-mirror.front[1], mirror.front[0]])))
+    return beside_m <= OFF_BASIN_M + SLACK_M and mirror.gap_m(basin) <= OFF_BASIN_M
+
+
+def _is_in_corner(box: Box, item: Standing) -> bool:
+    """Returns whether an item is near a wall along x and near one along y."""
+    low, high = (np.add(box[0], sign * np.asarray(box[1]))[:2] for sign in (-1.0, 1.0))
+    return bool((np.minimum(item.low[:2] - low, high - item.high[:2]) <= SHOWER_TO_WALL_M).all())
 
 
 def _bedroom(room: Room, inside: Sequence[Standing]) -> list[str]:

@@ -212,10 +212,29 @@ TOILET = Piece("toilet_00", "toilet", -2.6, 0.0, (0.7, 0.38, 0.8))
     ("label", "name"), [("sink_00", "washbasin"), ("shower_00", "shower"), ("cabinet_00", "vanity cabinet")]
 )
 def test_a_toilet_stands_apart_from_other_fixtures(label: str, name: str) -> None:
-    fixture = Piece(label, name, -2.7, 0.68, (0.5, 0.5, 0.85))
-    assert faults("bathroom", TOILET, fixture) == []
-    assert faults("bathroom", TOILET, moved(fixture, 0.0, -0.14)) == [
+    toilet = moved(TOILET, 0.0, 0.86)
+    fixture = Piece(label, name, -2.72, 1.72, (0.5, 0.5, 0.85))
+    assert faults("bathroom", moved(toilet, 0.0, -0.1), fixture) == []
+    assert faults("bathroom", moved(toilet, 0.0, 0.32), fixture) == [
         f"room_bathroom_00 has 0.10 m between toilet_00 and {label}, which must be 0.2 m"
+    ]
+
+
+def test_a_mirror_in_a_bathroom_hangs_over_a_basin() -> None:
+    basin = Piece("sink_00", "washbasin", -2.7, 1.0, (0.5, 0.5, 0.85))
+    mirror = Piece("mirror_00", "mirror", -2.98, 1.1, (0.03, 0.5, 0.8), 0.0, 1.1)
+    assert faults("bathroom", TOILET, basin, mirror) == []
+    for away in (moved(mirror, 0.0, 0.2), moved(mirror, 5.96, 0.0)):
+        assert faults("bathroom", TOILET, basin, away) == [
+            "room_bathroom_00 has mirror_00, a mirror that hangs over no basin"
+        ]
+
+
+def test_a_shower_stands_in_a_corner() -> None:
+    shower = Piece("shower_00", "shower", -2.5, 1.55, (0.9, 0.9, 2.0))
+    assert faults("bathroom", TOILET, moved(shower, -0.03, -0.03)) == []
+    assert faults("bathroom", TOILET, moved(shower, -0.03, -0.3)) == [
+        "room_bathroom_00 has shower_00, a shower that stands in no corner"
     ]
 
 

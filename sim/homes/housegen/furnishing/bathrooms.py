@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
 from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furnishing.placement.records import zone_in_front
 from sim.homes.housegen.furnishing.placement.walls import Along
-from sim.homes.housegen.furnishing.steps import hang, hang_above, lay_rug, place
+from sim.homes.housegen.furnishing.steps import hang, hang_item_above, has_wall_above, lay_rug, place
+from sim.homes.housegen.furniture.item import Hints
 from sim.world.room_arrangement import TOILET_APART_M
 from sim.world.room_requirements import GUEST_TOILET_M2
 
@@ -15,35 +18,53 @@ SMALL_M2 = 5.2
 
 ALONG: tuple[Along, ...] = ("any", "corner")
 """Positions of a toilet along its wall."""
+MIRRORS: tuple[Hints, ...] = ({}, {"width_m": 0.5})
+"""Hints of the mirrors above a basin: any, and a narrow one where no wall has room for that."""
+MAX_TRIES = 5
+"""Largest number of times that tub and toilet are placed to leave room for a basin with a mirror."""
 TUB_FRONT_M = 0.5
 TOILET_FRONT_M = 0.62
 """Free floor in front of a toilet; the check of the finished house asks for 0.6 m."""
 
 
 def furnish_bathroom(layout: RoomLayout, source: FurnitureSource) -> None:
-    """Places tub or shower in a corner first, then toilet, basin, a mirror above it, and towels."""
-    area = layout.inner.area_m2
+    """Places tub or shower in a corner first, then toilet, basin with a mirror above it, and towels."""
+    area, before = layout.inner.area_m2, layout.snapshot()
     first, second = ("bathtub", "shower") if source.chance(0.5) and area > SMALL_M2 else ("shower", "bathtub")
-    tub = None
-    if area >= GUEST_TOILET_M2:
-        tub = (
-            place(layout, source, first, along="corner", front_m=0.5, tries=3)
-            or place(layout, source, second, along="corner", front_m=0.5, tries=2)
-            or place(layout, source, "shower", along="corner", front_m=0.45, tries=3, width_m=0.8)
-        )
-    _place_toilet(layout, source, tub)
-    basin = _place_basin(layout, source)
+    tub = basin = None
+    for _ in range(MAX_TRIES):
+        layout.restore(before)
+        tub = _place_tub(layout, source, first, second) if area >= GUEST_TOILET_M2 else None
+        _place_toilet(layout, source, tub)
+        basin = _place_basin(layout, source)
+        if basin is not None:
+            break
+    if basin is None:
+        basin = place(layout, source, "sink", "standing", front_m=0.4, tries=3, width_m=0.5)
     if tub is not None and tub.item.category == first and area > 7.5:
-        place(layout, source, second, along="corner", front_m=0.5, tries=2)
-    if basin is not None and not hang_above(layout, source, basin, "mirror"):
-        hang(layout, source, "mirror")
+        _place_in_corner(layout, source, second, tries=2)
     for _ in range(1 + source.chance(0.4)):
         hang(layout, source, "towel", "rail")
     if basin is not None and area > 9.5:
-        second_basin = _place_basin(layout, source)
-        if second_basin is not None:
-            hang_above(layout, source, second_basin, "mirror")
+        _place_basin(layout, source)
     _place_small_items(layout, source, tub or basin)
+
+
+def _place_tub(layout: RoomLayout, source: FurnitureSource, first: str, second: str) -> Placement | None:
+    """Places a tub or a shower, a narrow shower where nothing else fits."""
+    return (
+        _place_in_corner(layout, source, first, tries=3)
+        or _place_in_corner(layout, source, second, tries=2)
+        or place(layout, source, "shower", along="fitted", front_m=0.45, tries=3, width_m=0.8)
+    )
+
+
+def _place_in_corner(layout: RoomLayout, source: FurnitureSource, category: str, *, tries: int) -> Placement | None:
+    """Places a tub or a shower with its right side at a wall; a tub that fits in no corner away from it."""
+    fitted = place(layout, source, category, along="fitted", front_m=TUB_FRONT_M, tries=tries)
+    if fitted is not None or category == "shower":
+        return fitted
+    return place(layout, source, category, along="corner", front_m=TUB_FRONT_M, tries=tries)
 
 
 def _place_toilet(layout: RoomLayout, source: FurnitureSource, tub: Placement | None) -> None:
@@ -74,11 +95,23 @@ def _place_small_items(layout: RoomLayout, source: FurnitureSource, mat_host: Pl
 
 
 def _place_basin(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
-    """Places a basin on a cabinet of its own, or a free-standing one; a narrow one if no other fits."""
+    """Places a basin and a mirror above it: on a cabinet of its own or a free-standing one, narrow if no other fits.
+
+    Returns None where no wall has room for both.
+    """
     small = layout.inner.area_m2 < SMALL_M2
     uses = ("cabinet", "vanity") if source.chance(0.2 if small else 0.55) else ("sink", "standing")
-    return (
-        place(layout, source, *uses, front_m=0.6, tries=2)
-        or place(layout, source, "sink", "standing", front_m=0.5, tries=3)
-        or place(layout, source, "sink", "standing", front_m=0.4, tries=3, width_m=0.5)
-    )
+    for hints in MIRRORS:
+        mirror = source.make("mirror", "wall", **hints)
+        if mirror is None:
+            continue
+        above = partial(has_wall_above, layout, item=mirror)
+        basin = (
+            place(layout, source, *uses, front_m=0.6, tries=2, fits=above)
+            or place(layout, source, "sink", "standing", front_m=0.5, tries=3, fits=above)
+            or place(layout, source, "sink", "standing", front_m=0.4, tries=3, width_m=0.5, fits=above)
+        )
+        if basin is not None:
+            hang_item_above(layout, source, basin, mirror)
+            return basin
+    return None
