@@ -104,6 +104,15 @@ def test_no_wall_cabinet_hangs_above_the_hob() -> None:
 
 
 SOFA = Piece("sofa_00", "sofa", -2.4, 0.0, (0.9, 2.0, 0.8))
+def test_a_double_bed_has_free_floor_along_both_long_sides() -> None:
+    double = replace(BED, size_m=(2.0, 1.6, 0.5))
+    assert faults("bedroom", double) == []
+    assert faults("bedroom", moved(BED, 0.0, -1.2)) == []
+    assert faults("bedroom", moved(double, 0.0, -1.1)) == [
+        "room_bedroom_00 has bed_00 without 0.6 m of free floor along both long sides"
+    ]
+
+
 SCREEN = Piece("tv_monitor_00", "television", 2.8, 0.0, (0.1, 1.2, 0.7), WEST, 0.9)
 
 

@@ -59,3 +59,17 @@ def test_a_shower_stands_in_a_corner_of_a_bathroom(pool):
             assert sum(gap_m <= SHOWER_TO_WALL_M for gap_m in gaps_m) == 2
             seen += 1
     assert seen
+
+
+@pytest.mark.parametrize("pool", POOLS)
+def test_a_double_bed_has_a_nightstand_and_free_floor_on_both_sides(pool):
+    for seed in SEEDS:
+        layout = furnished("bedroom", 5.0, 4.4, pool, seed)
+        (bed,) = of(layout, "bed")
+        assert bed.side is not None
+        lo, hi = bed.rect.span(bed.side)
+        beside = [p.rect.span(bed.side) for p in of(layout, "nightstand", "side table") if p.side == bed.side]
+        assert any(span[1] <= lo for span in beside)
+        assert any(span[0] >= hi for span in beside)
+        ends = layout.inner.span(bed.side)
+        assert min(lo - ends[0], ends[1] - hi) > 0.5
