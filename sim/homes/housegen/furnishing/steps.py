@@ -17,7 +17,7 @@ from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall, is_wa
 from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.homes.housegen.furnishing.placement.walls import Along
 from sim.homes.housegen.furniture.item import Hints, Item
-from sim.world.room_arrangement import SCREEN_FRONT_M
+from sim.world.room_arrangement import FROM_FIRE_M, SCREEN_FRONT_M
 
 RUNNER_M = 1.0
 """Rugs narrower than this are runners."""
@@ -111,6 +111,19 @@ def hang_screen(
     if placed is not None:
         layout.reserve(placed, [zone])
     return placed
+
+
+def has_room_for_fire(layout: RoomLayout, hearth: Placement) -> bool:
+    """Returns whether no furniture stands near the place of a fireplace or a stove."""
+    near = hearth.rect.grown(FROM_FIRE_M)
+    return not any(
+        p.item.mount == "floor" and not p.item.walk_over and p.rect.overlaps(near, 0.0) for p in layout.placements
+    )
+
+
+def keep_from_fire(layout: RoomLayout, hearth: Placement) -> None:
+    """Keeps later furniture away from a fireplace or a stove."""
+    layout.reserve(hearth, [hearth.rect.grown(FROM_FIRE_M)])
 
 
 def place_beside(

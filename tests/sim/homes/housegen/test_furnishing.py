@@ -11,7 +11,7 @@ from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
 from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furniture.item import Pool
 from sim.homes.housegen.structure.openings import Opening
-from sim.world.room_arrangement import OFF_BASIN_M, SHOWER_TO_WALL_M
+from sim.world.room_arrangement import FROM_FIRE_M, OFF_BASIN_M, SHOWER_TO_WALL_M
 
 SEEDS = range(12)
 POOLS: tuple[Pool, ...] = ("train", "heldout")
@@ -73,3 +73,24 @@ def test_a_double_bed_has_a_nightstand_and_free_floor_on_both_sides(pool):
         assert any(span[0] >= hi for span in beside)
         ends = layout.inner.span(bed.side)
         assert min(lo - ends[0], ends[1] - hi) > 0.5
+
+
+@pytest.mark.parametrize("pool", POOLS)
+def test_furniture_stands_away_from_a_fire(pool):
+    seen = 0
+    for seed in SEEDS:
+        layout = furnished("living_room", 6.4, 4.6, pool, seed)
+        standing = [p for p in layout.placements if p.item.mount == "floor" and not p.item.walk_over]
+        for fire in of(layout, "fireplace"):
+            near = fire.rect.grown(FROM_FIRE_M)
+            assert not [p.item.name for p in standing if p is not fire and p.rect.overlaps(near, 0.02)]
+            seen += 1
+    assert seen
+
+
+@pytest.mark.parametrize("kind", ["living_room", "office", "studio", "bedroom"])
+def test_no_shelf_and_no_second_low_table_stands_in_the_middle_of_a_large_room(kind):
+    for seed in SEEDS[:6]:
+        layout = furnished(kind, 8.0, 6.0, "heldout", seed)
+        assert all(shelf.side is not None for shelf in of(layout, "shelving"))
+        assert len(of(layout, "coffee table")) <= 1
