@@ -30,8 +30,8 @@ EVEN_M = 0.2
 """Largest distance of the mean of the seats in use from the middle of a table for four or more."""
 PLACE_M = 0.58
 """Least length of table for one person: Neufert gives 0.6 m."""
-DOUBLE_M = 1.3
-"""Least width of a bed for two."""
+DOUBLE_M = 1.1
+"""Least width of the mattress of a bed with two pillows."""
 BESIDE_BED_M = 0.65
 """Free floor along a long side of a bed; the check of the finished house asks for a little less."""
 NIGHTSTAND_M = 0.6
