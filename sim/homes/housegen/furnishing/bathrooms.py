@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
@@ -18,11 +19,12 @@ SMALL_M2 = 5.2
 
 ALONG: tuple[Along, ...] = ("any", "corner")
 """Positions of a toilet along its wall."""
-MIRRORS: tuple[Hints, ...] = ({}, {"width_m": 0.5})
-"""Hints of the mirrors above a basin: any, and a narrow one where no wall has room for that."""
+MIRRORS: tuple[Hints, ...] = ({}, {"width_m": 0.5}, {"width_m": 0.4})
+"""Hints of the mirrors above a basin: any, and narrow ones where no wall has room for that."""
 MAX_TRIES = 5
-"""Largest number of times that tub and toilet are placed to leave room for a basin with a mirror."""
-TUB_FRONT_M = 0.5
+"""Largest number of times that the fixtures are placed, in two orders, to leave room for a basin with a mirror."""
+FIXTURE_FRONT_M = 0.5
+"""Floor kept free in front of a tub, a shower and a basin."""
 TOILET_FRONT_M = 0.62
 """Free floor in front of a toilet; the check of the finished house asks for 0.6 m."""
 
@@ -32,15 +34,17 @@ def furnish_bathroom(layout: RoomLayout, source: FurnitureSource) -> None:
     area, before = layout.inner.area_m2, layout.snapshot()
     first, second = ("bathtub", "shower") if source.chance(0.5) and area > SMALL_M2 else ("shower", "bathtub")
     tub = basin = None
-    for _ in range(MAX_TRIES):
+    for n in range(MAX_TRIES):
         layout.restore(before)
-        tub = _place_tub(layout, source, first, second) if area >= GUEST_TOILET_M2 else None
-        _place_toilet(layout, source, tub)
-        basin = _place_basin(layout, source)
-        if basin is not None:
+        kinds = (first, second) if n < 2 or area > SMALL_M2 else ()
+        tub = _place_tub(layout, source, *kinds) if area >= GUEST_TOILET_M2 else None
+        basin = _place_basin(layout, source) if n % 2 else None
+        toilet = _place_toilet(layout, source, [fixture for fixture in (tub, basin) if fixture is not None])
+        basin = basin or _place_basin(layout, source)
+        if toilet is not None and basin is not None:
             break
     if basin is None:
-        basin = place(layout, source, "sink", "standing", front_m=0.4, tries=3, width_m=0.5)
+        basin = place(layout, source, "sink", "standing", front_m=0.4, tries=3, width_m=0.45)
     if tub is not None and tub.item.category == first and area > 7.5:
         _place_in_corner(layout, source, second, tries=2)
     for _ in range(1 + source.chance(0.4)):
@@ -50,34 +54,35 @@ def furnish_bathroom(layout: RoomLayout, source: FurnitureSource) -> None:
     _place_small_items(layout, source, tub or basin)
 
 
-def _place_tub(layout: RoomLayout, source: FurnitureSource, first: str, second: str) -> Placement | None:
-    """Places a tub or a shower, a narrow shower where nothing else fits."""
-    return (
-        _place_in_corner(layout, source, first, tries=3)
-        or _place_in_corner(layout, source, second, tries=2)
-        or place(layout, source, "shower", along="fitted", front_m=0.45, tries=3, width_m=0.8)
-    )
+def _place_tub(layout: RoomLayout, source: FurnitureSource, *categories: str) -> Placement | None:
+    """Places a fixture of the first category that fits, a narrow shower where none does."""
+    for category in categories:
+        tub = _place_in_corner(layout, source, category, tries=3)
+        if tub is not None:
+            return tub
+    return place(layout, source, "shower", along="fitted", front_m=0.45, tries=3, width_m=0.8)
 
 
 def _place_in_corner(layout: RoomLayout, source: FurnitureSource, category: str, *, tries: int) -> Placement | None:
     """Places a tub or a shower with its right side at a wall; a tub that fits in no corner away from it."""
-    fitted = place(layout, source, category, along="fitted", front_m=TUB_FRONT_M, tries=tries)
+    fitted = place(layout, source, category, along="fitted", front_m=FIXTURE_FRONT_M, tries=tries)
     if fitted is not None or category == "shower":
         return fitted
-    return place(layout, source, category, along="corner", front_m=TUB_FRONT_M, tries=tries)
+    return place(layout, source, category, along="corner", front_m=FIXTURE_FRONT_M, tries=tries)
 
 
-def _place_toilet(layout: RoomLayout, source: FurnitureSource, tub: Placement | None) -> None:
-    """Places a toilet with free floor in front of it, and a gap to the tub and to what is placed later."""
-    if tub is not None:
-        layout.reserve(tub, [tub.rect.grown(TOILET_APART_M)])
-    along = source.pick(ALONG)
-    toilet = place(layout, source, "toilet", along=along, front_m=TOILET_FRONT_M, tries=4)
-    if tub is not None and tub.side is not None:
-        layout.release_zones(tub)
-        layout.reserve(tub, [zone_in_front(tub.rect, tub.side, TUB_FRONT_M)])
+def _place_toilet(layout: RoomLayout, source: FurnitureSource, fixtures: Sequence[Placement]) -> Placement | None:
+    """Places a toilet with free floor in front of it, and a gap to other fixtures and to what is placed later."""
+    for fixture in fixtures:
+        layout.reserve(fixture, [fixture.rect.grown(TOILET_APART_M)])
+    toilet = place(layout, source, "toilet", along=source.pick(ALONG), front_m=TOILET_FRONT_M, tries=4)
+    for fixture in fixtures:
+        if fixture.side is not None:
+            layout.release_zones(fixture)
+            layout.reserve(fixture, [zone_in_front(fixture.rect, fixture.side, FIXTURE_FRONT_M)])
     if toilet is not None:
         layout.reserve(toilet, [toilet.rect.grown(TOILET_APART_M)])
+    return toilet
 
 
 def _place_small_items(layout: RoomLayout, source: FurnitureSource, mat_host: Placement | None) -> None:
@@ -109,7 +114,7 @@ def _place_basin(layout: RoomLayout, source: FurnitureSource) -> Placement | Non
         basin = (
             place(layout, source, *uses, front_m=0.6, tries=2, fits=above)
             or place(layout, source, "sink", "standing", front_m=0.5, tries=3, fits=above)
-            or place(layout, source, "sink", "standing", front_m=0.4, tries=3, width_m=0.5, fits=above)
+            or place(layout, source, "sink", "standing", front_m=0.4, tries=3, width_m=0.45, fits=above)
         )
         if basin is not None:
             hang_item_above(layout, source, basin, mirror)

@@ -115,7 +115,7 @@ def hang_screen(
 
 def has_room_for_fire(layout: RoomLayout, hearth: Placement) -> bool:
     """Returns whether no furniture stands near the place of a fireplace or a stove."""
-    near = hearth.rect.grown(FROM_FIRE_M)
+    near = hearth.rect.grown(FROM_FIRE_M + 0.03)
     return not any(
         p.item.mount == "floor" and not p.item.walk_over and p.rect.overlaps(near, 0.0) for p in layout.placements
     )
@@ -123,7 +123,7 @@ def has_room_for_fire(layout: RoomLayout, hearth: Placement) -> bool:
 
 def keep_from_fire(layout: RoomLayout, hearth: Placement) -> None:
     """Keeps later furniture away from a fireplace or a stove."""
-    layout.reserve(hearth, [hearth.rect.grown(FROM_FIRE_M)])
+    layout.reserve(hearth, [hearth.rect.grown(FROM_FIRE_M + 0.03)])
 
 
 def place_beside(

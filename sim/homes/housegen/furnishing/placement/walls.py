@@ -23,6 +23,8 @@ BEFORE_WINDOW_M = 0.45
 """An item nearer to a wall than this hides a window in it."""
 LOW_M = 0.9
 """Furniture lower than this may stand in front of any window."""
+HIGH_SILL_M = 1.4
+"""A shower may have a window in the wall at its side if the sill is at least this high."""
 
 
 class RoomWalls:
@@ -105,6 +107,8 @@ class RoomWalls:
         for side in SIDES:
             near = side == placement.side or abs(rect.line(side) - self.inner.line(side)) < BEFORE_WINDOW_M
             for hole in self._openings[side] if near else ():
+                if item.category == "shower" and side != placement.side and hole.bottom_m >= HIGH_SILL_M:
+                    continue
                 too_high = hole.kind == "window" and height_m > max(hole.bottom_m, LOW_M) + 0.05
                 lo, hi = rect.span(side)
                 if too_high and hi > hole.span[0] - 0.02 and lo < hole.span[1] + 0.02:
