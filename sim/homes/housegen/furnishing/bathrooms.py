@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
+from sim.homes.housegen.floor_plan.rectangles import SIDES
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
 from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furnishing.placement.records import zone_in_front
 from sim.homes.housegen.furnishing.placement.walls import Along
 from sim.homes.housegen.furnishing.steps import hang, hang_item_above, has_wall_above, lay_rug, place
 from sim.homes.housegen.furniture.item import Hints
-from sim.world.room_arrangement import TOILET_APART_M
+from sim.world.room_arrangement import SHOWER_TO_WALL_M, TOILET_APART_M
 from sim.world.room_requirements import GUEST_TOILET_M2
 
 SMALL_M2 = 5.2
@@ -23,6 +24,8 @@ MIRRORS: tuple[Hints, ...] = ({}, {"width_m": 0.5}, {"width_m": 0.4})
 """Hints of the mirrors above a basin: any, and narrow ones where no wall has room for that."""
 MAX_TRIES = 5
 """Largest number of times that the fixtures are placed, in two orders, to leave room for a basin with a mirror."""
+RIGHT_ONLY = frozenset(("curved_cabin", "pentagon_cabin"))
+"""Styles of showers with their open side on the left."""
 FIXTURE_FRONT_M = 0.5
 """Floor kept free in front of a tub, a shower and a basin."""
 TOILET_FRONT_M = 0.62
@@ -60,7 +63,16 @@ def _place_tub(layout: RoomLayout, source: FurnitureSource, *categories: str) ->
         tub = _place_in_corner(layout, source, category, tries=3)
         if tub is not None:
             return tub
-    return place(layout, source, "shower", along="fitted", front_m=0.45, tries=3, width_m=0.8)
+    left = partial(_fits_left_corner, layout)
+    return place(layout, source, "shower", along="fitted", front_m=0.45, tries=3, width_m=0.8) or place(
+        layout, source, "shower", along="corner", front_m=0.45, tries=3, fits=left, width_m=0.8
+    )
+
+
+def _fits_left_corner(layout: RoomLayout, shower: Placement) -> bool:
+    """Returns whether a shower whose left side may be at a wall touches two walls."""
+    gaps_m = [abs(shower.rect.line(side) - layout.inner.line(side)) for side in SIDES]
+    return shower.item.style not in RIGHT_ONLY and sum(gap_m < SHOWER_TO_WALL_M for gap_m in gaps_m) > 1
 
 
 def _place_in_corner(layout: RoomLayout, source: FurnitureSource, category: str, *, tries: int) -> Placement | None:

@@ -75,10 +75,10 @@ def _place_bed(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> P
     A bed of at least `DOUBLE_M` has free floor along both long sides, a narrower bed along one. Positions with room for
     a nightstand on both sides are tried first.
     """
-    widths_m = (source.pick((1.4, 1.6, 1.8)), 1.4, 1.2, 0.9) if large else (0.9, 0.9, 1.2)
+    widths_m = (source.pick((1.4, 1.6, 1.8)), 1.4, 1.2, 0.9) if large else (0.9, 0.9)
     double = [width_m for width_m in widths_m if width_m >= DOUBLE_M]
     tries = [(width_m, BOTH, with_nightstands) for with_nightstands in (True, False) for width_m in double]
-    tries += [(width_m, *way) for width_m in widths_m[len(double) :] for way in NARROW_BED]
+    tries += [(width_m, *way) for width_m in widths_m if width_m < DOUBLE_M for way in NARROW_BED]
     for width_m, free_sides, with_nightstands in tries:
         item = source.make("bed", width_m=width_m)
         if item is None:
@@ -96,7 +96,9 @@ def _place_bed(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> P
 def _has_free_sides(layout: RoomLayout, bed: Placement, *, free_sides: Sequence[float], with_nightstands: bool) -> bool:
     """Returns whether the floor along some long sides of a bed is free, and has room for nightstands if asked for."""
     return all(
-        layout.is_zone_free(_beside(bed, towards)) and (not with_nightstands or _has_room_at_head(layout, bed, towards))
+        layout.inner.contains(_beside(bed, towards), 0.06)
+        and layout.is_zone_free(_beside(bed, towards))
+        and (not with_nightstands or _has_room_at_head(layout, bed, towards))
         for towards in free_sides
     )
 
