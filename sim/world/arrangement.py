@@ -31,6 +31,8 @@ AISLE_M = 1.0
 TOUCH_M = 0.08
 """Units of a run have at most this gap."""
 BESIDE_BED_M, TOILET_FRONT_M = 0.6, 0.6
+DOUBLE_BED_M = 1.45
+"""A bed at least this wide is for two, who get up on either side."""
 MAX_TO_CHAIR_M, MAX_TO_NIGHTSTAND_M = 0.45, 0.4
 MIN_CHAIRS = 2
 FACING_M = (0.8, 6.0)
@@ -193,7 +195,7 @@ def _faces(sofa: Standing, target: Standing) -> bool:
 
 
 def _beds(room: Room, inside: Sequence[Standing]) -> list[str]:
-    """Returns clauses on beds without free floor along either long side, and on nightstands apart from them."""
+    """Returns clauses on beds without free floor along their long sides, and on nightstands apart from them."""
     seats = [item for item in inside if item.category in ("bed", "sofa", "chair")]
     clauses = [
         f"has {item.label}, a nightstand that is next to no bed and no seat"
@@ -205,7 +207,7 @@ def _beds(room: Room, inside: Sequence[Standing]) -> list[str]:
         size = (bed.high - bed.low)[:2]
         length_m, width_m = float(size @ np.abs(bed.front)), float(size @ np.abs(left))
         middle_m = 0.5 * (0.6 - 0.05)  # from the end of a nightstand to the foot
-        if not any(
+        free = sum(
             _is_free(
                 room,
                 inside,
@@ -214,8 +216,10 @@ def _beds(room: Room, inside: Sequence[Standing]) -> list[str]:
                 bed,
             )
             for sign in (1.0, -1.0)
-        ):
-            clauses.append(f"has {bed.label} without {BESIDE_BED_M:.1f} m of free floor along a long side")
+        )
+        if free < (2 if width_m >= DOUBLE_BED_M else 1):
+            both = "both long sides" if width_m >= DOUBLE_BED_M else "a long side"
+            clauses.append(f"has {bed.label} without {BESIDE_BED_M:.1f} m of free floor along {both}")
     return clauses
 
 

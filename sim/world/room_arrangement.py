@@ -11,14 +11,25 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sim.houses.house import Room
+from sim.houses.house import Box, Room
 from sim.world.standing import Standing, blocks_floor
 
 HALLWAY_PATH_M = 0.9
 """Width that furniture leaves free in a hallway (Approved Document M, England)."""
 TOILET_APART_M = 0.2
 """Gap between a toilet and a basin, a shower or a bathtub; the IRC (R307) asks for 15 in from its middle line."""
+OFF_BASIN_M = 0.15
+"""Largest distance along the wall between the middles of a mirror in a bathroom and of the basin below it."""
+SHOWER_TO_WALL_M = 0.05
+"""Largest gap between a shower and each of the two walls of its corner."""
+FROM_FIRE_M = 0.5
+"""Smallest distance of seats, tables and storage from a fireplace or a stove."""
+SHELF_TO_WALL_M = 0.3
+"""Largest gap between a bookcase and the nearest wall."""
+TABLE_TO_SEAT_M = 0.9
+"""Largest gap between a coffee table and the nearest sofa or chair."""
 LOW_PLANT_M = 0.8
 """Height of the tallest plant in a bathroom."""
 SCREEN_DEG = 45.0
@@ -37,6 +48,7 @@ MAX_BINS = 1
 """Largest number of bins in a kitchen."""
 SLACK_M = 0.02
 _TO_CHAIR_M = 0.45
+_BURNS = frozenset(("sofa", "chair", "seating", "stool", "table", "shelving", "cabinet", "chest_of_drawers", "bed"))
 
 
 def room_clauses(room: Room, inside: Sequence[Standing]) -> list[str]:
@@ -46,7 +58,7 @@ def room_clauses(room: Room, inside: Sequence[Standing]) -> list[str]:
         room: the room.
         inside: the instances in it.
     """
-    rules = (*_RULES.get(room.kind, ()), _screens, _dining_tables)
+    rules = (*_RULES.get(room.kind, ()), _screens, _dining_tables, _fires, _out_of_place)
     return [clause for rule in rules for clause in rule(room, inside)]
 
 
@@ -77,7 +89,7 @@ def _hallway(room: Room, inside: Sequence[Standing]) -> list[str]:
 
 
 def _bathroom(room: Room, inside: Sequence[Standing]) -> list[str]:
-    """Returns clauses on toilets close to other fixtures, and on tall plants."""
+    """Returns clauses on toilets close to other fixtures, mirrors over no basin, loose showers and tall plants."""
     fixtures = [i for i in inside if i.category in ("sink", "shower", "bathtub") or i.name == "vanity cabinet"]
     clauses = []
     for toilet in (item for item in inside if item.category == "toilet"):
@@ -87,11 +99,28 @@ def _bathroom(room: Room, inside: Sequence[Standing]) -> list[str]:
                 clauses.append(
                     f"has {gap_m:.2f} m between {toilet.label} and {fixture.label}, which must be {TOILET_APART_M:g} m"
                 )
+    basins = [item for item in fixtures if item.category == "sink" or item.name == "vanity cabinet"]
+    clauses += [
+        f"has {mirror.label}, a mirror that hangs over no basin"
+        for mirror in (item for item in inside if item.category == "mirror")
+        if not any(_hangs_over(mirror, basin) for basin in basins)
+    ]
+    clauses += [
+        f"has {shower.label}, a shower that stands in no corner"
+        for shower in (item for item in inside if item.category == "shower")
+        if not any(_to_walls_m(box, shower).max() <= SHOWER_TO_WALL_M for box in room.boxes)
+    ]
     for plant in (item for item in inside if item.category == "plant"):
         height_m = float(plant.high[2] - plant.low[2])
         if height_m > LOW_PLANT_M + SLACK_M:
             clauses.append(f"has {plant.label}, a plant {height_m:.1f} m high instead of at most {LOW_PLANT_M:g} m")
     return clauses
+
+
+def _hangs_over(mirror: Standing, basin: Standing) -> bool:
+    away = basin.middle - mirror.middle
+    beside_m = abs(float(away @ np.array([-mirror.front[1], mirror.front[0]])))
+    return beside_m <= OFF_BASIN_M + SLACK_M and mirror.gap_m(basin) <= OFF_BASIN_M
 
 
 def _bedroom(room: Room, inside: Sequence[Standing]) -> list[str]:
@@ -145,6 +174,37 @@ def _living_room(room: Room, inside: Sequence[Standing]) -> list[str]:
             if on_line.all(axis=1).any():
                 clauses.append(f"has {table.label} between {sofa.label} and {screen.label}")
     return clauses
+
+
+def _fires(room: Room, inside: Sequence[Standing]) -> list[str]:
+    """Returns clauses on furniture close to a fireplace or a stove."""
+    return [
+        f"has {item.label} {gap_m:.2f} m from {fire.label}, which must be {FROM_FIRE_M:g} m"
+        for fire, item in itertools.product(inside, inside)
+        if fire.category == "fireplace" and item.category in _BURNS and blocks_floor(item, room.floor_z_m)
+        if (gap_m := item.gap_m(fire)) < FROM_FIRE_M - SLACK_M
+    ]
+
+
+def _out_of_place(room: Room, inside: Sequence[Standing]) -> list[str]:
+    """Returns clauses on bookcases away from the walls, and on coffee tables without a seat."""
+    seats = [item for item in inside if item.category in ("sofa", "chair")]
+    clauses = [
+        f"has {shelf.label}, a bookcase that stands at no wall"
+        for shelf in (item for item in inside if item.name == "bookcase")
+        if min(float(_to_walls_m(box, shelf).min()) for box in room.boxes) > SHELF_TO_WALL_M
+    ]
+    return clauses + [
+        f"has {table.label}, a coffee table without a seat next to it"
+        for table in (item for item in inside if item.name == "coffee table")
+        if min((table.gap_m(seat) for seat in seats), default=math.inf) > TABLE_TO_SEAT_M
+    ]
+
+
+def _to_walls_m(box: Box, item: Standing) -> NDArray[np.float64]:
+    """Returns the gap between an item and the nearer wall along x and along y (2,), metres."""
+    low, high = (np.add(box[0], sign * np.asarray(box[1]))[:2] for sign in (-1.0, 1.0))
+    return np.minimum(item.low[:2] - low, high - item.high[:2])
 
 
 def _dining_tables(room: Room, inside: Sequence[Standing]) -> list[str]:

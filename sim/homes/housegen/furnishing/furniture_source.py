@@ -46,7 +46,7 @@ MAX_SMALL_STYLES = 12
 the bytes of a house file."""
 REQUIRED = frozenset(
     ("bed", "cabinet", "chest_of_drawers", "shelving", "sink", "toilet", "shower", "bathtub", "appliances", "table",
-     "gym_equipment", "sofa", "fireplace")
+     "gym_equipment", "sofa", "fireplace", "mirror")
 )  # fmt: skip
 """In these categories a third item of a design is made if no variant was found; rooms go without the others."""
 

@@ -6,10 +6,12 @@ Each function puts its group into a room and returns its main item, or None if t
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
-from sim.homes.housegen.floor_plan.rectangles import Rect
+from sim.homes.housegen.floor_plan.rectangles import Interval, Rect
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
 from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furnishing.placement.floor import put_against_wall, put_partly_under
@@ -28,10 +30,21 @@ EVEN_M = 0.2
 """Largest distance of the mean of the seats in use from the middle of a table for four or more."""
 PLACE_M = 0.58
 """Least length of table for one person: Neufert gives 0.6 m."""
+DOUBLE_M = 1.1
+"""Least width of the mattress of a bed with two pillows."""
 BESIDE_BED_M = 0.65
 """Free floor along a long side of a bed; the check of the finished house asks for a little less."""
 NIGHTSTAND_M = 0.6
 """Length at the head of a bed where a nightstand may stand."""
+BOTH = (1.0, -1.0)
+"""The two long sides of a bed."""
+NARROW_BED: tuple[tuple[tuple[float, ...], bool], ...] = (
+    (BOTH, True),
+    (BOTH, False),
+    ((1.0,), False),
+    ((-1.0,), False),
+)
+"""Free long sides of a narrow bed and whether each has room for a nightstand, in the order in which they are tried."""
 
 Seat = tuple[float, float, float]
 """x, y where a chair meets the table's edge, in the table's frame, and the heading of its front."""
@@ -59,47 +72,67 @@ def bed_group(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> Pl
 def _place_bed(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> Placement | None:
     """Places a bed against a wall, with its nightstands: a narrower one where a wide one does not fit.
 
-    A wide bed has free floor along both long sides, a bed of up to 1.4 m along one.
+    A bed of at least `DOUBLE_M` has free floor along both long sides, a narrower bed along one. Positions with room for
+    a nightstand on both sides are tried first.
     """
-    widths_m = (source.pick((1.4, 1.6, 1.8)), 1.4, 1.2, 0.9) if large else (0.9, 0.9, 1.2)
-    for width_m in widths_m:
+    widths_m = (source.pick((1.4, 1.6, 1.8)), 1.4, 1.2, 0.9) if large else (0.9, 0.9)
+    double = [width_m for width_m in widths_m if width_m >= DOUBLE_M]
+    tries = [(width_m, BOTH, with_nightstands) for with_nightstands in (True, False) for width_m in double]
+    tries += [(width_m, *way) for width_m in widths_m if width_m < DOUBLE_M for way in NARROW_BED]
+    for width_m, free_sides, with_nightstands in tries:
         item = source.make("bed", width_m=width_m)
         if item is None:
             return None
-        for free_sides in ((1.0, -1.0), (1.0,), (-1.0,)):
-            if len(free_sides) == 1 and width_m > 1.4:
-                continue
-            before = layout.snapshot()
-            along, beside_m = ("middle", BESIDE_BED_M) if len(free_sides) > 1 else ("corner", 0.0)
-            bed = put_against_wall(layout, source.rng, item, along=along, front_m=0.6, beside_m=beside_m)
-            zones = [_beside(bed, towards) for towards in free_sides] if bed is not None else []
-            if bed is not None and all(layout.is_zone_free(zone) for zone in zones):
-                _place_nightstands(layout, source, bed)
-                layout.reserve(bed, zones)
-                return bed
-            layout.restore(before)
+        along, beside_m = ("middle", BESIDE_BED_M) if free_sides == BOTH else ("corner", 0.0)
+        fits = partial(_has_free_sides, layout, free_sides=free_sides, with_nightstands=with_nightstands)
+        bed = put_against_wall(layout, source.rng, item, along=along, front_m=0.6, beside_m=beside_m, fits=fits)
+        if bed is not None:
+            _place_nightstands(layout, source, bed)
+            layout.reserve(bed, [_beside(bed, towards) for towards in free_sides])
+            return bed
     return None
+
+
+def _has_free_sides(layout: RoomLayout, bed: Placement, *, free_sides: Sequence[float], with_nightstands: bool) -> bool:
+    """Returns whether the floor along some long sides of a bed is free, and has room for nightstands if asked for."""
+    return all(
+        layout.inner.contains(_beside(bed, towards), 0.06)
+        and layout.is_zone_free(_beside(bed, towards))
+        and (not with_nightstands or _has_room_at_head(layout, bed, towards))
+        for towards in free_sides
+    )
+
+
+def _has_room_at_head(layout: RoomLayout, bed: Placement, towards: float) -> bool:
+    """Returns whether a nightstand can stand on one side of the head of a bed."""
+    zone = _strip(bed, towards, (-bed.item.size_m[0] / 2, NIGHTSTAND_M - 0.05 - bed.item.size_m[0] / 2), NIGHTSTAND_M)
+    return layout.is_zone_free(zone) and not layout.in_doorway(zone, 0.005) and not layout.in_reserved_zone(zone)
 
 
 def _beside(bed: Placement, towards: float) -> Rect:
     """Returns the floor along a long side of a bed, from where a nightstand ends to the foot."""
-    depth_m, width_m = bed.item.size_m[:2]
-    x0, y0 = bed.to_world(NIGHTSTAND_M - depth_m / 2, towards * width_m / 2)
-    x1, y1 = bed.to_world(depth_m / 2, towards * (width_m / 2 + BESIDE_BED_M))
+    depth_m = bed.item.size_m[0]
+    return _strip(bed, towards, (NIGHTSTAND_M - depth_m / 2, depth_m / 2), BESIDE_BED_M)
+
+
+def _strip(bed: Placement, towards: float, along: Interval, across_m: float) -> Rect:
+    """Returns a strip of floor along a long side of a bed, between two positions along the bed."""
+    edge_m = bed.item.size_m[1] / 2
+    x0, y0 = bed.to_world(along[0], towards * edge_m)
+    x1, y1 = bed.to_world(along[1], towards * (edge_m + across_m))
     return Rect(min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1))
 
 
 def _place_nightstands(layout: RoomLayout, source: FurnitureSource, bed: Placement) -> None:
-    """Places a nightstand on either side of a bed."""
+    """Places a nightstand on either side of a bed, a narrow one where no wider one fits."""
     uses = ("chest_of_drawers", "nightstand") if source.chance(0.5) else ("table", "nightstand", "side")
-    item = source.make(*uses)
-    if item is None:
-        return
+    items = [source.make(*uses), source.make(*uses, width_m=0.4)]
     for towards in (1.0, -1.0):
-        if source.chance(0.95):
-            nightstand = place_beside(layout, bed, item, towards)
+        for item in items:
+            nightstand = place_beside(layout, bed, item, towards) if item is not None else None
             if nightstand is not None:
                 put_on_top(layout, source, nightstand, ("lighting", "objects"), (0.75, 0.4))
+                break
 
 
 def dining_group(

@@ -83,7 +83,7 @@ def _has_space(layout: RoomLayout, plan: Sequence[Run], appliances: dict[Kind, I
 
 def _looks(source: FurnitureSource) -> dict[str, Look]:
     """Returns the materials of all units of a home; in the train pool, all fronts are of wood or all are painted."""
-    looks = source.looks("lacquer", "stone", "metal", "wood", "steel", "curtain", "masonry", "wicker")
+    looks = source.looks("lacquer", "stone", "metal", "wood", "steel", "curtain", "wicker")
     if source.pool == "train":
         front = looks["wood" if source.chance(0.45) else "lacquer"]
         looks |= {"wood": front, "lacquer": front}

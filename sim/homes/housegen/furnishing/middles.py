@@ -1,4 +1,4 @@
-"""Furniture for the middle of large rooms: seats, tables, gym machines and shelves where much floor is bare."""
+"""Furniture for the middle of large rooms: seats, plants and gym machines where much floor is bare."""
 
 from __future__ import annotations
 
@@ -48,11 +48,6 @@ def _machine(layout: RoomLayout, source: FurnitureSource, spot: Spot) -> Placeme
     return None
 
 
-def _shelf(layout: RoomLayout, source: FurnitureSource, spot: Spot) -> Placement | None:
-    """Places a bookcase as a room divider."""
-    return _alone(layout, source, spot, "shelving", "bookcase", rug=False)
-
-
 def _bench(layout: RoomLayout, source: FurnitureSource, spot: Spot) -> Placement | None:
     """Places a bench or an ottoman on a rug."""
     return _alone(layout, source, spot, "seating", "plain" if source.chance(0.6) else "ottoman", rug=True)
@@ -60,11 +55,6 @@ def _bench(layout: RoomLayout, source: FurnitureSource, spot: Spot) -> Placement
 
 def _plant(layout: RoomLayout, source: FurnitureSource, spot: Spot) -> Placement | None:
     return _alone(layout, source, spot, "plant", "floor", rug=False)
-
-
-def _low_table(layout: RoomLayout, source: FurnitureSource, spot: Spot) -> Placement | None:
-    """Places a low table with small objects on a rug."""
-    return _alone(layout, source, spot, "table", "coffee", rug=True)
 
 
 def _alone(
@@ -87,13 +77,13 @@ def _alone(
 
 MIDDLES: Mapping[str, tuple[Callable[[RoomLayout, FurnitureSource, Spot], Placement | None], ...]] = MappingProxyType(
     {
-        "living_room": (_seats, _shelf, _low_table, _bench),
-        "bedroom": (_seats, _bench, _low_table),
+        "living_room": (_seats, _bench),
+        "bedroom": (_seats, _bench),
         "dining_room": (_seats, _plant),
-        "studio": (_seats, _low_table, _shelf),
-        "office": (_seats, _shelf),
+        "studio": (_seats,),
+        "office": (_seats,),
         "gym": (_machine, _machine, _bench),
-        "hallway": (_bench, _plant, _low_table),
+        "hallway": (_bench, _plant),
     }
 )
 """Furniture for the middle of large rooms, by kind of room."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from types import MappingProxyType
 
 from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, SIDES
@@ -15,7 +16,16 @@ from sim.homes.housegen.furnishing.kitchens import furnish_kitchen, kitchen_unit
 from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furnishing.placement.floor import put_against_wall
 from sim.homes.housegen.furnishing.seating_groups import armchair_circle, reading_corner, sofa_group
-from sim.homes.housegen.furnishing.steps import hang, hang_above, hang_screen, place, place_row, put_on_top
+from sim.homes.housegen.furnishing.steps import (
+    hang,
+    hang_above,
+    hang_screen,
+    has_room_for_fire,
+    keep_from_fire,
+    place,
+    place_row,
+    put_on_top,
+)
 
 BOXES_ON_FLOOR = frozenset(("bedroom", "closet", "studio"))
 """Rooms where suitcases and crates may stand; other rooms have bins and baskets."""
@@ -74,8 +84,10 @@ def _living_room(layout: RoomLayout, source: FurnitureSource) -> None:
     if sofa_group(layout, source) is None:
         armchair_circle(layout, source)
     if source.chance(0.5) and not any(p.item.category == "fireplace" for p in layout.placements):
-        hearth = place(layout, source, "fireplace", along="middle", front_m=0.8, tries=3)
+        clear = partial(has_room_for_fire, layout)
+        hearth = place(layout, source, "fireplace", along="middle", front_m=0.8, tries=3, fits=clear)
         if hearth is not None:
+            keep_from_fire(layout, hearth)
             hang_above(layout, source, hearth, "picture" if source.chance(0.6) else "mirror")
     _second_groups(layout, source)
     if area > 20 or source.chance(0.4):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 
 from sim.homes.housegen.floor_plan.rectangles import OPPOSITE, SIDES, Side
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
@@ -18,6 +19,8 @@ from sim.homes.housegen.furnishing.placement.walls import WALL_GAP_M
 from sim.homes.housegen.furnishing.steps import (
     hang_above,
     hang_screen,
+    has_room_for_fire,
+    keep_from_fire,
     lay_rug,
     place,
     place_beside,
@@ -120,9 +123,11 @@ def _place_hearth(layout: RoomLayout, source: FurnitureSource, sofa: Placement) 
     if hearth is None or sofa.side is None:
         return False
     side = OPPOSITE[sofa.side]
-    placed = put_near(layout, hearth, side, 0.5 * sum(sofa.rect.span(side)), front_m=0.8, slide_m=0.6)
+    clear = partial(has_room_for_fire, layout)
+    placed = put_near(layout, hearth, side, 0.5 * sum(sofa.rect.span(side)), front_m=0.8, slide_m=0.6, fits=clear)
     if placed is None:
         return False
+    keep_from_fire(layout, placed)
     screen = source.make("tv_monitor", "tv_wall")
     bottom_m = max(1.1, hearth.size_m[2] + 0.12)
     if screen is None or not _hang_screen(layout, source, screen, side, placed, bottom_m):
@@ -222,8 +227,8 @@ def armchair_circle(
     layout: RoomLayout, source: FurnitureSource, *, near: tuple[float, float] | None = None
 ) -> Placement | None:
     """Places armchairs and an ottoman around a low table, away from the walls."""
-    has_sofa = any(p.item.category == "sofa" for p in layout.placements)  # its low table stands in front of it
-    low_table, chair = source.make("table", "side" if has_sofa else "coffee"), source.make("chair", "arm")
+    has_one = any(p.item.category == "sofa" or p.item.name == "coffee table" for p in layout.placements)
+    low_table, chair = source.make("table", "side" if has_one else "coffee"), source.make("chair", "arm")
     if low_table is None or chair is None:
         return None
     ottoman = source.make("seating", "ottoman")

@@ -6,18 +6,18 @@ Each step returns the placement, or None (False) where the pool has no such item
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Unpack
 
 from sim.homes.housegen.floor_plan.rectangles import Side
 from sim.homes.housegen.furnishing.furniture_source import FurnitureSource
 from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furnishing.placement.floor import find_row_start, lay_flat, put_against_wall, put_at, put_near
-from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
+from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall, is_wall_free
 from sim.homes.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.homes.housegen.furnishing.placement.walls import Along
 from sim.homes.housegen.furniture.item import Hints, Item
-from sim.world.room_arrangement import SCREEN_FRONT_M
+from sim.world.room_arrangement import FROM_FIRE_M, SCREEN_FRONT_M
 
 RUNNER_M = 1.0
 """Rugs narrower than this are runners."""
@@ -37,11 +37,11 @@ _WALL_USES = {"mirror": ("wall",), "towel": ("rail",)}
 
 def place(
     layout: RoomLayout, source: FurnitureSource, category: str, *uses: str, along: Along = "any", front_m: float = 0.6,
-    tries: int = 2, **hints: Unpack[Hints],
+    tries: int = 2, fits: Callable[[Placement], bool] = lambda _: True, **hints: Unpack[Hints],
 ) -> Placement | None:  # fmt: skip
     """Places an item against a wall; tries another style when the first one does not fit.
 
-    A home without clutter has no objects.
+    `fits` returns whether a position is suitable otherwise. A home without clutter has no objects.
     """
     if category == "objects" and source.clutter <= 0.0:
         return None
@@ -50,9 +50,9 @@ def place(
         if item is None:
             return None
         if item.mount == "wall":
-            placed = hang_on_wall(layout, source.rng, item, along=along)
+            placed = hang_on_wall(layout, source.rng, item, along=along, fits=fits)
         else:
-            placed = put_against_wall(layout, source.rng, item, along=along, front_m=front_m)
+            placed = put_against_wall(layout, source.rng, item, along=along, front_m=front_m, fits=fits)
         if placed is not None:
             return placed
     return None
@@ -71,11 +71,29 @@ def hang(
 def hang_above(layout: RoomLayout, source: FurnitureSource, host: Placement, category: str) -> Placement | None:
     """Hangs an item on the wall right above an item that stands against it."""
     item = source.make(category, *_WALL_USES.get(category, ()))
-    if item is None or item.mount != "wall" or host.side is None:
+    if item is None or item.mount != "wall":
         return None
-    bottom_m = max(item.mount_height_m, host.item.size_m[2] + 0.15)
-    lo, hi = host.rect.span(host.side)
-    return hang_on_wall(layout, source.rng, item, sides=[host.side], at=0.5 * (lo + hi), bottom_m=bottom_m)
+    return hang_item_above(layout, source, host, item)
+
+
+def has_wall_above(layout: RoomLayout, host: Placement, item: Item) -> bool:
+    """Returns whether an item can hang on the wall right above another one, which need not be in the room yet."""
+    return host.side is not None and is_wall_free(layout, item, host.side, *_above(host, item))
+
+
+def hang_item_above(layout: RoomLayout, source: FurnitureSource, host: Placement, item: Item) -> Placement | None:
+    """Hangs an item that exists on the wall right above another one, which stands against it."""
+    if host.side is None:
+        return None
+    at, bottom_m = _above(host, item)
+    return hang_on_wall(layout, source.rng, item, sides=[host.side], at=at, bottom_m=bottom_m)
+
+
+def _above(host: Placement, item: Item) -> tuple[float, float]:
+    """Returns the position along the wall and the height at which an item hangs above another one."""
+    assert host.side is not None
+    bottom_m = max(item.mount_height_m, host.placed.z_m + host.item.size_m[2] + 0.12)
+    return 0.5 * sum(host.rect.span(host.side)), bottom_m
 
 
 def hang_screen(
@@ -93,6 +111,19 @@ def hang_screen(
     if placed is not None:
         layout.reserve(placed, [zone])
     return placed
+
+
+def has_room_for_fire(layout: RoomLayout, hearth: Placement) -> bool:
+    """Returns whether no furniture stands near the place of a fireplace or a stove."""
+    near = hearth.rect.grown(FROM_FIRE_M + 0.03)
+    return not any(
+        p.item.mount == "floor" and not p.item.walk_over and p.rect.overlaps(near, 0.0) for p in layout.placements
+    )
+
+
+def keep_from_fire(layout: RoomLayout, hearth: Placement) -> None:
+    """Keeps later furniture away from a fireplace or a stove."""
+    layout.reserve(hearth, [hearth.rect.grown(FROM_FIRE_M + 0.03)])
 
 
 def place_beside(

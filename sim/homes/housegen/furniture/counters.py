@@ -6,6 +6,8 @@ Neufert, Architects' Data, for islands and bars.
 
 from __future__ import annotations
 
+import math
+
 from sim.homes.housegen.furniture import parts
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Look
@@ -15,6 +17,8 @@ from sim.homes.housegen.furniture.workbench import Range, Workbench
 
 _TOP = 0.035
 """Thickness of a worktop."""
+_OPEN_BAY = 0.3
+"""Least width of the open shelf next to a cupboard; the cupboard takes up what is less."""
 
 
 def _run_base(w: Workbench, x: Range, y: Range, z: float, look: Look, hole: tuple[Range, Range] | None) -> None:
@@ -76,7 +80,7 @@ def island(w: Workbench) -> None:
 
 
 def open_run(w: Workbench) -> None:
-    """Builds a run with a thick wooden top on a steel frame, one closed block and an open shelf of crates below."""
+    """Builds a run with a thick wooden top on a steel frame, a cupboard below its sink and an open shelf of crates."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.66), w.height(0.87, 0.92)
     steel, wood, front = w.look("metal"), w.look("wood"), w.look("lacquer")
     x, y = parts.footprint(depth, width)
@@ -84,15 +88,23 @@ def open_run(w: Workbench) -> None:
     parts.worktop(w, x, y, (height - _TOP, height), wood, hole)
     w.legs((x[0] + 0.01, x[1] - 0.02), (y[0] + 0.01, y[1] - 0.01), (0.0, height - _TOP), 0.045, steel)
     w.box((x[0] + 0.02, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (0.18, 0.205), wood)
+    low = high = math.inf
     if hole is not None:
         low, high = hole[1][0] - 0.04, hole[1][1] + 0.04
-        w.box((x[0] + 0.01, x[1] - 0.06), (low, high), (0.205, height - 0.20), front)
-        for side in (low, high):  # cheeks hide the bowl of the sink between the block and the top
-            w.box((x[0] + 0.01, x[1] - 0.06), (side - 0.01, side + 0.01), (height - 0.20, height - _TOP), front)
-        parts.plain_doors(w, x[1] - 0.06, (low, high), (0.205, height - _TOP), 1, front, steel, "none")
+        if low - y[0] < _OPEN_BAY:
+            low = y[0] + 0.07
+        if y[1] - high < _OPEN_BAY:
+            high = y[1] - 0.07
+        body = (x[0] + 0.01, x[1] - 0.045)
+        w.box((body[0], body[1] - 0.05), (low, high), (0.0, 0.08), w.look("dark"))
+        w.box(body, (low, high), (0.08, height - 0.20), front)
+        for side in (low, high):  # cheeks hide the bowl of the sink between the cupboard and the top
+            w.box(body, (side - 0.01, side + 0.01), (height - 0.20, height - _TOP), front)
+        count = 1 + (high - low > 0.5)
+        parts.plain_doors(w, body[1], (low, high), (0.085, height - _TOP - 0.01), count, front, steel, "bar")
     count = min(3, int((width - 0.02) / 0.38))
     for c in ((n + 0.5) * width / count - 0.5 * width for n in range(count)):
-        if hole is None or not hole[1][0] - 0.25 < c < hole[1][1] + 0.25:
+        if not low - 0.21 < c < high + 0.21:
             w.mesh(chamfered_box((0.40, 0.34, 0.26), 0.015), (0.0, c, 0.335), w.look("wicker"), solid=False)
     _free_tops(w, x, free, height)
 
@@ -165,9 +177,9 @@ def trolley(w: Workbench) -> None:
 
 
 def curtained_run(w: Workbench) -> None:
-    """Builds a country kitchen: a thick wooden top on masonry piers, with cloth curtains instead of doors."""
+    """Builds a country kitchen: a thick wooden top on painted piers, with cloth curtains instead of doors."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.66), w.height(0.87, 0.91)
-    wood, pier, cloth = w.look("wood"), w.look("masonry"), w.look("curtain")
+    wood, pier, cloth = w.look("wood"), w.look("lacquer"), w.look("curtain")
     x, y = parts.footprint(depth, width)
     hole, free = parts.worktop_fittings(w, y, height)
     under = height - _TOP

@@ -19,7 +19,7 @@ from sim.homes.housegen.furniture import CATALOGUE
 from sim.homes.housegen.furniture.catalogue import Style
 from sim.homes.housegen.furniture.item import Child, Geom, Item, Look, MeshShape, Pool
 from sim.homes.housegen.furniture.shapes import MAX_VERTICES
-from sim.homes.housegen.furniture.transforms import euler_from_matrix, matrix_from_euler
+from sim.homes.housegen.furniture.transforms import euler_from_matrix, geom_bounds, matrix_from_euler
 from sim.homes.housegen.surfaces import materials
 from sim.homes.housegen.surfaces.textures import TEXTURES
 from tests.helpers.sampling import sample
@@ -198,6 +198,19 @@ def test_meshes_are_closed_and_face_outwards(style):
         assert all((b, a) in edges for a, b in edges), f"{shape.name} is not closed"
         a, b, c = (shape.vertices_m[shape.faces[:, i]] for i in range(3))
         assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0.0, f"{shape.name} is inside out"
+
+
+@pytest.mark.parametrize("width_m", [1.0, 1.2, 2.4])
+@pytest.mark.parametrize("style", CATALOGUE.styles("counter", use="run"), ids=lambda style: style.name)
+def test_a_unit_with_a_sink_stands_on_the_floor_and_has_no_masonry(style, width_m):
+    rng = np.random.default_rng(0)
+    unit = CATALOGUE.make_item(
+        "counter", rng, pool=style.pool, style=style.name, width_m=width_m, with_sink=True, with_hob=False
+    )
+    (sink,) = unit.children
+    bounds = [geom_bounds(geom) for geom in unit.geoms]
+    assert min(low[2] for low, high in bounds if low[1] < sink.pos_m[1] < high[1]) < 0.01
+    assert "masonry" not in {geom.look.material for geom in unit.geoms}
 
 
 @pytest.mark.parametrize("style", CATALOGUE.styles("counter", use="run"), ids=lambda style: style.name)

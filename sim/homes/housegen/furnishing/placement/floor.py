@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -36,6 +36,7 @@ def put_against_wall(
     front_m: float = 0.6,
     beside_m: float = 0.0,
     gap_m: float = WALL_GAP_M,
+    fits: Callable[[Placement], bool] = lambda _: True,
 ) -> Placement | None:
     """Puts an item with its back to a wall; returns None if it does not fit.
 
@@ -48,6 +49,7 @@ def put_against_wall(
         front_m: length of the zone that is reserved in front of it.
         beside_m: wall that should stay free on either side (for nightstands, chairs).
         gap_m: distance between its back and the wall.
+        fits: returns whether a position is suitable otherwise; it is called before the item is added.
     """
     order = list(sides) if sides is not None else [SIDES[i] for i in rng.permutation(4)]
     most_checks = layout.grid.checks + MAX_CHECKS
@@ -56,15 +58,22 @@ def put_against_wall(
             if layout.grid.checks >= most_checks:
                 return None
             placement = layout.walls.placement(item, side, at, gap_m)
-            if _put_at_wall(layout, placement, side, front_m):
+            if fits(placement) and _put_at_wall(layout, placement, side, front_m):
                 return placement
     return None
 
 
 def put_near(
-    layout: RoomLayout, item: Item, side: Side, at: float, *, front_m: float = 0.6, slide_m: float = 0.8
+    layout: RoomLayout,
+    item: Item,
+    side: Side,
+    at: float,
+    *,
+    front_m: float = 0.6,
+    slide_m: float = 0.8,
+    fits: Callable[[Placement], bool] = lambda _: True,
 ) -> Placement | None:
-    """Puts an item against a wall at a position along it, or at most `slide_m` away from that position."""
+    """Puts an item against a wall at a position along it, or at most `slide_m` away from it, where `fits` allows it."""
     lo, hi = layout.inner.span(side)
     half = item.size_m[1] / 2
     for position in _shifted(at, slide_m):
@@ -73,7 +82,7 @@ def put_near(
         if span[0] < lo - 0.002 or span[1] > hi + 0.002 or not free:
             continue
         placement = layout.walls.placement(item, side, position)
-        if _put_at_wall(layout, placement, side, front_m):
+        if fits(placement) and _put_at_wall(layout, placement, side, front_m):
             return placement
     return None
 

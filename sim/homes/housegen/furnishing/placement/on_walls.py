@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -29,6 +29,7 @@ def hang_on_wall(
     at: float | None = None,
     margin_m: float = 0.05,
     over_floor: bool = False,
+    fits: Callable[[Placement], bool] = lambda _: True,
 ) -> Placement | None:
     """Hangs an item on a wall; returns None if it does not fit.
 
@@ -42,32 +43,58 @@ def hang_on_wall(
         at: position along the only side given; any when None.
         margin_m: distance to other items.
         over_floor: nothing may stand below it.
+        fits: returns whether a position is suitable otherwise; it is called before the item is added.
     """
     bottom_m = item.mount_height_m if bottom_m is None else bottom_m
-    if bottom_m + item.size_m[2] > layout.ceiling_m - 0.03:
-        return None
     order = list(sides) if sides is not None else [SIDES[i] for i in rng.permutation(4)]
     for side in order:
         positions = [at] if at is not None else layout.walls.positions(rng, side, item.size_m[1], along, 0.1)
         for position in positions:
-            placement = _hang_at(layout, item, side, position, bottom_m, margin_m, over_floor)
+            placement = _hang_at(layout, item, side, position, bottom_m, margin_m, over_floor, fits)
             if placement is not None:
                 return placement
     return None
 
 
-def _hang_at(
-    layout: RoomLayout, item: Item, side: Side, at: float, bottom_m: float, margin_m: float, over_floor: bool
-) -> Placement | None:
-    """Hangs an item at one position along a wall; returns None if it does not fit."""
+def is_wall_free(
+    layout: RoomLayout,
+    item: Item,
+    side: Side,
+    at: float,
+    bottom_m: float,
+    *,
+    margin_m: float = 0.05,
+    over_floor: bool = False,
+) -> bool:
+    """Returns whether no opening and no other item is where an item would hang on a wall."""
     top_m = bottom_m + item.size_m[2]
     span = (at - item.size_m[1] / 2, at + item.size_m[1] / 2)
     rect = layout.inner.strip(side, span, item.size_m[0])
     padded = layout.inner.strip(side, (span[0] - margin_m, span[1] + margin_m), item.size_m[0] + 0.02)
     if not layout.inner.contains(rect, 0.002) or layout.walls.meets_opening(side, span, bottom_m, top_m):
-        return None
+        return False
     lowest_m = 0.0 if over_floor else bottom_m - margin_m
-    if not layout.is_clear(padded, lowest_m, top_m + margin_m, doorways=bottom_m < 2.0):
+    return top_m <= layout.ceiling_m - 0.03 and layout.is_clear(
+        padded, lowest_m, top_m + margin_m, doorways=bottom_m < 2.0
+    )
+
+
+def _hang_at(
+    layout: RoomLayout,
+    item: Item,
+    side: Side,
+    at: float,
+    bottom_m: float,
+    margin_m: float,
+    over_floor: bool,
+    fits: Callable[[Placement], bool],
+) -> Placement | None:
+    """Hangs an item at one position along a wall; returns None if it does not fit."""
+    rect = layout.inner.strip(side, (at - item.size_m[1] / 2, at + item.size_m[1] / 2), item.size_m[0])
+    x, y = layout.walls.point(side, at, 0.0)
+    placement = Placement(PlacedItem(item, x, y, bottom_m, INWARD_YAW_RAD[side]), rect, side)
+    free = is_wall_free(layout, item, side, at, bottom_m, margin_m=margin_m, over_floor=over_floor)
+    if not free or not fits(placement):
         return None
     if bottom_m < ROBOT_HEIGHT_M and item.size_m[0] > SHALLOW_M:
         if (
@@ -77,9 +104,7 @@ def _hang_at(
         ):
             return None
         layout.grid.occupy(rect)
-    x, y = layout.walls.point(side, at, 0.0)
-    placement = Placement(PlacedItem(item, x, y, bottom_m, INWARD_YAW_RAD[side]), rect, side)
-    layout.add(placement, 0.0 if over_floor else bottom_m, top_m)
+    layout.add(placement, 0.0 if over_floor else bottom_m, bottom_m + item.size_m[2])
     return placement
 
 

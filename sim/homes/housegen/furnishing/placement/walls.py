@@ -12,8 +12,9 @@ from sim.homes.housegen.furnishing.placement.records import Placement, floor_pla
 from sim.homes.housegen.furniture.item import Item
 from sim.homes.housegen.structure.openings import Opening
 
-Along = Literal["any", "middle", "corner"]
-"""Preferred position along a wall: anywhere, as near its middle as possible, or in a corner."""
+Along = Literal["any", "middle", "corner", "fitted"]
+"""Preferred position along a wall: anywhere, as near its middle as possible, in a corner or at a door, or only in the
+corner of the room that touches the right side of the item."""
 WALL_GAP_M = 0.016
 """Distance between furniture and wall: room for the baseboard."""
 NEVER_BELOW_WINDOWS = frozenset(("fireplace", "tv_monitor"))
@@ -22,6 +23,8 @@ BEFORE_WINDOW_M = 0.45
 """An item nearer to a wall than this hides a window in it."""
 LOW_M = 0.9
 """Furniture lower than this may stand in front of any window."""
+HIGH_SILL_M = 1.4
+"""A shower may have a window in the wall at its side if the sill is at least this high."""
 
 
 class RoomWalls:
@@ -58,6 +61,8 @@ class RoomWalls:
 
         `beside_m` of wall on either side of the item stay free where the wall is long enough.
         """
+        if along == "fitted":
+            return self._in_corner(side, width_m)
         centre = 0.5 * sum(self.inner.span(side))
         scored: list[tuple[float, float]] = []
         for lo, hi in self.free_stretches(side):
@@ -71,6 +76,14 @@ class RoomWalls:
                 score = {"middle": abs(at - centre), "corner": min(at - lo, hi - at), "any": 0.0}[along]
                 scored.append((score + float(rng.uniform(0.0, 0.4 if along != "any" else 1.0)), float(at)))
         return [at for _, at in sorted(scored)]
+
+    def _in_corner(self, side: Side, width_m: float) -> list[float]:
+        """Returns the position at which the right side of an item touches the next wall, if no door is there."""
+        lo, hi = self.inner.span(side)
+        reach_m = WALL_GAP_M + width_m / 2
+        at = lo + reach_m if side in ("north", "west") else hi - reach_m
+        span = (at - width_m / 2, at + width_m / 2)
+        return [at] if any(a <= span[0] and span[1] <= b for a, b in self.free_stretches(side)) else []
 
     def point(self, side: Side, at: float, inward_m: float) -> tuple[float, float]:
         """Returns the point at a position along a side, `inward_m` into the room."""
@@ -94,6 +107,8 @@ class RoomWalls:
         for side in SIDES:
             near = side == placement.side or abs(rect.line(side) - self.inner.line(side)) < BEFORE_WINDOW_M
             for hole in self._openings[side] if near else ():
+                if item.category == "shower" and side != placement.side and hole.bottom_m >= HIGH_SILL_M:
+                    continue
                 too_high = hole.kind == "window" and height_m > max(hole.bottom_m, LOW_M) + 0.05
                 lo, hi = rect.span(side)
                 if too_high and hi > hole.span[0] - 0.02 and lo < hole.span[1] + 0.02:
