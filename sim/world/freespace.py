@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -28,9 +27,6 @@ from sim.houses.labels import Labels
 from sim.world.leaves import pushed_open
 from sim.world.obstacles import obstacle_polygons
 from sim.world.plan import floor_polygons, house_extent, polygons_between, room_rectangles
-
-if TYPE_CHECKING:
-    from sim.world.world import World
 
 CELL_M = 0.025
 """Edge of a cell of the free space."""
@@ -84,19 +80,6 @@ class FreeSpace:
         self._extent = house_extent(model, data, labels, rooms, self._floors, self._obstacles)
         self.frame = _frame_around(self._extent)
         self.free: NDArray[np.bool_] = self._free_cells(rooms)  # (rows, cols)
-
-    @classmethod
-    def from_world(cls, world: World, floor_z_m: float = 0.0) -> FreeSpace:
-        """Returns the free space of a storey of a world in its current state; the robot is not an obstacle."""
-        return cls(
-            world.model,
-            world.data,
-            world.labels,
-            rooms=world.rooms,
-            robot=world.robot,
-            rule=world.rule,
-            floor_z_m=floor_z_m,
-        )
 
     @property
     def obstacles(self) -> tuple[ConvexPolygon, ...]:

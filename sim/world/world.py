@@ -162,6 +162,18 @@ class World:
         z_before = self._body.z_m
         return self._checked(self._velocity_drive.run(command, period_s), z_before)
 
+    def free_space(self, floor_z_m: float = 0.0) -> FreeSpace:
+        """Returns the free space of a storey in the current state; the robot is not an obstacle."""
+        return FreeSpace(
+            self.model,
+            self.data,
+            self.labels,
+            rooms=self.rooms,
+            robot=self.robot,
+            rule=self.rule,
+            floor_z_m=floor_z_m,
+        )
+
     @property
     def _has_physics(self) -> bool:
         return self.config.motion == "contacts"
@@ -170,7 +182,7 @@ class World:
         """Performs one action without physics, over the free space as it was at the first one on a storey."""
         pose, rise_m = self.pose, self.body_pose.rise_m
         if pose.floor_z_m not in self._glides:
-            self._glides[pose.floor_z_m] = Glide(FreeSpace.from_world(self, pose.floor_z_m))
+            self._glides[pose.floor_z_m] = Glide(self.free_space(pose.floor_z_m))
         glide, sliding = self._glides[pose.floor_z_m], self.config.motion == "sliding"
         after, motion = performed(glide, pose, action, self.config.drive, sliding=sliding)
         self._body.place(after.x_m, after.y_m, after.floor_z_m + rise_m, after.yaw_rad)

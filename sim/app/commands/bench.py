@@ -36,7 +36,6 @@ from sim.gl import mujoco
 from sim.houses.labels import RENDERED_GROUPS
 from sim.renderer.camera import Camera
 from sim.renderer.opengl import Z_FAR_M, Z_NEAR_M, describe_gl
-from sim.world.freespace import FreeSpace
 from sim.world.world import World
 from stubborn import agents
 from stubborn.detection.verification import verifier_for
@@ -149,7 +148,7 @@ class PlainRenderer:
 
 def free_poses(world: World, count: int, rng: np.random.Generator) -> list[Pose]:
     """Returns random free poses of the robot."""
-    space = FreeSpace.from_world(world)
+    space = world.free_space()
     cells = np.argwhere(space.largest_part())
     places = space.frame.to_metres(cells[rng.integers(len(cells), size=count)])
     return [Pose(float(x), float(y), float(rng.uniform(-math.pi, math.pi)), 0.0) for x, y in places]

@@ -17,7 +17,6 @@ from sim.gl import mujoco
 from sim.houses.labels import ROBOT_PREFIX
 from sim.houses.load import load_house
 from sim.task.ground_truth import GroundTruth
-from sim.world.freespace import FreeSpace
 from sim.world.world import World
 from tests.helpers import wording
 from tests.helpers.foreign import LABELS, SCENE, write_scene
@@ -129,7 +128,7 @@ def test_a_house_may_have_names_that_begin_with_robot_but_not_with_our_prefix(tm
     file.write_text(spec.to_xml())
     world = World(load_house(file))
     assert [each.name for each in world.labels.of_category("table")] == ["table_00", "table_01"]
-    assert not FreeSpace.from_world(world).is_free(1.0, 1.0)
+    assert not world.free_space().is_free(1.0, 1.0)
     spec.bodies[-1].name = f"{ROBOT_PREFIX}base"
     file.write_text(spec.to_xml())
     with pytest.raises(HouseError, match=wording.ARE_THE_ROBOT_S):

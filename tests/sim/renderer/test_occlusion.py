@@ -19,7 +19,6 @@ from sim.houses.load import load_house
 from sim.renderer.camera import Camera
 from sim.renderer.occlusion import Visibility
 from sim.renderer.opengl import Z_NEAR_M
-from sim.world.freespace import FreeSpace
 from sim.world.world import World
 from tests.helpers.sampling import sample
 from tests.helpers.worlds import open_floor, room, with_box, with_movable
@@ -263,7 +262,7 @@ def test_in_shipped_houses_no_pixel_changes() -> None:
 
 def somewhere(world: World, seeds: list[int]) -> list[Pose]:
     """Returns random poses in the robot's free space."""
-    space = FreeSpace.from_world(world)
+    space = world.free_space()
     cells, (x, y) = np.argwhere(space.largest_part()), space.frame.axes()
     poses = []
     for seed in seeds:

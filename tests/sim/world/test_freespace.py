@@ -110,14 +110,14 @@ def test_collision_geoms_block_and_visual_geoms_do_not():
 def test_a_movable_object_blocks_at_its_current_position_and_the_robot_never_does():
     world = World(with_movable(room(), "stool_00", xy_m=(1.0, 0.0)))
     world.reset(Pose(-1.0, 0.0, 0.0))
-    space = FreeSpace.from_world(world)
+    space = world.free_space()
     assert not space.is_free(1.0, 0.0)
     assert space.is_free(-1.0, 0.0)
     stool = world.model.body("stool_00").id
     joint = world.model.jnt_qposadr[world.model.body_jntadr[stool]]
     world.data.qpos[joint] = -0.2
     mujoco.mj_kinematics(world.model, world.data)
-    moved = FreeSpace.from_world(world)
+    moved = world.free_space()
     assert moved.is_free(1.0, 0.0)
     assert not moved.is_free(-0.2, 0.0)
 

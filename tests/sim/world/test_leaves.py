@@ -44,7 +44,7 @@ def two_rooms(angle_deg: float, *, widest_deg: float = 95.0, hinge: bool = True)
 
 
 def free_space(house: House) -> FreeSpace:
-    return FreeSpace.from_world(World(house))
+    return World(house).free_space()
 
 
 def is_left(space: FreeSpace) -> tuple[bool, bool]:
@@ -80,8 +80,8 @@ def test_a_half_open_leaf_counts_where_it_stands() -> None:
     data, geoms = pushed_open(world.model, world.data, world.labels, world.robot.radius_m)
     assert data is world.data
     assert geoms == ()
-    assert crosses(FreeSpace.from_world(world))
-    assert is_left(FreeSpace.from_world(world)) == (True, True)
+    assert crosses(world.free_space())
+    assert is_left(world.free_space()) == (True, True)
 
 
 @pytest.mark.parametrize("house", [two_rooms(20.0, widest_deg=25.0), two_rooms(20.0, hinge=False)])

@@ -19,7 +19,6 @@ from sim.homes.housegen.ground.survey import Survey, survey
 from sim.houses.house import House
 from sim.houses.labels import cover_geoms, read_labels
 from sim.robot.conditions import Conditions
-from sim.world.freespace import FreeSpace
 from sim.world.world import World
 
 FLOOR = (
@@ -137,7 +136,7 @@ def _geoms_of(model: mujoco.MjModel, body: str) -> tuple[int, int]:
 
 
 def test_the_free_space_is_that_of_the_level_ground():
-    level, laid = (FreeSpace.from_world(World(House("house", spec))) for spec in (house(), house(1)))
+    level, laid = (World(House("house", spec)).free_space() for spec in (house(), house(1)))
     assert level.frame == laid.frame
     np.testing.assert_array_equal(level.free, laid.free)
 

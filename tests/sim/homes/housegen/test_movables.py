@@ -31,7 +31,6 @@ from sim.renderer.camera import Camera
 from sim.robot.config import RobotConfig
 from sim.robot.drive import Motion
 from sim.world.check import check_house
-from sim.world.freespace import FreeSpace
 from sim.world.world import World
 from tests.helpers.sampling import sample
 from tests.helpers.worlds import room, with_movable
@@ -117,7 +116,7 @@ def step_back(world: World, yaw_rad: float) -> None:
 
 
 def free_pose(world: World) -> Pose:
-    space = FreeSpace.from_world(world)
+    space = world.free_space()
     cells = np.argwhere(space.largest_part())
     row, col = cells[len(cells) // 2]
     x, y = space.frame.axes()
@@ -218,7 +217,7 @@ def test_all_movables_of_a_house_rest_and_block_the_free_space() -> None:
     world = World(home())
     bodies = movable_bodies(world.model)
     mujoco.mj_forward(world.model, world.data)
-    space = FreeSpace.from_world(world)
+    space = world.free_space()
     before = world.data.xpos[bodies].copy()
     assert not any(space.is_free(float(x), float(y)) for x, y, _ in world.data.xipos[bodies])
     world.reset(free_pose(world))
@@ -241,10 +240,10 @@ def test_a_pushed_chair_is_rendered_and_blocks_at_its_new_place() -> None:
         picture = camera.render(world.data, Pose(-2.0, 0.0, 0.0), ("semantic", "depth"))
         seen.append(float(picture["depth"][picture["semantic"] == chair].mean()))
         x, y, _ = world.data.xpos[body]
-        assert not FreeSpace.from_world(world).is_free(float(x), float(y))
+        assert not world.free_space().is_free(float(x), float(y))
     camera.close()
     assert seen[1] - seen[0] == pytest.approx(float(world.data.xpos[body, 0]), abs=0.05)
-    assert FreeSpace.from_world(world).is_free(-0.1, 0.0)
+    assert world.free_space().is_free(-0.1, 0.0)
 
 
 def test_items_that_carry_others_or_are_heavy_stay_static() -> None:

@@ -15,7 +15,6 @@ from sim.houses.house import House
 from sim.houses.writing import house_text
 from sim.renderer.camera import Camera
 from sim.world.check import check_house
-from sim.world.freespace import FreeSpace
 from sim.world.world import World
 
 CONFIG = HouseConfig(
@@ -53,7 +52,7 @@ def test_no_place_over_the_stairwell_or_on_the_stairs_is_free(world: World):
     low, high = (world.data.geom_xpos[list(flight.geom_ids), :2].copy() for _ in range(2))
     centre = 0.5 * (low.min(axis=0) + high.max(axis=0))
     for floor_z_m in (0.0, up_m):
-        space = FreeSpace.from_world(world, floor_z_m)
+        space = world.free_space(floor_z_m)
         assert not space.is_free(*centre)
         assert space.largest_part().sum() > 0.7 * space.free.sum()  # rooms behind leaves that are ajar are left out
 
@@ -66,7 +65,7 @@ def test_both_stair_halls_have_lamps_and_the_landing_is_free(world: World):
     steps = world.data.geom_xpos[list(world.labels.of_category("stairs")[0].geom_ids)]
     top, bottom = steps[steps[:, 2].argmax(), :2], steps[steps[:, 2].argmin(), :2]
     landing = top - 0.55 * (bottom - top) / np.linalg.norm(bottom - top)
-    assert FreeSpace.from_world(world, upper_floor_m(world)).is_free(*landing.tolist())
+    assert world.free_space(upper_floor_m(world)).is_free(*landing.tolist())
 
 
 def test_a_robot_upstairs_falls_over_the_open_edge_of_the_stairwell(world: World):
@@ -92,7 +91,7 @@ def test_culling_changes_no_pixel_on_either_storey_near_the_stairwell(world: Wor
     hall = next(room for room in world.rooms if "stair_hall" in room.name)
     (x, y, _), (half_x, half_y, _) = hall.boxes[0]
     for floor_z_m in (0.0, upper_floor_m(world)):
-        space = FreeSpace.from_world(world, floor_z_m)
+        space = world.free_space(floor_z_m)
         xs, ys = space.frame.axes()
         near = space.free & np.outer(np.abs(ys - y) < half_y, np.abs(xs - x) < half_x)
         for cell in rng.permutation(np.argwhere(near))[:4]:
