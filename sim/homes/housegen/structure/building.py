@@ -112,14 +112,17 @@ def _to_corner(rects: Sequence[Rect], room: int, side: Side, span: Interval) -> 
     """Returns an outer stretch of wall, longer by its thickness where it ends at an outer corner of the home."""
     rect = rects[room]
     whole = rect.span(side)
-    sign = 1.0 if side in ("east", "north") else -1.0
-    beyond = rect.line(side) + sign * 0.02
+    line, sign = rect.line(side), 1.0 if side in ("east", "north") else -1.0
 
     def grown(end: float, corner: float, step: float) -> float:
         along = end + step * 0.02
-        point = (beyond, along) if side in ("east", "west") else (along, beyond)
-        free = all(r.distance_to(*point) > EPS_M for r in rects)
-        return end + step * OUTER_WALL_M if abs(end - corner) < EPS_M and free else end
+        if abs(end - corner) > EPS_M:
+            return end
+        for across in (line + sign * 0.02, line - sign * 0.02):  # a room around the corner, or one in the same line
+            point = (across, along) if side in ("east", "west") else (along, across)
+            if any(r.distance_to(*point) <= EPS_M for r in rects):
+                return end
+        return end + step * OUTER_WALL_M
 
     return grown(span[0], whole[0], -1.0), grown(span[1], whole[1], 1.0)
 

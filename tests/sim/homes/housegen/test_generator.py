@@ -36,11 +36,13 @@ from sim.homes.housegen.generator import (
 )
 from sim.homes.housegen.splits.recipes import SPLITS, Recipe
 from sim.homes.housegen.structure.openings import HALF_WALL_M, plan_rule_faults
+from sim.houses.geoms import world_boxes
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house, validate_house
 from sim.houses.writing import write_house
 from sim.world.check import check_house
+from sim.world.world import World
 from tests.helpers import wording
 from tests.helpers.sampling import sample
 
@@ -282,3 +284,21 @@ def test_a_house_that_breaks_the_format_does_not_replace_a_file(tmp_path: Path) 
     with pytest.raises(HouseError, match="House 'mine'"):
         write_house(spec, tmp_path, "mine")
     assert (tmp_path / "mine.xml").read_text() == "kept"
+
+
+@pytest.mark.parametrize("seed", [3, 5, 713])
+def test_walls_of_two_rooms_overlap_nowhere_in_sight(seed: int) -> None:
+    """Overlapping walls show a strip of the other room's paint."""
+    world = World(House("house", generate(seed)))
+    model, data, labels = world.model, world.data, world.labels
+    low, high = world_boxes(model, data, np.arange(model.ngeom))
+    box = mujoco.mjtGeom.mjGEOM_BOX.value
+    walls = [g for wall in labels.of_category("wall") for g in wall.geom_ids if model.geom_type[g] == box]
+    rooms = [(np.subtract(centre, half), np.add(centre, half)) for room in world.rooms for centre, half in room.boxes]
+    for n, a in enumerate(walls):
+        for b in walls[n + 1 :]:
+            start, end = np.maximum(low[a], low[b]), np.minimum(high[a], high[b])
+            if model.geom_matid[a] == model.geom_matid[b] or (end - start).min() < 0.002:
+                continue
+            for corner, opposite in rooms:
+                assert (np.minimum(end, opposite) - np.maximum(start, corner))[:2].min() < -0.001, (start, end)
