@@ -30,6 +30,8 @@ HEAD_M = 2.1
 LEAF_SHARE, OPEN_SHARE, AJAR_SHARE = 0.8, 0.72, 0.5
 """Shares of the doors that get a leaf, of the leaves that are wide open, and of the others that are only ajar, where a
 leaf may be."""
+PRIVATE = frozenset({"bathroom", "bedroom"})
+"""Rooms whose doors all have a leaf where one fits."""
 HALF_OPEN_GAP_M, AJAR_GAP_M = (0.52, 0.64), (0.10, 0.34)
 """Gaps beside a leaf that is half open, through which the robot of 0.36 m passes, and beside one that is ajar."""
 
@@ -223,20 +225,39 @@ def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening, othe
     Most leaves are wide open. Some are half open, with a gap through which the robot passes; in a room that has no
     other door a leaf may be ajar, so that the robot must push it to enter: a leaf opens into the room, and from within
     the robot could not pull it. A door stays without a leaf where its swing would meet another doorway of that room.
+    Doors of bedrooms and bathrooms have a leaf wherever one fits, with its hinge on the other side or in the other room
+    if need be.
     """
-    if opening.kind != "door" or rng.random() > LEAF_SHARE:
+    if opening.kind != "door" or opening.b is None:
         return opening
-    assert opening.b is not None
     kinds = plan.rooms[opening.a].kind, plan.rooms[opening.b].kind
+    private = any(kind in PRIVATE for kind in kinds)
+    if rng.random() > LEAF_SHARE and not private:
+        return opening
     room = opening.b if kinds[0] == "hallway" or plan.rooms[opening.b].rect.area_m2 > 30 else opening.a
+    other_room = opening.a if room == opening.b else opening.b
+    for swings_into in (room, other_room) if private else (room,):
+        rect, side = plan.rooms[swings_into].rect, opening.side_of(swings_into)
+        lo, hi = rect.span(side)
+        nearer_start = opening.span[0] - lo < hi - opening.span[1]
+        for at_start in (nearer_start, not nearer_start) if private else (nearer_start,):
+            hung = _hung(rng, plan, opening, others, swings_into, at_start)
+            if hung is not None:
+                return hung
+    return opening
+
+
+def _hung(
+    rng: np.random.Generator, plan: FloorPlan, opening: Opening, others: Sequence[Opening], room: int, at_start: bool
+) -> Opening | None:
+    """Returns a door with a leaf that swings into a room; None if it does not fit there."""
     rect = plan.rooms[room].rect
     side = opening.side_of(room)
     lo, hi = rect.span(side)
     width_m = opening.span[1] - opening.span[0]
     depth_m = rect.depth_m if side in ("north", "south") else rect.width_m
     if plan.rooms[room].kind == "hallway" or depth_m < width_m + 0.75:
-        return opening
-    at_start = opening.span[0] - lo < hi - opening.span[1]
+        return None
     gap_m = opening.span[0] - lo if at_start else hi - opening.span[1]
     # The wall next to a leaf limits its angle; without such a wall the leaf may open a little further.
     widest_deg = 92.0 if gap_m < 0.6 else 110.0
@@ -251,7 +272,7 @@ def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening, othe
         doorway = rect.strip(other.side_of(room), other.span, 0.75)
         crossing = other.leaf is not None and other.leaf.room == room and zone.overlaps(leaf_keep_out(other, rect))
         if zone.overlaps(doorway) or crossing:
-            return opening
+            return None
     return hung
 
 
