@@ -81,7 +81,8 @@ def _hang_curtains(layout: RoomLayout, source: FurnitureSource) -> None:
 def _hang_ceiling_lamps(layout: RoomLayout, source: FurnitureSource) -> None:
     """Hangs a lamp from the middle of the ceiling, several along a hallway.
 
-    Of the three designs of a home, a flat one hangs in rooms to work and walk in.
+    Of the three designs of a home, a flat one hangs in rooms to work and walk in, and where the first one would hang
+    into furniture, such as a bed with a canopy; a lamp that is in the way everywhere hangs beside the middle.
     """
     designs = [source.make("lighting", "ceiling") for _ in range(3)]
     lamps = [lamp for lamp in designs if lamp is not None and lamp.mount == "ceiling"]
@@ -99,4 +100,9 @@ def _hang_ceiling_lamps(layout: RoomLayout, source: FurnitureSource) -> None:
                 x = layout.inner.x0 + along * layout.inner.width_m
             else:
                 y = layout.inner.y0 + along * layout.inner.depth_m
-        hang_from_ceiling(layout, lamp, x, y)
+        flatter = sorted(lamps, key=lambda lamp: lamp.size_m[2])
+        any(
+            hang_from_ceiling(layout, design, x + dx, y + dy)
+            for dx, dy in ((0.0, 0.0), (0.8, 0.0), (-0.8, 0.0), (0.0, 0.8), (0.0, -0.8))
+            for design in (lamp, *flatter)
+        )
