@@ -31,6 +31,10 @@ MARGIN_M = 0.15
 """The planned work triangle keeps this far from its limits, since the sink is not always in the middle of its unit."""
 BESIDE_COOKER_M = 1.2
 """Smallest width of a unit with a sink in its middle that leaves 0.3 m of worktop before a cooker."""
+LONG_LEG_M = 2.75
+"""A side of the work triangle that is longer than this (9 ft; guideline 3) is worse."""
+WORST_SCORE = -3.0
+"""Plans that are worse than this, such as a fridge before a window, are not used."""
 GAP_M = 0.003
 
 
@@ -144,7 +148,7 @@ def kitchen_plans(
             triangle_m = work_triangle_m(layout, plan) if plan else 0.0
             if plan and MIN_TRIANGLE_M + MARGIN_M < triangle_m < MAX_TRIANGLE_M - MARGIN_M:
                 scored.append((_score(layout, shape, plan) + 1.6 * next(noise), plan))
-    scored = [(score, plan) for score, plan in scored if score > 0.0]
+    scored = [(score, plan) for score, plan in scored if score > WORST_SCORE]
     plans = [plan for _, plan in sorted(scored, key=lambda entry: -entry[0])]
     for template in SHORT:
         fitted = [
@@ -158,13 +162,18 @@ def kitchen_plans(
 
 def work_triangle_m(layout: RoomLayout, plan: Sequence[Run]) -> float:
     """Returns the sum of the distances between the middles of the fronts of sink, cooker and fridge."""
+    return sum(_triangle_legs_m(layout, plan))
+
+
+def _triangle_legs_m(layout: RoomLayout, plan: Sequence[Run]) -> list[float]:
+    """Returns the distances between the middles of the fronts of sink, cooker and fridge."""
     fronts = [
         layout.walls.point(run.leg.side, run.leg.at(start_m + width_m / 2), DEPTH_M)
         for run in plan
         for kind, start_m, width_m in run.spans()
         if kind in ("sink", "cooker", "fridge")
     ]
-    return sum(math.dist(a, b) for a, b in itertools.combinations(fronts, 2))
+    return [math.dist(a, b) for a, b in itertools.combinations(fronts, 2)]
 
 
 def _is_short(leg: Leg) -> bool:
@@ -179,9 +188,9 @@ def _score(layout: RoomLayout, shape: Shape, plan: Sequence[Run]) -> float:
         "L": 0.8,
         "U": 0.8 if area_m2 > 10 else -0.5,
         "galley": 0.2,
-        "apart": -0.4,
+        "apart": -2.5,  # where no other shape fits
     }
-    score = suits[shape]
+    score = suits[shape] - (1.5 if max(_triangle_legs_m(layout, plan)) > LONG_LEG_M else 0.0)
     for run in plan:
         used_m = sum(width_m for _, width_m in run.units)
         rest_m = run.leg.length_m - used_m
@@ -190,7 +199,7 @@ def _score(layout: RoomLayout, shape: Shape, plan: Sequence[Run]) -> float:
         for kind, start_m, width_m in run.spans():
             lo, hi = sorted((run.leg.at(start_m), run.leg.at(start_m + width_m)))
             if any(hi > window[0] + 0.02 and lo < window[1] - 0.02 for window in windows):
-                score += {"sink": 0.6, "cooker": -2.0, "fridge": -9.0, "sink_and_hob": -1.0}.get(kind, 0.0)
+                score += {"sink": 0.6, "cooker": -4.0, "fridge": -9.0, "sink_and_hob": -1.0}.get(kind, 0.0)
     return score
 
 
