@@ -159,7 +159,7 @@ def test_every_goal_instance_can_be_reached_from_its_view_points(case: Case) -> 
             cells = space.frame.to_cells([place[:2] for place in places])  # files round to the millimetre
             assert space.frame.inside(cells).all()
             assert space.largest_part()[tuple(cells.T)].all()
-            assert region.reaches(footprints[entry["object_id"]], space.frame.to_metres(cells)).all()
+            assert region.reaches(footprints[entry["object_name"]], space.frame.to_metres(cells)).all()
 
 
 def test_the_distance_from_start_to_goal_is_the_recorded_one_and_within_the_limits(case: Case) -> None:

@@ -142,8 +142,11 @@ def _finish(layout: RoomLayout, source: FurnitureSource, units: Sequence[Placeme
     """Hangs a hood over the cooker and cabinets over the worktops, and puts small items on these."""
     hood = source.make("appliances", "hood")
     for unit in units:
-        if unit.item.name == "cooker" and hood is not None and unit.side is not None:
-            at = 0.5 * sum(unit.rect.span(unit.side))
+        hob = next((child.pos_m[1] for child in unit.item.children if child.item.name == "hob"), None)
+        across_m = 0.0 if unit.item.name == "cooker" else hob
+        if across_m is not None and hood is not None and unit.side is not None:
+            x_m, y_m = unit.to_world(0.0, across_m)
+            at = y_m if unit.side in ("east", "west") else x_m
             hang_on_wall(layout, source.rng, hood, sides=[unit.side], at=at, bottom_m=HOOD_BOTTOM_M, margin_m=0.0)
     for unit in units:
         if unit.item.category == "counter":

@@ -86,7 +86,8 @@ def test_a_stop_at_a_view_point_succeeds(folder):
     region = Task(world).truth.target("picture").region
     content = json.loads(gzip.decompress((folder / "content" / "first.json.gz").read_bytes()))
     (goal,) = content["goals_by_category"]["first.xml_picture"]
-    assert goal["object_id"] == "picture_00"
+    assert goal["object_name"] == "picture_00"
+    assert goal["object_id"] > 0
     assert goal["room_name"] == "room_living_00"
     assert goal["position"] == [-0.5, 1.5, -1.98]
     places = [habitat.from_position(view["agent_state"]["position"]) for view in goal["view_points"]]
