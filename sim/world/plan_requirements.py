@@ -67,6 +67,8 @@ HALLWAY_M = (0.9, 15.0)
 one line count as one."""
 USUAL_M2, M2_PER_M = 300.0, 40.0
 """Area of a storey from which hallways may be longer, and by how many square metres for each metre."""
+M2_PER_SHARE, MAX_SHARE = 1000.0, 0.4
+"""Rooms of larger storeys may be larger: by a part for each so many square metres, up to this share."""
 IN_LINE_M = 0.8
 """Width of a straight path through two hallways that makes them one line."""
 HALLWAY_SHARE = 0.2
@@ -166,7 +168,7 @@ def room_faults(rooms: Sequence[Room]) -> list[str]:
         halls_m2 = sum(room.area_m2 for room in storey if room.kind == "hallway")
         longest_m = HALLWAY_M[1] + max(0.0, whole_m2 - USUAL_M2) / M2_PER_M
         for room in storey:
-            faults += _hallway_faults(room) if room.kind == "hallway" else _size_faults(room)
+            faults += _hallway_faults(room) if room.kind == "hallway" else _size_faults(room, whole_m2)
         faults += _long_hallways([room for room in storey if room.kind == "hallway"], longest_m)
         if halls_m2 > HALLWAY_SHARE * whole_m2:
             faults.append(f"hallways take {halls_m2:.0f} of {whole_m2:.0f} m2")
@@ -245,17 +247,18 @@ def _number_faults(count: Counter[str], area_m2: float) -> list[str]:
     return faults
 
 
-def _size_faults(room: Room) -> list[str]:
-    """Returns the faults in the size of a room."""
+def _size_faults(room: Room, storey_m2: float) -> list[str]:
+    """Returns the faults in the size of a room of a storey of this area."""
     x0, y0, x1, y1 = _extent(room)
     short_m, long_m = sorted((x1 - x0, y1 - y0))
     limit = ROOM_SIZES.get(room.kind)
     if limit is None:
         return []
     low, high = limit.area_m2
+    high *= 1.0 + min(max(0.0, storey_m2 - USUAL_M2) / M2_PER_SHARE, MAX_SHARE)
     faults = []
     if not low - 0.05 <= room.area_m2 <= high + 0.05:
-        faults.append(f"{room.name} has {room.area_m2:.1f} m2 instead of {low:g} to {high:g} m2")
+        faults.append(f"{room.name} has {room.area_m2:.1f} m2 instead of {low:g} to {high:.3g} m2")
     if short_m < limit.short_m - 0.005:
         faults.append(f"{room.name} is only {short_m:.2f} m wide instead of {limit.short_m:g} m")
     if long_m > (limit.aspect + 0.01) * short_m:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:  # loading a house needs no furniture
     from sim.homes.housegen.furniture.item import Pool
     from sim.homes.housegen.generator import GeneratedHouse, HouseConfig
 
-SPLIT_VERSION = "4.0.0.dev1"
+SPLIT_VERSION = "4.0.0"
 """Version of all shipped splits; results contain it with a hash over houses and episodes. It is increased in
 
 - the last number when a house or an episode changed without an effect on agents (a colour, the layout of a file);
