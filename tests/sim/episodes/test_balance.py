@@ -11,7 +11,6 @@ import pytest
 from sim.core.interface import FORWARD_M, GOAL_CATEGORIES, MAX_STEPS
 from sim.episodes.recipes import EPISODE_RECIPES
 from sim.episodes.splits import Split, load_split
-from sim.homes.housegen.splits.recipes import SPLIT_VERSION
 
 SPLITS = {
     "val": (30, 1020), "test": (30, 1020), "large": (20, 600), "hazards": (15, 450), "train": (200, 2000),
@@ -71,8 +70,7 @@ def test_each_goal_is_asked_for_in_several_houses(split: str) -> None:
 @every_split
 def test_the_distances_are_those_of_the_recipe_and_the_oracle_needs_fewer_steps_than_allowed(split: str) -> None:
     recipe = EPISODE_RECIPES[split]
-    is_new = load(split).version == SPLIT_VERSION  # `val` and `test` of 3.0.0 begin at 2 m
-    least_m = recipe.min_distance_for(1) if is_new else min(recipe.min_distance_for(1), 2.0)
+    least_m = recipe.min_distance_for(1)
     for episode in load(split).episodes:
         assert episode.shortest_path_m is not None
         assert least_m <= episode.shortest_path_m <= recipe.max_distance_m

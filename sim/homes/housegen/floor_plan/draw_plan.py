@@ -29,7 +29,6 @@ EXTRA_DOORS = {
     frozenset(("kitchen", "laundry")): 0.6,
     frozenset(("bedroom", "bathroom")): 0.25,
     frozenset(("kitchen", "dining_room")): 0.8,
-    frozenset(("bedroom", "office")): 0.15,
 }
 """Probability that two neighbouring rooms get a door, by their kinds."""
 

@@ -14,7 +14,7 @@ from sim.homes.housegen.furnishing.placement import Placement, RoomLayout
 from sim.homes.housegen.furnishing.placement.floor import put_at
 from sim.homes.housegen.furnishing.placement.free_standing import put_in_middle
 from sim.homes.housegen.furnishing.placement.on_walls import hang_on_wall
-from sim.homes.housegen.furnishing.steps import put_on_top
+from sim.homes.housegen.furnishing.steps import place, put_on_top
 from sim.homes.housegen.furniture.item import Hints, Item, Look
 from sim.world.arrangement import AISLE_M, MAX_TRIANGLE_M, MIN_TRIANGLE_M
 
@@ -37,9 +37,11 @@ def furnish_kitchen(layout: RoomLayout, source: FurnitureSource) -> None:
     area = layout.inner.area_m2
     dining_elsewhere = "dining_room" in source.home_rooms
     kitchen_units(layout, source)
-    island = _place_island(layout, source) if area > 12 and source.chance(0.6 if dining_elsewhere else 0.35) else None
+    island = _place_island(layout, source) if area > 11 and source.chance(0.8 if dining_elsewhere else 0.35) else None
     if area > 8 and not dining_elsewhere and (island is None or area > 20):
         _ = dining_group(layout, source, around_m=0.55) or breakfast_group(layout, source)
+    elif island is None and area > 10:
+        _ = breakfast_group(layout, source) or place(layout, source, "cabinet", "sideboard", front_m=0.8)
 
 
 def kitchen_units(layout: RoomLayout, source: FurnitureSource) -> bool:

@@ -121,7 +121,7 @@ def _second_groups(layout: RoomLayout, source: FurnitureSource) -> None:
 
 def _kitchen(layout: RoomLayout, source: FurnitureSource) -> None:
     furnish_kitchen(layout, source)
-    _extras(layout, source, plants=0.4, pictures=(0, 1))
+    _extras(layout, source, plants=0.4, pictures=(0, 1), lamp=False)
 
 
 def _dining_room(layout: RoomLayout, source: FurnitureSource) -> None:
@@ -153,7 +153,7 @@ def _bathroom(layout: RoomLayout, source: FurnitureSource) -> None:
 def _hallway(layout: RoomLayout, source: FurnitureSource) -> None:
     furnish_hallway(layout, source)
     pictures = int(layout.inner.long_m / 4.0)
-    _extras(layout, source, plants=0.5, pictures=(min(1, pictures), min(3, 1 + pictures)), lamp=False)
+    _extras(layout, source, plants=0.5, pictures=(min(3, pictures), min(4, 1 + pictures)), lamp=False)
 
 
 def _stair_hall(layout: RoomLayout, source: FurnitureSource) -> None:

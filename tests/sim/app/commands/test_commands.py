@@ -28,14 +28,7 @@ ROOT = Path(__file__).resolve().parents[4]
 TRIED = [command for command, trial in TRIALS.items() if not isinstance(trial, Only)]
 OUTPUTS = ("out", "log", "card")
 """Fields of tools' `Args` that name what they write."""
-FROZEN = "3.0.0"
-"""Version of the shipped files while `SPLIT_VERSION` is one in development (`.dev`)."""
-SHIPPED = [
-    (split, recipe.name)
-    for split, recipes in SPLITS.items()
-    for recipe in recipes
-    if load_split(split).version == SPLIT_VERSION
-]
+SHIPPED = [(split, recipe.name) for split, recipes in SPLITS.items() for recipe in recipes]
 
 
 @pytest.mark.costly
@@ -64,8 +57,7 @@ def test_a_listed_train_house_comes_out_as_listed(number: int) -> None:
 @pytest.mark.parametrize("split", [*SPLITS, "train", "traps", *CONTACT_SPLITS])
 def test_a_shipped_split_carries_the_one_version(split: str) -> None:
     assert split in shipped_splits()
-    version = load_split(split).version
-    assert version == SPLIT_VERSION or (".dev" in SPLIT_VERSION and version == FROZEN and split != "train")
+    assert load_split(split).version == SPLIT_VERSION
 
 
 def test_the_tool_lists_train_houses_that_pass_and_leaves_their_files_in_the_cache(
