@@ -129,6 +129,7 @@ class Only:
 _RUN = "stubborn run"
 _SMALL = "--house examples/my_house.xml --goal sofa"
 _SHIPPED = "stubborn/segmentation/weights/rednet.safetensors"
+_LAB = "needs habitat-lab; `make test-habitat` runs it"
 _NEEDS_SETUP = Only("makes or needs a whole environment; .ci/run does that")
 _RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
 _HOUSES = "stubborn houses generate --houses 1 --kind flat --area-m2 90 --rooms gym --hazards glass --out {tmp}/houses"
@@ -535,14 +536,13 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --agent habitat:my_agent:MyAgent --config agent.checkpoint=policy.pth": Only(
         "needs an agent of the reader's; tests/sim/app/bridges/test_habitat_agents.py writes one"
     ),
-    "stubborn habitat 'evaluate.py --runs 1' --split val --episodes 5": Only(
-        "needs a script of the reader's; tests/sim/app/bridges/test_habitat_env.py writes one"
+    "stubborn habitat 'evaluate.py --runs 1' --split val --episodes 5": Only(_LAB),
+    "stubborn habitat setup": Only(_LAB),
+    "stubborn habitat dataset --split val --out data/datasets/objectnav/stubborn/v1/val": (
+        "stubborn houses generate --split val --houses 1 --out {tmp}/one",
+        "stubborn episodes --split {tmp}/one --episodes 2 --no-pictures",
+        "stubborn habitat dataset --split {tmp}/one --out {tmp}/lab/one",
     ),
-    f"{_RUN} --agent habitat:simple_agents:RandomForwardAgent --config agent.success_distance=-1"
-    " agent.goal_sensor_uuid=objectgoal": Only(_PUBLISHED),
-    "stubborn habitat examples/benchmark.py --episodes 10": Only(_PUBLISHED),
-    "stubborn habitat 'agent.py --evaluation local' --split val --episodes 5": Only(_PUBLISHED),
-    f"{_RUN} --agent habitat:agent:RandomAgent": Only(_PUBLISHED),
     f"{_RUN} --agent 'process:env/bin/python stubborn_client.py Stubborn/eval.py --evaluation local --timestep_limit"
     " 451' --config agent.interface=habitat": Only(_PUBLISHED),
     "stubborn bench": Only("takes minutes; tests/sim/app/commands/test_bench.py runs it with --quick"),

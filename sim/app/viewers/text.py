@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.app.viewers.viewer import Colour
+from sim.core.errors import RenderError
 
 NORMAL, BOLD = 400, 700
 """Weights of the font."""
@@ -17,6 +18,9 @@ _ANY_SIZE = (4096, 4096)
 
 @functools.cache
 def _font() -> cv2.FontFace:
+    """Returns the font; raises RenderError where OpenCV has none."""
+    if not hasattr(cv2, "FontFace"):
+        raise RenderError(f"Pictures with text need OpenCV 5; this is {cv2.__version__}, as habitat-lab needs it.")
     return cv2.FontFace("sans")
 
 
