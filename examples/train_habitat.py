@@ -19,7 +19,14 @@ if __name__ == "__main__":
     overrides = [argument for argument in sys.argv[1:] if argument != "--evaluate"]
     if evaluate:
         os.environ["TORCH_FORCE_NO_WEIGHTS_ONLY_LOAD"] = "1"  # checkpoints of habitat-baselines hold its configuration
-        overrides = ["habitat_baselines.evaluate=True", "habitat.dataset.type=stubborn-val-hm3d", *overrides]
+        last = max(Path("habitat_ppo/checkpoints").glob("ckpt.*.pth"), key=lambda file: file.stat().st_mtime)
+        overrides = [
+            "habitat_baselines.evaluate=True",
+            f"habitat_baselines.eval_ckpt_path_dir={last}",  # of a folder, it would wait for further checkpoints
+            "habitat_baselines.load_resume_state_config=False",
+            "habitat.dataset.type=stubborn-val-hm3d",
+            *overrides,
+        ]
     config = get_config("habitat_ppo.yaml", overrides, configs_dir=str(Path(__file__).parent))
     Path("habitat_ppo").mkdir(exist_ok=True)
     execute_exp(config, "eval" if evaluate else "train")
