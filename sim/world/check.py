@@ -20,13 +20,14 @@ from sim.core.geometry.grid import GridFrame
 from sim.core.interface import GOAL_CATEGORIES, RobotModel, SuccessRule
 from sim.gl import mujoco
 from sim.houses.geoms import world_boxes
+from sim.houses.hazards import Hazard, read_hazards
 from sim.houses.house import House, Room, read_rooms
 from sim.houses.labels import Instance, Labels, collidable_geoms, cover_geoms, describe_geom, read_labels
 from sim.world.arrangement import arrangement_faults
 from sim.world.freespace import FreeSpace, connected_to
 from sim.world.plan_requirements import unmet_plan_requirements
 from sim.world.room_requirements import unmet_requirements
-from sim.world.standing import read_standing
+from sim.world.standing import Standing, read_standing
 
 MAX_OVERLAP_M = 0.01
 """Largest overlap of two objects that is allowed."""
@@ -67,7 +68,9 @@ def check_house(
         return [f"it does not compile: {error}"]
     faults = _overlaps(house) + _without_support(house) + _unstable(house.model)
     if furnished:
-        standing = read_standing(house.model, house.data, house.labels)
+        hazards = read_hazards(house.model)
+        everything = read_standing(house.model, house.data, house.labels)
+        standing = [item for item in everything if not any(_is_part_of(item, hazard) for hazard in hazards)]
         faults += unmet_requirements(standing, house.rooms)
         faults += unmet_plan_requirements(house.model, house.data, house.labels, house.rooms)
         faults += arrangement_faults(house.model, house.data, house.labels, house.rooms, standing)
@@ -190,6 +193,12 @@ def _unstable(model: mujoco.MjModel) -> list[str]:
             name = model.body(model.jnt_bodyid[joint]).name
             faults.append(f"{name} is not stable: after {SETTLE_S:.0f} s it has moved {1000 * moved_m:.1f} mm")
     return faults
+
+
+def _is_part_of(item: Standing, hazard: Hazard) -> bool:
+    """Returns whether an item belongs to a hazard, which stands where no furniture would: inside its box in plan."""
+    inside = (item.low[:2] > np.array(hazard.low_m[:2]) - 0.02) & (item.high[:2] < np.array(hazard.high_m[:2]) + 0.02)
+    return bool(inside.all())
 
 
 def _unreachable(house: _CompiledHouse, rule: SuccessRule, robot: RobotModel) -> list[str]:
