@@ -54,8 +54,11 @@ MODULES: Mapping[str, Mapping[str, str]] = MappingProxyType(
         "habitat_sim.utils": {},
         "habitat_sim.utils.common": {
             "maths": "angle_between_quats quat_from_angle_axis quat_from_coeffs quat_from_magnum "
-            "quat_from_two_vectors quat_rotate_vector quat_to_angle_axis quat_to_coeffs quat_to_magnum",
+            "quat_from_two_vectors quat_rotate_vector quat_to_angle_axis quat_to_coeffs quat_to_magnum "
+            "d3_40_colors_rgb",
         },
+        "habitat_sim.geo": {"maths": "BACK FRONT GRAVITY LEFT RIGHT UP", "semantics": "OBB"},
+        "habitat_sim.scene": {"semantics": "SemanticLevel SemanticObject SemanticRegion SemanticScene"},
         "magnum": {"maths": "Deg Quaternion Rad Vector3"},
     }
 )
@@ -96,6 +99,11 @@ class _Unusable:
         )
 
 
+def is_placeholder(module: object) -> bool:
+    """Returns whether a module stands for one that is not here."""
+    return isinstance(module, _Module) and module.__name__ not in MODULES
+
+
 def _not_here(name: str) -> Any:
     return NotHere(name.rpartition(".")[2], (_Unusable,), {"__qualname__": name, "_stands_for": name})
 
@@ -113,7 +121,9 @@ class Finder(MetaPathFinder, Loader):
             return spec
         if fullname == "torchvision":
             _declare_operators()
-        if fullname.partition(".")[0] not in PACKAGES:
+        parent, _, name = fullname.rpartition(".")
+        is_name = any(name in names.split() for names in MODULES.get(parent, {}).values())
+        if fullname.partition(".")[0] not in PACKAGES or is_name:
             return None
         return ModuleSpec(fullname, self, is_package=True)
 
@@ -131,10 +141,6 @@ class Finder(MetaPathFinder, Loader):
             vars(module).update({name: getattr(ours, name) for name in names.split()})
         if module.__name__ == "habitat_sim":
             vars(module).update(cuda_enabled=False, built_with_bullet=False, stage_id=0, audio_enabled=False)
-        if module.__name__ == "habitat_sim.utils.common":
-            from sim.app.bridges.habitat_sim.maths import colours
-
-            module.d3_40_colors_rgb = colours()  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def _declare_operators() -> None:

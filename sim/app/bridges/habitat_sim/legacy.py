@@ -7,6 +7,8 @@ this project's options, such as `split` and `episodes`; `Benchmark` and `Challen
 
 from __future__ import annotations
 
+import contextlib
+import importlib
 import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,9 +20,11 @@ import habitat
 import habitat.config.default
 import habitat.core.benchmark
 import habitat.core.env
+import habitat.core.utils
 import numpy as np
 from habitat.core.logging import logger
 from habitat.datasets import make_dataset
+from habitat.utils.visualizations import utils as pictures
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from sim.app.bridges.habitat_sim.lab import get_config as config_of_split
@@ -40,6 +44,11 @@ PLACES: Mapping[str, str] = {
     "DATASET": "habitat.dataset",
 }
 """Where the trees of 2021 are today."""
+MOVED: Mapping[str, str] = {
+    "habitat.utils.gym_adapter": "habitat.gym.gym_wrapper",
+    "habitat_baselines.utils.env_utils": "habitat_baselines.common.habitat_env_factory",
+}
+"""Modules that have another name today."""
 OPTIONS = frozenset({"split", "episodes", "seed", "max_steps", "categories", "width_px", "height_px"})
 """The options of `Env`."""
 WITHOUT_EFFECT = ("SIMULATOR.SEMANTIC_SENSOR", "habitat.simulator.agents.main_agent.sim_sensors.semantic_sensor")
@@ -60,7 +69,16 @@ def install(**options: Any) -> None:
     names = {"Env": Env, "Benchmark": Benchmark, "Challenge": Challenge, "Config": DictConfig, "get_config": get_config}
     for module in (habitat, habitat.config.default, habitat.core.env, habitat.core.benchmark):
         vars(module).update({name: value for name, value in names.items() if module is habitat or name in vars(module)})
-    habitat.config.default.Config = DictConfig
+    for module, name, value in (
+        (habitat.config, "Config", DictConfig),
+        (habitat.config.default, "Config", DictConfig),
+        (habitat.core.utils, "try_cv2_import", lambda: importlib.import_module("cv2")),
+        (pictures, "append_text_to_image", pictures.append_text_underneath_image),
+    ):
+        setattr(module, name, value)
+    for old, new in MOVED.items():
+        with contextlib.suppress(ImportError):
+            sys.modules[old] = importlib.import_module(new)
 
 
 def get_config(

@@ -201,6 +201,12 @@ def colours(count: int = 40) -> NDArray[np.uint8]:
     return np.round(255.0 * np.array(rgb)).astype(np.uint8)
 
 
+d3_40_colors_rgb = colours()
+RIGHT, UP, BACK = (np.eye(3)[axis] for axis in range(3))
+"""Directions in Habitat's frame, (3,)."""
+LEFT, GRAVITY, FRONT = -RIGHT, -UP, -BACK
+
+
 def _radians(angle: float) -> float:
     """Returns an angle that is a `Deg`, or a number of radians, in radians."""
     return math.radians(angle) if isinstance(angle, Deg) else float(angle)

@@ -89,6 +89,9 @@ class OrientedBox:
         return quat_from_coeffs(self.rotation)
 
 
+OBB = OrientedBox
+
+
 @dataclass(frozen=True)
 class Category:
     """A category of objects or rooms."""
