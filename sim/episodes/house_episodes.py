@@ -17,7 +17,7 @@ from sim.episodes import habitat
 from sim.episodes.drawing import draw_start
 from sim.episodes.reachable_goals import find_reachable_goals, storeys_of
 from sim.episodes.recipes import EpisodeRecipe
-from sim.episodes.start_rules import Lookout, quadrant_headings, start_cells
+from sim.episodes.start_rules import Lookout, has_enough_starts, quadrant_headings, start_cells
 from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar
 from sim.task.objectnav import Task
 
@@ -61,7 +61,8 @@ class DrawnStart(NamedTuple):
 def find_house_asks(task: Task, recipe: EpisodeRecipe, fixed: Sidecar = EMPTY_SIDECAR) -> HouseAsks:
     """Returns the goals of all storeys of a house, and those that an episode can ask for by a recipe.
 
-    Where no goal of a house with the rule `hazard` has enough starts, all goals can be asked for.
+    A goal without enough starts, such as one that is near everywhere in a small home, is not asked for; where no goal
+    of a house has enough, all can be, except with the rule `hidden`.
 
     Args:
         task: the task in the house.
@@ -89,10 +90,8 @@ def find_house_asks(task: Task, recipe: EpisodeRecipe, fixed: Sidecar = EMPTY_SI
         asks = [ask for ask in reachable if _leads_to(task, ask, fixed.start)]
         _require(asks, task, "has a start from which no goal can be reached")
         return HouseAsks(listed, tuple(unreachable), tuple(asks), most=len(asks) * len(recipe.turns_rad))
-    asks = reachable
-    if recipe.rule != "any":
-        asks = [ask for ask in reachable if start_cells(task, *ask[:2], recipe, ask.instances) is not None]
-    if recipe.rule == "hazard" and not asks:
+    asks = [ask for ask in reachable if has_enough_starts(task, *ask[:2], recipe, ask.instances)]
+    if recipe.rule != "hidden" and not asks:
         asks = reachable
     return HouseAsks(listed, tuple(unreachable), tuple(asks))
 

@@ -59,6 +59,16 @@ def start_cells(
     return cells if _is_enough(cells, space) else None
 
 
+def has_enough_starts(task: Task, goal: str, floor_z_m: float, recipe: EpisodeRecipe, instances: int) -> bool:
+    """Returns whether enough places meet the rule and the distances of a recipe; arguments as for `start_cells`."""
+    cells = start_cells(task, goal, floor_z_m, recipe, instances)
+    if cells is None or recipe.rule != "any":
+        return cells is not None
+    space = task.truth.space(floor_z_m)
+    distance_m = task.truth.target(goal, floor_z_m).distance_m
+    return _is_enough(cells & (distance_m >= recipe.min_distance_for(instances)), space)
+
+
 def quadrant_headings(number: int, house: int, seed: int) -> tuple[float, float]:
     """Returns the limits of the heading of an episode: a quarter of the circle around 0, 90, 180 or -90 degrees.
 

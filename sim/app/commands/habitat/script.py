@@ -86,8 +86,8 @@ def _run_elsewhere(args: Args) -> int:
     python = args.environment / "bin" / "python"
     if not python.is_file():
         raise ConfigError(
-            f"habitat-lab is not installed in this Python, and there is no {python}: `{command('habitat', 'setup')}` "
-            "makes an environment that has it."
+            f"This Python has no habitat-lab, and there is no {python}: `{command('habitat', 'setup')}` makes an "
+            "environment that has it."
         )
     options = [
         word
