@@ -129,6 +129,8 @@ class Only:
 _RUN = "stubborn run"
 _SMALL = "--house examples/my_house.xml --goal sofa"
 _SHIPPED = "stubborn/segmentation/weights/rednet.safetensors"
+LAB_PYTHON = ".venv-habitat/bin/python"
+"""The Python that `stubborn habitat setup` makes."""
 _LAB = "needs habitat-lab; `make test-habitat` runs it"
 _NEEDS_SETUP = Only("makes or needs a whole environment; .ci/run does that")
 _RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
@@ -538,6 +540,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     "stubborn habitat 'evaluate.py --runs 1' --split val --episodes 5": Only(_LAB),
     "stubborn habitat setup": Only(_LAB),
+    f"{LAB_PYTHON} examples/train_habitat.py habitat_baselines.num_updates=2": Only(_LAB),
+    f"{LAB_PYTHON} examples/train_habitat.py --evaluate habitat_baselines.test_episode_count=2": Only(_LAB),
     "stubborn habitat dataset --split val --out data/datasets/objectnav/stubborn/v1/val": (
         "stubborn houses generate --split val --houses 1 --out {tmp}/one",
         "stubborn episodes --split {tmp}/one --episodes 2 --no-pictures",

@@ -9,15 +9,16 @@ checkout are not looked at.
 
 from __future__ import annotations
 
-import argparse
 import ast
 import csv
 import importlib
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
-import stubborn_habitat
-from sim.app.bridges.habitat_sim import legacy
+import tyro
+
+from sim.app import cli
 from sim.app.bridges.habitat_sim.finder import NotHere, is_placeholder
 
 COPIES = ("habitat-lab", "habitat_lab", "habitat-baselines", "habitat_baselines")
@@ -25,12 +26,21 @@ COPIES = ("habitat-lab", "habitat_lab", "habitat-baselines", "habitat_baselines"
 PACKAGES = ("habitat", "habitat_baselines", "habitat_sim", "magnum")
 
 
-def main() -> None:
-    """Prints and writes a row for each checkout."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("checkouts", nargs="+", type=Path)
-    parser.add_argument("--out", type=Path, default=Path("published_names.csv"))
-    args = parser.parse_args()
+@dataclass(frozen=True)
+class Args:
+    """Count which names of habitat-lab and habitat-sim that repositories import can be imported here."""
+
+    checkouts: tyro.conf.Positional[tuple[Path, ...]]
+    """Folders of repositories."""
+    out: cli.OutFile = Path("published_names.csv")
+    """The table."""
+
+
+def main(args: Args) -> int:
+    """Prints and writes a row for each checkout; returns the exit status."""
+    import stubborn_habitat  # provides habitat_sim to this process
+    from sim.app.bridges.habitat_sim import legacy  # needs habitat-lab
+
     print(stubborn_habitat.configure())
     legacy.install()
     rows = []
@@ -49,6 +59,7 @@ def main() -> None:
         writer = csv.DictWriter(file, rows[0], lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
+    return 0
 
 
 def _imports(file: Path) -> Iterator[str]:
@@ -90,4 +101,4 @@ def _is_there(name: str) -> bool:
 
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(cli.run(Args, main))

@@ -9,17 +9,15 @@ habitat-lab with Habitat's rule and view points of `stubborn habitat dataset` (`
 
 from __future__ import annotations
 
-import argparse
 import csv
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import habitat
 import numpy as np
-from habitat.config.read_write import read_write
 
-import stubborn_habitat
+from sim.app import cli
 from sim.core.interface import Action
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.oracle import Oracle
@@ -28,15 +26,26 @@ NAMES = ("success", "spl", "soft_spl", "distance_to_goal")
 RANDOM_SHARE, EARLY_STOP, EARLY_STEPS = 0.15, 3, 25
 
 
-def main() -> None:
-    """Drives the episodes and writes a row for each."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--episodes", type=int, default=50)
-    parser.add_argument("--split", default="val")
-    parser.add_argument("--view-points", help="data path of `stubborn habitat dataset`, such as lab/val/val.json.gz")
-    parser.add_argument("--out", type=Path, default=Path("parity.csv"))
-    args = parser.parse_args()
-    envs = {"lab": habitat.Env(_config(args.split))}
+@dataclass(frozen=True)
+class Args:
+    """Compare habitat-lab's measures with this project's on the same actions."""
+
+    episodes: cli.Count = 50
+    """The first episodes of the split."""
+    split: str = "val"
+    """A shipped split."""
+    view_points: str | None = None
+    """Data path of `stubborn habitat dataset`, such as lab/val/val.json.gz: also compares Habitat's own rule."""
+    out: cli.OutFile = Path("parity.csv")
+    """A row for each episode."""
+
+
+def main(args: Args) -> int:
+    """Drives the episodes and writes a row for each; returns the exit status."""
+    config = _config(args.split)  # provides habitat_sim to this process
+    import habitat
+
+    envs = {"lab": habitat.Env(config)}
     if args.view_points:
         envs["view_points"] = habitat.Env(_config(args.split, view_points=args.view_points))
     ours = ObjectNavEnv(split=args.split, sensors=("rgb", "depth"))
@@ -78,16 +87,20 @@ def main() -> None:
         }
         print(f"    means, ours and {label}: {means}")
     print("steps/s:", {label: round(steps / spent, 1) for label, spent in seconds.items()})
+    return 0
 
 
 def _config(split: str, view_points: str | None = None) -> Any:
     """Returns the configuration in the order of the split."""
+    import stubborn_habitat
+
     order = [
         "habitat.environment.iterator_options.shuffle=False",
         "habitat.environment.iterator_options.group_by_scene=False",
     ]
     config = stubborn_habitat.get_config(split, order, rule="stubborn" if view_points is None else "view_points")
     if view_points is not None:
+        from habitat.config.read_write import read_write
         from habitat.core.registry import registry
         from habitat.datasets.object_nav.object_nav_dataset import ObjectNavDatasetV1
 
@@ -118,4 +131,4 @@ def _actions(env: ObjectNavEnv, episode_id: str, seed: int) -> Any:
 
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(cli.run(Args, main))
