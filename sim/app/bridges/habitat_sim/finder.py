@@ -171,7 +171,8 @@ class _Registering(Loader):
     def exec_module(self, module: ModuleType) -> None:
         """Fills it."""
         self._loader.exec_module(module)
-        importlib.import_module(f"{_HERE}.lab").register()
+        if f"{_HERE}.lab" not in sys.modules:  # else it imports habitat-lab just now
+            importlib.import_module(f"{_HERE}.lab")
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._loader, name)  # such as the source, which tracebacks show

@@ -1,4 +1,4 @@
-"""Registers with habitat-lab: the shipped splits as data sets, and this project's measures.
+"""Registers with habitat-lab when it is imported: the shipped splits as data sets, and this project's measures.
 
 A data set `stubborn-val` has the goals of MP3D in their order, `stubborn-val-hm3d` only the six of HM3D. The measures
 `StubbornDistanceToGoal` and `StubbornSuccess` take the place of Habitat's `distance_to_goal` and `success`: the
@@ -156,3 +156,6 @@ class _StubbornSuccess(Success):
         """Takes whether a STOP was called and succeeds."""
         stopped = bool(getattr(task, "is_stop_called", False))
         self._metric = float(stopped and self._sim.stop_succeeds(episode.object_category))
+
+
+register()
