@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sim.app.bridges.habitat.conversions import HabitatSimActions
-from sim.app.bridges.habitat_client import Agent
+from sim.app.bridges.habitat_client import Agent, Config
 
 SEEN: list[dict[str, Any]] = []
 """Observations that a `Wanderer` got in this process."""
@@ -38,7 +38,7 @@ class Wanderer(Agent):
 class Configured(Wanderer):
     """Needs the configuration of the run and a number."""
 
-    def __init__(self, task_config: habitat.Config, distance: float) -> None:
+    def __init__(self, task_config: Config, distance: float) -> None:
         super().__init__(stop_after=2)
         self.task_config, self.distance = task_config, distance
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import importlib
 import json
@@ -228,6 +229,8 @@ def test_rows_take_turns_until_all_are_complete_and_the_archive_has_them(
 ) -> None:
     rows = [row for row in needed_rows() if row.run.split == "val" and row.run.setup.agent in ("oracle", "poni")]
     calls: list[tuple[str, int, Path]] = []
+    of_the_tables = functools.partial(replace, version=VERSION)  # the shipped splits may be newer
+    monkeypatch.setattr(result_tables, "load_split", lambda name: of_the_tables(load_split(name)))
     monkeypatch.setattr(result_tables, "needed_rows", lambda: rows)
     monkeypatch.setattr(
         table_runs, "run_missing",
@@ -244,7 +247,7 @@ def test_rows_take_turns_until_all_are_complete_and_the_archive_has_them(
     assert "val: oracle, gt: 0 of 200 episodes" in printed
     assert [key.setup.agent for key in read_archive(args.archive, tmp_path / "read")] == ["poni"]
     monkeypatch.setattr(result_tables, "VERSION", "2.0.0")
-    with pytest.raises(ConfigError, match=rf"'val' has version {load_split('val').version}, the tables 2.0.0"):
+    with pytest.raises(ConfigError, match=rf"'val' has version {VERSION}, the tables 2.0.0"):
         main(args)
 
 

@@ -131,7 +131,7 @@ class Finder(MetaPathFinder, Loader):
         """Returns the module, still empty."""
         module = _Module(spec.name)
         if spec.name in PACKAGES:
-            module.__version__ = VERSION
+            vars(module)["__version__"] = VERSION
         return module
 
     def exec_module(self, module: ModuleType) -> None:

@@ -84,7 +84,7 @@ class Vector3(np.ndarray):
 class Quaternion:
     """A rotation: `vector` (x, y, z) and `scalar` (w)."""
 
-    def __init__(self, vector: ArrayLike | Sequence[Any] = (0.0, 0.0, 0.0), scalar: float | None = None) -> None:
+    def __init__(self, vector: Any = (0.0, 0.0, 0.0), scalar: float | None = None) -> None:
         if scalar is None and isinstance(vector, Sequence) and len(vector) == 2:
             vector, scalar = vector  # magnum takes one tuple of both, too
         self.vector = Vector3(vector)

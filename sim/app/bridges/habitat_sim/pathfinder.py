@@ -300,7 +300,8 @@ class PathFinder:
             places = storey.space.frame.to_metres(np.argwhere(storey.space.free))
             places = places[np.hypot(*(places - (x_m, y_m)).T) <= radius]
             if len(places):
-                return Vector3(to_position(*places[self._rng.integers(len(places))].tolist(), storey.floor_z_m))
+                x_m, y_m = places[self._rng.integers(len(places))].tolist()
+                return Vector3(to_position(x_m, y_m, storey.floor_z_m))
         return Vector3(np.nan)
 
     def distance_to_closest_obstacle(self, pt: ArrayLike, max_search_radius: float = 2.0) -> float:
@@ -322,7 +323,7 @@ class PathFinder:
         row, col = np.unravel_index(int(away_m.argmin()), away_m.shape)
         hit = Vector3(to_position(float(x[col]), float(y[row]), z_m))
         dist = min(float(away_m.min()), max_search_radius)
-        away = Vector3(pt) - hit
+        away = Vector3(Vector3(pt) - hit)
         return HitRecord(hit, Vector3(away / max(away.length(), 1e-9)), dist)
 
     @property

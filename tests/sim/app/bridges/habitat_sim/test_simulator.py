@@ -164,6 +164,7 @@ def test_the_follower_drives_to_a_place_and_stops_there(tmp_path: Path) -> None:
     with simulator(tmp_path, bed_behind_a_wall()) as sim:
         put(sim, -1.0, -1.0)
         follower = sim.make_greedy_follower(0, 0.2, stop_key=0, forward_key=1, left_key=2, right_key=3)
+        action = None
         for _ in range(60):
             action = follower.next_action_along([2.0, 0.0, -1.0])
             if action == 0:
