@@ -409,11 +409,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _ROBOT,
         f"{_RUN} --robot {{tmp}}/r/carrier.xml {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/run",
     ),
-    "stubborn reproduce splits --episodes 200 --agents stubborn stubborn-plus oracle": (
+    "stubborn reproduce splits --episodes 100 --agents stubborn stubborn-plus oracle": (
         "stubborn reproduce splits --agents random oracle --episodes 1 --out {tmp}/paper",
-    ),
-    "stubborn reproduce splits --episodes 200 --agents stubborn stubborn-plus --semantics rednet": (
-        "stubborn reproduce splits --agents random --semantics rednet --episodes 1 --out {tmp}/paper",
     ),
     f"{_RUN} --agent my_agent:make --semantics gt --episodes 2 --video --out runs/me": (
         f"{_RUN} --agent examples.my_agent:make --semantics gt --video {_SMALL} --episodes 1 --out {{tmp}}/me",
