@@ -21,7 +21,7 @@ def configure(**options: str) -> Any:
     Raises:
         ConfigError: an unknown option or value.
     """
-    from sim.app.bridges.habitat_sim.simulator import configure as configure_simulator
+    from sim.app.bridges.habitat_sim.options import configure as configure_simulator
 
     return configure_simulator(**options)
 

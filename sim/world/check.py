@@ -70,7 +70,7 @@ def check_house(
     if furnished:
         hazards = read_hazards(house.model)
         everything = read_standing(house.model, house.data, house.labels)
-        standing = [item for item in everything if not any(_is_part_of(item, hazard) for hazard in hazards)]
+        standing = [item for item in everything if not any(is_part_of(item, hazard) for hazard in hazards)]
         faults += unmet_requirements(standing, house.rooms)
         faults += unmet_plan_requirements(house.model, house.data, house.labels, house.rooms)
         faults += arrangement_faults(house.model, house.data, house.labels, house.rooms, standing)
@@ -195,7 +195,7 @@ def _unstable(model: mujoco.MjModel) -> list[str]:
     return faults
 
 
-def _is_part_of(item: Standing, hazard: Hazard) -> bool:
+def is_part_of(item: Standing, hazard: Hazard) -> bool:
     """Returns whether an item belongs to a hazard, which stands where no furniture would: inside its box in plan."""
     inside = (item.low[:2] > np.array(hazard.low_m[:2]) - 0.02) & (item.high[:2] < np.array(hazard.high_m[:2]) + 0.02)
     return bool(inside.all())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -84,21 +85,19 @@ class Agent:
         self.agent_config = config
         self.sensors = {spec.uuid: Sensor(spec) for spec in config.sensor_specifications}
         self.world: World
-        self._put: Pose | None = None
+        self.settle: Callable[[], None]
+        """Puts the robot where the agent was put, in physics."""
+        self.put: Pose | None = None
+        """The pose that was set since the last action, if it is not that of the robot."""
 
-    def enter(self, world: World) -> None:
-        """Moves into a world."""
-        self.world, self._put = world, None
+    def enter(self, world: World, settle: Callable[[], None]) -> None:
+        """Moves into the world of a simulator."""
+        self.world, self.settle, self.put = world, settle, None
 
     @property
     def pose(self) -> BodyPose | Pose:
         """The pose of the robot, or the one that was set."""
-        return self.world.body_pose if self._put is None else self._put
-
-    @property
-    def put(self) -> Pose | None:
-        """The pose that was set since the last action, if it is not that of the robot."""
-        return self._put
+        return self.world.body_pose if self.put is None else self.put
 
     @property
     def state(self) -> AgentState:
@@ -135,7 +134,7 @@ class Agent:
         rotation = rotation_of(state.rotation)
         position: list[float] = np.asarray(state.position, np.float64).tolist()
         pose = from_agent_state(position, [rotation.x, rotation.y, rotation.z, rotation.w])
-        self._put = None if self._is_here(pose) else pose
+        self.put = None if self._is_here(pose) else pose
         if reset_sensors:
             for sensor in self.sensors.values():
                 sensor.node.reset()

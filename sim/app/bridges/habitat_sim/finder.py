@@ -2,7 +2,7 @@
 
 `MODULES` holds the names that do something here. habitat-lab also imports, for the annotations of parts that
 ObjectNav does not use, names of classes that move objects, draw debug lines or read files of other formats: each of
-these is a class that can be named and derived from, and that says at its first use that it is not here.
+these is a placeholder: a class that can be named and derived from, and whose objects raise an error when they are used.
 """
 
 from __future__ import annotations
@@ -67,9 +67,9 @@ PACKAGES = ("habitat_sim", "magnum", "corrade")
 
 
 class NotHere(type):
-    """The class of classes that stand for names without meaning here; so are their attributes.
+    """The class of placeholders; their attributes are placeholders too.
 
-    They can be named, derived from and made, as modules do when they are imported; what was made cannot be used.
+    They can be named, derived from and instantiated, as modules do when they are imported.
     """
 
     def __getattr__(cls, name: str) -> Any:
@@ -84,7 +84,7 @@ class NotHere(type):
 
 
 class _Unusable:
-    """The base of these classes."""
+    """The base of placeholders: an object that raises NotImplementedError when it is used."""
 
     _stands_for = ""
 
@@ -100,7 +100,7 @@ class _Unusable:
 
 
 def is_placeholder(module: object) -> bool:
-    """Returns whether a module stands for one that is not here."""
+    """Returns whether a module is a placeholder."""
     return isinstance(module, _Module) and module.__name__ not in MODULES
 
 
@@ -179,7 +179,7 @@ class _Registering(Loader):
 
 
 class _Module(ModuleType):
-    """A module whose other names are modules of `MODULES`, or stand for what is not here."""
+    """A module whose other names are modules of `MODULES` or placeholders."""
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):

@@ -20,6 +20,7 @@ from habitat.datasets.object_nav.object_nav_dataset import ObjectNavDatasetV1
 from habitat.tasks.nav.nav import DistanceToGoal, Success
 
 from sim.app.bridges.habitat.conversions import CATEGORIES
+from sim.app.bridges.habitat_sim.scenes import shipped_split
 from sim.core.errors import ConfigError
 from sim.core.interface import MPCAT40_ID
 from sim.core.paths import assets_dir
@@ -93,8 +94,8 @@ def _dataset(split_name: str, numbering: str) -> type[ObjectNavDatasetV1]:
             self.goals_by_category, self.episodes = {}, []
             if config is None:
                 return
-            split, goals = load_split(split_name), CATEGORIES[numbering]
             shipped = split_name in shipped_splits()
+            split, goals = (shipped_split if shipped else load_split)(split_name), CATEGORIES[numbering]
             folder = assets_dir() / split_name if shipped else Path(split_name)
             chosen = [str(house) for house in config.content_scenes]
             own_ids = []
@@ -141,10 +142,13 @@ class _StubbornDistanceToGoal(DistanceToGoal):
 
     def reset_metric(self, episode: Any, *args: Any, **kwargs: Any) -> None:
         """Begins an episode."""
-        self.update_metric(episode=episode)
+        self.update_metric(episode, *args, **kwargs)
 
-    def update_metric(self, episode: Any, *args: Any, **kwargs: Any) -> None:
-        """Takes the distance from where the robot is."""
+    def update_metric(self, episode: Any, task: Any, *args: Any, **kwargs: Any) -> None:
+        """Takes the distance from where the robot is; 0 after a STOP that succeeded."""
+        if _succeeded(task, self._sim, episode):
+            self._metric = 0.0
+            return
         distance_m = self._sim.distance_to_goal_m(episode.object_category)
         self._metric = math.inf if distance_m is None else distance_m
 
@@ -154,8 +158,12 @@ class _StubbornSuccess(Success):
 
     def update_metric(self, episode: Any, task: Any, *args: Any, **kwargs: Any) -> None:
         """Takes whether a STOP was called and succeeds."""
-        stopped = bool(getattr(task, "is_stop_called", False))
-        self._metric = float(stopped and self._sim.stop_succeeds(episode.object_category))
+        self._metric = float(_succeeded(task, self._sim, episode))
+
+
+def _succeeded(task: Any, sim: Any, episode: Any) -> bool:
+    """Returns whether a STOP was called, and where it succeeds."""
+    return bool(getattr(task, "is_stop_called", False)) and sim.stop_succeeds(episode.object_category)
 
 
 register()

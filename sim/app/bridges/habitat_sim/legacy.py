@@ -49,6 +49,8 @@ MOVED: Mapping[str, str] = {
     "habitat_baselines.utils.env_utils": "habitat_baselines.common.habitat_env_factory",
 }
 """Modules that have another name today."""
+OF_2021 = "configs/"
+"""Folder of the configurations in repositories of habitat-lab until 2022, whose files are not here."""
 OPTIONS = frozenset({"split", "episodes", "seed", "max_steps", "categories", "width_px", "height_px"})
 """The options of `Env`."""
 WITHOUT_EFFECT = ("SIMULATOR.SEMANTIC_SENSOR", "habitat.simulator.agents.main_agent.sim_sensors.semantic_sensor")
@@ -98,7 +100,7 @@ def get_config(
         configs_dir: exists for scripts that give it.
 
     Raises:
-        ConfigError: there is no such file, or an override has no value.
+        ConfigError: a file does not exist, or an override has no value.
     """
     given = config_path if config_path is not None else config_paths
     files = given.split(",") if isinstance(given, str) else [str(path) for path in given or ()]
@@ -108,10 +110,10 @@ def get_config(
             _merge(config, OmegaConf.load(file))
         elif (Path(habitat.config.default._HABITAT_CFG_DIR) / file).is_file():
             config = config_of_split(str(_options.get("split", "val")), base=file)
-        elif Path(file).is_absolute() or Path(file).parent.is_dir():
-            raise ConfigError(f"There is no configuration file '{file}'.")
+        elif file.startswith(OF_2021):
+            _tell(f"Configuration '{file}' of an older habitat-lab: the task of this project is used.")
         else:
-            _tell(f"There is no configuration file '{file}': the task of this project is used.")
+            raise ConfigError(f"Configuration file '{file}' does not exist.")
     OmegaConf.set_readonly(config, False)
     OmegaConf.set_struct(config, False)
     _add_tree_of_2021(config)
@@ -270,7 +272,7 @@ def _pairs(overrides: Sequence[Any] | None) -> list[Any]:
     for item in overrides or ():
         path, separator, text = str(item).partition("=")
         if separator and len(pairs) % 2 == 0:
-            pairs += [path, OmegaConf.create({"value": OmegaConf.create(f"v: {text}").v}).value]
+            pairs += [path, OmegaConf.create(f"value: {text}").value]
         else:
             pairs.append(item)
     return pairs

@@ -6,6 +6,7 @@ one to another. Positions are (3,) in Habitat's frame, metres.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -101,9 +102,21 @@ class Storey:
     def __init__(self, space: FreeSpace) -> None:
         self.space = space
         self.floor_z_m = space.floor_z_m
-        self.glide = Glide(space)
-        count, self.parts = cv2.connectedComponents(space.free.astype(np.uint8), connectivity=4)
-        self.part_count = count - 1
+
+    @functools.cached_property
+    def glide(self) -> Glide:
+        """Moves a disc over it."""
+        return Glide(self.space)
+
+    @functools.cached_property
+    def parts(self) -> NDArray[np.int32]:
+        """(rows, cols) the number of the connected part of each cell, from 1; 0 where it is not free."""
+        return np.asarray(cv2.connectedComponents(self.space.free.astype(np.uint8), connectivity=4)[1])
+
+    @property
+    def part_count(self) -> int:
+        """The number of connected parts."""
+        return int(self.parts.max())
 
     def nearest(self, x_m: float, y_m: float, within_m: float) -> tuple[float, float] | None:
         """Returns the nearest point on a free cell; the point itself if it lies on one."""
@@ -411,6 +424,7 @@ class GreedyGeodesicFollower:
             GreedyFollowerError: no path leads there.
         """
         goal = _three(goal_pos)
+        self._agent.settle()
         if self._follower is None or goal != self._goal:
             self._goal, self._follower = goal, self._towards(goal)
         action = self._follower.next_action()

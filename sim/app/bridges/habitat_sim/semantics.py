@@ -185,14 +185,14 @@ def semantic_scene(world: World) -> SemanticScene:
         level = levels.setdefault(room.floor_z_m, SemanticLevel(str(len(levels)), room.floor_z_m, box))
         level.aabb = _around([level.aabb, box])
         region = SemanticRegion(f"{level.id}_{number}", Category(room.kind, number), box, level=level)
-        for item, thing in zip(standing, objects[1:], strict=True):
-            if thing.region is None and is_in(room, item):
-                thing.region = region
-                region.objects.append(thing)
-                level.objects.append(thing)
+        for item, labelled in zip(standing, objects[1:], strict=True):
+            if labelled.region is None and is_in(room, item):
+                labelled.region = region
+                region.objects.append(labelled)
+                level.objects.append(labelled)
         level.regions.append(region)
         regions.append(region)
-    categories = list({thing.category.label: thing.category for thing in objects}.values())
+    categories = list({labelled.category.label: labelled.category for labelled in objects}.values())
     return SemanticScene(whole, list(levels.values()), regions, objects, categories)
 
 

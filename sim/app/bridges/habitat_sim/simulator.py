@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-import os
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from pathlib import Path
-from typing import Any, get_args
+from dataclasses import replace
+from typing import Any
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.app.bridges.habitat_sim.agent import Agent, AgentState
 from sim.app.bridges.habitat_sim.maths import Deg, Quaternion, Vector3, quat_from_coeffs
+from sim.app.bridges.habitat_sim.options import current_options
 from sim.app.bridges.habitat_sim.pathfinder import GreedyGeodesicFollower, PathFinder
+from sim.app.bridges.habitat_sim.scenes import find_house
 from sim.app.bridges.habitat_sim.semantics import SemanticScene, semantic_scene
 from sim.app.bridges.habitat_sim.settings import (
     ActionSpec,
@@ -29,12 +30,9 @@ from sim.app.bridges.habitat_sim.settings import (
 from sim.core.errors import ConfigError, HouseError
 from sim.core.interface import Action, CameraModel
 from sim.episodes.habitat import to_rotation
-from sim.episodes.splits import HOUSE_SUFFIXES, load_split, shipped_splits
-from sim.houses.house import House
-from sim.houses.load import load_house
 from sim.renderer.camera import Camera
 from sim.renderer.gloss import geom_gloss
-from sim.robot.conditions import NOMINAL
+from sim.robot.conditions import Conditions
 from sim.robot.config import DriveConfig, MotionKind, RobotConfig
 from sim.sensors.noise import SensorNoise, get_noise
 from sim.sensors.standard import resolve_sensors
@@ -43,8 +41,6 @@ from sim.world.world import World
 
 FAR_M = 100.0
 """Depth of surfaces that are farther away, and of no surface."""
-VARIABLE = "STUBBORN_HABITAT"
-"""Environment variable with options, such as `motion=sliding,noise=realsense`; `configure` has priority."""
 _IMAGES = {SensorType.COLOR: "rgb", SensorType.DEPTH: "depth", SensorType.SEMANTIC: "geom"}
 _ACTIONS = {
     "stop": Action.STOP,
@@ -52,58 +48,6 @@ _ACTIONS = {
     "turn_left": Action.TURN_LEFT,
     "turn_right": Action.TURN_RIGHT,
 }
-
-
-@dataclass(frozen=True)
-class Options:
-    """What Habitat's configuration has no entry for."""
-
-    motion: MotionKind = "contacts"
-    """`contacts`: physics. `no-sliding` and `sliding`: Habitat's kinematic motion over the robot's free space."""
-    noise: str = "none"
-    """Noise of cameras and drive, a preset of `sim.sensors.noise`. habitat-lab's gps and compass stay exact."""
-    profile: str = "fast"
-    """Rendering profile, `fast` or `good`."""
-
-    def __post_init__(self) -> None:
-        if self.motion not in get_args(MotionKind):
-            raise ConfigError(f"motion must be one of {', '.join(get_args(MotionKind))}, got '{self.motion}'.")
-        get_noise(self.noise)
-
-
-_chosen: dict[str, str] = {}
-
-
-def configure(**options: str) -> Options:
-    """Sets options of each simulator that is made later in this process, and returns all of them.
-
-    Args:
-        options: fields of `Options`.
-
-    Raises:
-        ConfigError: an unknown option or value.
-    """
-    known = {field.name for field in fields(Options)}
-    unknown = sorted(set(options) - known)
-    if unknown:
-        raise ConfigError(f"Unknown option '{unknown[0]}' of stubborn_habitat. Available: {', '.join(sorted(known))}.")
-    Options(**{**_chosen, **options})  # pyright: ignore[reportArgumentType]
-    _chosen.update(options)
-    return current_options()
-
-
-def current_options() -> Options:
-    """Returns the options of `configure`, else those of the environment variable.
-
-    Raises:
-        ConfigError: an unknown option or value.
-    """
-    pairs = [part.partition("=")[::2] for part in os.environ.get(VARIABLE, "").split(",") if part.strip()]
-    given = {name.strip(): value.strip() for name, value in pairs} | _chosen
-    unknown = sorted(set(given) - {field.name for field in fields(Options)})
-    if unknown:
-        raise ConfigError(f"{VARIABLE}: unknown option '{unknown[0]}'.")
-    return Options(**given)  # pyright: ignore[reportArgumentType]
 
 
 class Simulator:
@@ -119,7 +63,7 @@ class Simulator:
 
     def __init__(self, config: Configuration) -> None:
         self._options = current_options()
-        self._scene_id = ""
+        self._loaded: tuple[str, RobotConfig] | None = None
         self._cameras: dict[CameraModel, Camera] = {}
         self._seed = int(config.sim_cfg.random_seed)
         self._configure(config)
@@ -132,12 +76,13 @@ class Simulator:
         if scene in ("", "NONE"):
             raise HouseError("scene_id must name a house: an MJCF file, or split/house.xml.")
         self.agents = [Agent(config.agents[0])]
-        if scene != self._scene_id:
-            self._load(scene, _robot(config.agents[0], self._options.motion))
-            self._scene_id = scene
-        self.agents[0].enter(self.world)
+        robot = _robot(config.agents[0], self._options.motion)
+        if (scene, robot) != self._loaded:
+            self._load(scene, robot)
+            self._loaded = scene, robot
+        self.agents[0].enter(self.world, self.settle)
         self._groups = _cameras(config.agents[0].sensor_specifications)
-        self._noises: dict[CameraModel, SensorNoise] = {}
+        self._noises: dict[str, SensorNoise] = {}
         self._fresh, self._collided = True, False
         self._put_initially()
 
@@ -173,12 +118,12 @@ class Simulator:
     def distance_to_goal_m(self, category: str) -> float | None:
         """Returns the distance to the nearest place where a STOP for a category succeeds (docs/task.md); None: no path.
 
-        Objects count where the house file puts them, except that the distance is 0 where a STOP succeeds now.
+        Objects count where the house file puts them.
 
         Raises:
             EpisodeError: the house has no instance.
         """
-        return 0.0 if self.stop_succeeds(category) else self._task.distance_from(category, self.agents[0].pose)
+        return self._task.distance_from(category, self.agents[0].pose)
 
     def stop_succeeds(self, category: str) -> bool:
         """Returns whether a STOP for a category succeeds now: a visible point of an instance is within 1 m."""
@@ -228,7 +173,7 @@ class Simulator:
             return
         if spec.name not in _ACTIONS:
             raise ConfigError(f"Unknown action '{spec.name}'. Available: {', '.join(_ACTIONS)}, look_up, look_down.")
-        self._settle()
+        self.settle()
         motion = self.world.move(_ACTIONS[spec.name])
         self._collided = motion.collided
 
@@ -237,8 +182,8 @@ class Simulator:
         for sensor in self.agents[0].sensors.values():
             sensor.node.rotation = sensor.node.rotation * Quaternion.rotation(Deg(degrees), Vector3.x_axis())
 
-    def _settle(self) -> None:
-        """Puts the robot where the agent was put, in physics."""
+    def settle(self) -> None:
+        """Puts the robot where the agent was put, in physics, and begins the episode after a reset."""
         agent = self.agents[0]
         if self._fresh:
             pose = agent.pose if agent.put is None else agent.put
@@ -246,57 +191,54 @@ class Simulator:
             self._fresh = False
         elif agent.put is not None:
             self.world.put(agent.put)
-        agent.enter(self.world)
+        agent.put = None
 
-    def _conditions(self) -> Any:
-        """Begins the noise of an episode; returns the conditions of its physics."""
-        rng, conditions = np.random.default_rng(self._seed), NOMINAL
+    def _conditions(self) -> Conditions:
+        """Begins the noise of an episode, each camera's from a generator of its own; returns that of its physics."""
+        config, rng = get_noise(self._options.noise), np.random.default_rng(self._seed)
         self._seed += 1
+        drive = SensorNoise(config, CameraModel(), ())
         self._noises = {}
-        for model, (_, names) in self._groups.items():
-            sensors = resolve_sensors([name for name in names if name in ("rgb", "depth")])
-            noise = SensorNoise(get_noise(self._options.noise), model, sensors)
-            conditions = noise.begin(rng.spawn(1)[0], self._gloss)
-            self._noises[model] = noise
-        return conditions
+        for model, specs in self._groups.items():
+            for spec in specs:
+                names = [_IMAGES[spec.sensor_type]] if spec.sensor_type != SensorType.SEMANTIC else []
+                self._noises[spec.uuid] = SensorNoise(config, model, resolve_sensors(names))
+        for noise in self._noises.values():
+            noise.begin(rng.spawn(1)[0], self._gloss)
+        return drive.begin(rng.spawn(1)[0], self._gloss)
 
     def get_sensor_observations(self, agent_ids: int | Sequence[int] = 0) -> dict[str, Any]:
         """Returns what the cameras see: uint8 (h, w, 4), metres float32 (h, w), object indices uint32 (h, w)."""
         if self._fresh:
-            self._settle()
+            self.settle()
         self._collided = False
         return self._render()
 
     def _render(self) -> dict[str, Any]:
         """Returns the image of each camera."""
         agent, observations = self.agents[0], dict[str, Any]()
-        for model, (specs, _) in self._groups.items():
+        for model, specs in self._groups.items():
             for seen in _by_eye(agent, specs):
-                names = sorted({_IMAGES[spec.sensor_type] for spec in seen})
-                images = self._images(model, agent.eye(seen[0].uuid, model.height_m), names)
+                noises = [self._noises[spec.uuid] for spec in seen if spec.uuid in self._noises]
+                names = {_IMAGES[spec.sensor_type] for spec in seen}.union(*(noise.images for noise in noises))
+                if model not in self._cameras:
+                    self._cameras[model] = Camera(
+                        self.world.model, self.world.labels, camera=model, profile=self._options.profile
+                    )
+                eye = agent.eye(seen[0].uuid, model.height_m)
+                images = self._cameras[model].render(self.world.data, eye, sorted(names))
                 observations |= {spec.uuid: self._observation(spec, images) for spec in seen}
         return observations
 
-    def _images(self, model: CameraModel, eye: Any, names: Sequence[str]) -> dict[str, NDArray]:
-        if model not in self._cameras:
-            self._cameras[model] = Camera(
-                self.world.model, self.world.labels, camera=model, profile=self._options.profile
-            )
-        noise = self._noises.get(model)
-        wanted = {*names, *(noise.images if noise is not None else ())}
-        images = self._cameras[model].render(self.world.data, eye, sorted(wanted))
-        if noise is None:
-            return images
-        read = {name: images[name] for name in names if name in ("rgb", "depth")}
-        return images | noise.apply(read, images)
-
     def _observation(self, spec: SensorSpec, images: Mapping[str, NDArray]) -> NDArray:
-        """Returns the image of one camera in Habitat's form."""
-        image = images[_IMAGES[spec.sensor_type]]
-        if spec.sensor_type == SensorType.COLOR:
-            opaque = np.full((*image.shape[:2], 1), 255, np.uint8)
-            return np.concatenate([image, opaque], axis=2)
-        return self._semantic_ids[image] if spec.sensor_type == SensorType.SEMANTIC else image
+        """Returns the image of one camera in Habitat's form, with noise."""
+        name = _IMAGES[spec.sensor_type]
+        image = images[name]
+        if spec.sensor_type == SensorType.SEMANTIC:
+            return self._semantic_ids[image]
+        if spec.uuid in self._noises:
+            image = self._noises[spec.uuid].apply({name: image}, images)[name]
+        return cv2.cvtColor(image, cv2.COLOR_RGB2RGBA) if spec.sensor_type == SensorType.COLOR else image
 
     def get_agent(self, agent_id: int) -> Agent:
         """Returns the agent."""
@@ -318,7 +260,7 @@ class Simulator:
         self, agent_id: int = 0, goal_radius: float | None = None, **keys: Any
     ) -> GreedyGeodesicFollower:
         """Returns a follower of shortest paths; `keys` are those of `GreedyGeodesicFollower`."""
-        self._settle()
+        self.settle()
         return GreedyGeodesicFollower(self.pathfinder, self.agents[agent_id], goal_radius, **keys)
 
     def step_filter(self, start_pos: Any, end_pos: Any) -> Vector3:
@@ -373,7 +315,7 @@ class Simulator:
     @property
     def curr_scene_name(self) -> str:
         """The house."""
-        return self._scene_id
+        return self.config.sim_cfg.scene_id
 
     @property
     def gfx_replay_manager(self) -> Any:
@@ -426,31 +368,6 @@ class _NoObjects:
         """Does nothing."""
 
 
-def find_house(scene_id: str) -> House:
-    """Returns the house of a scene.
-
-    Args:
-        scene_id: an MJCF file, a path that ends in `split/house.xml` with a shipped split, or a scene of another format
-            (`X.glb`) with a house `X.xml` beside it.
-
-    Raises:
-        HouseError: there is no such house.
-    """
-    path = Path(scene_id)
-    parts = path.with_suffix("").parts[-2:]
-    if len(parts) == 2 and parts[0] in shipped_splits():
-        split = load_split(parts[0])
-        if parts[1] in split.houses and (not path.is_file() or split.house_list is not None):
-            return split.load_house(parts[1])
-    for file in (path, path.with_suffix(".xml")):
-        if file.suffix in HOUSE_SUFFIXES and file.is_file():
-            return load_house(file)
-    raise HouseError(
-        f"There is no house '{scene_id}': neither a file, nor SPLIT/HOUSE.xml of a shipped split "
-        f"({', '.join(shipped_splits())}). Scenes of other simulators must be imported first (docs/worlds.md)."
-    )
-
-
 def _robot(agent: AgentConfiguration, motion: MotionKind) -> RobotConfig:
     """Returns the robot with the lengths of the agent's actions."""
     amounts = {
@@ -467,9 +384,9 @@ def _robot(agent: AgentConfiguration, motion: MotionKind) -> RobotConfig:
     return RobotConfig(drive=drive, motion=motion)
 
 
-def _cameras(specs: Sequence[SensorSpec]) -> dict[CameraModel, tuple[list[SensorSpec], list[str]]]:
-    """Returns the sensors by the camera that renders them, with the names of its images."""
-    groups: dict[CameraModel, tuple[list[SensorSpec], list[str]]] = defaultdict(lambda: ([], []))
+def _cameras(specs: Sequence[SensorSpec]) -> dict[CameraModel, list[SensorSpec]]:
+    """Returns the sensors by the camera that renders them."""
+    groups: dict[CameraModel, list[SensorSpec]] = defaultdict(list)
     for spec in specs:
         if type(spec) is not CameraSensorSpec or spec.sensor_subtype != SensorSubType.PINHOLE:
             raise ConfigError(f"Sensor '{spec.uuid}': cameras here are pinhole cameras.")
@@ -487,8 +404,7 @@ def _cameras(specs: Sequence[SensorSpec]) -> dict[CameraModel, tuple[list[Sensor
             width_px=width_px, height_px=height_px, hfov_rad=math.radians(hfov_deg), height_m=up_m, min_depth_m=0.0,
             max_depth_m=FAR_M,
         )  # fmt: skip
-        groups[model][0].append(spec)
-        groups[model][1].append(_IMAGES[spec.sensor_type])
+        groups[model].append(spec)
     return dict(groups)
 
 

@@ -20,7 +20,7 @@ from sim.core.files import write_together
 from sim.core.interface import MPCAT40_ID
 from sim.episodes import habitat
 from sim.episodes.reachable_goals import find_reachable_goals
-from sim.episodes.splits import load_split
+from sim.episodes.splits import load_split, shipped_splits
 from sim.task.objectnav import Task
 from sim.world.world import World
 
@@ -51,6 +51,7 @@ def main(args: Args) -> int:
         "category_to_task_category_id": {goal: number for number, goal in enumerate(goals)},
         "category_to_mp3d_category_id": {goal: MPCAT40_ID[goal] for goal in goals},
     }
+    is_shipped = args.split in shipped_splits()
     numbers = {episode.episode_id: number for number, episode in enumerate(split.episodes)}
     houses = [house for house in split.houses if any(episode.house == house for episode in split.episodes)]
     jobs = [(args.split, house) for house in houses]
@@ -59,11 +60,11 @@ def main(args: Args) -> int:
     }
     points = count = 0
     for house, listed in zip(houses, ordered_map(_goals, jobs, workers=args.workers), strict=True):
-        scene = f"{Path(args.split).name}/{house}.xml"
+        scene = f"stubborn/{args.split}/{house}.xml" if is_shipped else str(split.house_paths[house].resolve())
         episodes = [
             {
                 "episode_id": str(numbers[episode.episode_id]),
-                "scene_id": f"stubborn/{scene}",
+                "scene_id": scene,
                 "scene_dataset_config": "default",
                 **_start(episode.start),
                 "object_category": episode.goal,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 
@@ -21,6 +22,8 @@ ROUNDING_M, ROUNDING_M2 = 0.02, 0.05
 
 FLAT_LAMPS = frozenset(("bathroom", "kitchen", "hallway", "stair_hall", "laundry", "closet", "gym", "office"))
 """Rooms without a chandelier."""
+BESIDE_MIDDLE_M = ((0.0, 0.0), (0.8, 0.0), (-0.8, 0.0), (0.0, 0.8), (0.0, -0.8))
+"""Places of a lamp from the middle of the ceiling, in the order in which they are tried."""
 
 
 class FurnishError(Exception):
@@ -101,8 +104,6 @@ def _hang_ceiling_lamps(layout: RoomLayout, source: FurnitureSource) -> None:
             else:
                 y = layout.inner.y0 + along * layout.inner.depth_m
         flatter = sorted(lamps, key=lambda lamp: lamp.size_m[2])
-        any(
-            hang_from_ceiling(layout, design, x + dx, y + dy)
-            for dx, dy in ((0.0, 0.0), (0.8, 0.0), (-0.8, 0.0), (0.0, 0.8), (0.0, -0.8))
-            for design in (lamp, *flatter)
-        )
+        for (dx, dy), design in itertools.product(BESIDE_MIDDLE_M, (lamp, *flatter)):
+            if hang_from_ceiling(layout, design, x + dx, y + dy):
+                break

@@ -37,11 +37,15 @@ from sim.homes.housegen.generator import (
 from sim.homes.housegen.splits.recipes import SPLITS, Recipe
 from sim.homes.housegen.structure.openings import HALF_WALL_M, plan_rule_faults
 from sim.houses.geoms import world_boxes
+from sim.houses.hazards import read_hazards
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house, validate_house
 from sim.houses.writing import write_house
-from sim.world.check import check_house
+from sim.world.check import check_house, is_part_of
+from sim.world.leaves import hinged_leaves
+from sim.world.plan_requirements import measured
+from sim.world.standing import is_in, read_standing
 from sim.world.world import World
 from tests.helpers import wording
 from tests.helpers.sampling import sample
@@ -302,3 +306,31 @@ def test_walls_of_two_rooms_overlap_nowhere_in_sight(seed: int) -> None:
                 continue
             for corner, opposite in rooms:
                 assert (np.minimum(end, opposite) - np.maximum(start, corner))[:2].min() < -0.001, (start, end)
+
+
+@pytest.mark.parametrize("seed", [4, 701, 702])
+def test_doors_of_bedrooms_and_bathrooms_have_a_leaf_and_rooms_a_ceiling_lamp(seed: int) -> None:
+    """702 has a bed with a canopy below the middle of a ceiling."""
+    config = HouseConfig(pool="heldout", exact=False)
+    world = World(House("house", generate_house(seed, config).spec))
+    doors = measured("door", world.model, world.data, world.labels, world.rooms)
+    hinges = np.array([world.data.xanchor[leaf.joint] for leaf in hinged_leaves(world.model, world.data, world.labels)])
+    for room in (room for room in world.rooms if room.kind in ("bedroom", "bathroom")):
+        for door in doors:
+            if any(room.contains(*door.side_point(sign)) for sign in (-1.0, 1.0)):
+                away_m = np.hypot(*(hinges[:, :2] - door.centre_m).T)
+                assert away_m.min() < 0.7, f"{room.name}: no leaf at {door.centre_m}"
+    lamps = [item for item in read_standing(world.model, world.data, world.labels) if item.category == "lighting"]
+    for room in world.rooms:
+        top_m = max(centre[2] + half[2] for centre, half in room.boxes)
+        assert any(is_in(room, lamp) and lamp.high[2] > top_m - 0.1 for lamp in lamps), f"{room.name} has no lamp"
+
+
+def test_a_hazard_in_a_hallway_is_not_judged_as_furniture() -> None:
+    config = HouseConfig(pool="heldout", kind="corridor", hazards=("slab",), hazard_count=4, exact=False)
+    world = World(House("house", generate_house(21, config).spec))
+    hazards = read_hazards(world.model)
+    standing = read_standing(world.model, world.data, world.labels)
+    parts = [item for item in standing if any(is_part_of(item, hazard) for hazard in hazards)]
+    assert len(parts) >= len(hazards) == 4
+    assert check_house(world.house.spec, furnished=True) == []

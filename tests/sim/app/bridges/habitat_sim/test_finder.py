@@ -13,9 +13,9 @@ assert habitat_sim.nav.PathFinder is importlib.import_module("habitat_sim.nav").
 assert habitat_sim.__version__
 class Own(habitat_sim.physics.ManagedRigidObject):
     pass
-thing: habitat_sim.gfx.DebugLineRender | None = magnum.Matrix4.identity_init()
+item: habitat_sim.gfx.DebugLineRender | None = magnum.Matrix4.identity_init()
 try:
-    thing.transform_vector
+    item.transform_vector
 except NotImplementedError as error:
     print(error)
 """

@@ -8,6 +8,7 @@ import pytest
 
 from sim.app.bridges.habitat_sim.agent import AgentState
 from sim.app.bridges.habitat_sim.maths import Deg, Quaternion, Vector3, quat_from_coeffs, quat_rotate_vector
+from sim.app.bridges.habitat_sim.options import configure
 from sim.app.bridges.habitat_sim.pathfinder import GreedyFollowerError, MultiGoalShortestPath, ShortestPath
 from sim.app.bridges.habitat_sim.settings import (
     ActionSpec,
@@ -18,7 +19,7 @@ from sim.app.bridges.habitat_sim.settings import (
     SensorType,
     SimulatorConfiguration,
 )
-from sim.app.bridges.habitat_sim.simulator import Simulator, configure
+from sim.app.bridges.habitat_sim.simulator import Simulator
 from sim.core.errors import ConfigError, HouseError
 from sim.houses.house import House
 from sim.houses.writing import house_text
@@ -116,6 +117,7 @@ def test_a_pose_that_is_set_and_set_back_leaves_physics_untouched(empty: Simulat
     put(empty, 1.0, 1.0)
     seen = empty.get_sensor_observations()["depth"][24, 32]
     empty.agents[0].set_state(here)
+    empty.settle()
     assert seen == pytest.approx(3.0, abs=0.02)
     assert (empty.world.data.qpos == before).all()
     put(empty, 1.0, 1.0)
@@ -128,7 +130,7 @@ def test_semantic_images_hold_indices_of_the_semantic_scene(tmp_path: Path) -> N
     with simulator(tmp_path, house) as sim:
         put(sim, 0.0, 0.0)
         scene = sim.semantic_scene
-        sofa = next(thing for thing in scene.objects if thing.category.name() == "sofa")
+        sofa = next(item for item in scene.objects if item.category.name() == "sofa")
         assert sofa.semantic_id == scene.objects.index(sofa) == int(sofa.id.split("_")[-1])
         assert sofa.semantic_id in sim.get_sensor_observations()["semantic"]
         assert sofa.aabb.center() == pytest.approx([0.0, 0.4, -2.5])
@@ -205,7 +207,7 @@ def test_steps_without_physics_stop_or_slide(empty: Simulator) -> None:
 
 
 def test_options_apply_to_simulators_that_are_made_later(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sim.app.bridges.habitat_sim.simulator._chosen", {})
+    monkeypatch.setattr("sim.app.bridges.habitat_sim.options._chosen", {})
     monkeypatch.setenv("STUBBORN_HABITAT", "motion=no-sliding")
     with simulator(tmp_path, room(4, 4)) as sim:
         put(sim, 0.0, -1.75)
@@ -216,6 +218,12 @@ def test_options_apply_to_simulators_that_are_made_later(tmp_path: Path, monkeyp
         put(sim, 0.0, 0.0)
         first, second = (sim.get_sensor_observations()["depth"] for _ in range(2))
         assert (first != second).any()
+        mount = CameraSensorSpec("high", SensorType.DEPTH, resolution=[48, 64], position=[0.0, 0.88, 0.1], hfov=79.0)
+        sim.add_sensor(mount)
+        sim.reset()
+        seen = sim.get_sensor_observations()
+        assert seen["high"].std() > 0.0  # a camera somewhere else has noise of its own
+        assert seen["rgb"].shape == (48, 64, 4)
     with pytest.raises(ConfigError, match="motion must be"):
         configure(motion="hovering")
     with pytest.raises(ConfigError, match="'speed'"):
