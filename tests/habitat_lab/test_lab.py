@@ -1,5 +1,6 @@
 """With the real habitat-lab; `make test-habitat` runs them in its environment, other test runs leave them out."""
 
+import os
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -194,3 +195,54 @@ def test_a_script_of_2021_runs(tmp_path: Path) -> None:
     words = [sys.executable, "-m", "sim.app.commands.main", "habitat", "old.py", "--episodes", "3"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert "steps 4 3" in done.stdout, done.stderr[-2000:]
+
+
+def run(words: list[str], folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "sim.app.commands.main", *words],
+        cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
+def test_habitat_labs_own_class_reads_the_files_of_a_split_of_ones_own(tmp_path: Path) -> None:
+    folder, written = tmp_path / "mine", tmp_path / "lab"
+    for words in (
+        ["houses", "generate", "--houses", "1", "--kind", "flat", "--out", str(folder)],
+        ["episodes", "--split", str(folder), "--episodes", "3", "--no-pictures"],
+        ["habitat", "dataset", "--split", str(folder), "--out", str(written)],
+    ):
+        done = run(words, tmp_path)
+        assert done.returncode == 0, done.stderr
+    path = f"habitat.dataset.data_path={written}/lab.json.gz"
+    config = habitat.get_config("benchmark/nav/objectnav/objectnav_mp3d.yaml", overrides=[path])
+    with habitat.Env(config) as env:
+        env.reset()
+        assert len(env.episodes) == 3
+        assert sorted(int(episode.episode_id) for episode in env.episodes) == [0, 1, 2]
+        goal = env.current_episode.goals[0]
+        labelled = env.sim.semantic_annotations().objects[goal.object_id]
+        assert (labelled.name, labelled.category.name()) == (goal.object_name, goal.object_category)
+        points = [v.agent_state.position for g in env.current_episode.goals for v in g.view_points]
+        assert len(points) > 24  # denser than those that ship
+        assert env.sim.geodesic_distance(points[0], [points[0]]) < 0.1
+    with habitat.Env(stubborn_habitat.get_config(str(folder))) as env:
+        env.reset()
+        assert env.get_metrics()["distance_to_goal"] > 0.0
+
+
+def test_a_challenge_of_2021_evaluates_an_agent(tmp_path: Path) -> None:
+    (tmp_path / "challenge.yaml").write_text("ENVIRONMENT:\n  MAX_EPISODE_STEPS: 3\nTASK:\n  UNKNOWN: 1\n")
+    (tmp_path / "agent.py").write_text(
+        "import habitat\n"
+        "class Own(habitat.Agent):\n"
+        "    def reset(self): pass\n"
+        "    def act(self, observations): return {'action': 2}\n"
+        "habitat.Challenge(eval_remote=False).submit(Own())\n"
+    )
+    done = run(["habitat", "agent.py", "--episodes", "2"], tmp_path, CHALLENGE_CONFIG_FILE="challenge.yaml")
+    assert done.returncode == 0, done.stderr[-2000:]
+    printed = done.stdout + done.stderr
+    assert "success: 0.0" in printed
+    assert "TASK.UNKNOWN=1 has no effect here" in printed
+    missing = run(["habitat", "agent.py"], tmp_path, CHALLENGE_CONFIG_FILE="other/challenge.yaml")
+    assert "'other/challenge.yaml' does not exist" in missing.stderr
