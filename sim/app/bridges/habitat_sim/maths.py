@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import colorsys
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -25,12 +25,15 @@ class Rad(float):
 
 
 class Vector3(np.ndarray):
-    """A vector (3,) of float32 that NumPy can compute with."""
+    """A vector (3,) of float32 that NumPy can compute with; `list` of it gives floats of Python, as of magnum's."""
 
     def __new__(cls, *values: Any) -> Vector3:
         """Returns the vector of three numbers, of one for all three, or of an array."""
         given = values[0] if len(values) == 1 else values or (0.0, 0.0, 0.0)
         return np.broadcast_to(np.asarray(given, np.float32), (3,)).copy().view(cls)
+
+    def __iter__(self) -> Iterator[float]:
+        return iter(self.tolist())
 
     @classmethod
     def zero_init(cls) -> Vector3:

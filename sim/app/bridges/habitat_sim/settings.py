@@ -73,8 +73,14 @@ class EquirectangularSensorSpec(SensorSpec):
     """Is refused when a simulator is made: cameras here are pinhole cameras."""
 
 
+@dataclass
 class FisheyeSensorDoubleSphereSpec(SensorSpec):
     """Is refused when a simulator is made: cameras here are pinhole cameras."""
+
+    xi: float = 0.0
+    alpha: float = 0.0
+    focal_length: Any = None
+    principal_point_offset: Any = None
 
 
 @dataclass

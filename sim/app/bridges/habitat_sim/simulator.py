@@ -70,6 +70,8 @@ class Simulator:
 
     def _configure(self, config: Configuration) -> None:
         self.config = config
+        if config.enable_batch_renderer:
+            raise ConfigError("There is no batch rendering here: set renderer.enable_batch_renderer to false.")
         if len(config.agents) != 1:
             raise ConfigError(f"There is one robot here; the configuration has {len(config.agents)} agents.")
         scene = config.sim_cfg.scene_id
@@ -186,8 +188,7 @@ class Simulator:
         """Puts the robot where the agent was put, in physics, and begins the episode after a reset."""
         agent = self.agents[0]
         if self._fresh:
-            pose = agent.pose if agent.put is None else agent.put
-            self.world.reset(pose, self._conditions())
+            self.world.reset(agent.pose, self._conditions())
             self._fresh = False
         elif agent.put is not None:
             self.world.put(agent.put)
