@@ -537,6 +537,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     "stubborn habitat 'evaluate.py --runs 1' --split val --episodes 5": Only(_LAB),
     "stubborn habitat setup": Only(_LAB),
+    f"{LAB_PYTHON} -m tools.research.habitat_parity --episodes 50 --view-points "
+    "data/datasets/objectnav/stubborn/v1/val/val.json.gz --out parity.csv": Only(_LAB),
     f"{LAB_PYTHON} examples/train_habitat.py habitat_baselines.num_updates=2": Only(_LAB),
     f"{LAB_PYTHON} examples/train_habitat.py --evaluate habitat_baselines.test_episode_count=2": Only(_LAB),
     "stubborn habitat dataset --split val --out data/datasets/objectnav/stubborn/v1/val": (

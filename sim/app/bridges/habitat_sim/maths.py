@@ -32,7 +32,7 @@ class Vector3(np.ndarray):
         given = values[0] if len(values) == 1 else values or (0.0, 0.0, 0.0)
         return np.broadcast_to(np.asarray(given, np.float32), (3,)).copy().view(cls)
 
-    def __iter__(self) -> Iterator[float]:
+    def __iter__(self) -> Iterator[Any]:  # pyright: ignore[reportIncompatibleMethodOverride]
         return iter(self.tolist())
 
     @classmethod

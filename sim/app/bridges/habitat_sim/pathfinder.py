@@ -111,7 +111,8 @@ class Storey:
     @functools.cached_property
     def parts(self) -> NDArray[np.int32]:
         """(rows, cols) the number of the connected part of each cell, from 1; 0 where it is not free."""
-        return np.asarray(cv2.connectedComponents(self.space.free.astype(np.uint8), connectivity=4)[1])
+        parts = cv2.connectedComponents(self.space.free.astype(np.uint8), connectivity=4)[1]
+        return np.asarray(parts, np.int32)
 
     @property
     def part_count(self) -> int:

@@ -242,7 +242,9 @@ def test_what_is_not_here_is_refused(tmp_path: Path) -> None:
 def test_a_vector_is_a_list_of_python_floats_and_an_array() -> None:
     vector = Vector3(1.0, 2.0, 3.0)
     assert [type(value) for value in vector] == [float] * 3  # JSON and OmegaConf take no others
-    assert (vector - np.ones(3)).dot() == pytest.approx(5.0)
+    difference = vector - np.ones(3)
+    assert isinstance(difference, Vector3)
+    assert difference.dot() == pytest.approx(5.0)
 
 
 def test_quaternions_of_both_kinds_agree() -> None:
