@@ -10,6 +10,7 @@ setup(
         "sim.assets": ["mjcf_houses/**/*"],
         "sim.app.analysis.report": ["page/*"],
         "sim.app.web": ["page/*"],
+        "sim.core": ["words/*"],
         "sim.houses": ["*.csv"],
         "sim.robot": ["sidecars/*.json"],
         "sim": ["*.pyi"],

@@ -31,6 +31,7 @@ from stubborn.detection.approach import Approach
 from stubborn.detection.distances import StopDistances, TargetConfig
 from stubborn.detection.seeker import SeekerConfig, SeekerParts, TargetSeekerConfig
 from stubborn.detection.verification import AcceptAll, Verifier
+from stubborn.detection.wished import STANDS_FOR, WishedSegmenter
 from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import ExplorerConfig, Ground, ReadsSemantics, run_explorer
 from stubborn.kernels.grids import MAX_REACH
@@ -138,7 +139,8 @@ class StubbornAgent:
         self.config = config = config.for_robot(robot)
         self.robot = robot
         self.levelling = Levelling(camera, robot.camera_forward_m, config.levelling)
-        self.segmenter = segmenter = LevelledSegmenter(segmenter, self.levelling)
+        self.wished = WishedSegmenter(segmenter)
+        self.segmenter = segmenter = LevelledSegmenter(self.wished, self.levelling)
         self.policies = collision_policies(config.avoidance, config.untrap)
         self.mapper = Mapper(camera, robot, config.mapping, config.layers.make(config.mapping.candidate_score))
         feel = config.feel if self.policies.marked else None
@@ -157,6 +159,7 @@ class StubbornAgent:
                 verifier=verifier or AcceptAll(),
                 candidate_score=config.mapping.candidate_score,
                 max_steps=max_steps,
+                wished=self.wished,
             )
         )
         self.untrap = Untrap(self.policies.untrap_after, turns_reset=config.untrap.turns_reset)
@@ -164,8 +167,18 @@ class StubbornAgent:
         self.reset(GOAL_CATEGORIES[0], 0)
 
     def reset(self, goal: str, seed: int) -> None:
-        """Starts a new episode; `seed` is for explorers that choose at random."""
-        self.goal = goal
+        """Starts a new episode.
+
+        Args:
+            goal: a goal category, or words (`sim.core.wishes`).
+            seed: for explorers that choose at random.
+
+        Raises:
+            WishError: a word of the goal is not known.
+        """
+        self.wished.ask(goal)
+        self.goal = self.wished.category
+        """The category that is looked for."""
         self.step = 0
         self.navmap = NavMap.empty(GridFrame.around_start(self.config.map_cells, self.config.cell_m))
         self.window: Window | None = None
@@ -182,7 +195,7 @@ class StubbornAgent:
         self.planner.own_ground_m = self.config.planning.own_ground_m
         self.standstill.reset()
         self.explorer.reset(seed)
-        self.seeker.reset(goal)
+        self.seeker.reset(self.goal)
         self.untrap.reset()
 
     def act(self, observation: Observation) -> Action:
@@ -266,7 +279,15 @@ class StubbornAgent:
         self.approach = self.seeker.approach(self.navmap, window, pose, self.step)
         if self.approach is None:
             choice = run_explorer(
-                self.explorer, Ground(self.navmap, window, pose, self.policies.exploration, self.planner, self.goal)
+                self.explorer,
+                Ground(
+                    self.navmap,
+                    window,
+                    pose,
+                    self.policies.exploration,
+                    self.planner,
+                    STANDS_FOR.get(self.goal, self.goal),
+                ),
             )
         elif self.approach.route is None:
             choice = self._inspect(self.approach, pose)

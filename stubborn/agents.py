@@ -120,7 +120,12 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
     {
         **{
             name: AgentSpec(
-                make=StubbornAgent, description=description, config=config, sensors=SENSORS, painter=make_painter
+                make=StubbornAgent,
+                description=description,
+                config=config,
+                sensors=SENSORS,
+                painter=make_painter,
+                words=("rgb",),
             )
             for name, (description, config) in PRESETS.items()
         },
@@ -136,6 +141,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
             config=RandomConfig(),
             sensors=(),
             uses_segmentation=False,
+            words=(),
         ),
     }
 )

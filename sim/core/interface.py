@@ -12,7 +12,7 @@ import enum
 import inspect
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, is_dataclass
 from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol, runtime_checkable
@@ -27,8 +27,9 @@ from sim.core.geometry.pose import wrap_angle
 __all__ = [
     "CLIMB_M", "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS",
     "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation",
-    "Perceived", "RobotModel", "Scores", "SegmentationSpec", "Segmenter", "SegmenterFactory", "SegmenterSpec",
-    "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule", "category_id", "wrap_angle",
+    "Perceived", "RobotModel", "Scores", "SeesObjects", "SegmentationSpec", "Segmenter", "SegmenterFactory",
+    "SegmenterSpec", "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule", "category_id",
+    "wrap_angle",
 ]  # fmt: skip
 
 
@@ -308,6 +309,18 @@ class NamesCategories(Protocol):
         ...
 
 
+@runtime_checkable
+class SeesObjects(Protocol):
+    """A segmenter that tells objects apart and knows their everyday names; agents ask it where goals are in words."""
+
+    def objects(self, observation: Observation) -> tuple[NDArray[np.int32], Sequence[str]] | None:
+        """Returns the number of the object at each pixel (h, w), -1: none, and the name of each object.
+
+        None: it does not tell them apart after all.
+        """
+        ...
+
+
 SegmenterFactory = Callable[..., Any]
 """Builds a user's segmenter from keyword arguments:
 
@@ -448,6 +461,9 @@ class AgentSpec:
     """True: it may read the `semantic` sensor and gets the running environment as `truth`; its results say so."""
     goals: Callable[[Any], tuple[str, ...]] | None = None
     """Returns the goal categories that the agent knows, from its configuration; None: all. Runs skip other episodes."""
+    words: tuple[str, ...] | None = None
+    """Sensors that it reads in addition where goals are in words (`sim.core.wishes`); None: `reset` takes only
+    categories."""
     painter: Callable[[Agent], Any] | None = None
     """Returns a `MapPainter` of viewers, which draws the agent's map; None: viewers draw the true floor plan."""
 

@@ -14,13 +14,13 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from sim.core.configuration import as_settings
-from sim.core.errors import EpisodeError, HouseError
+from sim.core.errors import HouseError
 from sim.core.geometry.pose import Pose
-from sim.core.interface import GOAL_CATEGORIES, SENSORS, Action, CameraModel, ConfigError, RobotModel, SuccessRule
+from sim.core.interface import SENSORS, Action, CameraModel, ConfigError, RobotModel, SuccessRule
 from sim.env.chosen_split import chosen_split
 from sim.env.scene import Scene, SceneCache
 from sim.episodes.drawing import sample_episode
-from sim.episodes.episode import Episode, require_start
+from sim.episodes.episode import Episode, require_goal, require_start
 from sim.episodes.splits import Split
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
@@ -68,7 +68,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         houses: only the episodes of these houses of the split, by name; or several MJCF files instead of a split.
         labels: label rules for a house with other names.
         root: another folder whose files the house may use, in addition to its own folder.
-        goal: only episodes with this goal category.
+        goal: only episodes with this goal: a category, or words (docs/words.md).
         start: with `house`, the start pose of every episode.
         sensors: sensors in the observation: names of `sim.sensors.standard`, or objects with the interface
             `sim.sensors.sensor.Sensor`.
@@ -202,9 +202,9 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         scene.world.reset(episode.start, conditions)
         scene.task.begin(episode.goal, episode.start)
         self._scene, self._episode = scene, episode
-        observation, semantic = self._observe()
+        observation = self._observe()
         self._require_in_space(observation)
-        scene.task.look(semantic)
+        scene.task.look(self.truth_images)
         return observation, self._info(collided=False)
 
     def step(self, action: int) -> StepResult:
@@ -215,8 +215,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     def _outcome(self, motion: Motion) -> StepResult:
         """Returns what `step` returns after a motion."""
         scene, self._motion = self.scene, motion
-        observation, semantic = self._observe()
-        scene.task.observe(motion.action, motion, semantic)
+        observation = self._observe()
+        scene.task.observe(motion.action, motion, self.truth_images)
         reward = float(scene.task.success)
         return observation, reward, scene.task.terminated, scene.task.truncated, self._info(motion.collided)
 
@@ -298,11 +298,11 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
                     "array of the space's shape and dtype."
                 )
 
-    def _observe(self) -> tuple[dict[str, NDArray], NDArray[np.uint8]]:
-        """Returns the observation, and the true segmentation, which the metrics need even if no agent gets it."""
+    def _observe(self) -> dict[str, NDArray]:
+        """Returns the observation; the true images that the metrics need are rendered even if no agent gets them."""
         world = self.scene.world
         needed = {name for sensor in self._noise.sensors for name in sensor.images}
-        names = sorted({"semantic", *needed, *self._truth, *self._noise.images})
+        names = sorted({*self.scene.task.images, *needed, *self._truth, *self._noise.images})
         images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, names)
         fields = {
             "goal": self.episode.goal,
@@ -316,7 +316,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             "glass": world.glass,
         }
         readings = {sensor.name: sensor.read(SensorContext(sensor, images, **fields)) for sensor in self._noise.sensors}
-        return self._noise.apply(readings, images), images["semantic"]
+        return self._noise.apply(readings, images)
 
     def _info(self, collided: bool) -> dict[str, object]:
         episode = self.episode
@@ -347,7 +347,7 @@ def _with_scan(sensors: tuple[Sensor, ...], scan: ScanConfig) -> tuple[Sensor, .
 
 
 def _check_options(goal: str | None, render_mode: str | None) -> None:
-    if goal is not None and goal not in GOAL_CATEGORIES:
-        raise EpisodeError(f"Unknown goal '{goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
+    if goal is not None:
+        require_goal(goal)
     if render_mode not in (None, "rgb_array"):
         raise ConfigError(f"Unknown render_mode '{render_mode}'. Available: rgb_array.")

@@ -117,11 +117,12 @@ class ObjectGoalSensor:
 
     def space(self, camera: CameraModel) -> spaces.Box:
         """Returns the space of int64 indices (1,)."""
-        return spaces.Box(0, len(GOAL_CATEGORIES) - 1, (1,), np.int64)
+        return spaces.Box(-1, len(GOAL_CATEGORIES) - 1, (1,), np.int64)
 
     def read(self, context: SensorContext) -> NDArray:
-        """Returns the index of the goal in `GOAL_CATEGORIES`."""
-        return np.array([GOAL_CATEGORIES.index(context.goal)], np.int64)
+        """Returns the index of the goal in `GOAL_CATEGORIES`; -1: the goal is in words."""
+        known = context.goal in GOAL_CATEGORIES
+        return np.array([GOAL_CATEGORIES.index(context.goal) if known else -1], np.int64)
 
 
 STANDARD_SENSORS: Mapping[str, Sensor] = MappingProxyType(

@@ -6,6 +6,7 @@ Viewers use `explain_end`, which needs only the result and the distance to the g
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -70,8 +71,8 @@ class Outcome:
 
 
 def in_words(category: str) -> str:
-    """Returns the name of a category with spaces: "chest of drawers"."""
-    return category.replace("_", " ")
+    """Returns the name of a category with spaces, "chest of drawers", or a goal in words without its article."""
+    return re.sub(r"^(the|an?) ", "", category.strip().replace("_", " "), flags=re.IGNORECASE)
 
 
 def with_article(category: str) -> str:

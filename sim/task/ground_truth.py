@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 from sim.core.errors import EpisodeError
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
+from sim.core.wishes import parse_wish
 from sim.gl import mujoco
-from sim.houses.labels import rendered_geoms
+from sim.houses.labels import Instance, rendered_geoms
+from sim.task.meaning import Meaning
 from sim.task.seen_floor import SeenFloor, floor_cells
 from sim.task.success import SIGHT_BLOCKERS, GoalRegion, Surroundings, sight_blockers
 from sim.world.freespace import FreeSpace
@@ -29,7 +31,7 @@ _NO_OBJECTS = frozenset({"void", "floor", "ceiling"})
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """One goal category on one storey."""
+    """One goal on one storey."""
 
     region: GoalRegion
     reached: NDArray[np.bool_]  # (rows, cols) free cells at which a STOP succeeds
@@ -58,6 +60,29 @@ class GroundTruth:
         self._surroundings: dict[float, Surroundings] = {}
         self._regions: dict[tuple[str, float], GoalRegion] = {}
         self._targets: dict[tuple[str, float], Target] = {}
+        self._instances: dict[str, tuple[Instance, ...]] = {}
+        self.meaning = Meaning(world, self._at_rest)
+        """The objects that satisfy goals in words."""
+
+    def instances(self, goal: str) -> tuple[Instance, ...]:
+        """Returns all objects of the house that satisfy a goal.
+
+        Args:
+            goal: a goal category, whose instances they are; the label of one instance (`chair_03`); or words
+                (`sim.core.wishes`).
+
+        Raises:
+            EpisodeError: no object satisfies the goal, unless it is a category; the message says what there is.
+            WishError: a word of the goal is not known.
+        """
+        if goal not in self._instances:
+            labels = self.world.labels
+            if goal in GOAL_CATEGORIES:
+                self._instances[goal] = labels.of_category(goal)
+            else:
+                named = tuple(instance for instance in labels.instances if instance.name == goal)
+                self._instances[goal] = named or self.meaning.satisfying(parse_wish(goal))
+        return self._instances[goal]
 
     def space(self, floor_z_m: float = 0.0) -> FreeSpace:
         """Returns the free space of the storey whose floor is at this height."""
@@ -88,7 +113,7 @@ class GroundTruth:
         A storey without an instance, in a house that has one elsewhere, has no such place, and no path to one.
 
         Raises:
-            EpisodeError: there is no such goal category, or the house has no instance of it.
+            EpisodeError, WishError: the goal is unknown, or the house has no instance of it.
         """
         if (goal, floor_z_m) not in self._targets:
             space, region = self.space(floor_z_m), self._existing(self.region(goal, floor_z_m))
@@ -100,7 +125,7 @@ class GroundTruth:
         """Returns the region of a storey where a STOP for a goal succeeds, with objects where the house file puts them.
 
         Raises:
-            EpisodeError: there is no such goal category.
+            EpisodeError, WishError: the goal is unknown.
         """
         if (goal, floor_z_m) not in self._regions:
             self._regions[goal, floor_z_m] = self._region(goal, floor_z_m, self._at_rest)
@@ -133,7 +158,7 @@ class GroundTruth:
             x_m: place in the world.
             y_m: place in the world.
             floor_z_m: height of the storey's floor.
-            goal: category that has priority, because footprints overlap: a cushion may lie on a sofa.
+            goal: the goal, which has priority, because footprints overlap: a cushion may lie on a sofa.
             within_m: largest distance in plan from the place to the footprint of the object.
 
         Returns:
@@ -180,11 +205,9 @@ class GroundTruth:
     def _region(
         self, goal: str, floor_z_m: float, data: mujoco.MjData, surroundings: Surroundings | None = None
     ) -> GoalRegion:
-        if goal not in GOAL_CATEGORIES:
-            raise EpisodeError(f"Unknown goal '{goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
         return GoalRegion(
             data,
-            self.world.labels,
+            self.instances(goal),
             goal,
             surroundings=surroundings or self._surroundings_of(floor_z_m),
             success=self.success,
@@ -209,7 +232,7 @@ class GroundTruth:
         return region
 
     def _may_have_moved(self, goal: str) -> bool:
-        """Returns whether an instance of a category is on a body that can move."""
+        """Returns whether an object that satisfies a goal is on a body that can move."""
         model = self.world.model
-        geoms = [geom for instance in self.world.labels.of_category(goal) for geom in instance.geom_ids]
+        geoms = [geom for instance in self.instances(goal) for geom in instance.geom_ids]
         return bool(np.any(model.body_weldid[model.geom_bodyid[geoms]] != 0))

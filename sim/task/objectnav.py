@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import msgspec
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from sim.core.errors import EpisodeError
 from sim.core.geometry.pose import Pose
-from sim.core.interface import Action, CameraModel
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, Action, CameraModel
 from sim.robot.drive import Motion
 from sim.task import metrics
 from sim.task.config import TaskConfig
@@ -81,6 +82,7 @@ class Task:
         self._steps_per_action = steps_per_action
         self.truth = GroundTruth(world, success=self.config.success, camera=camera)
         self._record: _Record | None = None
+        self._goal_geoms: NDArray[np.int32] | None = None
 
     def begin(self, goal: str, start: Pose) -> None:
         """Starts an episode.
@@ -89,11 +91,14 @@ class Task:
         its distances are None, its SPL is 0. A goal on this storey that is walled in is an error.
 
         Raises:
-            EpisodeError: the goal is not a goal category, is not in the house, or is on the storey of the start without
-                a path to it.
+            EpisodeError: the goal is not in the house, or is on the storey of the start without a path to it.
+            WishError: a word of the goal is not known.
         """
         self._record = None
         shortest_path_m = self.distance_from(goal, start)
+        self._goal_geoms = None
+        if goal not in GOAL_CATEGORIES:
+            self._goal_geoms = np.array([g for i in self.truth.instances(goal) for g in i.geom_ids], np.int32)
         on_storey = bool(self.truth.target(goal, start.floor_z_m).region.footprints)
         if shortest_path_m is None and on_storey:
             raise self.unreachable_error(goal, start)
@@ -108,15 +113,31 @@ class Task:
             distance_m=shortest_path_m,
         )
 
-    def look(self, semantic: NDArray[np.uint8]) -> None:
-        """Counts one frame of ground-truth segmentation (h, w) from the robot's pose: step 0 is the first one."""
-        record, share = self._running, metrics.goal_share(semantic, self.goal)
+    @property
+    def images(self) -> tuple[str, ...]:
+        """The true images that `look` needs."""
+        return ("semantic",) if self._goal_geoms is None else ("semantic", "geom")
+
+    def goal_mask(self, images: Mapping[str, NDArray]) -> NDArray[np.bool_]:
+        """Returns (h, w) the pixels of the goal in the true images that `images` names."""
+        if self._goal_geoms is None:
+            return images["semantic"] == MPCAT40_ID[self.goal]
+        return np.isin(images["geom"], self._goal_geoms)
+
+    def look(self, images: Mapping[str, NDArray]) -> None:
+        """Counts one frame from the robot's pose: step 0 is the first one.
+
+        Args:
+            images: the true images that `images` names, (h, w) each.
+        """
+        record, semantic = self._running, images["semantic"]
+        share = float(np.count_nonzero(self.goal_mask(images)) / semantic.size)
         record.recorder.look(share)
         if record.first_seen_step is None and share >= metrics.EXPLORED_SHARE:
             record.first_seen_step = self.num_steps
         record.floor.look(semantic, self.world.camera_pose)
 
-    def observe(self, action: Action, motion: Motion, semantic: NDArray[np.uint8] | None = None) -> None:
+    def observe(self, action: Action, motion: Motion, images: Mapping[str, NDArray] | None = None) -> None:
         """Counts one action that the world has carried out, and the frame rendered after it.
 
         Raises:
@@ -134,8 +155,8 @@ class Task:
             record.success = self.truth.succeeds_now(record.goal, pose.x_m, pose.y_m, pose.floor_z_m)
         record.distance_m = None if motion.fell else self._distance_now()
         record.recorder.move(motion, pose, record.distance_m)
-        if semantic is not None:
-            self.look(semantic)
+        if images is not None:
+            self.look(images)
         if motion.fell:
             self._end("fallen")
         elif action == Action.STOP:
@@ -164,7 +185,7 @@ class Task:
 
     @property
     def goal(self) -> str:
-        """The category that the episode asks for."""
+        """What the episode asks for: a category, words, or the label of an instance (`GroundTruth.instances`)."""
         return self._running.goal
 
     @property

@@ -18,7 +18,7 @@ from sim.core.geometry.convex import ConvexPolygon, lines_blocked, polygon_from_
 from sim.core.interface import MPCAT40_ID, SuccessRule
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope, geoms_between, mesh_triangles
-from sim.houses.labels import Labels, rendered_geoms
+from sim.houses.labels import Instance, Labels, rendered_geoms
 from sim.task.footprints import Footprint, Footprints, house_floors, is_hollow
 from sim.world.freespace import FreeSpace
 
@@ -57,24 +57,24 @@ class Surroundings:
 
 
 class GoalRegion:
-    """All places of one storey at which a STOP for one goal category succeeds, with objects where they are now."""
+    """All places of one storey at which a STOP for one goal succeeds, with objects where they are now."""
 
     def __init__(
         self,
         data: mujoco.MjData,
-        labels: Labels,
+        instances: Sequence[Instance],
         goal: str,
         *,
         surroundings: Surroundings,
         success: SuccessRule,
         floor_z_m: float = 0.0,
     ) -> None:
-        """Computes the footprints of a category; kinematics of `data` must be computed.
+        """Computes the footprints of the instances of a goal; kinematics of `data` must be computed.
 
         Args:
             data: state of the compiled world.
-            labels: category and instance of each geom.
-            goal: the category.
+            instances: all objects of the house that satisfy the goal.
+            goal: the goal, for messages.
             surroundings: of the same storey.
             success: when a STOP succeeds; the height of its line of sight is that of `surroundings`.
             floor_z_m: height of the storey's floor.
@@ -82,7 +82,7 @@ class GoalRegion:
         self.goal = goal
         self.distance_m = success.distance_m
         self._blockers = surroundings.blockers
-        everywhere = [surroundings.footprints.of(data, instance) for instance in labels.of_category(goal)]
+        everywhere = [surroundings.footprints.of(data, instance) for instance in instances]
         self.exists = any(footprint is not None for footprint in everywhere)
         """True: some storey of the house has an instance."""
         self.footprints = tuple(

@@ -18,6 +18,7 @@ from stubborn.detection.classifiers import Features
 from stubborn.detection.distances import StopDistances, TargetConfig
 from stubborn.detection.verification import AcceptAll, RatesCandidates, Verifier
 from stubborn.detection.viewpoints import LastResort, ViewpointFinder
+from stubborn.detection.wished import WishedSegmenter
 from stubborn.mapping.mapper import Sighting
 from stubborn.mapping.masks import distance_to
 from stubborn.mapping.navmap import CollisionLayer, NavMap
@@ -84,6 +85,8 @@ class SeekerParts:
     """Cells with a higher score of the target are candidates."""
     max_steps: int
     """Actions of an episode."""
+    wished: WishedSegmenter | None = None
+    """The segmenter without levelling, which knows the wish of a goal in words."""
 
 
 @runtime_checkable

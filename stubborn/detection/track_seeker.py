@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Bool, Float32, Float64
+from jaxtyping import Bool, Float32, Float64, Int32
 
 from sim.core.geometry.grid import Window, cells_near_segment
 from sim.core.geometry.pose import Pose
 from sim.core.interface import FORWARD_M, ConfigError, Observation
 from stubborn.detection.approach import Approach, approach_from_here, approach_on, on_map
+from stubborn.detection.attributes import Attributes
 from stubborn.detection.context import SHIPPED, read_context
 from stubborn.detection.fusion import fusion_for
 from stubborn.detection.look import LookConfig, Verdicts, look_at
@@ -92,6 +93,7 @@ class TrackSeeker:
         self.finder = finder
         self.distances = parts.distances
         self.max_steps = parts.max_steps
+        self.wished = parts.wished
         self._last_resort_step = parts.target.last_resort_from(parts.max_steps)
         self.reset("")
 
@@ -100,6 +102,8 @@ class TrackSeeker:
         self.goal = goal
         self.step = 0
         self.tracks: Tracks | None = None
+        self.attributes: Attributes | None = None
+        """The evidence on a goal in words; None: it is a category, or the first frame was not seen yet."""
         exact = not self.segmenter.spec.needs_verification
         self.verdicts = Verdicts(self.config.look, exact=exact, max_steps=self.max_steps)
         self.probability: Float32[np.ndarray, " numbers"] = np.zeros(1, np.float32)
@@ -136,12 +140,44 @@ class TrackSeeker:
             self.tracks = Tracks(
                 self.config.tracks, self.camera, self.robot.camera_forward_m, navmap.frame, self.fusion
             )
-        self.tracks.add(self.segmenter.posteriors(observation), observation["depth"], pose, self.goal)
+            wish = None if self.wished is None else self.wished.wish
+            self.attributes = (
+                None if wish is None else Attributes(wish, self.tracks.plan, self.tracks.config.most_tracks)
+            )
+        posteriors, depth = self.segmenter.posteriors(observation), observation["depth"]
+        objects = None
+        if self.attributes is not None and self.wished is not None and "rgb" in observation:  # a level camera
+            objects = self.wished.objects(observation, posteriors.shape[1:])
+        self.tracks.add(posteriors, depth, pose, self.goal, None if objects is None else objects[0])
         least_voxels = 1 if self.verdicts.exact else self.config.tracks.least_voxels
         self.probability = self.tracks.probabilities(self.goal, least_voxels, self.context, self.config.context_share)
         self.step, self._pose = step, pose
+        if self.attributes is not None:
+            self._test_wish(self.attributes, posteriors, observation, objects, pose)
         if self._decide(pose):
             navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
+
+    def _test_wish(
+        self,
+        attributes: Attributes,
+        posteriors: Float32[np.ndarray, "classes h w"],
+        observation: Observation,
+        objects: tuple[Int32[np.ndarray, "h w"], Sequence[str]] | None,
+        pose: Pose,
+    ) -> None:
+        """Enters a frame into the evidence on a goal in words, and multiplies the probabilities by its factors."""
+        tracks, depth, columns = self._of_episode(), observation["depth"], posteriors.shape[2]
+        rows, cols, height_m = tracks.places(depth, pose, columns)
+        attributes.mark(posteriors, rows, cols, height_m)
+        rgb = observation.get("rgb")
+        if rgb is not None:
+            block = rgb.shape[1] // columns
+            attributes.add(tracks.shown(depth, pose, columns), rgb[block // 2 :: block, block // 2 :: block], objects)
+        candidates = np.flatnonzero(self.probability >= self.config.look.visit)
+        if candidates.size:
+            well_seen = np.array([bool(tracks.evidence.near_sectors(track).any()) for track in candidates.tolist()])
+            left_share = 1.0 - self.step / self.max_steps
+            self.probability[candidates] *= attributes.factors(tracks, candidates, left_share, well_seen)
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
         """See `Seeker`."""

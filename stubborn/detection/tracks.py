@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import Bool, Float32, Int, Int16
+from jaxtyping import Bool, Float32, Float64, Int, Int16
 
 from sim.core.geometry.grid import GridFrame
 from sim.core.geometry.pose import Pose
@@ -116,12 +116,21 @@ class Tracks:
         depth: Float32[np.ndarray, "height_px width_px"],
         pose: Pose,
         goal: str,
+        objects: Int[np.ndarray, "h w"] | None = None,
     ) -> None:
-        """Enters one frame: depth in metres, and posteriors at a whole fraction of its resolution."""
+        """Enters one frame.
+
+        Args:
+            posteriors: at a whole fraction of the resolution of the depth.
+            depth: metres.
+            pose: of the robot.
+            goal: the category.
+            objects: the object of each pixel of the posteriors, if they are told apart.
+        """
         rays = self._rays_for(posteriors.shape[2])
         d, voxel = self._voxels(rays, depth, pose)
         label = label_pixels(posteriors, IS_OBJECT, MPCAT40_ID[goal] - 1, self.config.hot)
-        region, count = regions_of(label, voxel, d, self.config.depth_jump)
+        region, count = regions_of(label, voxel, d, self.config.depth_jump, objects)
         overlap, labels = overlaps_of(region, count, label, voxel, self._owner, self.count + 1)
         track_of, takes_over = self._associate(overlap, labels, MPCAT40_ID[goal] - 1)
         claim(region, voxel, self._owner, track_of, takes_over, self._size, self._low, self._high, self._shape)
@@ -194,6 +203,26 @@ class Tracks:
                 result[parts[result[parts] == parts]] = track
         return result
 
+    def box(self, number: int) -> tuple[tuple[int, int], tuple[int, int]]:
+        """Returns row and column on `plan` of the first and of the last voxel of a track."""
+        (row, col, _), (last_row, last_col, _) = self._low[number].tolist(), self._high[number].tolist()
+        return (row, col), (last_row, last_col)
+
+    def gap_m(self, number: int, other: int) -> float:
+        """Returns the gap in plan between the boxes of two tracks; 0 where they overlap."""
+        apart = np.maximum(
+            self._low[other, :2] - self._high[number, :2] - 1, self._low[number, :2] - self._high[other, :2] - 1
+        )
+        return float(np.hypot(*np.maximum(apart, 0)) * self._edge_m)
+
+    def above_m(self, number: int, other: int) -> float:
+        """Returns how much higher the bottom of a track is than the top of another one; negative: lower."""
+        return float((self._low[number, 2] - self._high[other, 2] - 1) * self._edge_m)
+
+    def extents_m(self, tracks: Int[np.ndarray, " n"]) -> Float64[np.ndarray, " n"]:
+        """Returns the cube root of the volume of each track's box, metres."""
+        return np.cbrt(np.prod((self._high[tracks] + 1 - self._low[tracks]).astype(np.float64), axis=1)) * self._edge_m
+
     def footprint(self, number: int) -> tuple[tuple[slice, slice], Bool[np.ndarray, "rows cols"]]:
         """Returns the map cells of a track's voxels: rows and columns of a rectangle, and a mask over it."""
         (row, col, _), (last_row, last_col, _) = self._low[number], self._high[number]
@@ -212,6 +241,21 @@ class Tracks:
         """Returns the track of each pixel of an entered frame, at a resolution of `columns` columns; 0: no track."""
         _, voxel = self._voxels(self._rays_for(columns), depth, pose)
         return np.where(voxel >= 0, self._owner[voxel], np.int16(0))
+
+    def places(
+        self, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose, columns: int
+    ) -> tuple[Int[np.ndarray, "h w"], Int[np.ndarray, "h w"], Float64[np.ndarray, "h w"]]:
+        """Returns row and column on `plan`, -1 without a voxel, and the height in metres of the pixels of a frame."""
+        _, voxel = self._voxels(self._rays_for(columns), depth, pose)
+        there, layers = voxel >= 0, self._shape[2]
+        plan = voxel // layers
+        height_m = (voxel % layers + 0.5) * self._edge_m
+        return np.where(there, plan // self._shape[1], -1), np.where(there, plan % self._shape[1], -1), height_m
+
+    @property
+    def plan(self) -> GridFrame:
+        """The grid of the voxels from above."""
+        return GridFrame(origin_xy_m=self.frame.origin_xy_m, shape=self._shape[:2], cell_m=self._edge_m)
 
     def now(self) -> Int[np.ndarray, " numbers"]:
         """Returns the track that each number belongs to: another one where tracks were merged."""

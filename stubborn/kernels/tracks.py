@@ -81,10 +81,11 @@ def _root(parent, i):
 
 
 @njit(cache=True)
-def regions_of(label, voxel, depth, jump):
+def regions_of(label, voxel, depth, jump, objects=None):
     """Returns the number of each pixel's region, from 1 (0: no region), and the number of regions.
 
-    Neighbours belong together if their labels are equal and their depths differ by less than `jump` of the depth.
+    Neighbours belong together if their labels are equal and their depths differ by less than `jump` of the depth; where
+    `objects` (rows, cols) numbers the object of each pixel, these must be equal, too.
     """
     rows, cols = label.shape
     parent = np.arange(rows * cols)
@@ -96,6 +97,8 @@ def regions_of(label, voxel, depth, jump):
                 if other_r < 0 or other_c < 0 or voxel[other_r, other_c] < 0:
                     continue
                 if label[other_r, other_c] != label[r, c]:
+                    continue
+                if objects is not None and objects[other_r, other_c] != objects[r, c]:
                     continue
                 if abs(depth[r, c] - depth[other_r, other_c]) < jump * depth[r, c]:
                     parent[_root(parent, r * cols + c)] = _root(parent, other_r * cols + other_c)

@@ -55,7 +55,7 @@ class Levelling:
         """The observation as it was read."""
 
     def level(self, observation: Observation) -> Observation:
-        """Returns the observation with the depth image of a level camera, or itself if the camera is level."""
+        """Returns the observation with the depth image of a level camera and no colours, or itself if it is level."""
         self.raw, self._lean = observation, self._measured(observation)
         if self._lean is None:
             return observation
@@ -63,7 +63,7 @@ class Levelling:
         row, col, ahead = self._source(depth.shape)
         level, jump_1_m = np.empty_like(depth), np.float32(self._config.jump_1_m)
         level_depth(depth, row, col, ahead, np.float32(self._camera.max_depth_m), jump_1_m, level)
-        return {**observation, "depth": level}
+        return {**{name: value for name, value in observation.items() if name != "rgb"}, "depth": level}
 
     def eye(self, pose: Pose) -> Pose:
         """Returns the pose of the point on the floor below the camera, whose mast leans with the body."""

@@ -42,6 +42,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
             sensors=(),
             uses_segmentation=False,
             uses_ground_truth=True,
+            words=(),
         ),
     }
 )

@@ -36,6 +36,7 @@ HUMAN = AgentSpec(
     sensors=("rgb", "depth", "semantic"),
     uses_segmentation=False,
     uses_ground_truth=True,
+    words=(),
 )
 """The declaration of a person, who sees all images, the true segmentation included."""
 

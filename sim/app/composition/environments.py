@@ -68,7 +68,8 @@ def episodes_of(setup: Setup) -> RunEpisodes:
         split = env.split
         if options.house is None:
             known = known_goals(setup)
-            split_of_agent = replace(split, episodes=tuple(e for e in split.episodes if e.goal in known))
+            fitting = tuple(e for e in split.episodes if e.goal in known or is_taken_in_words(setup, e.goal))
+            split_of_agent = replace(split, episodes=fitting)
             if not split_of_agent.episodes:
                 raise ConfigError(
                     f"Split '{split.name}' has no episode with a goal that the agent knows: {', '.join(known)}."
@@ -86,6 +87,11 @@ def episodes_of(setup: Setup) -> RunEpisodes:
 def known_goals(setup: Setup) -> tuple[str, ...]:
     """Returns the goal categories that the agent of a run knows; it gets no other episodes."""
     return GOAL_CATEGORIES if setup.spec.goals is None else setup.spec.goals(setup.config.agent)
+
+
+def is_taken_in_words(setup: Setup, goal: str) -> bool:
+    """Returns whether a goal is in words, and the agent of a run takes such goals."""
+    return goal not in GOAL_CATEGORIES and setup.spec.words is not None
 
 
 MAX_REPEATS = 60
@@ -107,7 +113,7 @@ def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
         episode = env.draw_episode(drawing_generator(options.seed, i), episode_id=f"{house}_{len(episodes):04d}")
         key = i if repeats else (episode.goal, episode.start)
         i += 1
-        if episode.goal in known and key not in episodes:
+        if (episode.goal in known or is_taken_in_words(setup, episode.goal)) and key not in episodes:
             episodes[key], last = episode, i
     if not episodes:
         raise ConfigError(f"House '{house}' has no episode with a goal that the agent knows: {', '.join(known)}.")
@@ -143,7 +149,8 @@ def _first_episodes(split: Split, options: RunOptions) -> list[Episode]:
     Raises:
         ConfigError: the split has fewer episodes, or no episode with this goal.
     """
-    goals = [goal for goal in GOAL_CATEGORIES if any(episode.goal == goal for episode in split.episodes)]
+    goals = list(dict.fromkeys(episode.goal for episode in split.episodes))
+    goals.sort(key=lambda goal: GOAL_CATEGORIES.index(goal) if goal in GOAL_CATEGORIES else len(GOAL_CATEGORIES))
     if options.goal is not None and options.goal not in goals:
         raise ConfigError(
             f"--goal '{options.goal}': split '{split.name}' has no such episode.{did_you_mean(options.goal, goals)}"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +18,7 @@ from sim.core.interface import (
     Observation,
     Perceived,
     Scores,
+    SeesObjects,
     Segmenter,
     SegmenterSpec,
     StatesSegmentation,
@@ -55,12 +58,16 @@ class AskedSegmenter:
         self._remember(observation)
         return self._inner.posteriors(observation)
 
+    def objects(self, observation: Observation) -> tuple[NDArray[np.int32], Sequence[str]] | None:
+        """Returns the segmenter's objects; None if it does not tell objects apart."""
+        return self._inner.objects(observation) if isinstance(self._inner, SeesObjects) else None
+
     def perceived(self, observation: Observation, goal: str) -> Perceived | None:
         """Returns scores and categories of a frame; None if the agent did not call the segmenter for it."""
         if not any(array is other for array in _arrays_of(observation) for other in self._arrays):
             return None
         inner = self._inner
-        scores = inner.scores(observation, goal)
+        scores = inner.scores(observation, goal) if goal in MPCAT40 else None  # of a goal in words it has no scores
         return Perceived(scores, inner.categories(observation) if isinstance(inner, NamesCategories) else None)
 
     def _remember(self, observation: Observation) -> None:

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -68,6 +68,8 @@ class TrueSegmentation:
     def __init__(self, env: ObjectNavEnv) -> None:
         self._env = env
         self._scores_of = GroundTruthSegmenter()
+        self._names_of: object = None
+        self._names: tuple[str, ...] = ()
 
     def scores(self, observation: Observation, goal: str) -> Scores:
         """Returns scores 1 and 0, float32 (h, w), of the frame that the environment rendered last."""
@@ -81,6 +83,15 @@ class TrueSegmentation:
         """Returns the true category of each pixel, uint8 (h, w)."""
         del observation
         return self._env.truth_images["semantic"]
+
+    def objects(self, observation: Observation) -> tuple[NDArray[np.int32], Sequence[str]]:
+        """Returns the true object of each pixel, int32 (h, w), and the everyday name of each object."""
+        del observation
+        world, geoms = self._env.scene.world, self._env.truth_images["geom"]
+        if self._names_of is not world:
+            self._names_of, meaning = world, self._env.scene.task.truth.meaning
+            self._names = tuple(thing.name for thing in meaning.things)
+        return np.append(world.labels.geom_instance, np.int32(-1))[geoms], self._names
 
 
 class NoSegmentation:

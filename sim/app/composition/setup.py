@@ -27,7 +27,7 @@ from sim.app.viewers import selection
 from sim.core.configuration import parse_assignments, read_settings, with_absolute_paths, with_fields
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
-from sim.core.interface import TRUE_IMAGES, AgentSpec, CameraModel, SegmenterSpec
+from sim.core.interface import GOAL_CATEGORIES, TRUE_IMAGES, AgentSpec, CameraModel, SegmenterSpec
 from sim.core.invocation import command
 from sim.episodes.splits import Split
 from sim.renderer.profiles import RenderProfile, get_profile
@@ -289,7 +289,7 @@ def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKin
         verification=VerificationConfig(method=options.verification, parameters=options.verifier),
         robot=replace(robot, motion=options.motion),
         camera=camera,
-        sensors=_sensor_names(spec, segmentation),
+        sensors=_sensor_names(spec, segmentation, in_words=options.goal not in (None, *GOAL_CATEGORIES)),
         scan=ScanConfig(),
         profile=get_profile(options.profile),
         noise=get_noise(options.noise),
@@ -307,9 +307,10 @@ def _agent_config(options: RunOptions, spec: AgentSpec) -> object:
     return replace(spec.config, explorer=explorer)
 
 
-def _sensor_names(spec: AgentSpec, segmentation: SegmentationKind) -> tuple[str, ...]:
-    """Returns the names of the sensors that an agent and its segmentation declare."""
-    read = (*spec.sensors, *(("depth", *segmentation.spec.sensors) if spec.uses_segmentation else ()))
+def _sensor_names(spec: AgentSpec, segmentation: SegmentationKind, *, in_words: bool = False) -> tuple[str, ...]:
+    """Returns the names of the sensors that an agent and its segmentation declare, for goals in words or categories."""
+    for_words = spec.words or () if in_words else ()
+    read = (*spec.sensors, *(("depth", *segmentation.spec.sensors) if spec.uses_segmentation else ()), *for_words)
     return tuple(dict.fromkeys(sensor if isinstance(sensor, str) else sensor.name for sensor in read))
 
 

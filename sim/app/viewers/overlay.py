@@ -29,6 +29,7 @@ from sim.app.viewers.palette import PALETTE, colour_segmentation
 from sim.app.viewers.text import BOLD, NORMAL, text_width, wrapped, write
 from sim.app.viewers.viewer import Colour, Moment
 from sim.core.interface import MPCAT40, MPCAT40_ID, CameraModel, Perceived
+from sim.core.wishes import categories_of
 from sim.task.explanations import ACTION_WORDS, Outcome, in_words, with_article
 
 Picture = NDArray[np.uint8]
@@ -134,11 +135,15 @@ class FrameComposer:
         map_panel: MapPanel | None = None,
         chase: Picture | None = None,
         perceived: Perceived | None = None,
+        goal_mask: NDArray[np.bool_] | None = None,
     ) -> Picture:
-        """Returns the frame without the outcome of the action, uint8 RGB (720, 1280, 3)."""
+        """Returns the frame without the outcome of the action, uint8 RGB (720, 1280, 3).
+
+        `goal_mask` (h, w) are the true pixels of the goal; None: those of its category.
+        """
         frame = self._ground.copy()
         _put(frame, moment.seen("rgb"), _CAMERA)
-        self._segmentations(frame, moment, perceived)
+        self._segmentations(frame, moment, perceived, goal_mask)
         _put(frame, colour_depth(_resized(moment.seen("depth"), self._depth), self._camera), self._depth)
         if chase is not None:
             _put(frame, chase, _CHASE)
@@ -179,14 +184,18 @@ class FrameComposer:
         for row, words in enumerate(lines, start=1):
             write(frame, words, (left + 24, base + 4 + 25 * row), width - 48, 18, WHITE)
 
-    def _segmentations(self, frame: Picture, moment: Moment, perceived: Perceived | None) -> None:
+    def _segmentations(
+        self, frame: Picture, moment: Moment, perceived: Perceived | None, goal_mask: NDArray[np.bool_] | None
+    ) -> None:
         """Draws the predicted and the true segmentation with the names of their colours, and the score of the goal."""
         shown = {"true": moment.images["semantic"]}
         if perceived is not None and perceived.categories is not None:
             shown["predicted"] = perceived.categories
         small = {name: _resized(shown[name], self._segment_box(name)) for name in self._segments if name in shown}
         for name, segments in small.items():
-            _put(frame, segmentation_picture(segments, self.goal), self._segment_box(name))
+            box = self._segment_box(name)
+            outlined = None if goal_mask is None or name != "true" else _resized(goal_mask.astype(np.uint8), box) > 0
+            _put(frame, segmentation_picture(segments, self.goal, outlined), box)
         self._names(frame, list(small.values()))
         if "predicted" in self._segments and "predicted" not in small:
             left, top, width, height = self._segment_box("predicted")
@@ -203,12 +212,12 @@ class FrameComposer:
         """Draws names and colours of the categories next to the segmentations, in columns and in a fixed order."""
         left = _SMALL_LEFT[len(self._segments) - 1] + _SMALL[0] + 12
         columns = (_CAMERA[0] + _CAMERA[2] - left) // _NAMES_PX
-        rows, goal_id = _SMALL[1] // _ROW_PX, MPCAT40_ID[self.goal]
+        rows, goal_ids = _SMALL[1] // _ROW_PX, ids_of(self.goal)
         together = np.concatenate([segment.ravel() for segment in segments])
         for place, category in enumerate(names_in_sight(together, self.goal)[: columns * rows]):
             x, y = left + (place // rows) * _NAMES_PX, _SMALL_TOP + (place % rows) * _ROW_PX
             red, green, blue = PALETTE[category].tolist()
-            is_goal = category == goal_id
+            is_goal = category in goal_ids
             _swatch(frame, x, y, (red, green, blue), GOAL if is_goal else PALE)
             name = in_words(MPCAT40[category])
             colour, weight = (GOAL, BOLD) if is_goal else (INK, NORMAL)
@@ -234,16 +243,27 @@ class FrameComposer:
 def names_in_sight(semantic: NDArray[np.uint8], goal: str) -> list[int]:
     """Returns the mpcat40 ids of the visible categories: the goal first if it is visible, then by number."""
     counts = np.bincount(semantic.ravel(), minlength=len(MPCAT40))
-    goal_id = MPCAT40_ID[goal]
-    shown = [i for i in np.flatnonzero(counts >= MIN_SHARE * semantic.size).tolist() if i != goal_id]
-    return ([goal_id] if counts[goal_id] else []) + shown
+    goal_ids = ids_of(goal)
+    shown = [i for i in np.flatnonzero(counts >= MIN_SHARE * semantic.size).tolist() if i not in goal_ids]
+    return [i for i in goal_ids if counts[i]] + shown
 
 
-def segmentation_picture(semantic: NDArray[np.uint8], goal: str) -> Picture:
-    """Returns categories (h, w) in colours, with the goal outlined, uint8 RGB (h, w, 3)."""
+def ids_of(goal: str) -> tuple[int, ...]:
+    """Returns the mpcat40 ids of the categories that a goal may mean."""
+    return tuple(MPCAT40_ID[category] for category in categories_of(goal))
+
+
+def segmentation_picture(semantic: NDArray[np.uint8], goal: str, outlined: NDArray[np.bool_] | None = None) -> Picture:
+    """Returns categories (h, w) in colours, with the goal outlined, uint8 RGB (h, w, 3).
+
+    Args:
+        semantic: the categories.
+        goal: the goal.
+        outlined: (h, w) the pixels of the goal; None: all of its categories.
+    """
     picture = np.ascontiguousarray(colour_segmentation(semantic))
-    mask = (semantic == MPCAT40_ID[goal]).astype(np.uint8)
-    contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    mask = np.isin(semantic, ids_of(goal)) if outlined is None else outlined
+    contours, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     cv2.drawContours(picture, contours, -1, GOAL, 2)
     return picture
 

@@ -181,6 +181,7 @@ class VideoRecorder:
             map_panel=self._agent_map(),
             chase=self._chase.render(),
             perceived=self._seen.perceived(moment.observation, goal) if self._seen is not None else None,
+            goal_mask=self._env.scene.task.goal_mask(moment.images),
         )
 
     def moved(self, info: Mapping[str, object]) -> None:

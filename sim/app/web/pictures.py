@@ -14,7 +14,7 @@ from sim.app.viewers.chase import ChaseView
 from sim.app.viewers.palette import PALETTE
 from sim.app.viewers.topview import TopView
 from sim.app.viewers.viewer import Colour, Moment
-from sim.core.interface import MPCAT40, MPCAT40_ID
+from sim.core.interface import MPCAT40
 from sim.env.scene import Scene
 from sim.task.explanations import in_words
 
@@ -42,12 +42,13 @@ class Pictures:
         if seen is not None and {"predicted", "score"} & set(names):
             perceived = seen.perceived(moment.observation, goal)
         painter = self._parts.painter
-        semantic = moment.images["semantic"]
+        semantic, task = moment.images["semantic"], env.scene.task
+        outlined = _small(task.goal_mask(moment.images).astype(np.uint8)) > 0
         make: dict[str, Callable[[], NDArray[np.uint8]]] = {
             "camera": lambda: moment.seen("rgb"),
             "chase": self._third_person,
             "plan": lambda: self._plan.paint(MAP_PX),
-            "semantic": lambda: overlay.segmentation_picture(_small(semantic), goal),
+            "semantic": lambda: overlay.segmentation_picture(_small(semantic), goal, outlined),
             "depth": lambda: overlay.colour_depth(_small(moment.seen("depth")), env.camera_model),
         }
         if painter is not None:
@@ -90,7 +91,7 @@ def in_sight(semantic: NDArray[np.uint8], goal: str) -> list[dict[str, object]]:
         {
             "name": in_words(MPCAT40[i]),
             "colour": css((int(PALETTE[i, 0]), int(PALETTE[i, 1]), int(PALETTE[i, 2]))),
-            "goal": i == MPCAT40_ID[goal],
+            "goal": i in overlay.ids_of(goal),
         }
         for i in shown
     ]

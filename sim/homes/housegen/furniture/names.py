@@ -150,7 +150,12 @@ _BY_STYLE: Mapping[tuple[str, str], str] = MappingProxyType({
     for name, styles in of_category.items()
     for style in styles.split()
 })  # fmt: skip
-NAMES: tuple[str, ...] = tuple(dict.fromkeys(_BY_STYLE.values()))
+CATEGORIES_OF_NAMES: Mapping[str, tuple[str, ...]] = MappingProxyType({
+    name: tuple(category for category, of_category in _BY_CATEGORY.items() if name in of_category)
+    for name in dict.fromkeys(_BY_STYLE.values())
+})  # fmt: skip
+"""The mpcat40 categories of each name."""
+NAMES: tuple[str, ...] = tuple(CATEGORIES_OF_NAMES)
 """All names, each once."""
 _BY_USE: Mapping[str, str] = MappingProxyType({
     "dining": "dining chair", "office": "office chair", "arm": "armchair", "bar": "bar stool", "low": "stool",

@@ -1,0 +1,132 @@
+"""The words for objects: everyday names, synonyms, kinds and more general words, and what they mean.
+
+`sim/core/words/vocabulary.csv` has a row for each word. Names are those that house files give to instances
+(`sim.houses.instance_facts`); all other words mean a set of names, or a whole category of mpcat40. Most come from
+WordNet 3.0, whose licence lies beside the file; `tools.maintenance.make_vocabulary` makes it.
+"""
+
+from __future__ import annotations
+
+import csv
+import functools
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import NamedTuple
+
+from sim.core.interface import MPCAT40
+
+FILE = Path(__file__).parent / "words" / "vocabulary.csv"
+NO_OBJECTS = frozenset({"void", "wall", "floor", "ceiling", "door", "window", "stairs", "column", "beam", "railing"})
+"""Categories that are no goals in words: the building itself."""
+_S_ENDINGS = ("ss", "us", "is", "as")
+"""Endings of words that are no plurals."""
+
+
+class Found(NamedTuple):
+    """What a phrase means."""
+
+    names: frozenset[str]
+    """Everyday names, and categories in words for objects without a name."""
+    word: str
+    """The words of the phrase that mean it."""
+    before: tuple[str, ...]
+    """The words before them."""
+    relation: str
+    """`name`, `category`, `synonym`, `kind`, `general` or `phrase`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Vocabulary:
+    """The words of the file."""
+
+    categories: Mapping[str, tuple[str, ...]]
+    """The mpcat40 categories of each name."""
+    words: Mapping[str, tuple[str, frozenset[str]]]
+    """For each word its relation and what it means: names."""
+
+    def find(self, phrase: str) -> Found | None:
+        """Returns what a phrase means by its longest last part that is a word: "wooden kitchen chair" is a chair.
+
+        None: no last part of it is a word, or it is a compound with another meaning, such as "flower bed".
+        """
+        words = normal_form(phrase).split()
+        for first in range(len(words)):
+            for word in _forms(" ".join(words[first:])):
+                known = self.words.get(word)
+                if known is None:
+                    continue
+                relation, names = known
+                return None if relation == "other" else Found(names, word, tuple(words[:first]), relation)
+        return None
+
+    def categories_of(self, names: frozenset[str]) -> tuple[str, ...]:
+        """Returns the categories of some names, in the order of `MPCAT40`."""
+        wanted = {category for name in names for category in self.categories.get(name, ())}
+        return tuple(category for category in MPCAT40 if category in wanted)
+
+
+def normal_form(phrase: str) -> str:
+    """Returns a phrase in lower case, with single spaces in place of hyphens and punctuation, without an article."""
+    words = re.sub(r"[^\w']+", " ", phrase.lower().replace("_", " ")).split()
+    while words and words[0] in ("a", "an", "the", "some", "any", "my", "our", "your"):
+        del words[0]
+    return " ".join(words)
+
+
+def in_words(category: str) -> str:
+    """Returns a category as a word: `chest_of_drawers` is "chest of drawers"."""
+    return "television" if category == "tv_monitor" else category.replace("_", " ")
+
+
+@functools.cache
+def vocabulary() -> Vocabulary:
+    """Returns the words of the file; it is read on first use."""
+    with FILE.open(encoding="utf-8", newline="") as file:
+        rows = [(row["word"], row["relation"], row["means"].split(";")) for row in csv.DictReader(file)]
+    categories = {word: tuple(means) for word, relation, means in rows if relation == "name"}
+    for category in MPCAT40:
+        if category not in NO_OBJECTS:
+            categories.setdefault(category.replace("_", " "), (category,))
+    members: dict[str, set[str]] = {}
+    for name, of_name in categories.items():
+        for category in of_name:
+            members.setdefault(category, set()).add(name)
+    words: dict[str, tuple[str, frozenset[str]]] = {
+        normal_form(category): ("category", frozenset(names)) for category, names in members.items()
+    }
+    for word, relation, means in rows:
+        key = normal_form(word)
+        if relation == "name":
+            words.setdefault(key, ("name", frozenset((word,))))
+        elif key not in words:
+            names = {name for mean in means if mean for name in _expanded(mean, members)}
+            words[key] = relation, frozenset(names)
+    # "Without spaces" is another spelling of most compounds: book case, dish washer, arm chair.
+    return Vocabulary(MappingProxyType(categories), MappingProxyType(words))
+
+
+def _expanded(mean: str, members: Mapping[str, set[str]]) -> set[str]:
+    return members.get(mean[1:], set()) if mean.startswith("@") else {mean}
+
+
+def _forms(word: str) -> list[str]:
+    """Returns the spellings under which a word may be listed: itself, its singular or plural, without spaces."""
+    forms = [word, *singulars(word), f"{word}s"]
+    return forms + [form.replace(" ", "") for form in forms if " " in form]
+
+
+def singulars(word: str) -> list[str]:
+    """Returns the possible singulars of an English noun; an empty list if it has no ending of a plural."""
+    if not word.endswith("s") or word.endswith(_S_ENDINGS):
+        return []
+    result = [word[:-1]]
+    if word.endswith("ies"):
+        result.insert(0, word[:-3] + "y")
+    elif word.endswith("ves"):
+        result = [word[:-3] + "f", word[:-3] + "fe", word[:-1]]
+    elif word.endswith(("ches", "shes", "xes", "sses")):
+        result.insert(0, word[:-2])
+    return result

@@ -1,0 +1,209 @@
+"""Goals in words: "the red chair next to the bed in the bedroom" as conditions that can be tested.
+
+The same reading serves the task, which finds the objects of a house that satisfy a wish, the agent, which tests it on
+the objects of its map, and the page in which a person types it. A word that is not known is an error, not a guess.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Literal, get_args
+
+from sim.core.colours import ColourName
+from sim.core.errors import ConfigError, did_you_mean
+from sim.core.interface import MPCAT40_ID
+from sim.core.vocabulary import normal_form, vocabulary
+
+Size = Literal["largest", "smallest"]
+Place = Literal["next to", "on", "under"]
+
+_COLOURS: Mapping[str, ColourName] = MappingProxyType(
+    {name: name for name in get_args(ColourName)}
+    | {"gray": "grey", "cream": "beige", "tan": "beige", "ivory": "white", "violet": "purple", "golden": "yellow"}
+)  # type: ignore[assignment]
+MATERIALS: Mapping[str, str] = MappingProxyType(
+    {
+        "wood": "wood", "wooden": "wood", "lacquer": "lacquer", "lacquered": "lacquer", "painted": "lacquer",
+        "fabric": "fabric", "cloth": "fabric", "upholstered": "fabric", "leather": "leather", "metal": "metal",
+        "metallic": "metal", "steel": "metal", "iron": "metal", "glass": "glass", "stone": "stone", "marble": "stone",
+        "brick": "brick", "ceramic": "ceramic", "porcelain": "ceramic", "plastic": "plastic", "wicker": "wicker",
+        "rattan": "wicker", "cardboard": "cardboard", "paper": "paper", "rubber": "rubber",
+    }
+)  # fmt: skip
+"""The material of house files (`sim.houses.instance_facts`) that each word means."""
+ROOMS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "bedroom": ("bedroom", "studio"), "bathroom": ("bathroom",), "restroom": ("bathroom",),
+        "washroom": ("bathroom",), "kitchen": ("kitchen",), "living room": ("living_room", "studio"),
+        "lounge": ("living_room",), "sitting room": ("living_room",), "dining room": ("dining_room",),
+        "hallway": ("hallway", "stair_hall"), "hall": ("hallway", "stair_hall"), "corridor": ("hallway",),
+        "entrance": ("hallway",), "stairwell": ("stair_hall",), "stair hall": ("stair_hall",), "office": ("office",),
+        "study": ("office",), "home office": ("office",), "closet": ("closet",), "walk in closet": ("closet",),
+        "dressing room": ("closet",), "laundry": ("laundry",), "laundry room": ("laundry",),
+        "utility room": ("laundry",), "gym": ("gym",), "fitness room": ("gym",), "studio": ("studio",),
+    }
+)  # fmt: skip
+"""The kinds of rooms (`room_KIND_NN` of a house file) that each word means."""
+_SIZES: Mapping[str, Size] = MappingProxyType(
+    {word: "largest" for word in ("largest", "biggest", "larger", "bigger")}
+    | {word: "smallest" for word in ("smallest", "smaller")}
+)  # type: ignore[assignment]
+_PLACES: Mapping[str, Place] = MappingProxyType(
+    {word: "next to" for word in ("next to", "beside", "near", "by", "close to", "at")}
+    | {word: "on" for word in ("on top of", "on")}
+    | {word: "under" for word in ("under", "underneath", "below", "beneath")}
+)  # type: ignore[assignment]
+_NUMBERS: Mapping[str, int] = MappingProxyType({"two": 2, "three": 3, "four": 4, "five": 5, "six": 6})
+_BEGINNINGS = re.compile(
+    r"^(please )?((can you |could you )?(go to|drive to|walk to|navigate to|find|look for|search for|show|bring|take"
+    r"|get)"
+    r"( me to| us to| me| us)?|where is|i want( to see| to find)?|i need|i am looking for)\b"
+)
+
+
+def _one_of(words: Iterable[str]) -> str:
+    """Returns a pattern for one of some words, the longest that fits."""
+    return f"({'|'.join(sorted(words, key=len, reverse=True))})"
+
+
+_BEFORE_PLACE = re.compile(f" (?:that is |which is |standing |lying |hanging )?{_one_of(_PLACES)} ")
+_IN_ROOM = re.compile(f" (?:in|of|inside|from) (?:the |a |an |my |our )?{_one_of(ROOMS)}$")
+_OF_N = re.compile(rf"^(\w+) (?:one )?of (?:the |all )?(?:({'|'.join(_NUMBERS)}|\d) )?(.+)$")
+
+
+@dataclass(frozen=True)
+class Beside:
+    """A condition on the place of an object relative to another one."""
+
+    place: Place
+    names: frozenset[str]
+    """Everyday names of the other object."""
+    words: str
+    """The other object as the wish names it."""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """The conditions of a goal in words; "", None and empty: no condition."""
+
+    text: str
+    """The wish in a normal form: the same object in other words of politeness has the same text."""
+    names: frozenset[str]
+    """Everyday names of which the object has one (`sim.core.vocabulary`)."""
+    noun: str
+    """The word for the object."""
+    colour: ColourName | None = None
+    material: str = ""
+    size: Size | None = None
+    """The extreme of the objects that satisfy all other conditions."""
+    count: int | None = None
+    """The number of objects that satisfy all conditions but `size`."""
+    rooms: tuple[str, ...] = ()
+    """Kinds of rooms of which the object is in one."""
+    beside: tuple[Beside, ...] = ()
+
+    @property
+    def categories(self) -> tuple[str, ...]:
+        """The mpcat40 categories of the names."""
+        return vocabulary().categories_of(self.names)
+
+    @property
+    def is_plain(self) -> bool:
+        """True: only the names count."""
+        return not (self.colour or self.material or self.size or self.count or self.rooms or self.beside)
+
+
+class WishError(ConfigError):
+    """A wish with an unknown word, or in a form that is not read."""
+
+
+def parse_wish(text: str) -> Wish:
+    """Returns the conditions of a wish in English.
+
+    Raises:
+        WishError: it is empty or too long, or has a word that is not known; the message names the word.
+    """
+    if not text.strip() or len(text) > 300:
+        raise WishError(f"A goal in words has 1 to 300 characters, got {len(text)}.")
+    rest = normal_form(_BEGINNINGS.sub("", normal_form(text)))
+    rooms: tuple[str, ...] = ()
+    if match := _IN_ROOM.search(" " + rest):
+        rooms, rest = ROOMS[match[1]], (" " + rest)[: match.start()].strip()
+    is_word = rest in vocabulary().words  # "something to sit on" is one
+    head, *others = [("on", rest)] if is_word else _split_places(rest)
+    beside = tuple(Beside(place, *_other(words)) for place, words in others)
+    wish = _noun_phrase(rest if not rooms else f"{rest} in the {match[1]}", head[1], beside)  # type: ignore[index]
+    return Wish(**{**wish.__dict__, "rooms": rooms}) if rooms else wish
+
+
+def _split_places(rest: str) -> list[tuple[Place, str]]:
+    """Returns the phrases of a wish between its words for places, each with the word before it."""
+    parts = _BEFORE_PLACE.split(f" {rest} ")
+    phrases = [parts[0], *parts[2::2]]
+    places = [_PLACES[word] for word in parts[1::2]]
+    if any(not phrase.strip() for phrase in phrases):
+        raise WishError(f"The goal '{rest}' must name an object on each side of '{parts[1]}'.")
+    return list(zip(["on", *places], (phrase.strip() for phrase in phrases), strict=True))  # type: ignore[arg-type]
+
+
+def _other(words: str) -> tuple[frozenset[str], str]:
+    """Returns the names of the other object of a place, which has no conditions of its own."""
+    if normal_form(words) in ("window", "windows", "door", "wall"):
+        return frozenset((normal_form(words).removesuffix("s"),)), normal_form(words)
+    wish = _noun_phrase(words, words, ())
+    if not wish.is_plain:
+        raise WishError(
+            f"'{words}' may only be the name of an object, such as '{wish.noun}': the goal is placed by it."
+        )
+    return wish.names, wish.noun
+
+
+def _noun_phrase(text: str, phrase: str, beside: tuple[Beside, ...]) -> Wish:
+    """Returns the wish of a phrase without places: "largest of the two red chairs"."""
+    phrase, count, size = normal_form(phrase), None, None
+    if (match := _OF_N.match(phrase)) and match[1] in _SIZES:
+        size, phrase = _SIZES[match[1]], normal_form(match[3])
+        count = None if match[2] is None else _NUMBERS.get(match[2]) or int(match[2])
+    found = vocabulary().find(phrase)
+    if found is None:
+        raise _unknown(phrase)
+    colour, material, rooms, words = None, "", (), list(found.before)
+    for word in words:
+        if word in _COLOURS and colour is None:
+            colour = _COLOURS[word]
+        elif word in MATERIALS and not material:
+            material = MATERIALS[word]
+        elif word in _SIZES and size is None:
+            size = _SIZES[word]
+        elif word in ROOMS and not rooms:
+            rooms = ROOMS[word]
+        elif word not in ("the", "and"):
+            raise _unknown(word, before=found.word)
+    return Wish(normal_form(text), found.names, found.word, colour, material, size, count, rooms, beside)
+
+
+def _unknown(word: str, before: str = "") -> WishError:
+    if before:
+        hint = did_you_mean(word, [*_COLOURS, *MATERIALS, *_SIZES, *ROOMS])
+        return WishError(
+            f"The word '{word}' before '{before}' is not known.{hint} Known are colours "
+            f"({', '.join(get_args(ColourName))}), materials, 'largest' and 'smallest', and rooms."
+        )
+    objects = [known for known, (relation, _) in vocabulary().words.items() if relation != "other"]
+    return WishError(f"No object is known as '{word}'.{did_you_mean(word, objects)}")
+
+
+def categories_of(goal: str) -> tuple[str, ...]:
+    """Returns the mpcat40 categories of the objects that a goal may mean.
+
+    Args:
+        goal: a category, the label of an instance (`chair_03`), or words.
+
+    Raises:
+        WishError: a word is not known.
+    """
+    category = goal.rpartition("_")[0] if goal.rpartition("_")[2].isdigit() else goal
+    return (category,) if category in MPCAT40_ID else parse_wish(goal).categories

@@ -1,0 +1,243 @@
+"""The objects of a house that satisfy a goal in words, by the true state of the house.
+
+What a house file says about an object (`sim.houses.instance_facts`) is its name, colour and material; sizes, rooms and
+places are computed from the geometry. An object without a name has the name of its category.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from functools import cached_property
+
+import numpy as np
+
+from sim.core.errors import EpisodeError
+from sim.core.vocabulary import NO_OBJECTS, in_words
+from sim.core.wishes import Beside, Wish
+from sim.gl import mujoco
+from sim.houses.instance_facts import InstanceFacts, read_instance_facts
+from sim.houses.labels import Instance
+from sim.task.footprints import Footprint, Footprints, house_floors
+from sim.world.world import World
+
+NEXT_TO_M = 0.6
+"""Objects with at most this gap in plan are next to each other."""
+_ON_M = 0.08
+"""Largest gap between the top of an object and the bottom of one that lies on it."""
+_OVERHEAD_M = 1.8
+"""An object whose lowest point is higher above its floor, such as a ceiling lamp, is no goal."""
+MOST_LISTED = 40
+"""Largest number of names that a message lists."""
+
+
+class Thing:
+    """One object of a house.
+
+    Args:
+        instance: the object.
+        facts: what the house file says about it.
+        outline: computes its footprint, which is None if nothing of it is rendered.
+        room_at: finds the room of a footprint: name and kind.
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        facts: InstanceFacts,
+        outline: Callable[[Instance], Footprint | None],
+        room_at: Callable[[Footprint], tuple[str, str]],
+    ) -> None:
+        self.instance, self.facts = instance, facts
+        self._outline, self._room_at = outline, room_at
+
+    @property
+    def name(self) -> str:
+        """Its everyday name, or that of its category."""
+        return self.facts.name or in_words(self.instance.category)
+
+    @cached_property
+    def outline(self) -> Footprint | None:
+        """Its footprint; None: nothing of it is rendered."""
+        return self._outline(self.instance)
+
+    @property
+    def footprint(self) -> Footprint:
+        """Its footprint, where it has one."""
+        assert self.outline is not None, f"{self.instance.name} is not rendered"
+        return self.outline
+
+    @cached_property
+    def _room(self) -> tuple[str, str]:
+        return self._room_at(self.footprint)
+
+    @property
+    def room(self) -> str:
+        """Name of the room (`room_bedroom_00`); "": outside of all rooms."""
+        return self._room[0]
+
+    @property
+    def room_kind(self) -> str:
+        """Kind of the room, such as `bedroom`; "": outside of all rooms."""
+        return self._room[1]
+
+    @property
+    def size_m(self) -> float:
+        """The cube root of its bounding box's volume, metres."""
+        x0, y0, x1, y1 = self.footprint.bounds_m
+        z0, z1 = self.footprint.z_m
+        return float(np.cbrt(max(x1 - x0, 0.05) * max(y1 - y0, 0.05) * max(z1 - z0, 0.05)))
+
+    @cached_property
+    def is_goal(self) -> bool:
+        """Whether a robot can be sent to it: rendered, not a part of the building, and not overhead."""
+        if self.instance.category in NO_OBJECTS or self.outline is None:
+            return False
+        return self.footprint.z_m[0] - self.footprint.floor_z_m <= _OVERHEAD_M
+
+
+class Meaning:
+    """The objects of a house, and which of them satisfy a wish; objects are where the house file puts them.
+
+    Args:
+        world: the compiled house.
+        data: its state, with kinematics computed.
+    """
+
+    def __init__(self, world: World, data: mujoco.MjData) -> None:
+        self._world, self._data = world, data
+
+    @cached_property
+    def things(self) -> tuple[Thing, ...]:
+        """All instances. Their geometry is computed on first use: that of a whole house takes seconds."""
+        world, data = self._world, self._data
+        facts = read_instance_facts(world.model, world.labels)
+        footprints = Footprints(world.model, house_floors(world.model, data, world.labels))
+        return tuple(
+            Thing(
+                instance,
+                facts.get(instance.name, InstanceFacts()),
+                lambda instance: footprints.of(data, instance),
+                self._room_of,
+            )
+            for instance in world.labels.instances
+        )
+
+    def satisfying(self, wish: Wish) -> tuple[Instance, ...]:
+        """Returns the objects that satisfy a wish.
+
+        Raises:
+            EpisodeError: there is none; the message says what there is.
+        """
+        found = self.candidates(wish)
+        if wish.count is not None and len(found) != wish.count:
+            raise EpisodeError(f"{self._house} has {len(found)} objects for '{wish.text}', not {wish.count}.")
+        if wish.size is not None and found:
+            extreme = max if wish.size == "largest" else min
+            best = extreme(thing.size_m for thing in found)
+            found = tuple(thing for thing in found if thing.size_m == best)
+        if not found:
+            raise EpisodeError(self._nothing_for(wish))
+        return tuple(thing.instance for thing in found)
+
+    def candidates(self, wish: Wish) -> tuple[Thing, ...]:
+        """Returns the objects that satisfy all conditions of a wish but its size."""
+        return tuple(thing for thing in self.named(wish.names) if self._fits(thing, wish))
+
+    def named(self, names: Iterable[str]) -> tuple[Thing, ...]:
+        """Returns the objects with one of some names that a robot can be sent to."""
+        wanted = frozenset(names)
+        return tuple(thing for thing in self.things if thing.name in wanted and thing.is_goal)
+
+    def gap_m(self, thing: Thing, names: frozenset[str]) -> float:
+        """Returns the gap in plan between an object and the nearest other one with one of some names; inf: none.
+
+        Objects in different rooms are not near each other, but windows, doors and walls belong to all.
+        """
+        gaps = [_gap_m(thing.footprint, other.footprint) for other in self._others(thing, names)]
+        return min(gaps, default=float("inf"))
+
+    def is_at(self, thing: Thing, beside: Beside) -> bool:
+        """Returns whether an object is at a place relative to another one."""
+        if beside.place == "next to":
+            return self.gap_m(thing, beside.names) <= NEXT_TO_M
+        return any(
+            _gap_m(thing.footprint, other.footprint) == 0.0
+            and (_is_on(thing, other) if beside.place == "on" else _is_under(thing, other))
+            for other in self._others(thing, beside.names)
+        )
+
+    def names(self) -> Counter[str]:
+        """Returns the names of all objects that can be goals, with how often each occurs."""
+        return Counter(thing.name for thing in self.things if thing.is_goal)
+
+    @property
+    def _house(self) -> str:
+        return f"House '{self._world.house.name}'"
+
+    def _fits(self, thing: Thing, wish: Wish) -> bool:
+        return (
+            wish.colour in (None, thing.facts.colour)
+            and wish.material in ("", thing.facts.material)
+            and (not wish.rooms or thing.room_kind in wish.rooms)
+            and all(self.is_at(thing, beside) for beside in wish.beside)
+        )
+
+    def _others(self, thing: Thing, names: frozenset[str]) -> list[Thing]:
+        return [
+            other
+            for other in self.things
+            if other is not thing
+            and other.name in names
+            and other.outline is not None
+            and (other.room == thing.room or other.instance.category in NO_OBJECTS)
+            and abs(other.footprint.floor_z_m - thing.footprint.floor_z_m) < 1.0
+        ]
+
+    def _room_of(self, footprint: Footprint) -> tuple[str, str]:
+        x0, y0, x1, y1 = footprint.bounds_m
+        x_m, y_m = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
+        for room in self._world.rooms:
+            if abs(room.floor_z_m - footprint.floor_z_m) < 1.0 and room.contains(x_m, y_m):
+                return room.name, room.kind
+        return "", ""
+
+    def _nothing_for(self, wish: Wish) -> str:
+        same = self.named(wish.names)
+        if not same:
+            listed = self.names()
+            names = ", ".join(sorted(listed)[:MOST_LISTED]) + (", ..." if len(listed) > MOST_LISTED else "")
+            return f"{self._house} has no '{wish.noun}'. It has: {names}."
+        return f"{self._house} has no '{wish.text}'. It has: {_described(same)}."
+
+
+def _described(things: Sequence[Thing]) -> str:
+    """Returns what is known of some objects: "red armchair (bedroom), armchair (office)"."""
+    texts = Counter(
+        " ".join(filter(None, (thing.facts.colour, thing.facts.material, thing.name)))
+        + (f" ({thing.room_kind.replace('_', ' ')})" if thing.room_kind else "")
+        for thing in things
+    )
+    return ", ".join(text if count == 1 else f"{count} x {text}" for text, count in sorted(texts.items()))
+
+
+def _gap_m(a: Footprint, b: Footprint) -> float:
+    """Returns the gap between two footprints in plan; 0 where they overlap."""
+    (ax0, ay0, ax1, ay1), (bx0, by0, bx1, by1) = a.bounds_m, b.bounds_m
+    if np.hypot(max(ax0 - bx1, bx0 - ax1, 0.0), max(ay0 - by1, by0 - ay1, 0.0)) > 2.0:
+        return 2.0  # far enough for all purposes
+    points_a, points_b = np.asarray(a.boundary_m.data), np.asarray(b.boundary_m.data)
+    if a.contains(points_b).any() or b.contains(points_a).any():
+        return 0.0
+    return float(a.boundary_m.query(points_b)[0].min())
+
+
+def _is_on(thing: Thing, other: Thing) -> bool:
+    return abs(thing.footprint.z_m[0] - other.footprint.z_m[1]) <= _ON_M or (
+        other.footprint.z_m[0] < thing.footprint.z_m[0] < other.footprint.z_m[1]
+        and thing.footprint.z_m[0] > thing.footprint.floor_z_m + _ON_M
+    )
+
+
+def _is_under(thing: Thing, other: Thing) -> bool:
+    return thing.footprint.z_m[1] < other.footprint.z_m[1] and not _is_on(thing, other)

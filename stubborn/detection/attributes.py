@@ -1,0 +1,249 @@
+"""Tests the conditions of a goal in words on tracked objects: colour, size, room, and what is next to them.
+
+Each condition gives a track a factor in [0, 1] on its probability of the goal. A condition that cannot be judged yet
+gives `UNDECIDED`, below the limit for a STOP and above the one for a look, so that the robot goes nearer.
+
+Colours and rooms are judged by `attributes.json`, counted in houses of `train` by `tools.training.fit_attributes`: how
+often the pixels of an object of each colour have which colour, and which categories rooms of each kind hold. Materials
+are not judged.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import numpy as np
+from jaxtyping import Bool, Float32, Float64, Int, Int16, UInt8
+
+from sim.core.colours import COLOUR_NAMES, colour_numbers
+from sim.core.geometry.grid import GridFrame
+from sim.core.interface import MPCAT40, MPCAT40_ID
+from sim.core.reading import read_json
+from sim.core.vocabulary import vocabulary
+from sim.core.wishes import Beside, Wish
+from stubborn.detection.tracks import Tracks
+
+FILE = Path(__file__).with_name("attributes.json")
+UNDECIDED, AT_LAST = 0.45, 0.7
+"""Factor of a condition that is not decided, and the same when few actions are left."""
+LATE_SHARE = 0.7
+"""After this share of the actions, conditions that are not decided count as `AT_LAST`."""
+_LEAST_PIXELS = 60
+"""Pixels of a track, at the resolution of the posteriors, from which its colour is judged."""
+_COLOUR_SHARPNESS = 12.0
+"""Number of independent pixels for which those of a track count."""
+_NEXT_TO_M, _SAME_ROOM_M = 0.75, 4.5
+_CERTAIN = 0.5
+"""Probability of a category from which a track counts as an object of it."""
+_STRUCTURES = ("wall", "window", "door")
+_WALL_LOW_M, _WALL_HIGH_M = 0.9, 2.0
+"""Heights between which a pixel of a wall, a window or a door marks its cell."""
+
+Share = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
+
+
+class _File(msgspec.Struct):
+    """The fitted numbers."""
+
+    colours: dict[str, list[Share]]
+    """For each colour, and "" for objects without one, the share of pixels of each of `COLOUR_NAMES`."""
+    rooms: dict[str, dict[str, Share]]
+    """For each kind of room, the share of the rooms that hold an object of each category."""
+
+
+@functools.cache
+def _fitted() -> _File:
+    return read_json(FILE, _File, what="Fitted attributes")
+
+
+class Attributes:
+    """The evidence on the conditions of one wish, of one episode.
+
+    Args:
+        wish: the goal.
+        frame: the grid of the voxels from above.
+        most_tracks: limit of the number of tracks.
+    """
+
+    def __init__(self, wish: Wish, frame: GridFrame, most_tracks: int) -> None:
+        self.wish = wish
+        self._frame = frame
+        self._colours = np.zeros((most_tracks, len(COLOUR_NAMES)), np.float64)
+        self._names: dict[int, dict[str, int]] = {}
+        self._marks = {name: np.zeros(frame.shape, np.bool_) for name in _STRUCTURES}
+
+    def add(
+        self,
+        tracks: Int16[np.ndarray, "h w"],
+        rgb: UInt8[np.ndarray, "h w 3"] | None,
+        objects: tuple[Int[np.ndarray, "h w"], Sequence[str]] | None,
+    ) -> None:
+        """Enters one frame.
+
+        Args:
+            tracks: the track of each pixel, 0: none.
+            rgb: the image at the same resolution; None: it is not known.
+            objects: the object of each pixel and the names of all, if the segmentation tells objects apart.
+        """
+        seen = tracks > 0
+        if rgb is not None and self.wish.colour is not None:
+            numbers = colour_numbers(rgb[seen].astype(np.float32) / 255.0)
+            np.add.at(self._colours, (tracks[seen], numbers), 1.0)
+        if objects is not None:
+            image, names = objects
+            pairs, counts = np.unique(np.stack([tracks[seen], image[seen]]), axis=1, return_counts=True)
+            for (track, number), count in zip(pairs.T.tolist(), counts.tolist(), strict=True):
+                if number >= 0:
+                    of_track = self._names.setdefault(track, {})
+                    of_track[names[number]] = of_track.get(names[number], 0) + count
+
+    def mark(
+        self,
+        posteriors: Float32[np.ndarray, "classes h w"],
+        rows: Int[np.ndarray, "h w"],
+        cols: Int[np.ndarray, "h w"],
+        height_m: Float64[np.ndarray, "h w"],
+    ) -> None:
+        """Enters the cells in which a frame shows a wall, a window or a door.
+
+        Args:
+            posteriors: of the frame.
+            rows: row of each pixel, -1: none; `cols` is its column, and `height_m` its height above the floor.
+        """
+        high = (rows >= 0) & (height_m > _WALL_LOW_M) & (height_m < _WALL_HIGH_M)
+        for name, marks in self._marks.items():
+            shown = high & (posteriors[MPCAT40_ID[name] - 1] > _CERTAIN)
+            marks[rows[shown], cols[shown]] = True
+
+    def factors(
+        self, tracks: Tracks, candidates: Int[np.ndarray, " n"], left_share: float, well_seen: Bool[np.ndarray, " n"]
+    ) -> Float32[np.ndarray, " n"]:
+        """Returns the factor of the conditions for each candidate.
+
+        Args:
+            tracks: all objects.
+            candidates: numbers of the tracks that are probably of the goal's category.
+            left_share: share of the actions that are left.
+            well_seen: candidates that were seen from near, so that what is next to them was, too.
+        """
+        undecided = UNDECIDED if left_share > 1.0 - LATE_SHARE else AT_LAST
+        wish, result = self.wish, np.ones(len(candidates))
+        if wish.colour is not None:
+            result *= [self._colour_factor(track, undecided) for track in candidates.tolist()]
+        if wish.rooms:
+            result *= [self._room_factor(tracks, track, undecided) for track in candidates.tolist()]
+        for beside in wish.beside:
+            near = [self._is_at(tracks, track, beside) for track in candidates.tolist()]
+            result *= np.where(near, 1.0, np.where(well_seen, 0.1, undecided))
+        if wish.size is not None:
+            result *= self._size_factors(tracks, candidates, result, undecided)
+        return result.astype(np.float32)
+
+    def _colour_factor(self, track: int, undecided: float) -> float:
+        counts = self._colours[track]
+        if counts.sum() < _LEAST_PIXELS:
+            return undecided
+        shares, fitted = counts / counts.sum(), _fitted().colours
+        logs = {name: float(shares @ np.log(np.maximum(of_colour, 0.01))) for name, of_colour in fitted.items()}
+        best = max(logs.values())
+        odds = {name: np.exp(_COLOUR_SHARPNESS * (value - best)) for name, value in logs.items() if name}
+        wanted = odds.get(self.wish.colour or "", 0.0)
+        return float(wanted / sum(odds.values()))
+
+    def _room_factor(self, tracks: Tracks, track: int, undecided: float) -> float:
+        """Returns the probability that a track is in a room of the wish, by the categories of the tracks around it."""
+        x_m, y_m = tracks.middle_xy_m(track)
+        held = {name for name in self._categories_around(tracks, track, x_m, y_m) if name in _room_categories()}
+        if not held:
+            return undecided
+        logs = {}
+        for kind, shares in _fitted().rooms.items():
+            present = sum(np.log(max(shares.get(name, 0.0), 0.02)) for name in held)
+            absent = sum(np.log(max(1.0 - share, 0.3)) for name, share in shares.items() if name not in held)
+            logs[kind] = present + absent
+        best = max(logs.values())
+        odds = {kind: np.exp(value - best) for kind, value in logs.items()}
+        probability = sum(odds.get(kind, 0.0) for kind in self.wish.rooms) / sum(odds.values())
+        return float(probability if abs(probability - 0.5) > 0.2 or len(held) > 3 else undecided)
+
+    def _categories_around(self, tracks: Tracks, track: int, x_m: float, y_m: float) -> set[str]:
+        """Returns the categories of the tracks near a place that no wall seen so far separates from it."""
+        numbers = np.flatnonzero(tracks.sizes(np.arange(tracks.count + 1)) > 0)
+        numbers = numbers[numbers != track]
+        x, y = tracks.middles(numbers)
+        near = numbers[np.hypot(x - x_m, y - y_m) <= _SAME_ROOM_M]
+        probability = tracks.evidence.probability
+        result = set()
+        for other in near.tolist():
+            category = int(np.argmax(probability[other]))
+            if probability[other, category] >= _CERTAIN and not self._wall_between(
+                (x_m, y_m), tracks.middle_xy_m(other)
+            ):
+                result.add(MPCAT40[1 + category])
+        category = int(np.argmax(probability[track]))
+        return result | {MPCAT40[1 + category]}
+
+    def _wall_between(self, a: tuple[float, float], b: tuple[float, float]) -> bool:
+        count = max(2, round(float(np.hypot(a[0] - b[0], a[1] - b[1])) / (0.5 * self._frame.cell_m)))
+        t = np.linspace(0.0, 1.0, count)
+        rows, cols = self._frame.cells(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]))
+        inside = self._frame.contains(rows, cols)
+        return bool(self._marks["wall"][rows[inside], cols[inside]].sum() >= 2)
+
+    def _is_at(self, tracks: Tracks, track: int, beside: Beside) -> bool:
+        """Returns whether a track is at a place relative to another one, or to a window, a door or a wall."""
+        structures = [name for name in _STRUCTURES if name in beside.names]
+        if structures:
+            return any(self._is_near_mark(tracks, track, name) for name in structures)
+        categories = [MPCAT40_ID[name] - 1 for name in vocabulary().categories_of(beside.names)]
+        probability = tracks.evidence.probability[: tracks.count + 1, categories].sum(axis=1)
+        for other in np.flatnonzero(
+            (probability >= _CERTAIN) & (tracks.sizes(np.arange(tracks.count + 1)) > 0)
+        ).tolist():
+            name = self.name_of(other)
+            if other == track or (name and name not in beside.names):
+                continue
+            gap_m, above_m = tracks.gap_m(track, other), tracks.above_m(track, other)
+            if beside.place == "next to":
+                at = gap_m <= _NEXT_TO_M
+            else:
+                at = gap_m <= 0.15 and (above_m > -0.25 if beside.place == "on" else above_m <= -0.25)
+            if at and not self._wall_between(tracks.middle_xy_m(track), tracks.middle_xy_m(other)):
+                return True
+        return False
+
+    def name_of(self, track: int) -> str:
+        """Returns the everyday name that most pixels of a track have; "": it is not known."""
+        names = self._names.get(track)
+        return max(names, key=names.__getitem__) if names else ""
+
+    def _is_near_mark(self, tracks: Tracks, track: int, name: str) -> bool:
+        (row, col), (last_row, last_col) = tracks.box(track)
+        reach = round(_NEXT_TO_M / self._frame.cell_m)
+        around = self._marks[name][
+            max(row - reach, 0) : last_row + reach + 1, max(col - reach, 0) : last_col + reach + 1
+        ]
+        return bool(around.sum() >= 2)
+
+    def _size_factors(
+        self, tracks: Tracks, candidates: Int[np.ndarray, " n"], others: np.ndarray, undecided: float
+    ) -> np.ndarray:
+        """Returns 1 for the extreme of the candidates that satisfy the other conditions, if enough are known."""
+        fits = others >= _CERTAIN
+        if not fits.any():
+            return np.full(len(candidates), undecided)
+        sizes = np.where(fits, tracks.extents_m(candidates), np.nan)
+        best = np.nanargmax(sizes) if self.wish.size == "largest" else np.nanargmin(sizes)
+        factors = np.where(fits, 0.1, undecided)
+        enough = self.wish.count is not None and int(fits.sum()) >= self.wish.count
+        factors[best] = 1.0 if enough or undecided == AT_LAST else undecided
+        return factors
+
+
+@functools.cache
+def _room_categories() -> frozenset[str]:
+    return frozenset(name for shares in _fitted().rooms.values() for name in shares)

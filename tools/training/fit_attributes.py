@@ -1,0 +1,112 @@
+"""Counts how objects of each colour look and what rooms of each kind hold, for goals in words.
+
+    python -m tools.training.fit_attributes --houses 100 --views 20
+
+writes `stubborn/detection/attributes.json`, from houses of `train` in the profile `fast`, which agents see.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections import Counter, defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from sim.app import cli
+from sim.core.colours import COLOUR_NAMES, colour_numbers
+from sim.core.files import write_atomically
+from sim.core.interface import GOAL_CATEGORIES, CameraModel
+from sim.env.scene import Scene
+from sim.episodes.drawing import draw_start
+from sim.episodes.splits import load_split
+from sim.robot.config import RobotConfig
+from stubborn.detection.attributes import FILE
+
+_LEAST_PIXELS = 60
+_STRIDE_PX = 4
+_PRIOR_VIEWS = 10
+"""Number of views for which the prior of a colour counts."""
+_MORE_CATEGORIES = ("appliances", "mirror", "shelving", "curtain")
+"""Categories that tell rooms apart and are no goal categories."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Count colours and contents of rooms."""
+
+    houses: cli.Count = 100
+    """Number of houses of `train`."""
+    views: cli.Count = 20
+    """Random views in each."""
+    out: Path = FILE
+    """The file."""
+
+
+def main(args: Args) -> int:
+    """Writes the file; returns the exit status."""
+    split, rng = load_split("train"), np.random.default_rng(0)
+    shares: dict[str, list[np.ndarray]] = defaultdict(list)
+    rooms, held = Counter[str](), Counter[tuple[str, str]]()
+    for number, house in enumerate(split.houses[: args.houses]):
+        scene = Scene(split.load_house(house), robot=RobotConfig(), camera=CameraModel(), profile="fast")
+        _count_rooms(scene, rooms, held)
+        _count_colours(scene, args.views, rng, shares)
+        scene.close()
+        print(f"\r{number + 1} of {args.houses} houses", end="", flush=True)
+    colours = {name: _mean(name, shares[name]) for name in ("", *COLOUR_NAMES)}
+    kinds = {
+        kind: {
+            category: round((held[kind, category] + 0.5) / (count + 1.0), 3)
+            for category in (*GOAL_CATEGORIES, *_MORE_CATEGORIES)
+        }
+        for kind, count in sorted(rooms.items())
+        if count >= 10
+    }
+    print(f"\n{ {name: len(of_colour) for name, of_colour in shares.items()} } views; rooms: {dict(rooms)}")
+    write_atomically(args.out, json.dumps({"colours": colours, "rooms": kinds}, indent=1) + "\n")
+    return 0
+
+
+def _mean(colour: str, shares: list[np.ndarray]) -> list[float]:
+    """Returns the mean shares of an object's colour; where there are few, it is mostly seen as what it is."""
+    prior = np.full(len(COLOUR_NAMES), 0.4 / (len(COLOUR_NAMES) - 1))
+    if colour:
+        prior[COLOUR_NAMES.index(colour)] = 0.6
+    return ((_PRIOR_VIEWS * prior + np.sum(shares, axis=0)) / (_PRIOR_VIEWS + len(shares))).round(4).tolist()
+
+
+def _count_rooms(scene: Scene, rooms: Counter[str], held: Counter[tuple[str, str]]) -> None:
+    for room in scene.world.rooms:
+        rooms[room.kind] += 1
+    inside: dict[tuple[str, str], set[str]] = defaultdict(set)
+    for thing in scene.task.truth.meaning.things:
+        if thing.is_goal and thing.room:
+            inside[thing.room, thing.room_kind].add(thing.instance.category)
+    for (_, kind), categories in inside.items():
+        held.update((kind, category) for category in categories)
+
+
+def _count_colours(scene: Scene, views: int, rng: np.random.Generator, shares: dict[str, list[np.ndarray]]) -> None:
+    """Adds the shares of the colours of each object in some random views."""
+    facts = {thing.instance.name: thing for thing in scene.task.truth.meaning.things}
+    labels, goal = scene.world.labels, scene.task.truth.goals()[0]
+    for _ in range(views):
+        scene.world.reset(draw_start(scene.task, goal, rng))
+        images = scene.camera.render(scene.world.data, scene.world.camera_pose, ("rgb", "geom"))
+        middle = slice(_STRIDE_PX // 2, None, _STRIDE_PX)
+        rgb, geoms = images["rgb"][middle, middle], images["geom"][middle, middle]
+        objects = np.append(labels.geom_instance, np.int32(-1))[geoms]
+        numbers = colour_numbers(rgb.astype(np.float32) / 255.0)
+        for number, pixels in zip(*np.unique(objects, return_counts=True), strict=True):
+            thing = facts[labels.instances[number].name] if number >= 0 else None
+            if thing is None or pixels < _LEAST_PIXELS or not thing.is_goal:
+                continue
+            counts = np.bincount(numbers[objects == number], minlength=len(COLOUR_NAMES))
+            shares[thing.facts.colour or ""].append(counts / counts.sum())
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))
