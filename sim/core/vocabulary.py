@@ -21,6 +21,15 @@ from sim.core.interface import MPCAT40
 FILE = Path(__file__).parent / "words" / "vocabulary.csv"
 NO_OBJECTS = frozenset({"void", "wall", "floor", "ceiling", "door", "window", "stairs", "column", "beam", "railing"})
 """Categories that are no goals in words: the building itself."""
+UNSEEN = frozenset(
+    {
+        "rocking chair", "four-poster bed", "potted tree", "bolster", "wall scroll", "daybed", "console table",
+        "media cabinet", "coat stand", "dumbbell rack", "exercise bike", "suitcase", "duffel bag", "teddy bear",
+        "tea set", "candlesticks", "hourglass", "spice rack", "drying rack", "linen shelf", "toaster oven",
+        "dishwasher", "wood stove", "bench", "washing machine", "bonsai", "floor cushion", "laundry basket",
+    }
+)  # fmt: skip
+"""Names that are asked for in the splits `words-unseen`: no training may use them as labels."""
 _S_ENDINGS = ("ss", "us", "is", "as")
 """Endings of words that are no plurals."""
 

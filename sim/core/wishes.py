@@ -13,8 +13,9 @@ from types import MappingProxyType
 from typing import Literal, get_args
 
 from sim.core.colours import ColourName
-from sim.core.errors import ConfigError, did_you_mean
-from sim.core.interface import MPCAT40_ID
+from sim.core.errors import ConfigError, EpisodeError, did_you_mean
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID
+from sim.core.reading import printable
 from sim.core.vocabulary import normal_form, vocabulary
 
 Size = Literal["largest", "smallest"]
@@ -196,6 +197,24 @@ def _unknown(word: str, before: str = "") -> WishError:
     return WishError(f"No object is known as '{word}'.{did_you_mean(word, objects)}")
 
 
+def require_goal(goal: str) -> None:
+    """Raises EpisodeError if a goal is neither a category, nor the label of an instance, nor words that are known."""
+    if goal in GOAL_CATEGORIES or category_of_label(goal) is not None:
+        return
+    try:
+        parse_wish(goal)
+    except WishError as error:
+        raise EpisodeError(
+            f"Unknown goal '{printable(goal)}'. {error} Categories: {', '.join(GOAL_CATEGORIES)}."
+        ) from None
+
+
+def category_of_label(goal: str) -> str | None:
+    """Returns the category of the label of an instance (`chair_03`); None: it is not one."""
+    category, _, number = goal.rpartition("_")
+    return category if number.isdigit() and category in MPCAT40_ID and category != "void" else None
+
+
 def categories_of(goal: str) -> tuple[str, ...]:
     """Returns the mpcat40 categories of the objects that a goal may mean.
 
@@ -205,5 +224,5 @@ def categories_of(goal: str) -> tuple[str, ...]:
     Raises:
         WishError: a word is not known.
     """
-    category = goal.rpartition("_")[0] if goal.rpartition("_")[2].isdigit() else goal
+    category = category_of_label(goal) or goal
     return (category,) if category in MPCAT40_ID else parse_wish(goal).categories

@@ -17,10 +17,11 @@ from sim.core.configuration import as_settings
 from sim.core.errors import HouseError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import SENSORS, Action, CameraModel, ConfigError, RobotModel, SuccessRule
+from sim.core.wishes import require_goal
 from sim.env.chosen_split import chosen_split
 from sim.env.scene import Scene, SceneCache
 from sim.episodes.drawing import sample_episode
-from sim.episodes.episode import Episode, require_goal, require_start
+from sim.episodes.episode import Episode, require_start
 from sim.episodes.splits import Split
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig

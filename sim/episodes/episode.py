@@ -6,10 +6,7 @@ from dataclasses import dataclass
 
 from sim.core.errors import EpisodeError
 from sim.core.geometry.pose import Pose
-from sim.core.interface import GOAL_CATEGORIES
-from sim.core.reading import printable
-from sim.core.wishes import WishError, parse_wish
-from sim.houses.labels import parse_label
+from sim.core.wishes import require_goal
 
 FARTHEST_M = 10_000.0
 """Largest coordinate of a start."""
@@ -31,18 +28,6 @@ class Episode:
     def __post_init__(self) -> None:
         require_goal(self.goal)
         require_start(self.start)
-
-
-def require_goal(goal: str) -> None:
-    """Raises EpisodeError if a goal is neither a category, nor the label of an instance, nor words that are known."""
-    if goal in GOAL_CATEGORIES or parse_label(goal) is not None:
-        return
-    try:
-        parse_wish(goal)
-    except WishError as error:
-        raise EpisodeError(
-            f"Unknown goal '{printable(goal)}'. {error} Categories: {', '.join(GOAL_CATEGORIES)}."
-        ) from None
 
 
 def require_start(start: Pose) -> None:

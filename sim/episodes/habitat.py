@@ -130,6 +130,8 @@ class IndexFile(msgspec.Struct):
 
     version: Name = "unknown"
     order: list[Name | int] | None = None
+    houses_of: Name | None = None
+    """Not of Habitat: the folder beside the split's that holds its houses."""
 
 
 def read_episodes(path: Path) -> list[EpisodeEntry]:

@@ -231,6 +231,7 @@ def write_split(
     *,
     version: str,
     unreachable: Mapping[str, Sequence[str]] | None = None,
+    houses_of: str = "",
 ) -> None:
     """Writes the episodes of a split next to its houses, in Habitat's layout; existing episodes are replaced.
 
@@ -240,8 +241,11 @@ def write_split(
         goals_by_house: for each house, for each goal category, Habitat's goals (`sim.episodes.habitat`).
         version: version of the split.
         unreachable: for each house, names of the goal instances that cannot be reached; None: not computed.
+        houses_of: name of the folder beside this one that holds the houses; "": this one holds them.
     """
     index = {"version": version, "order": [episode.episode_id for episode in episodes], "episodes": []}
+    if houses_of:
+        index["houses_of"] = houses_of
     files: dict[Path, bytes | str] = {}
     for house, goals in goals_by_house.items():
         content = habitat.category_tables() | {
@@ -326,8 +330,9 @@ def _read_split(folder: Path) -> Split:
     if len(set(order)) < len(order):
         raise ConfigError(f"Episode file '{index_file}', field 'order': an episode is listed twice.")
     ordered = tuple(episodes[episode_id] for episode_id in order)
-    house_list = read_house_list(folder) if has_house_list(folder) else None
-    houses = house_list.paths if house_list else house_files(folder)
+    home = folder if not index.houses_of else inside(folder.parent, index.houses_of, what="folder of the houses")
+    house_list = read_house_list(home) if has_house_list(home) else None
+    houses = house_list.paths if house_list else house_files(home)
     if (bad := first_unprintable(houses)) is not None:
         raise ConfigError(f"Split '{folder}': the name of the house '{printable(bad)}' is not plain text.")
     missing = sorted({episode.house for episode in ordered} - set(houses))
@@ -342,7 +347,7 @@ def _read_split(folder: Path) -> Split:
         )
     house_sums = {} if house_list else {name: house_sum(path) for name, path in houses.items()}
     sums = dict(house_list.sha256 if house_list else house_sums)
-    labels = labels_of(folder)
+    labels = labels_of(home)
     if labels is not None:
         sums[LABELS_FILE] = sha256_of(labels, what="Label rules")
     digest = _sha256(sums, ordered)

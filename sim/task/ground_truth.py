@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sim.core.errors import EpisodeError
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
-from sim.core.wishes import parse_wish
+from sim.core.wishes import parse_wish, require_goal
 from sim.gl import mujoco
 from sim.houses.labels import Instance, rendered_geoms
 from sim.task.meaning import Meaning
@@ -72,14 +72,15 @@ class GroundTruth:
                 (`sim.core.wishes`).
 
         Raises:
-            EpisodeError: no object satisfies the goal, unless it is a category; the message says what there is.
-            WishError: a word of the goal is not known.
+            EpisodeError: the goal has a word that is not known, or no object satisfies it, unless it is a category; the
+                message says what there is.
         """
         if goal not in self._instances:
             labels = self.world.labels
             if goal in GOAL_CATEGORIES:
                 self._instances[goal] = labels.of_category(goal)
             else:
+                require_goal(goal)
                 named = tuple(instance for instance in labels.instances if instance.name == goal)
                 self._instances[goal] = named or self.meaning.satisfying(parse_wish(goal))
         return self._instances[goal]
@@ -113,7 +114,7 @@ class GroundTruth:
         A storey without an instance, in a house that has one elsewhere, has no such place, and no path to one.
 
         Raises:
-            EpisodeError, WishError: the goal is unknown, or the house has no instance of it.
+            EpisodeError: the goal is unknown, or the house has no instance of it.
         """
         if (goal, floor_z_m) not in self._targets:
             space, region = self.space(floor_z_m), self._existing(self.region(goal, floor_z_m))
@@ -125,7 +126,7 @@ class GroundTruth:
         """Returns the region of a storey where a STOP for a goal succeeds, with objects where the house file puts them.
 
         Raises:
-            EpisodeError, WishError: the goal is unknown.
+            EpisodeError: the goal is unknown.
         """
         if (goal, floor_z_m) not in self._regions:
             self._regions[goal, floor_z_m] = self._region(goal, floor_z_m, self._at_rest)

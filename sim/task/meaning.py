@@ -106,6 +106,7 @@ class Meaning:
 
     def __init__(self, world: World, data: mujoco.MjData) -> None:
         self._world, self._data = world, data
+        self._gaps: dict[tuple[str, frozenset[str]], float] = {}
 
     @cached_property
     def things(self) -> tuple[Thing, ...]:
@@ -154,8 +155,11 @@ class Meaning:
 
         Objects in different rooms are not near each other, but windows, doors and walls belong to all.
         """
-        gaps = [_gap_m(thing.footprint, other.footprint) for other in self._others(thing, names)]
-        return min(gaps, default=float("inf"))
+        key = thing.instance.name, names
+        if key not in self._gaps:
+            gaps = [_gap_m(thing.footprint, other.footprint) for other in self._others(thing, names)]
+            self._gaps[key] = min(gaps, default=float("inf"))
+        return self._gaps[key]
 
     def is_at(self, thing: Thing, beside: Beside) -> bool:
         """Returns whether an object is at a place relative to another one."""

@@ -10,6 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.interface import MPCAT40_ID
+
 TRAPPED_WINDOW_STEPS = 100
 TRAPPED_RADIUS_M = 1.0
 """A robot is trapped if it never gets this far from its position at the start of a window of that many steps."""
@@ -39,6 +41,11 @@ def soft_spl(start_distance_m: float | None, end_distance_m: float | None, path_
     else:
         progress = max(0.0, 1.0 - end_distance_m / start_distance_m)
     return progress * path_efficiency(start_distance_m, path_length_m)
+
+
+def goal_share(semantic: NDArray[np.uint8], goal: str) -> float:
+    """Returns the share of one ground-truth frame (h, w) that the goal's class covers, in [0, 1]."""
+    return int(np.count_nonzero(semantic == MPCAT40_ID[goal])) / semantic.size
 
 
 def steps_to_first_sight(first_seen_step: int | None, max_steps: int) -> int:

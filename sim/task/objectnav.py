@@ -91,8 +91,8 @@ class Task:
         its distances are None, its SPL is 0. A goal on this storey that is walled in is an error.
 
         Raises:
-            EpisodeError: the goal is not in the house, or is on the storey of the start without a path to it.
-            WishError: a word of the goal is not known.
+            EpisodeError: the goal is unknown, is not in the house, or is on the storey of the start without a path to
+                it.
         """
         self._record = None
         shortest_path_m = self.distance_from(goal, start)

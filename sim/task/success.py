@@ -139,6 +139,11 @@ class GoalRegion:
             reached[hidden[place[seen]]] = True
         return reached
 
+    def sees(self, footprint: Footprint, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Returns (n,) whether the nearest point of a footprint is in sight from each place (n, 2), at any distance."""
+        nearest = footprint.boundary_m.query(xy_m)[1]
+        return ~lines_blocked(xy_m, footprint.boundary_m.data[nearest], self._blockers)
+
 
 def sight_blockers(
     model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, height_m: float

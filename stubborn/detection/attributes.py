@@ -3,8 +3,8 @@
 Each condition gives a track a factor in [0, 1] on its probability of the goal. A condition that cannot be judged yet
 gives `UNDECIDED`, below the limit for a STOP and above the one for a look, so that the robot goes nearer.
 
-Colours and rooms are judged by `attributes.json`, counted in houses of `train` by `tools.training.fit_attributes`: how
-often the pixels of an object of each colour have which colour, and which categories rooms of each kind hold. Materials
+Colours and rooms are judged by `attributes.json`, fitted in houses of `train` by `tools.training.fit_attributes`: which
+colours the pixels of an object of each colour have, and which categories rooms of each kind hold. Materials
 are not judged.
 """
 
@@ -22,7 +22,7 @@ from jaxtyping import Bool, Float32, Float64, Int, Int16, UInt8
 from sim.core.colours import COLOUR_NAMES, colour_numbers
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import MPCAT40, MPCAT40_ID
-from sim.core.reading import read_json
+from sim.core.reading import Number, read_json
 from sim.core.vocabulary import vocabulary
 from sim.core.wishes import Beside, Wish
 from stubborn.detection.tracks import Tracks
@@ -30,12 +30,10 @@ from stubborn.detection.tracks import Tracks
 FILE = Path(__file__).with_name("attributes.json")
 UNDECIDED, AT_LAST = 0.45, 0.7
 """Factor of a condition that is not decided, and the same when few actions are left."""
-LATE_SHARE = 0.7
+LATE_SHARE = 0.6
 """After this share of the actions, conditions that are not decided count as `AT_LAST`."""
 _LEAST_PIXELS = 60
 """Pixels of a track, at the resolution of the posteriors, from which its colour is judged."""
-_COLOUR_SHARPNESS = 12.0
-"""Number of independent pixels for which those of a track count."""
 _NEXT_TO_M, _SAME_ROOM_M = 0.75, 4.5
 _CERTAIN = 0.5
 """Probability of a category from which a track counts as an object of it."""
@@ -46,11 +44,20 @@ _WALL_LOW_M, _WALL_HIGH_M = 0.9, 2.0
 Share = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
 
 
+class _Colours(msgspec.Struct):
+    """A logistic regression from the square roots of the shares of the pixels' colours to the colour of an object."""
+
+    names: list[str]
+    """The colours; "": an object that no one colour describes."""
+    weights: list[list[Number]]
+    """For each of them, weights of `COLOUR_NAMES`."""
+    offsets: list[Number]
+
+
 class _File(msgspec.Struct):
     """The fitted numbers."""
 
-    colours: dict[str, list[Share]]
-    """For each colour, and "" for objects without one, the share of pixels of each of `COLOUR_NAMES`."""
+    colours: _Colours
     rooms: dict[str, dict[str, Share]]
     """For each kind of room, the share of the rooms that hold an object of each category."""
 
@@ -90,6 +97,8 @@ class Attributes:
             objects: the object of each pixel and the names of all, if the segmentation tells objects apart.
         """
         seen = tracks > 0
+        if not seen.any():
+            return
         if rgb is not None and self.wish.colour is not None:
             numbers = colour_numbers(rgb[seen].astype(np.float32) / 255.0)
             np.add.at(self._colours, (tracks[seen], numbers), 1.0)
@@ -147,12 +156,10 @@ class Attributes:
         counts = self._colours[track]
         if counts.sum() < _LEAST_PIXELS:
             return undecided
-        shares, fitted = counts / counts.sum(), _fitted().colours
-        logs = {name: float(shares @ np.log(np.maximum(of_colour, 0.01))) for name, of_colour in fitted.items()}
-        best = max(logs.values())
-        odds = {name: np.exp(_COLOUR_SHARPNESS * (value - best)) for name, value in logs.items() if name}
-        wanted = odds.get(self.wish.colour or "", 0.0)
-        return float(wanted / sum(odds.values()))
+        fitted = _fitted().colours
+        logits = np.array(fitted.weights) @ np.sqrt(counts / counts.sum()) + np.array(fitted.offsets)
+        odds = np.exp(logits - logits.max())
+        return float(odds[fitted.names.index(self.wish.colour or "")] / odds.sum())
 
     def _room_factor(self, tracks: Tracks, track: int, undecided: float) -> float:
         """Returns the probability that a track is in a room of the wish, by the categories of the tracks around it."""
@@ -212,7 +219,7 @@ class Attributes:
                 at = gap_m <= _NEXT_TO_M
             else:
                 at = gap_m <= 0.15 and (above_m > -0.25 if beside.place == "on" else above_m <= -0.25)
-            if at and not self._wall_between(tracks.middle_xy_m(track), tracks.middle_xy_m(other)):
+            if at and not self._wall_between(*tracks.nearest_points_m(track, other)):
                 return True
         return False
 

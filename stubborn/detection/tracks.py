@@ -215,6 +215,17 @@ class Tracks:
         )
         return float(np.hypot(*np.maximum(apart, 0)) * self._edge_m)
 
+    def nearest_points_m(self, number: int, other: int) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Returns the middles of the two voxels in plan, one of each track's box, that are nearest to each other."""
+        low = np.maximum(self._low[number, :2], self._low[other, :2])
+        high = np.minimum(self._high[number, :2], self._high[other, :2])
+        at = np.where(low <= high, (low + high) // 2, 0)
+        mine = np.where(low <= high, at, np.where(self._low[other, :2] > self._high[number, :2], high, low))
+        its = np.where(low <= high, at, np.where(self._low[other, :2] > self._high[number, :2], low, high))
+        (y_a, x_a), (y_b, x_b) = ((cell + 0.5) * self._edge_m for cell in (mine, its))
+        x_0, y_0 = self.frame.origin_xy_m
+        return (float(x_0 + x_a), float(y_0 + y_a)), (float(x_0 + x_b), float(y_0 + y_b))
+
     def above_m(self, number: int, other: int) -> float:
         """Returns how much higher the bottom of a track is than the top of another one; negative: lower."""
         return float((self._low[number, 2] - self._high[other, 2] - 1) * self._edge_m)

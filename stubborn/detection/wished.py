@@ -31,7 +31,7 @@ STANDS_FOR: Mapping[str, str] = MappingProxyType(
     }
 )  # fmt: skip
 """The goal category in place of another one for explorers that know only those: one that is found in the same rooms."""
-_OTHER = MPCAT40_ID["objects"] - 1
+_OTHER = MPCAT40_ID["misc"] - 1
 """Channel of the posteriors that gets what is not the goal although it is of the goal's category."""
 
 
@@ -72,7 +72,7 @@ class WishedSegmenter:
         return Scores(posteriors[channel], others.max(axis=0))
 
     def posteriors(self, observation: Observation) -> Float32[np.ndarray, "classes h w"]:
-        """Returns the probabilities of the categories; objects with another name count as `objects`."""
+        """Returns the probabilities of the categories; objects with another name count as `misc`."""
         if self.wish is None:
             return self._segmenter.posteriors(observation)
         if self._last is None or self._last[0] is not observation:

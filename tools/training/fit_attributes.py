@@ -1,4 +1,4 @@
-"""Counts how objects of each colour look and what rooms of each kind hold, for goals in words.
+"""Fits how objects of each colour look, and counts what rooms of each kind hold, for goals in words.
 
     python -m tools.training.fit_attributes --houses 100 --views 20
 
@@ -27,8 +27,8 @@ from stubborn.detection.attributes import FILE
 
 _LEAST_PIXELS = 60
 _STRIDE_PX = 4
-_PRIOR_VIEWS = 10
-"""Number of views for which the prior of a colour counts."""
+_LEAST_EXAMPLES = 60
+"""Number of examples of each colour, drawn ones included."""
 _MORE_CATEGORIES = ("appliances", "mirror", "shelving", "curtain")
 """Categories that tell rooms apart and are no goal categories."""
 
@@ -56,7 +56,7 @@ def main(args: Args) -> int:
         _count_colours(scene, args.views, rng, shares)
         scene.close()
         print(f"\r{number + 1} of {args.houses} houses", end="", flush=True)
-    colours = {name: _mean(name, shares[name]) for name in ("", *COLOUR_NAMES)}
+    colours = _fit_colours(shares)
     kinds = {
         kind: {
             category: round((held[kind, category] + 0.5) / (count + 1.0), 3)
@@ -70,12 +70,31 @@ def main(args: Args) -> int:
     return 0
 
 
-def _mean(colour: str, shares: list[np.ndarray]) -> list[float]:
-    """Returns the mean shares of an object's colour; where there are few, it is mostly seen as what it is."""
-    prior = np.full(len(COLOUR_NAMES), 0.4 / (len(COLOUR_NAMES) - 1))
-    if colour:
-        prior[COLOUR_NAMES.index(colour)] = 0.6
-    return ((_PRIOR_VIEWS * prior + np.sum(shares, axis=0)) / (_PRIOR_VIEWS + len(shares))).round(4).tolist()
+def _fit_colours(shares: dict[str, list[np.ndarray]]) -> dict[str, object]:
+    """Returns the weights of a logistic regression from the shares of the pixels' colours to an object's colour.
+
+    Colours that few objects have are joined by examples that are mostly seen as what they are.
+    """
+    from sklearn.linear_model import LogisticRegression
+
+    rng, features, labels = np.random.default_rng(0), [], []
+    for name in ("", *COLOUR_NAMES):
+        examples = list(shares[name])
+        if len(examples) < _LEAST_EXAMPLES and name:
+            weights = np.full(len(COLOUR_NAMES), 0.3)
+            weights[COLOUR_NAMES.index(name)] = 4.0
+            examples += list(rng.dirichlet(weights, _LEAST_EXAMPLES - len(examples)))
+        features += examples
+        labels += [name] * len(examples)
+    fitted = LogisticRegression(class_weight="balanced", max_iter=2000, C=10.0)
+    fitted.fit(np.sqrt(np.array(features)), labels)
+    right = fitted.predict(np.sqrt(np.array(features))) == np.array(labels)
+    print(f"\ncolours: {100 * right.mean():.0f} % of {len(labels)} examples")
+    return {
+        "names": list(fitted.classes_),
+        "weights": fitted.coef_.round(4).tolist(),
+        "offsets": fitted.intercept_.round(4).tolist(),
+    }
 
 
 def _count_rooms(scene: Scene, rooms: Counter[str], held: Counter[tuple[str, str]]) -> None:

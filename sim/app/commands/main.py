@@ -48,6 +48,7 @@ COMMANDS: Mapping[str, Command] = {
     "houses check": Command("sim.app.commands.houses.check", "Check houses for faults"),
     "houses plans": Command("sim.app.commands.houses.plans", "Write the plans of houses for the 2-D environment"),
     "episodes": Command("sim.app.commands.episodes", "Generate the episodes of a split"),
+    "words": Command("sim.app.commands.words", "Write a split of episodes with goals in words"),
     "traps": Command("sim.app.commands.traps.make", "Make traps of a family"),
     "traps report": Command("sim.app.commands.traps.report", "Report which agent escapes from which trap"),
     "label": Command("sim.app.commands.label", "Propose and check label rules for a scene from elsewhere"),

@@ -23,6 +23,7 @@ from sim.core.errors import ConfigError, HouseError
 from sim.core.interface import GOAL_CATEGORIES
 from sim.core.option_types import meanings
 from sim.core.reading import convert
+from sim.core.wishes import parse_wish
 from sim.episodes.splits import HOUSE_SUFFIXES, load_split, one_house, shipped_splits
 from sim.houses.labels import read_labels
 from sim.task.result import EpisodeResult
@@ -145,13 +146,14 @@ class Choices:
         house, goal = asked.house, asked.goal
         if asked.episode and asked.split not in self._houses:
             house, goal = _place_of(asked.episode, houses, asked.split)
-        if goal not in houses.get(house, {}):
-            raise ConfigError(f"There is no '{goal}' in house '{house}' of '{asked.split}'.")
+        in_words = goal not in houses.get(house, {})
+        if in_words:
+            self._require_words(house, goal, asked, houses)
         options = replace(self._options, agent=asked.agent, semantics=asked.semantics, explorer=asked.explorer or None)
         if asked.split in self._houses:
             options = replace(options, house=self._houses[asked.split], goal=goal)
         else:
-            options = replace(options, split=asked.split, labels=None, root=None)
+            options = replace(options, split=asked.split, labels=None, root=None, goal=goal if in_words else None)
         if not isinstance(self._semantics[asked.semantics].config, NetworkConfig):
             options = replace(options, weights=None)
         return EpisodeRequest(
@@ -162,6 +164,16 @@ class Choices:
             driver=asked.driver,
             options=options,
         )
+
+    def _require_words(self, house: str, goal: str, asked: _Start, houses: Goals) -> None:
+        """Raises ConfigError if a goal that is not listed is not in words that can be read and that the agent takes."""
+        if house not in houses:
+            raise ConfigError(f"There is no house '{house}' in '{asked.split}'.")
+        if goal in GOAL_CATEGORIES:
+            raise ConfigError(f"There is no '{goal}' in house '{house}' of '{asked.split}'.")
+        parse_wish(goal)
+        if self._agents[asked.agent].words is None:
+            raise ConfigError(f"The agent '{asked.agent}' takes the listed goals only, no wishes in words.")
 
     @staticmethod
     def _require(option: str, name: str, offered: Mapping[str, object]) -> None:

@@ -23,7 +23,7 @@ from sim.app.web.driven import DrivenRuns
 from sim.app.web.hints import Hints
 from sim.app.web.pictures import Pictures, in_sight
 from sim.core.errors import EpisodeError, debug
-from sim.core.interface import Action, Agent, Closable, Observation, Overridable, StatesTarget
+from sim.core.interface import GOAL_CATEGORIES, Action, Agent, Closable, Observation, Overridable, StatesTarget
 from sim.core.reading import printable
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
@@ -298,11 +298,20 @@ def choose_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int, setup:
     fitting = [
         episode for episode in env.split.episodes if (episode.house, episode.goal) == (request.house, request.goal)
     ]
+    if not fitting and request.goal not in GOAL_CATEGORIES:
+        return _wished_episode(env, request, turn)
     if not fitting:
         raise EpisodeError(
             f"Split '{request.split}' has no episode with '{in_words(request.goal)}' in house '{request.house}'."
         )
     return fitting[turn % len(fitting)]
+
+
+def _wished_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int) -> Episode:
+    """Returns an episode with a goal in words, from the start of one of the episodes of its house in turn."""
+    of_house = [episode for episode in env.split.episodes if episode.house == request.house]
+    start = of_house[turn % len(of_house)].start
+    return Episode(f"{request.house}_wish_{turn:04d}", request.house, request.goal, start)
 
 
 def _draw_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int) -> Episode:

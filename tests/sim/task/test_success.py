@@ -37,7 +37,7 @@ def region_in(model, data, labels, goal: str, *, floor_z_m: float = 0.0, camera=
     success = SuccessRule(**rule)
     sight_height_m = success.sight_height_with(camera)
     around = Surroundings.of(model, data, labels, sight_height_m=sight_height_m, floor_z_m=floor_z_m)
-    return GoalRegion(data, labels, goal, surroundings=around, success=success, floor_z_m=floor_z_m)
+    return GoalRegion(data, labels.of_category(goal), goal, surroundings=around, success=success, floor_z_m=floor_z_m)
 
 
 def two_rooms(wall: str = "wall_10", *, low_m: float = 0.0, high_m: float = 2.5, group: int = 0) -> House:

@@ -262,15 +262,26 @@ function follow(request) {
   chosenSplit();
   $("house").value = request.house;
   options($("goal"), Object.keys(goalsNow()), request.goal);
+  $("wish").value = request.goal in goalsNow() ? "" : request.goal;
   for (const name of ["agent", "semantics", "explorer"]) $(name).value = request[name];
   $("episode").value = request.episode_id ?? "";
+  chosenAgent();
+}
+
+// Only stubborn-plus tests colours, rooms and places; the first wish chooses it in place of the default agent.
+function wished() {
+  const better = "stubborn-plus";
+  if (!$("wish").value || $("agent").value !== "stubborn" || !(better in choices.agents)) return;
+  $("agent").value = better;
   chosenAgent();
 }
 
 function start(driver) {
   const request = {do: "start", driver};
   for (const name of ["split", "house", "goal", "agent", "semantics"]) request[name] = $(name).value;
-  request.episode = $("episode").value.trim();
+  const wish = $("wish").value.trim();
+  if (wish) request.goal = wish;
+  request.episode = wish ? "" : $("episode").value.trim();
   request.explorer = $("explorer").disabled ? "" : $("explorer").value;
   send(request);
   if (phone.matches) window.scrollTo(0, 0);
@@ -478,7 +489,8 @@ $("choose").addEventListener("submit", (event) => { event.preventDefault(); star
 $("start-driving").addEventListener("click", () => start("person"));
 $("split").addEventListener("change", chosenSplit);
 $("house").addEventListener("change", chosenHouse);
-$("goal").addEventListener("change", chosenGoal);
+$("goal").addEventListener("change", () => { $("wish").value = ""; chosenGoal(); });
+$("wish").addEventListener("change", wished);
 $("episode").addEventListener("change", chosenEpisode);
 $("agent").addEventListener("change", chosenAgent);
 $("semantics").addEventListener("change", chosenAgent);

@@ -1,0 +1,171 @@
+"""Writes a split of episodes with goals in words, in the houses of another split.
+
+    stubborn words --split val --kind seen --out assets/mjcf_houses/words-seen --episodes 150 --workers 2
+    stubborn words --split my_houses --kind descriptions --out my_descriptions
+
+- `seen`: everyday names of objects ("fridge"); `unseen`: those of `sim.core.vocabulary.UNSEEN`; `synonyms`: other words
+  for the names of `seen` ("refrigerator"). All objects of the name are the goal.
+- `descriptions`: "the red chair next to the bed in the bedroom". Each provably fits exactly one object
+  (`sim.episodes.descriptions`); its level is the number of conditions besides the name.
+
+The split lies beside the other one, whose houses it uses. Starts are drawn by the recipe `val`.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from sim.app import cli
+from sim.app.evaluation.parallel import ordered_map
+from sim.core.errors import ConfigError, EpisodeError
+from sim.core.interface import CameraModel
+from sim.core.vocabulary import UNSEEN, vocabulary
+from sim.env.scene import Scene
+from sim.episodes.descriptions import Descriptions
+from sim.episodes.episode import Episode
+from sim.episodes.house_episodes import Ask, StartDrawer
+from sim.episodes.reachable_goals import storeys_of
+from sim.episodes.recipes import EPISODE_RECIPES
+from sim.episodes.splits import load_split, write_split
+from sim.robot.config import RobotConfig
+from sim.task.meaning import Thing
+
+Kind = Literal["seen", "unseen", "synonyms", "descriptions"]
+_LEAST_SIZE_M = 0.15
+"""Smaller objects are not asked for: the camera would not resolve them."""
+_UNASKED = frozenset({"blind", "curtain", "wall cabinet", "cooker hood"})
+"""Names that are part of the fittings of a room rather than something to go to."""
+_PER_LEVEL = 4
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Write a split of episodes with goals in words, in the houses of another split."""
+
+    kind: Kind
+    """seen, unseen, synonyms or descriptions."""
+    out: Path
+    """Folder of the new split; its parent is that of the other split."""
+    split: str = "val"
+    """The split whose houses are used: a shipped one, or a folder."""
+    episodes: cli.Count = 150
+    """Number of episodes."""
+    seed: cli.Seed = 0
+    """Seed of goals, words and starts."""
+    workers: cli.Count = 1
+    """Number of processes."""
+
+
+def main(args: Args) -> int:
+    """Writes the split; returns the exit status.
+
+    Raises:
+        ConfigError: the folders do not lie beside each other, or no house has such a goal.
+    """
+    split = load_split(args.split)
+    home = next(iter(split.house_paths.values())).parent
+    if args.out.resolve().parent != home.resolve().parent or args.out.resolve() == home.resolve():
+        raise ConfigError(f"--out '{args.out}' must be another folder in '{home.parent}', beside the houses.")
+    per_house = -(-args.episodes // len(split.houses))
+    work = [(number, house, per_house) for number, house in enumerate(split.houses)]
+    by_house = []
+    for house, drawn in zip(
+        split.houses, ordered_map(functools.partial(_draw, args), work, workers=args.workers), strict=True
+    ):
+        by_house.append(drawn)
+        print(f"{house}: {len(drawn)} episodes", flush=True)
+    rounds = [drawn[turn] for turn in range(per_house) for drawn in by_house if turn < len(drawn)]
+    name = args.out.resolve().name
+    episodes = [
+        Episode(f"{name}_{i:04d}", e.house, e.goal, e.start, e.shortest_path_m)
+        for i, e in enumerate(rounds[: args.episodes])
+    ]
+    if not episodes:
+        raise ConfigError(f"No house of '{args.split}' has a goal for --kind {args.kind}.")
+    args.out.mkdir(parents=True, exist_ok=True)
+    goals = {house: {} for house in split.houses}
+    write_split(args.out, episodes, goals, version=split.version, houses_of=home.name)
+    print(f"{len(episodes)} episodes, {len({episode.goal for episode in episodes})} different goals, in {args.out}")
+    return 0
+
+
+def _draw(args: Args, work: tuple[int, str, int]) -> list[Episode]:
+    """Returns the episodes of one house."""
+    number, house, count = work
+    split, rng = load_split(args.split), np.random.default_rng([args.seed, number])
+    scene = Scene(split.load_house(house), robot=RobotConfig(), camera=CameraModel(), profile="fast")
+    task, recipe = scene.task, EPISODE_RECIPES["val"]
+    scene.world.restore()
+    drawer, episodes, used = StartDrawer(task, recipe, house=number, seed=args.seed), [], Counter[str]()
+    try:
+        for goal in _goals(args, scene, rng):
+            if len(episodes) == count:
+                break
+            for floor_z_m in rng.permutation(storeys_of(task)).tolist():
+                reached = len(task.truth.region(goal, floor_z_m).footprints)
+                if not reached:
+                    continue
+                try:
+                    drawn = drawer.draw(Ask(goal, floor_z_m, reached), len(episodes), rng)
+                except EpisodeError:
+                    continue
+                if drawn.meets_rule and not used[goal]:
+                    used[goal] += 1
+                    episodes.append(Episode(f"{house}_{len(episodes)}", house, goal, drawn.pose, drawn.distance_m))
+                    break
+    finally:
+        drawer.close()
+        scene.close()
+    return episodes
+
+
+def _goals(args: Args, scene: Scene, rng: np.random.Generator) -> list[str]:
+    """Returns the goals of a house in random order."""
+    things = [thing for thing in scene.task.truth.meaning.things if _may_be_asked(thing)]
+    rng.shuffle(things)  # type: ignore[arg-type]
+    if args.kind == "descriptions":
+        return _described(scene, things, rng)
+    names = list(dict.fromkeys(thing.name for thing in things))
+    names = [name for name in names if (name in UNSEEN) == (args.kind == "unseen")]
+    if args.kind != "synonyms":
+        return names
+    others = [_synonyms(name) for name in names]
+    return [words[int(rng.integers(len(words)))] for words in others if words]
+
+
+def _may_be_asked(thing: Thing) -> bool:
+    return thing.is_goal and thing.size_m >= _LEAST_SIZE_M and thing.name not in _UNASKED and bool(thing.facts.name)
+
+
+def _synonyms(name: str) -> list[str]:
+    """Returns the words that mean just one name, and are not the name."""
+    return sorted(
+        word
+        for word, (relation, names) in vocabulary().words.items()
+        if relation == "synonym" and names == {name} and word not in (name, name.rstrip("s"))
+    )
+
+
+def _described(scene: Scene, things: Sequence[Thing], rng: np.random.Generator) -> list[str]:
+    """Returns descriptions of some objects of a house: the levels in turn, each object once."""
+    writer, by_level = Descriptions(scene.task, CameraModel()), {level: list[str]() for level in (1, 2, 3)}
+    try:
+        for thing in things:
+            found = list(writer.of(thing, rng))
+            level = min(by_level, key=lambda level: len(by_level[level]))
+            fitting = [description for description in found if description.level == level]
+            if fitting:
+                by_level[level].append(fitting[int(rng.integers(len(fitting)))].text)
+            if min(map(len, by_level.values())) >= _PER_LEVEL:
+                break
+    finally:
+        writer.close()
+    most = max(map(len, by_level.values()))
+    return [texts[i] for i in range(most) for texts in by_level.values() if i < len(texts)]

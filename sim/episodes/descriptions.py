@@ -1,0 +1,250 @@
+"""Writes descriptions of objects of a house, each of which provably fits exactly one of them.
+
+A description has a name and one to three further conditions: colour, material, room, size, or a place next to, on or
+under something. An object satisfies the conditions clearly, and every other object of the same name fails one of them
+clearly: colours that may be confused, gaps near the limit and nearly equal sizes prove nothing. The text is read again
+by `sim.core.wishes`, and the objects that the task finds for it must be just the one.
+
+Whether a colour can be seen is measured in pictures: it must be the most frequent one of the object's pixels.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sim.core.colours import COLOUR_NAMES, ColourName, colour_numbers
+from sim.core.errors import ConfigError, EpisodeError
+from sim.core.geometry.pose import Pose
+from sim.core.interface import CameraModel
+from sim.core.wishes import MATERIALS, Beside, Place, Wish, parse_wish
+from sim.renderer.camera import Camera
+from sim.task.meaning import Thing
+from sim.task.objectnav import Task
+
+_CONFUSED: Sequence[frozenset[str]] = (
+    frozenset(("white", "grey", "beige")), frozenset(("black", "grey", "brown")), frozenset(("brown", "orange", "red")),
+    frozenset(("pink", "red", "purple")), frozenset(("yellow", "beige", "orange", "brown")),
+    frozenset(("blue", "purple", "grey")), frozenset(("green", "grey", "yellow")),
+)  # fmt: skip
+"""Colours of which one may be taken for another."""
+_SAID_MATERIALS = ("wood", "metal", "glass", "leather", "fabric", "stone", "wicker")
+_NEAR_M, _FAR_M = 0.45, 1.1
+"""Gaps that are clearly next to each other, and clearly not."""
+_SIZE_RATIO = 1.25
+"""Sizes that differ by this factor are clearly different."""
+_LEAST_PIXELS, _LEAST_SHARE = 400, 0.4
+"""Pixels of an object from which its colour is measured, and share of them that its colour must have."""
+_LANDMARKS = frozenset(
+    {
+        "bed", "four-poster bed", "sofa", "corner sofa", "desk", "dining table", "coffee table", "television", "fridge",
+        "cooker", "wardrobe", "toilet", "bathtub", "shower", "washbasin", "fireplace", "bookcase", "window",
+        "washing machine", "chest of drawers", "nightstand", "armchair", "kitchen sink", "sideboard", "mirror",
+    }
+)  # fmt: skip
+"""Objects that descriptions name as places."""
+_ADJECTIVES = {name: name for name in MATERIALS.values()} | {"wood": "wooden"}
+
+
+@dataclass(frozen=True)
+class Description:
+    """A text that fits one object."""
+
+    text: str
+    level: int
+    """Number of conditions besides the name: 1, 2 or 3."""
+    instance: str
+    """Label of the object."""
+
+
+class Descriptions:
+    """Writes the descriptions of one house.
+
+    Args:
+        task: of the house.
+        camera: the robot's camera; its pictures show colours.
+        profile: rendering profile of the pictures.
+    """
+
+    def __init__(self, task: Task, camera: CameraModel, profile: str = "good") -> None:
+        self._task, self._meaning = task, task.truth.meaning
+        self._camera = Camera(task.world.model, task.world.labels, camera=camera, profile=profile)
+        self._model = camera
+        self._seen_colours: dict[str, ColourName | None] = {}
+
+    def close(self) -> None:
+        """Frees the renderer."""
+        self._camera.close()
+
+    def of(self, thing: Thing, rng: np.random.Generator) -> Iterator[Description]:
+        """Yields descriptions of an object, the shortest first, each with random words of several that say the same."""
+        base = Wish(thing.name, frozenset((thing.name,)), thing.name)
+        conditions = self._conditions(thing, base)
+        for level in (1, 2, 3):
+            for chosen in itertools.combinations(conditions, level):
+                wish = _joined(base, chosen)
+                if wish is not None and self.proves(wish, thing):
+                    text = _text(wish, rng)
+                    if self._reads_as(text, thing):
+                        yield Description(text, level, thing.instance.name)
+
+    def proves(self, wish: Wish, thing: Thing) -> bool:
+        """Returns whether an object satisfies a wish clearly, and every other one clearly does not."""
+        others = [other for other in self._meaning.named(wish.names) if other is not thing]
+        rest = replace(wish, size=None, count=None)
+        if not self._clearly_fits(rest, thing):
+            return False
+        rivals = [other for other in others if not self._clearly_fails(rest, other)]
+        if wish.size is None:
+            return not rivals
+        if wish.count is not None and len(rivals) + 1 != wish.count:
+            return False
+        if not rivals or not all(self._clearly_fits(rest, rival) for rival in rivals):
+            return False  # nothing to compare with, or something that perhaps is to be compared
+        sizes = [rival.size_m for rival in rivals]
+        if wish.size == "largest":
+            return thing.size_m >= _SIZE_RATIO * max(sizes)
+        return thing.size_m * _SIZE_RATIO <= min(sizes)
+
+    def seen_colour(self, thing: Thing) -> ColourName | None:
+        """Returns the colour of most pixels of an object in pictures from up to three places; None: no clear one."""
+        name = thing.instance.name
+        if name not in self._seen_colours:
+            self._seen_colours[name] = self._measured_colour(thing)
+        return self._seen_colours[name]
+
+    def _conditions(self, thing: Thing, base: Wish) -> list[Wish]:
+        """Returns wishes with one condition each that an object satisfies."""
+        conditions = []
+        if thing.facts.colour is not None and self.seen_colour(thing) == thing.facts.colour:
+            conditions.append(replace(base, colour=thing.facts.colour))
+        if thing.room_kind:
+            conditions.append(replace(base, rooms=(thing.room_kind,)))
+        if thing.facts.material in _SAID_MATERIALS:
+            conditions.append(replace(base, material=thing.facts.material))
+        conditions += [replace(base, size=size) for size in ("largest", "smallest")]
+        for name in sorted(_LANDMARKS - {thing.name}):
+            for place in ("next to", "on", "under"):
+                beside = Beside(place, frozenset((name,)), name)
+                if self._is_clearly_at(thing, beside):
+                    conditions.append(replace(base, beside=(beside,)))
+                    break
+        return conditions
+
+    def _clearly_fits(self, wish: Wish, thing: Thing) -> bool:
+        return (
+            (wish.colour is None or (thing.facts.colour == wish.colour == self.seen_colour(thing)))
+            and wish.material in ("", thing.facts.material)
+            and (not wish.rooms or thing.room_kind in wish.rooms)
+            and all(self._is_clearly_at(thing, beside) for beside in wish.beside)
+        )
+
+    def _clearly_fails(self, wish: Wish, thing: Thing) -> bool:
+        if wish.colour is not None and self._has_another_colour(thing, wish.colour):
+            return True
+        if wish.material and thing.facts.material is not None and thing.facts.material != wish.material:
+            return True
+        if wish.rooms and thing.room_kind and thing.room_kind not in wish.rooms:
+            return True
+        return any(self._is_clearly_not_at(thing, beside) for beside in wish.beside)
+
+    def _has_another_colour(self, thing: Thing, colour: ColourName) -> bool:
+        own = thing.facts.colour
+        if own is None or own == colour or self.seen_colour(thing) != own:
+            return False
+        return not any(own in group and colour in group for group in _CONFUSED)
+
+    def _is_clearly_at(self, thing: Thing, beside: Beside) -> bool:
+        if beside.place == "next to":
+            return 0.0 < self._meaning.gap_m(thing, beside.names) <= _NEAR_M
+        return self._meaning.is_at(thing, beside)
+
+    def _is_clearly_not_at(self, thing: Thing, beside: Beside) -> bool:
+        return self._meaning.gap_m(thing, beside.names) >= (_FAR_M if beside.place == "next to" else _NEAR_M)
+
+    def _reads_as(self, text: str, thing: Thing) -> bool:
+        """Returns whether the task finds just this object for a text."""
+        try:
+            found = self._meaning.satisfying(parse_wish(text))
+        except (ConfigError, EpisodeError):
+            return False
+        return found == (thing.instance,)
+
+    def _measured_colour(self, thing: Thing) -> ColourName | None:
+        world, counts = self._task.world, np.zeros(len(COLOUR_NAMES), np.int64)
+        geoms = np.array(thing.instance.geom_ids)
+        for pose in self._views_of(thing):
+            images = self._camera.render(world.data, pose, ("rgb", "geom"))
+            shown = np.isin(images["geom"], geoms)
+            if np.count_nonzero(shown) >= _LEAST_PIXELS:
+                counts += np.bincount(colour_numbers(images["rgb"][shown] / 255.0), minlength=len(COLOUR_NAMES))
+        best = int(np.argmax(counts))
+        return COLOUR_NAMES[best] if counts.sum() and counts[best] >= _LEAST_SHARE * counts.sum() else None
+
+    def _views_of(self, thing: Thing) -> list[Pose]:
+        """Returns up to three poses from which an object can be seen, 1.2 to 2.5 m away where there are such."""
+        footprint = thing.footprint
+        x0, y0, x1, y1 = footprint.bounds_m
+        x_m, y_m = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
+        space = self._task.truth.space(footprint.floor_z_m)
+        region = self._task.truth.region(thing.instance.name, footprint.floor_z_m)
+        cells = np.argwhere(space.largest_part())
+        places = space.frame.to_metres(cells)
+        away = np.hypot(places[:, 0] - x_m, places[:, 1] - y_m)
+        for least, most in ((1.3, 2.2), (0.7, 3.0)):
+            near = places[(away >= least) & (away <= most)]
+            near = near[:: max(1, len(near) // 60)]
+            near = near[region.sees(footprint, near)] if len(near) else near
+            if len(near):
+                picked = near[np.linspace(0, len(near) - 1, min(3, len(near))).round().astype(int)]
+                return [
+                    Pose(float(x), float(y), float(np.arctan2(y_m - y, x_m - x)), footprint.floor_z_m)
+                    for x, y in picked
+                ]
+        return []
+
+
+def _joined(base: Wish, chosen: Sequence[Wish]) -> Wish | None:
+    """Returns the wish with all conditions of others; None: two of them exclude each other."""
+    colour = [wish.colour for wish in chosen if wish.colour]
+    material = [wish.material for wish in chosen if wish.material]
+    size = [wish.size for wish in chosen if wish.size]
+    rooms = [wish.rooms for wish in chosen if wish.rooms]
+    beside = [wish.beside for wish in chosen if wish.beside]
+    if max(map(len, (colour, material, size, rooms, beside))) > 1:
+        return None
+    return replace(
+        base, colour=next(iter(colour), None), material=next(iter(material), ""), size=next(iter(size), None),
+        rooms=next(iter(rooms), ()), beside=next(iter(beside), ()),
+    )  # fmt: skip
+
+
+_PLACE_WORDS: dict[Place, tuple[str, ...]] = {
+    "next to": ("next to", "beside", "near"), "on": ("on",), "under": ("under", "below"),
+}  # fmt: skip
+_SIZE_WORDS = {"largest": ("largest", "biggest"), "smallest": ("smallest",)}
+_BEGINNINGS = ("", "", "", "find ", "go to ", "look for ")
+
+
+def _text(wish: Wish, rng: np.random.Generator) -> str:
+    """Returns a wish in plain English, with random words of those that say the same."""
+
+    def one(words: Sequence[str]) -> str:
+        return words[int(rng.integers(len(words)))]
+
+    words = [one(_BEGINNINGS) + "the"]
+    if wish.size is not None:
+        words.append(one(_SIZE_WORDS[wish.size]))
+    if wish.colour is not None:
+        words.append(wish.colour)
+    if wish.material:
+        words.append(_ADJECTIVES[wish.material])
+    words.append(wish.noun)
+    for beside in wish.beside:
+        words += [one(_PLACE_WORDS[beside.place]), "the", beside.words]
+    if wish.rooms:
+        words += ["in", "the", wish.rooms[0].replace("_", " ")]
+    return " ".join(words)
