@@ -16,7 +16,7 @@ from sim.app.web.choices import Choices, Offer
 from sim.app.web.controls import EpisodeRequest
 from sim.app.web.driven import DrivenRuns
 from sim.app.web.session import Frame, Session
-from sim.core.errors import ConfigError
+from sim.core.errors import ConfigError, EpisodeError
 from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.results import a_result
 from tests.helpers.worlds import room, with_box
@@ -233,3 +233,34 @@ def test_code_of_the_users_that_raises_anything_leaves_the_session_alive(
     message = "The episode failed: Strange: no reason \\ud800 (unexpected; --debug shows where)"
     assert display.states[0]["message"] == message
     assert capsys.readouterr().err == ""
+
+
+WISH = START | {"agent": "stubborn-plus", "goal": "the bed"}
+
+
+def test_a_wish_in_words_is_played_in_a_house_of_a_split(choices, tmp_path):
+    request = choices.request(WISH)
+    assert request.options.goal == "the bed"
+    display = play(request, tmp_path / "runs")
+    assert display.states[-1]["phase"] == "ended", display.states[-1]
+    assert "Looking for a bed." in [state["message"] for state in display.states]
+    assert display.frames[0].facts["in_sight"]
+
+
+def test_a_wish_that_the_house_cannot_satisfy_is_answered_with_what_is_there(choices, tmp_path):
+    with pytest.raises(EpisodeError, match="has no 'kettle'. It has: bed, chair"):
+        play(choices.request(WISH | {"goal": "a kettle"}), tmp_path / "runs")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"goal": "a spaceship"}, "No object is known as 'spaceship'"),
+        ({"goal": "toilet"}, "There is no 'toilet' in house 'wedged_spawn'"),
+        ({"agent": "cloned"}, "takes the listed goals only"),
+        ({"house": "nowhere"}, "There is no house 'nowhere'"),
+    ],
+)
+def test_wishes_that_are_refused(choices, change, words):
+    with pytest.raises(ConfigError, match=words):
+        choices.request(WISH | change)

@@ -1,0 +1,107 @@
+"""Words for objects, and goals in words read as conditions."""
+
+from __future__ import annotations
+
+import pytest
+
+from sim.core.errors import EpisodeError
+from sim.core.vocabulary import UNSEEN, singulars, vocabulary
+from sim.core.wishes import WishError, categories_of, parse_wish, require_goal
+from sim.homes.housegen.furniture.names import CATEGORIES_OF_NAMES
+
+
+def names(text: str) -> set[str]:
+    return set(parse_wish(text).names)
+
+
+@pytest.mark.parametrize("name", sorted(CATEGORIES_OF_NAMES))
+def test_each_name_of_the_homes_means_at_least_itself(name):
+    found = vocabulary().find(name)
+    assert found is not None
+    assert name in found.names
+    assert set(CATEGORIES_OF_NAMES[name]) <= set(vocabulary().categories_of(found.names))
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        ("a refrigerator", "fridge"), ("the settee", "sofa"), ("couch", "corner sofa"), ("bookshelf", "bookcase"),
+        ("bookshelves", "bookcase"), ("telly", "television"), ("TV", "television"), ("night stand", "nightstand"),
+        ("bedside table", "nightstand"), ("arm-chair", "armchair"), ("Dish washer", "dishwasher"), ("oven", "cooker"),
+        ("trash can", "bin"), ("worktop", "kitchen counter"), ("knives", ""), ("flower bed", ""), ("water table", ""),
+    ],
+)  # fmt: skip
+def test_synonyms_plurals_and_spellings(words, name):
+    found = vocabulary().find(words)
+    assert (name in found.names) if name else (found is None), found
+
+
+def test_a_general_word_means_several_categories():
+    wish = parse_wish("something to sit on in the living room")
+    assert {"sofa", "armchair", "bar stool"} <= wish.names
+    assert "bed" not in wish.names
+    assert wish.rooms == ("living_room", "studio")
+    assert set(wish.categories) >= {"chair", "sofa", "stool"}
+
+
+def test_all_conditions_of_a_wish():
+    wish = parse_wish("Please take me to the largest red wooden table next to the window in the dining room.")
+    assert (wish.size, wish.colour, wish.material, wish.rooms) == ("largest", "red", "wood", ("dining_room",))
+    assert [(beside.place, beside.names) for beside in wish.beside] == [("next to", frozenset({"window"}))]
+    assert wish.text == "largest red wooden table next to the window in the dining room"
+    assert not wish.is_plain
+
+
+def test_the_smaller_of_two():
+    wish = parse_wish("the smaller of the two beds")
+    assert (wish.size, wish.count) == ("smallest", 2)
+    assert wish.names == names("bed")
+
+
+def test_a_room_may_stand_before_the_name_unless_both_are_a_word():
+    assert parse_wish("the bathroom mirror").rooms == ("bathroom",)
+    assert (parse_wish("kitchen chair").rooms, names("kitchen chair")) == ((), {"dining chair"})
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("the grene chair", "'grene' before 'chair' is not known. Did you mean 'green'"),
+        ("spaceship", "No object is known as 'spaceship'"), ("flower bed", "No object is known as 'flower bed'"),
+        ("chair next to", "chair next to"), ("", "1 to 300 characters"), ("x" * 301, "got 301"),
+        ("chair next to the red table", "'the red table'"),
+    ],
+)  # fmt: skip
+def test_an_unknown_word_is_named_and_not_guessed(text, words):
+    with pytest.raises(WishError) as refused:
+        parse_wish(text)
+    assert words in str(refused.value)
+
+
+def test_goals_are_categories_labels_or_words():
+    for goal in ("chair", "chair_03", "chest_of_drawers_00", "the red chair"):
+        require_goal(goal)
+    with pytest.raises(EpisodeError, match="Unknown goal 'void_00'"):
+        require_goal("void_00")
+    assert categories_of("chest_of_drawers_12") == ("chest_of_drawers",)
+    assert categories_of("fridge") == ("appliances",)
+    assert categories_of("tv_monitor") == ("tv_monitor",)
+
+
+def test_names_that_no_training_may_use_are_names():
+    assert set(CATEGORIES_OF_NAMES) >= UNSEEN
+
+
+@pytest.mark.parametrize(
+    ("plural", "singular"),
+    [
+        ("chairs", "chair"),
+        ("benches", "bench"),
+        ("shelves", "shelf"),
+        ("canopies", "canopy"),
+        ("glass", ""),
+        ("bus", ""),
+    ],
+)
+def test_singulars(plural, singular):
+    assert (singular in singulars(plural)) if singular else (singulars(plural) == [])

@@ -1,0 +1,75 @@
+"""Descriptions: each fits exactly one object, and says nothing that is nearly true of another one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sim.core.interface import CameraModel
+from sim.core.wishes import parse_wish
+from sim.episodes.descriptions import Description, Descriptions
+from sim.task.objectnav import Task
+from sim.world.world import World
+from tests.helpers.worlds import room, with_box
+from tests.sim.task.test_meaning import with_facts
+
+SMALL = CameraModel(width_px=160, height_px=120)
+
+
+def written(house) -> tuple[Task, list[Description]]:
+    task = Task(World(house))
+    task.world.restore()
+    descriptions = Descriptions(task, SMALL, "fast")
+    try:
+        rng = np.random.default_rng(0)
+        return task, [
+            one for thing in task.truth.meaning.things if thing.is_goal for one in descriptions.of(thing, rng)
+        ]
+    finally:
+        descriptions.close()
+
+
+def chairs(*sizes: float):
+    house, facts = room(8, 8), {}
+    for i, half in enumerate(sizes):
+        house = with_box(house, f"chair_0{i}", centre_m=(-3.0 + 2.0 * i, 2.0, half), half_m=(half, half, half))
+        facts[f"chair_0{i}"] = "name: armchair"
+    return with_facts(house, **facts)
+
+
+def test_each_description_fits_one_object_and_names_it():
+    house = with_box(chairs(0.3, 0.3), "table_00", centre_m=(-3.0, 1.25, 0.4), half_m=(0.3, 0.3, 0.4))
+    task, texts = written(with_facts(house, table_00="name: desk"))
+    assert any(one.text.endswith("the desk") for one in texts)
+    for one in texts:
+        assert [instance.name for instance in task.truth.instances(one.text)] == [one.instance], one
+
+
+def test_equal_objects_have_no_description():
+    assert written(chairs(0.3, 0.3))[1] == []
+
+
+@pytest.mark.parametrize(("sizes", "told"), [((0.3, 0.32), False), ((0.3, 0.42), True)])
+def test_sizes_must_differ_clearly(sizes, told):
+    texts = [one.text for one in written(chairs(*sizes))[1]]
+    assert any("largest" in text or "biggest" in text for text in texts) == told
+    assert any("smallest" in text for text in texts) == told
+
+
+def test_a_gap_near_the_limit_proves_nothing():
+    house = with_box(chairs(0.3, 0.3), "table_00", centre_m=(-1.95, 2.0, 0.4), half_m=(0.3, 0.3, 0.4))
+    task, texts = written(with_facts(house, table_00="name: desk"))  # gaps of 0.45 and 0.35 m
+    assert len(task.truth.instances("armchair next to the desk")) == 2
+    assert not any("desk" in one.text for one in texts if one.instance.startswith("chair"))
+
+
+def test_a_colour_that_is_not_seen_is_not_said():
+    grey = chairs(0.3, 0.3)
+    lying = with_facts(grey)
+    spec = lying.spec.copy()
+    for text in spec.texts:
+        if text.name == "chair_00":
+            text.data = "name: armchair; colour: red"
+    texts = written(type(grey)(grey.name, spec))[1]
+    assert parse_wish("red armchair").colour == "red"
+    assert not any("red" in one.text.split() for one in texts)

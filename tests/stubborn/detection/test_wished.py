@@ -1,0 +1,95 @@
+"""Scores of goals in words, and the conditions of a wish on tracked objects."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from sim.core.geometry.grid import GridFrame
+from sim.core.interface import MPCAT40_ID, Observation, RobotModel
+from sim.core.wishes import WishError, parse_wish
+from stubborn import agents
+from stubborn.detection.attributes import AT_LAST, UNDECIDED, Attributes
+from stubborn.detection.wished import WishedSegmenter
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from tests.helpers.gridworld import SMALL_CAMERA
+
+HEIGHT, WIDTH = 8, 16
+NAMES = ("fridge", "cooker", "armchair")
+
+
+def observation() -> Observation:
+    """An image with a fridge, a cooker, a chair and a wall, four columns each."""
+    semantic = np.repeat([MPCAT40_ID[name] for name in ("appliances", "appliances", "chair", "wall")], 4).astype(
+        np.uint8
+    )
+    objects = np.repeat([0, 1, 2, -1], 4).astype(np.int32)
+    return {"semantic": np.tile(semantic, (HEIGHT, 1)), "objects": np.tile(objects, (HEIGHT, 1))}
+
+
+class Named(GroundTruthSegmenter):
+    """Truth that tells objects apart."""
+
+    def objects(self, observation: Observation) -> tuple[np.ndarray, Sequence[str]]:
+        return observation["objects"], NAMES
+
+
+def target(segmenter: WishedSegmenter) -> list[float]:
+    scores = segmenter.scores(observation(), segmenter.category)
+    return scores.target[0].tolist()
+
+
+def test_only_objects_with_the_right_name_score_where_they_are_told_apart():
+    segmenter = WishedSegmenter(Named())
+    segmenter.ask("the fridge")
+    assert segmenter.category == "appliances"
+    assert target(segmenter) == [1.0, 0.0, 0.0, 0.0]
+
+
+def test_all_objects_of_the_categories_score_where_they_are_not():
+    segmenter = WishedSegmenter(GroundTruthSegmenter())
+    segmenter.ask("the fridge")
+    assert target(segmenter) == [1.0, 1.0, 0.0, 0.0]
+
+
+def test_posteriors_still_sum_to_one():
+    segmenter = WishedSegmenter(Named())
+    segmenter.ask("something to sit on")
+    assert segmenter.category == "chair"
+    np.testing.assert_allclose(segmenter.posteriors(observation()).sum(axis=0), 1.0)
+
+
+def test_a_category_is_passed_on_unchanged():
+    inner = GroundTruthSegmenter()
+    segmenter = WishedSegmenter(inner)
+    segmenter.ask("chair")
+    seen = observation()
+    assert segmenter.posteriors(seen) is inner.posteriors(seen)
+    assert segmenter.wish is None
+
+
+def test_an_agent_refuses_words_that_it_does_not_know():
+    agent = agents.make(
+        "stubborn-plus", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter(), max_steps=10
+    )
+    agent.reset("the red chair", 0)
+    with pytest.raises(WishError, match="spaceship"):
+        agent.reset("spaceship", 0)
+
+
+def colour_factor(goal: str, rgb: tuple[int, int, int], pixels: int) -> float:
+    attributes = Attributes(parse_wish(goal), GridFrame.around_start(20, 0.1), 8)
+    tracks = np.zeros((20, 20), np.int16)
+    tracks.flat[:pixels] = 1
+    attributes.add(tracks, np.full((20, 20, 3), rgb, np.uint8), None)
+    return attributes._colour_factor(1, UNDECIDED)
+
+
+def test_colours_are_judged_from_pixels():
+    assert colour_factor("the red chair", (190, 30, 30), 300) > 0.6
+    assert colour_factor("the red chair", (30, 60, 190), 300) < 0.1
+    assert colour_factor("the blue chair", (30, 60, 190), 300) > 0.6
+    assert colour_factor("the red chair", (190, 30, 30), 20) == UNDECIDED
+    assert UNDECIDED < 0.5 < AT_LAST
