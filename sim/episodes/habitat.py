@@ -132,6 +132,8 @@ class IndexFile(msgspec.Struct):
     order: list[Name | int] | None = None
     houses_of: Name | None = None
     """Not of Habitat: the folder beside the split's that holds its houses."""
+    in_words: bool = False
+    """Not of Habitat: goals are in words."""
 
 
 def read_episodes(path: Path) -> list[EpisodeEntry]:

@@ -21,7 +21,7 @@ from pathlib import Path
 
 from sim.core.errors import EpisodeError, HouseError, did_you_mean
 from sim.core.files import inside, write_together
-from sim.core.interface import ConfigError
+from sim.core.interface import GOAL_CATEGORIES, ConfigError
 from sim.core.invocation import command
 from sim.core.paths import assets_dir
 from sim.core.reading import Name, first_unprintable, printable, read_bytes, read_json, sha256_of
@@ -165,6 +165,13 @@ def load_split(name_or_path: str | Path) -> Split:
     return _read_split(folder)
 
 
+def is_in_words(name_or_path: str | Path) -> bool:
+    """Returns whether the goals of a split are in words; False also where there is no such split."""
+    shipped = assets_dir() / name_or_path if str(name_or_path) in shipped_splits() else Path(name_or_path)
+    index = _index_of(shipped.resolve())
+    return index.is_file() and habitat.read_index(index).in_words
+
+
 def one_house(path: str | Path, *, labels: str | Path | None = None, root: str | Path | None = None) -> Split:
     """Returns a split of one house file, without episodes; see `split_of_files`."""
     return split_of_files((path,), labels=labels, root=root)
@@ -246,6 +253,8 @@ def write_split(
     index = {"version": version, "order": [episode.episode_id for episode in episodes], "episodes": []}
     if houses_of:
         index["houses_of"] = houses_of
+    if any(episode.goal not in GOAL_CATEGORIES for episode in episodes):
+        index["in_words"] = True
     files: dict[Path, bytes | str] = {}
     for house, goals in goals_by_house.items():
         content = habitat.category_tables() | {

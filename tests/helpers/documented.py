@@ -127,6 +127,10 @@ class Only:
 
 
 _RUN = "stubborn run"
+_WISH = (
+    f"{_RUN} --agent stubborn-plus --semantics gt --house assets/mjcf_houses/val/val_02.xml "
+    "--goal 'the rocking chair in the bedroom'"
+)
 _SMALL = "--house examples/my_house.xml --goal sofa"
 _SHIPPED = "stubborn/segmentation/weights/rednet.safetensors"
 LAB_PYTHON = ".venv-habitat/bin/python"
@@ -254,6 +258,15 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _CLONED,
         f"{_RUN} --agent cloned --semantics gt --config agent.weights={{tmp}}/cloned/cloned.safetensors {_SMALL} "
         "--episodes 1 --out {tmp}/run",
+    ),
+    # docs/words.md
+    f"{_WISH} --episodes 3 --video": (f"{_WISH} --episodes 1 --config task.max_steps=5 --out {{tmp}}/run",),
+    f"{_RUN} --agent stubborn-plus --semantics gt --split words-seen --episodes 20": (
+        f"{_RUN} --agent stubborn-plus --semantics gt --split words-seen --episodes 1 --config task.max_steps=5"
+        " --out {tmp}/run",
+    ),
+    "stubborn words --split val --kind descriptions --episodes 10 --out assets/mjcf_houses/my_words": Only(
+        "writes beside the shipped houses; tests/sim/app/commands/test_words.py makes a split of one house"
     ),
     # docs/houses.md
     f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1": (

@@ -29,7 +29,7 @@ from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES, TRUE_IMAGES, AgentSpec, CameraModel, SegmenterSpec
 from sim.core.invocation import command
-from sim.episodes.splits import Split
+from sim.episodes.splits import Split, is_in_words
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot
@@ -289,7 +289,7 @@ def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKin
         verification=VerificationConfig(method=options.verification, parameters=options.verifier),
         robot=replace(robot, motion=options.motion),
         camera=camera,
-        sensors=_sensor_names(spec, segmentation, in_words=options.goal not in (None, *GOAL_CATEGORIES)),
+        sensors=_sensor_names(spec, segmentation, in_words=_asks_in_words(options)),
         scan=ScanConfig(),
         profile=get_profile(options.profile),
         noise=get_noise(options.noise),
@@ -305,6 +305,13 @@ def _agent_config(options: RunOptions, spec: AgentSpec) -> object:
     if not takes_explorer(spec):
         raise ConfigError(f"--explorer: agent '{options.agent}' takes no explorer.")
     return replace(spec.config, explorer=explorer)
+
+
+def _asks_in_words(options: RunOptions) -> bool:
+    """Returns whether goals of a run are in words."""
+    if options.goal is not None:
+        return options.goal not in GOAL_CATEGORIES
+    return options.house is None and is_in_words(options.split)
 
 
 def _sensor_names(spec: AgentSpec, segmentation: SegmentationKind, *, in_words: bool = False) -> tuple[str, ...]:

@@ -248,7 +248,7 @@ def test_a_wish_in_words_is_played_in_a_house_of_a_split(choices, tmp_path):
 
 
 def test_a_wish_that_the_house_cannot_satisfy_is_answered_with_what_is_there(choices, tmp_path):
-    with pytest.raises(EpisodeError, match="has no 'kettle'. It has: bed, chair"):
+    with pytest.raises(EpisodeError, match=r"has no 'kettle'\. It has: bed, chair"):
         play(choices.request(WISH | {"goal": "a kettle"}), tmp_path / "runs")
 
 

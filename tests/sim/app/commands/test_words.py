@@ -1,0 +1,66 @@
+"""`stubborn words` in a folder with one house, and runs of the split that it makes."""
+
+from __future__ import annotations
+
+import pytest
+
+from sim.app import cli
+from sim.app.commands import words
+from sim.app.composition.environments import episodes_of
+from sim.app.composition.setup import resolve
+from sim.app.options import RunOptions
+from sim.core.errors import ConfigError
+from sim.core.geometry.pose import Pose
+from sim.episodes.episode import Episode
+from sim.episodes.splits import is_in_words, load_split, write_split
+from tests.sim.task.test_meaning import furnished
+
+
+@pytest.fixture(scope="module")
+def homes(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("data") / "homes"
+    folder.mkdir()
+    house = furnished()
+    (folder / "one.xml").write_text(house.spec.to_xml())
+    write_split(folder, [Episode("homes_0000", "one", "table", Pose(0.0, -3.0, 0.0))], {"one": {}}, version="1")
+    return folder
+
+
+def made(homes, kind, name, **options):
+    args = words.Args(kind=kind, split=str(homes), out=homes.parent / name, episodes=3, **options)
+    assert words.main(args) == 0
+    return load_split(args.out)
+
+
+@pytest.mark.parametrize(
+    ("kind", "goals"), [("seen", {"armchair", "desk", "office chair", "desk lamp"}), ("descriptions", set())]
+)
+def test_a_split_of_goals_in_words_uses_the_houses_beside_it(homes, kind, goals):
+    split = made(homes, kind, kind)
+    assert split.houses == ("one",)
+    assert split.house_file("one") == homes / "one.xml"
+    asked = {episode.goal for episode in split.episodes}
+    assert asked
+    assert asked <= goals if goals else all("chair" in goal or "lamp" in goal or "desk" in goal for goal in asked)
+    assert is_in_words(homes.parent / kind)
+    assert not is_in_words(homes)
+    assert all(episode.shortest_path_m >= 4.0 for episode in split.episodes)
+
+
+def test_agents_that_take_no_words_get_none_of_these_episodes(homes):
+    made(homes, "seen", "again")
+    options = {"split": str(homes.parent / "again"), "semantics": "gt", "episodes": 1}
+    with pytest.raises(ConfigError, match="no episode with a goal that the agent knows"):
+        episodes_of(resolve(RunOptions(agent="cloned", **options)))
+    setup = resolve(RunOptions(agent="stubborn-plus", **options))
+    assert "rgb" in setup.config.sensors
+    assert len(episodes_of(setup).episodes) == 1
+    assert "rgb" not in resolve(RunOptions(agent="stubborn-plus", semantics="gt")).config.sensors
+
+
+def test_the_split_must_lie_beside_the_houses(homes, tmp_path):
+    with pytest.raises(ConfigError, match="beside the houses"):
+        words.main(words.Args(kind="seen", split=str(homes), out=tmp_path / "elsewhere"))
+    with pytest.raises(ConfigError, match="No house of"):
+        words.main(words.Args(kind="unseen", split=str(homes), out=homes.parent / "none"))
+    assert cli.parse(words.Args, ["--kind", "seen", "--out", "x"]).split == "val"
