@@ -21,7 +21,8 @@ from sim.app.evaluation.results import RunDirectory
 from sim.core.errors import ConfigError
 from sim.core.files import open_to_grow
 from sim.core.geometry import compiling
-from sim.core.reading import image_size_px, read_csv, read_json
+from sim.core.pictures import image_size_px
+from sim.core.reading import read_csv, read_json
 from sim.task.result import EpisodeResult
 from sim.training.segmentation.dataset import read_members, read_shard
 from sim.training.views.coco import decode_mask

@@ -38,8 +38,6 @@ MAX_BYTES = 64 << 20
 """Largest JSON file that is read, also after decompression; the largest that ships has 0.3 MB."""
 MAX_LINES_BYTES = 512 << 20
 """Largest file of lines (`results.jsonl`): about 700,000 episodes."""
-MAX_PIXELS = 64_000_000
-"""Pixels of the largest image that is decoded."""
 MAX_TAR_HEADER_BYTES = 2048
 """Largest extended header of a member of a tar file; the time of `tarfile` grows with the square of its size."""
 _TAR_EXTENSIONS = (
@@ -396,35 +394,6 @@ def read_npz(
             return {name: _read_member(archive, name) for name in requested}
     except Exception as fault:  # damaged files raise many kinds of errors in zipfile and NumPy
         raise error(f"'{file}' is not a {what}: {reason_of(fault)}.") from None
-
-
-def image_size_px(content: bytes) -> tuple[int, int] | None:
-    """Returns width and height of a PNG or JPEG image from its header; None if it is neither."""
-    if content[:8] == b"\x89PNG\r\n\x1a\n" and len(content) >= 24:
-        width, height = struct.unpack(">II", content[16:24])
-        return width, height
-    position = 2
-    while content[:2] == b"\xff\xd8" and position + 9 <= len(content) and content[position] == 0xFF:
-        while position + 10 <= len(content) and content[position + 1] == 0xFF:
-            position += 1  # a marker may follow any number of fill bytes
-        marker, length = content[position + 1], int.from_bytes(content[position + 2 : position + 4], "big")
-        if marker == 0x01 or 0xD0 <= marker <= 0xD7:  # these markers have no length
-            position += 2
-            continue
-        if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
-            height, width = struct.unpack(">HH", content[position + 5 : position + 9])
-            return width, height
-        position += 2 + max(length, 1)
-    return None
-
-
-def require_small_image(content: bytes, *, where: str, error: type[ObjectNavError] = ConfigError) -> None:
-    """Raises an error if an image is not a PNG or JPEG, or has more than `MAX_PIXELS` pixels."""
-    size = image_size_px(content)
-    if size is None:
-        raise error(f"{where} is neither a PNG nor a JPEG image.")
-    if size[0] * size[1] > MAX_PIXELS:
-        raise error(f"{where} has {size[0]} x {size[1]} pixels; at most {MAX_PIXELS // 1_000_000} million are allowed.")
 
 
 def printable(text: str) -> str:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_fill_holes
 
 from sim.core.errors import HouseError
-from sim.homes.housegen.imported.meshes import library
+from sim.homes.housegen.imported.scene_files import library
 from sim.homes.importers.surfaces import Surface
 from sim.homes.importers.visual import samples, welded
 

@@ -20,8 +20,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError, HouseError
-from sim.core.reading import printable, read_bytes, require_small_image
-from sim.homes.importers.surfaces import FARTHEST_M, GREY, MAX_FILE_BYTES, MAX_TRIANGLES, WHITE, Paint, Surface
+from sim.core.pictures import decode_picture
+from sim.core.reading import printable, read_bytes
+from sim.homes.housegen.imported.sources import Skipped
+from sim.homes.importers.surfaces import (
+    FARTHEST_M,
+    GREY,
+    MAX_FILE_BYTES,
+    MAX_TRIANGLES,
+    WHITE,
+    Paint,
+    Surface,
+    path_inside,
+    read_inside,
+)  # fmt: skip
 
 MAX_MATERIALS = 10_000
 PICTURE_OPTIONS = {
@@ -179,10 +191,10 @@ def _is_value(word: str) -> bool:
 def used_files(file: Path) -> Iterator[Path]:
     """Yields the files of its folder that an OBJ file and its materials name, whether they exist or not."""
     for named in _words_after("mtllib", file):
-        materials = _path_inside(file.parent, " ".join(named))
+        materials = path_inside(file.parent, " ".join(named))
         if materials is not None:
             yield materials
-            pictures = (_path_inside(file.parent, _picture_name(words)) for words in _words_after("map_Kd", materials))
+            pictures = (path_inside(file.parent, _picture_name(words)) for words in _words_after("map_Kd", materials))
             yield from (picture for picture in pictures if picture is not None)
 
 
@@ -198,35 +210,22 @@ def _words_after(key: str, file: Path) -> Iterator[list[str]]:
             yield words[1:]
 
 
-def _path_inside(folder: Path, name: str) -> Path | None:
-    """Returns the path of a named file in the folder or below it; None if it is elsewhere."""
-    base = folder.resolve()
-    target = (base / name.replace("\\", "/")).resolve()
-    return target if target.is_relative_to(base) else None
-
-
 def _file_inside(folder: Path, name: str, losses: Counter[str]) -> bytes | None:
     """Returns a file of the folder or below it; None if it is missing.
 
     Raises:
         HouseError: it is outside of the folder.
     """
-    target = _path_inside(folder, name)
-    if target is None:
-        raise HouseError(f"A mesh in '{folder}' uses '{printable(name)[:100]}', which is outside of its folder.")
     try:
-        return read_bytes(target, what="File", most=MAX_FILE_BYTES)
-    except ConfigError:
+        return read_inside(folder, name)
+    except Skipped:
         losses[f"The file '{printable(name)[:60]}' is missing; its colours were lost."] += 1
         return None
 
 
 def _pixels(content: bytes, name: str, texture_px: int) -> NDArray[np.uint8]:
     """Returns the pixels (h, w, 3) of a picture, RGB, at most `texture_px` along its longer side."""
-    require_small_image(content, where=f"Picture '{printable(name)[:60]}'", error=HouseError)
-    picture = cv2.imdecode(np.frombuffer(content, dtype=np.uint8), cv2.IMREAD_COLOR)
-    if picture is None:
-        raise HouseError(f"Picture '{printable(name)[:60]}' cannot be read.")
+    picture = decode_picture(content, where=f"Picture '{printable(name)[:60]}'", error=HouseError)
     factor = texture_px / max(picture.shape[:2])
     if factor < 1.0:
         size = max(1, round(picture.shape[1] * factor)), max(1, round(picture.shape[0] * factor))

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from sim.homes.housegen.imported.meshes import Part, areas, library
+from sim.homes.housegen.imported.meshes import Part, areas
 from sim.homes.housegen.imported.reduction import is_alike, reduced
+from sim.homes.housegen.imported.scene_files import library
 from sim.homes.housegen.imported.sources import Skipped
 from sim.homes.importers.surfaces import WHITE, Paint, Surface
 

@@ -113,6 +113,15 @@ def test_the_colour_of_a_picture_is_that_of_the_places_shown(tmp_path: Path) -> 
     assert shape.parts[0].rgba[:3] == pytest.approx((0.98, 0.04, 0.04), abs=0.03)
 
 
+def test_a_model_with_a_picture_of_another_format_is_left_out_with_the_formats(tmp_path: Path) -> None:
+    image = pytest.importorskip("PIL.Image")
+    folder = write_folder(tmp_path)
+    image.new("RGB", (8, 8)).save(folder / "wood.png", "EPS")
+    (folder / "model.mtl").write_text("newmtl wood\nKd 1 1 1\nmap_Kd wood.png\n")
+    (reason,) = set(reasons(folder))
+    assert reason == "A picture has an unsupported format; use PNG, JPEG, WebP, BMP, GIF"
+
+
 def test_a_table_collides_as_its_top_and_its_legs_and_carries_objects(tmp_path: Path) -> None:
     _, shape = imported(write_folder(tmp_path), "table")
     assert 3 <= len(shape.boxes_m) <= 12

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import base64
+import contextlib
+import io
 import json
+import os
 import struct
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import PIL.Image
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -191,3 +197,78 @@ def test_pictures_of_a_mesh_are_read_once_and_reduced(tmp_path: Path) -> None:
     assert surface.paint.picture is not None
     assert surface.paint.picture.shape == (16, 16, 3)
     assert surface.paint.picture[8, 8].tolist() == [200, 100, 50]
+
+
+# ---- pictures that are no pictures -----------------------------------------------------------------------------------
+
+
+def eps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[bytes, Path]:
+    """Returns an EPS picture, and the file that exists when Ghostscript has been started."""
+    started = tmp_path / "started"
+    program = tmp_path / "bin" / "gs"
+    program.parent.mkdir()
+    program.write_text(f"#!/bin/sh\ntouch {started}\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{program.parent}:{os.environ['PATH']}")
+    monkeypatch.setattr("PIL.EpsImagePlugin.gs_binary", None)
+    content = io.BytesIO()
+    PIL.Image.new("RGB", (8, 8)).save(content, "EPS")
+    with contextlib.suppress(OSError):
+        PIL.Image.open(io.BytesIO(content.getvalue())).load()
+    assert started.exists(), "Pillow would start the program"
+    started.unlink()
+    return content.getvalue(), started
+
+
+def pictured(image: dict[str, Any], data: bytes) -> bytes:
+    """Returns a GLB file of a triangle with a picture, whose bytes may be the second buffer view."""
+    header = {
+        **TRIANGLE, "images": [image], "textures": [{"source": 0}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 0}]}],
+        "accessors": [*TRIANGLE["accessors"], {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC2"}],
+        "bufferViews": [
+            {"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": len(data)}
+        ],
+        "buffers": [{"byteLength": 36 + len(data)}],
+    }  # fmt: skip
+    return glb(header, CORNERS + data + b"\0" * (-len(data) % 4))
+
+
+@pytest.mark.parametrize("kind", ["png", "jpeg"])
+@pytest.mark.parametrize("source", ["view", "data", "file"])
+def test_a_picture_in_postscript_starts_no_program_and_is_reported(
+    source: str, kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    content, started = eps(tmp_path, monkeypatch)
+    (tmp_path / "a.eps").write_bytes(content)
+    image: dict[str, Any] = {
+        "view": {"bufferView": 1}, "data": {"uri": f"data:image/{kind};base64,{base64.b64encode(content).decode()}"},
+        "file": {"uri": "a.eps"},
+    }[source]  # fmt: skip
+    (tmp_path / "x.glb").write_bytes(pictured({**image, "mimeType": f"image/{kind}"}, content))
+    losses = Counter[str]()
+    (surface,) = read_surfaces(tmp_path / "x.glb", texture_px=16, losses=losses)
+    assert not started.exists()
+    assert surface.paint.picture is None
+    assert list(losses) == ["A picture has an unsupported format; use PNG, JPEG, WebP, BMP, GIF."]
+
+
+def test_a_damaged_picture_is_reported_and_the_mesh_is_kept(tmp_path: Path) -> None:
+    content = io.BytesIO()
+    PIL.Image.fromarray(np.random.default_rng(0).integers(0, 255, (64, 64, 3), np.uint8)).save(content, "PNG")
+    losses = Counter[str]()
+    (tmp_path / "x.glb").write_bytes(pictured({"bufferView": 1}, content.getvalue()[:-4000]))
+    (surface,) = read_surfaces(tmp_path / "x.glb", texture_px=16, losses=losses)
+    assert surface.paint.picture is None
+    assert list(losses) == ["A picture is damaged and cannot be read."]
+
+
+def test_a_picture_that_a_ply_file_lacks_prints_nothing(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "x.ply").write_text(
+        "ply\nformat ascii 1.0\ncomment TextureFile no.png\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+    )
+    assert len(read_surfaces(tmp_path / "x.ply")) == 1
+    assert capfd.readouterr().err == ""
