@@ -43,6 +43,10 @@ MAX_TAR_HEADER_BYTES = 2048
 _TAR_EXTENSIONS = (
     tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE, tarfile.GNUTYPE_LONGNAME, tarfile.GNUTYPE_LONGLINK
 )  # fmt: skip
+_ALIKE = {"LATIN", "CYRILLIC", "GREEK", "ARMENIAN", "CHEROKEE"}
+"""Alphabets with letters of the same shape."""
+_UNSEEN = ("Cc", "Cf", "Cs", "Zl", "Zp")
+"""Categories of characters that are invisible, change the direction of writing, or control a terminal."""
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF32_LE, "utf-32-le"),
@@ -396,10 +400,27 @@ def read_npz(
         raise error(f"'{file}' is not a {what}: {reason_of(fault)}.") from None
 
 
+def disguise_of(text: str) -> str:
+    """Returns a phrase on why a text can look like another one; "": it cannot.
+
+    Invisible characters and those that change the direction of writing are found, characters that are variants of
+    others (Unicode's form NFKC), and words that mix the alphabets with letters of the same shape.
+    """
+    if any(unicodedata.category(letter) in (*_UNSEEN, "Cn", "Co") for letter in text):
+        return "has an invisible character, or one that changes the direction of writing"
+    if unicodedata.normalize("NFKC", text) != text:
+        return f"has variants of characters; write '{ascii(unicodedata.normalize('NFKC', text))[1:-1]}'"
+    for word in re.split(r"[\W\d_]+", text):
+        alphabets = {unicodedata.name(letter, "").partition(" ")[0] for letter in word} & _ALIKE
+        if len(alphabets) > 1:
+            return f"has a word with letters of {' and '.join(sorted(name.title() for name in alphabets))}"
+    return ""
+
+
 def printable(text: str) -> str:
-    """Returns text in which control characters and lone surrogates are written as escapes, for a terminal."""
+    """Returns text for a terminal: control and invisible characters and lone surrogates are written as escapes."""
     return "".join(
-        letter if letter in "\n\t" or unicodedata.category(letter) not in ("Cc", "Cs", "Zl", "Zp") else _escape(letter)
+        letter if letter in "\n\t" or unicodedata.category(letter) not in _UNSEEN else _escape(letter)
         for letter in text
     )
 

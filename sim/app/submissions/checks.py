@@ -10,7 +10,7 @@ from typing import Literal
 
 import msgspec
 
-from sim.app.submissions.contents import Entry, Inputs, Submission
+from sim.app.submissions.contents import PLACE_EVERY, Entry, Inputs, Submission
 from sim.app.submissions.setting import Setting
 from sim.core.errors import ConfigError
 from sim.core.interface import TRUE_IMAGES, Action
@@ -36,6 +36,7 @@ class _Tree(msgspec.Struct):
 class _Segmentation(msgspec.Struct):
     name: str | None = None
     truth: tuple[str, ...] | None = None
+    sensors: tuple[str, ...] | None = None
 
 
 class _Recorded(msgspec.Struct):
@@ -131,6 +132,9 @@ def _require_declared(submission: Submission, config: Mapping[str, object], sett
     if inputs.isolated != inputs.agent.startswith("process:"):
         raise ConfigError(f"{where} declares isolated {inputs.isolated} for the agent '{inputs.agent}'.")
     segmentation = record.segmentation or _Segmentation()
+    absent = sorted({*(segmentation.sensors or ())} - {*inputs.sensors})
+    if absent:
+        raise ConfigError(f"{where}: its segmentation reads '{absent[0]}', which is not among the sensors of the run.")
     true_images = TRUE_IMAGES & {*inputs.sensors, *(segmentation.truth or ())}
     if segmentation.name == "ground truth":
         true_images |= {"semantic"}
@@ -156,8 +160,8 @@ def _require_entry(entry: Entry, known: Episode, submission: Submission, setting
     if result.is_error:
         if result.success or result.spl or result.soft_spl:
             raise ConfigError(f"{where} ended with an error and cannot be a success.")
-        if actions:
-            raise ConfigError(f"{where} ended with an error and is not replayed; it cannot have actions.")
+        if actions or entry.places_m:
+            raise ConfigError(f"{where} ended with an error and is not replayed; it cannot have actions or positions.")
         return
     if result.num_steps != len(actions):
         raise ConfigError(f"{where} has {len(actions)} actions, and its result counts {result.num_steps}.")
@@ -166,6 +170,9 @@ def _require_entry(entry: Entry, known: Episode, submission: Submission, setting
     if STOP in actions[:-1]:
         raise ConfigError(f"{where} has actions after STOP, which ends an episode.")
     _require_coherent(result, actions, where)
+    places = -(-len(actions) // PLACE_EVERY)
+    if len(entry.places_m) != places:
+        raise ConfigError(f"{where} has {len(entry.places_m)} positions; {len(actions)} actions have {places}.")
 
 
 def _require_coherent(result: EpisodeResult, actions: str, where: str) -> None:
