@@ -38,6 +38,8 @@ MAX_BYTES = 64 << 20
 """Largest JSON file that is read, also after decompression; the largest that ships has 0.3 MB."""
 MAX_LINES_BYTES = 512 << 20
 """Largest file of lines (`results.jsonl`): about 700,000 episodes."""
+MAX_EMPTY_LINES = 10_000
+"""A small compressed file can have billions of them."""
 MAX_TAR_HEADER_BYTES = 2048
 """Largest extended header of a member of a tar file; the time of `tarfile` grows with the square of its size."""
 _TAR_EXTENSIONS = (
@@ -275,7 +277,8 @@ class TextLine(NamedTuple):
 def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> Iterator[TextLine]:
     """Yields the lines of a file, which may be gzipped; empty lines are left out.
 
-    The file is read line by line, so that it may be of any size; a line has at most `MAX_BYTES`.
+    The file is read line by line, so that it may be of any size; a line has at most `MAX_BYTES`, and at most
+    `MAX_EMPTY_LINES` lines are empty.
 
     Raises:
         ObjectNavError: of class `error`; the file cannot be read, or a line is too long.
@@ -285,6 +288,7 @@ def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErr
         size = max(1, packed.seek(0, os.SEEK_END))
         packed.seek(0)
         stream = gzip.GzipFile(fileobj=packed) if zipped else packed
+        empty = 0
         for number in itertools.count(1):
             try:
                 line = stream.readline(MAX_BYTES + 1)
@@ -294,6 +298,9 @@ def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErr
                 raise error(f"{what} '{file}', line {number} is longer than {MAX_BYTES >> 20} MB.")
             if not line:
                 return
+            empty += not line.strip()
+            if empty > MAX_EMPTY_LINES:
+                raise error(f"{what} '{file}', line {number}: more than {MAX_EMPTY_LINES:,} lines are empty.")
             if line.strip():
                 yield TextLine(number, line, min(1.0, packed.tell() / size))
 

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from sim.core.errors import ConfigError, HouseError
 from sim.core.pictures import decode_picture
 from sim.core.reading import printable, read_bytes
+from sim.homes.housegen.imported.scene_files import MAX_CORNERS
 from sim.homes.housegen.imported.sources import Skipped
 from sim.homes.importers.surfaces import (
     FARTHEST_M,
@@ -31,6 +32,7 @@ from sim.homes.importers.surfaces import (
     WHITE,
     Paint,
     Surface,
+    is_near,
     path_inside,
     read_inside,
 )  # fmt: skip
@@ -94,9 +96,12 @@ def read_obj(file: Path, *, texture_px: int, losses: Counter[str]) -> list[Surfa
     if not content.faces:
         raise HouseError(f"{where} has no triangles.")
     vertices = np.array(content.vertices, dtype=np.float64)
-    if not bool((np.abs(vertices) <= FARTHEST_M).all()):
-        raise HouseError(f"{where}: a vertex is not finite or beyond {FARTHEST_M:g} m.")
-    return [_surface(content, vertices, *key) for key in content.faces]
+    all_uv = np.nan_to_num(np.array(content.uv, dtype=np.float64).reshape(-1, 2))
+    surfaces = [_surface(content, vertices, all_uv, *key) for key in content.faces]
+    near = [surface for surface in surfaces if is_near(surface.vertices_m, surface.node, losses)]
+    if not near:
+        raise HouseError(f"{where} has no triangles: each has a vertex that is not finite or beyond {FARTHEST_M:g} m.")
+    return near
 
 
 def _vertex(words: list[str]) -> list[float]:
@@ -108,9 +113,9 @@ def _vertex(words: list[str]) -> list[float]:
 
 def _add_face(content: _Content, node: str, material: str, words: list[str]) -> None:
     """Adds a polygon as triangles; raises ValueError if it is broken."""
-    corners = [_corner(content, word) for word in words]
-    if len(corners) < 3:
-        raise ValueError("a face needs three vertices")
+    corners = [_corner(content, word) for word in words[: MAX_CORNERS + 1]]
+    if not 3 <= len(corners) <= MAX_CORNERS:
+        raise ValueError(f"a face needs three vertices or more, at most {MAX_CORNERS:,}; it has {len(corners):,}")
     content.triangles += len(corners) - 2
     if content.triangles > MAX_TRIANGLES:
         raise ValueError(f"the file has more than {MAX_TRIANGLES:,} triangles")
@@ -129,15 +134,16 @@ def _corner(content: _Content, word: str) -> Corner:
     return vertex, at if uv and 0 <= at < len(content.uv) else -1
 
 
-def _surface(content: _Content, vertices_m: NDArray[np.float64], node: str, material: str) -> Surface:
+def _surface(
+    content: _Content, vertices_m: NDArray[np.float64], all_uv: NDArray[np.float64], node: str, material: str
+) -> Surface:
+    """Returns the surface of a node and a material."""
     corners = np.array(content.faces[node, material], dtype=np.int64).reshape(-1, 2)
     used, faces = np.unique(corners, axis=0, return_inverse=True)
     paint = content.paints.get(material, Paint(GREY))
     if paint.picture is not None:
-        if content.uv and bool((used[:, 1] >= 0).all()):
-            paint = replace(paint, uv=np.nan_to_num(np.array(content.uv, dtype=np.float64)[used[:, 1]]))
-        else:
-            paint = Paint(GREY)  # no part of the picture belongs to a triangle
+        shows = len(all_uv) > 0 and bool((used[:, 1] >= 0).all())
+        paint = replace(paint, uv=all_uv[used[:, 1]]) if shows else Paint(GREY)  # no part of the picture belongs to it
     return Surface(node, material, vertices_m[used[:, 0]], faces.reshape(-1, 3).astype(np.int32), paint)
 
 

@@ -113,7 +113,7 @@ def read_surfaces(
     read = functools.partial(read_inside, file.parent)
     scene = load_scene(content, kind, where=where, most=MAX_TRIANGLES, read=read, losses=losses, extra="import")
     try:
-        surfaces = list(_surfaces(scene, texture_px, where, losses))
+        surfaces = list(_surfaces(scene, texture_px, losses))
     except ObjectNavError:
         raise
     except Exception as error:  # trimesh computes parts of a scene when they are asked for
@@ -121,7 +121,7 @@ def read_surfaces(
             f"{where} cannot be read ({type(error).__name__}: {printable(reason_of(error))[:100]})."
         ) from None
     if not surfaces:
-        raise HouseError(f"{where} has no triangles.")
+        raise HouseError(f"{where} has no triangles.{' '.join(['', *losses][:3])}")
     if up == "y":
         turn = np.eye(4)
         turn[:3, :3] = Y_UP
@@ -129,7 +129,7 @@ def read_surfaces(
     return surfaces
 
 
-def _surfaces(scene: Any, texture_px: int | None, where: str, losses: Counter[str]) -> Iterator[Surface]:
+def _surfaces(scene: Any, texture_px: int | None, losses: Counter[str]) -> Iterator[Surface]:
     """Yields the surfaces of a scene of trimesh."""
     painted = dict[int, NDArray[np.uint8] | None]()
     trimesh = library("trimesh", extra="import")
@@ -141,17 +141,28 @@ def _surfaces(scene: Any, texture_px: int | None, where: str, losses: Counter[st
         vertices = np.asarray(mesh.vertices, dtype=np.float64)
         faces = np.asarray(mesh.faces, dtype=np.int32)
         if faces.min() < 0 or faces.max() >= len(vertices):
-            raise HouseError(f"{where}, node '{printable(str(node))}': a triangle names a vertex that does not exist.")
+            leave_out(str(node), "a triangle names a vertex that does not exist", losses)
+            continue
         material = getattr(mesh.visual, "material", None)
         surface = Surface(
             str(node), str(getattr(material, "name", None) or ""), vertices, faces,
             _paint(mesh, material, texture_px, painted, losses), _face_ids(mesh),
         ).moved(np.asarray(transform, dtype=np.float64))  # fmt: skip
-        if not bool((np.abs(surface.vertices_m) <= FARTHEST_M).all()):
-            raise HouseError(
-                f"{where}, node '{printable(str(node))}': a vertex is not finite or beyond {FARTHEST_M:g} m."
-            )
-        yield surface
+        if is_near(surface.vertices_m, str(node), losses):
+            yield surface
+
+
+def is_near(vertices_m: NDArray[np.float64], node: str, losses: Counter[str]) -> bool:
+    """Returns whether all vertices of a node are finite and within `FARTHEST_M`; else the node is reported."""
+    near = bool((np.abs(vertices_m) <= FARTHEST_M).all())
+    if not near:
+        leave_out(node, f"a vertex is not finite or beyond {FARTHEST_M:g} m", losses)
+    return near
+
+
+def leave_out(node: str, reason: str, losses: Counter[str]) -> None:
+    """Reports a node that is left out."""
+    losses[f"'{printable(node)[:60]}' was left out: {reason}."] += 1
 
 
 def _paint(

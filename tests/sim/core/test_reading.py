@@ -209,3 +209,10 @@ def test_control_characters_and_lone_surrogates_are_written_as_escapes() -> None
     assert reading.printable("a\x1b[31mb\u009bc\udcff [d] é") == "a\\x1b[31mb\\x9bc\\udcff [d] é"
     assert reading.first_unprintable(["a b", "ü"]) is None
     assert reading.first_unprintable(["a", "b\x1b[0m"]) == "b\x1b[0m"
+
+
+def test_a_file_of_empty_lines_ends_soon(tmp_path: Path) -> None:
+    file = tmp_path / "lines.gz"
+    file.write_bytes(gzip.compress(b"{}\n" + b"\n" * 300_000))
+    with pytest.raises(ConfigError, match="line 10002: more than 10,000 lines are empty"):
+        list(reading.json_lines(file, what="Scenes"))

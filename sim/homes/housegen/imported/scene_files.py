@@ -27,6 +27,8 @@ MAX_NUMBERS = 200_000_000
 MAX_NUMBERS_PER_BYTE = 32
 """Their largest ratio to the bytes of the file: parts of a mesh may share bytes, but an accessor needs none at all."""
 MAX_NODES = 20_000
+MAX_CORNERS = 10_000
+"""Vertices of one face."""
 _LOST = {
     "KHR_texture_basisu": "A file has pictures in the Basis format, which cannot be read; they became plain colours.",
     "EXT_texture_webp": "A file has pictures in the WebP format, which may have been left out.",
@@ -35,6 +37,11 @@ _REFUSED = {
     "KHR_draco_mesh_compression": "Draco", "EXT_meshopt_compression": "meshopt", "KHR_meshopt_compression": "meshopt",
 }  # fmt: skip
 _COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+_PLY_BYTES = {
+    b"char": 1, b"uchar": 1, b"int8": 1, b"uint8": 1, b"short": 2, b"ushort": 2, b"int16": 2, b"uint16": 2,
+    b"double": 8, b"float64": 8,
+}  # fmt: skip
+"""Bytes of the types that have other than four."""
 _Index = Annotated[int, Meta(ge=0)]
 
 
@@ -231,9 +238,20 @@ def _require_tree(children: list[list[int]], where: str) -> None:
 
 
 def _require_sane_ply(content: bytes, where: str) -> None:
-    """Raises HouseError if a PLY file announces more elements than it has bytes."""
-    head = content[: content.find(b"end_header") + 1 or 1 << 16][: 1 << 16]
-    for line in head.splitlines():
-        words = line.split()
-        if words[:1] == [b"element"] and len(words) == 3 and words[2].isdigit() and int(words[2][:20]) > len(content):
-            raise HouseError(f"{where} announces {int(words[2][:20])} elements, but has {len(content)} bytes.")
+    """Raises HouseError if a PLY file announces more elements than it has bytes, or has a polygon of many corners."""
+    end = content.find(b"end_header") + 1 or 1 << 16
+    element, count, faces, others = b"", 0, 1, 0  # `others`: bytes of the elements that are not faces
+    for words in (line.split() for line in content[: min(end, 1 << 16)].splitlines()):
+        if words[:1] == [b"element"] and len(words) == 3 and words[2].isdigit():
+            element, count = words[1], int(words[2][:20])
+            if count > len(content):
+                raise HouseError(f"{where} announces {count} elements, but has {len(content)} bytes.")
+            faces = max(1, count) if element == b"face" else faces
+        elif words[:1] == [b"property"] and len(words) == 3 and element != b"face":
+            others += count * _PLY_BYTES.get(words[1], 4)
+    if b"format ascii" in content[:100]:
+        face_bytes = max(map(len, content[end:].splitlines()), default=0)
+    else:
+        face_bytes = (len(content) - end - others) // faces
+    if face_bytes > 16 * MAX_CORNERS:
+        raise HouseError(f"{where} has a face with more than {MAX_CORNERS:,} vertices.")
