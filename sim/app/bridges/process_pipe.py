@@ -11,6 +11,7 @@ import contextlib
 import fcntl
 import mmap
 import os
+import re
 import select
 import signal
 import socket
@@ -45,6 +46,8 @@ GUARD_S = 5.0
 _PIPE_BYTES = 1 << 20
 """Size of the pipes, the largest that Linux allows without privileges."""
 _CHUNK_BYTES = 1 << 20
+_COLOURS = re.compile(r"\x1b\[[0-9;]*m")
+"""Sequences for colours in a terminal; other sequences are shown as escapes."""
 
 
 class Answer(NamedTuple):
@@ -252,7 +255,7 @@ class AgentProcess:
             shown += "\n[the agent prints more, which is left out]\n"
         if shown:
             with contextlib.suppress(OSError, ValueError):
-                sys.stderr.write(shown)
+                sys.stderr.write(printable(_COLOURS.sub("", shown.replace("\r\n", "\n").replace("\r", "\n"))))
 
     def _next_message(self) -> Answer | None:
         """Removes the next message from the received bytes and returns it; None while it is not complete.
@@ -292,13 +295,22 @@ class _SharedMemory:
 
     @classmethod
     def make(cls) -> _SharedMemory | None:
-        """Returns new memory; None if the operating system does not provide any."""
-        if not hasattr(os, "memfd_create"):
+        """Returns new memory; None if the operating system does not provide any that cannot be shortened.
+
+        The agent's process can open the memory for writing. If it could also shorten it, the next write of the
+        simulator would end the simulator by SIGBUS.
+        """
+        if not hasattr(os, "memfd_create") or not hasattr(fcntl, "F_ADD_SEALS"):
             return None
+        handle = -1
         try:
-            return cls(os.memfd_create("stubborn"))
+            handle = os.memfd_create("stubborn", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
+            fcntl.fcntl(handle, fcntl.F_ADD_SEALS, fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_SEAL)
         except OSError:
+            if handle >= 0:
+                os.close(handle)
             return None
+        return cls(handle)
 
     def write(self, arrays: Mapping[str, NDArray]) -> None:
         """Writes arrays one after the other."""
@@ -336,6 +348,7 @@ def _end(guard: subprocess.Popen[bytes], control: socket.socket, within_s: float
     with contextlib.suppress(OSError, ValueError):
         select.select([control], [], [], within_s)
     control.close()
+    guard.send_signal(signal.SIGCONT)  # the agent, a process of the same user, may have stopped its guard
     try:
         guard.wait(GUARD_S)
     except subprocess.TimeoutExpired:
