@@ -23,7 +23,7 @@ from sim.core.errors import ConfigError, HouseError
 from sim.core.pictures import decode_picture
 from sim.core.reading import printable, read_bytes
 from sim.homes.housegen.imported.scene_files import MAX_CORNERS
-from sim.homes.housegen.imported.sources import Skipped
+from sim.homes.housegen.imported.sources import Skipped, path_inside
 from sim.homes.importers.surfaces import (
     FARTHEST_M,
     GREY,
@@ -33,7 +33,6 @@ from sim.homes.importers.surfaces import (
     Paint,
     Surface,
     is_near,
-    path_inside,
     read_inside,
 )  # fmt: skip
 

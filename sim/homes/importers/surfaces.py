@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from sim.core.errors import ConfigError, HouseError, ObjectNavError
 from sim.core.reading import printable, read_bytes, reason_of
 from sim.homes.housegen.imported.scene_files import gltf_parts, library, load_scene
-from sim.homes.housegen.imported.sources import Skipped
+from sim.homes.housegen.imported.sources import Skipped, path_inside
 
 FORMATS = ("glb", "gltf", "obj", "ply")
 MAX_FILE_BYTES = 1 << 30
@@ -243,16 +243,6 @@ def parts_of(file: Path) -> Iterator[Path]:
         part = path_inside(file.parent, name)
         if part is not None:
             yield part
-
-
-def path_inside(folder: Path, name: str) -> Path | None:
-    """Returns the path of a named file in the folder or below it; None if it is elsewhere or has an invalid name."""
-    base = folder.resolve()
-    try:
-        target = (base / name.replace("\\", "/")).resolve()
-    except (OSError, ValueError, RuntimeError):
-        return None
-    return target if target.is_relative_to(base) else None
 
 
 def read_inside(folder: Path, name: str) -> bytes:
