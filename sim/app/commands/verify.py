@@ -31,7 +31,7 @@ from sim.app import cli
 from sim.app.analysis.metrics import SPL, SUCCESS, mean_cell
 from sim.app.composition.agents import SPECS
 from sim.app.submissions.audit import FRAMES, Checked, Choices, check, counts, verdicts
-from sim.app.submissions.checks import truth_of
+from sim.app.submissions.checks import PLACES, isolation_of, truth_of
 from sim.app.submissions.leaderboard import results_of
 from sim.app.submissions.report import report_of
 from sim.app.submissions.verdicts import TOLERANCE_M, Verdict
@@ -150,9 +150,9 @@ def _summary(checked: Checked, choices: Choices, outcome: list[Verdict], seconds
         yield f"Verified: these actions lead to these results.{rest}"
     yield _known_paths(checked, outcome)
     yield (
-        f"Declared by the authors; a replay cannot prove it: agent '{inputs.agent}'"
-        f"{' in a process of its own' if inputs.isolated else ', not in a process of its own'}; ground truth "
-        f"{truth_of(inputs)}; sensors {', '.join(inputs.sensors) or 'none'}"
+        f"Declared by the authors; a replay cannot prove it: agent '{inputs.agent}' "
+        f"{PLACES[isolation_of(inputs)]}; ground truth {truth_of(inputs)}; "
+        f"sensors {', '.join(inputs.sensors) or 'none'}"
         f"{'; the seed, which has no effect on physics without noise' if inputs.noise == 'none' else ''}."
     )
 

@@ -80,6 +80,19 @@ def truth_of(inputs: Inputs) -> Truth:
     return "noisy" if inputs.semantics == "noisy" else "none"
 
 
+PLACES = {
+    "no": "in the process of the simulator",
+    "yes": "in a process of its own, as the same user",
+    "namespace": "in a process of its own, in namespaces",
+}
+"""Where an agent ran, by `isolation_of`."""
+
+
+def isolation_of(inputs: Inputs) -> str:
+    """Returns whether the agent ran in a process of its own, as the authors declare it: yes, no, or namespace."""
+    return inputs.isolated if isinstance(inputs.isolated, str) else "yes" if inputs.isolated else "no"
+
+
 def coverage(submission: Submission, split: Split) -> tuple[bool, str]:
     """Returns whether the episodes are the first ones of the split, and which they are as text.
 
@@ -129,7 +142,7 @@ def _require_declared(submission: Submission, config: Mapping[str, object], sett
         declared = getattr(inputs, name)
         if declared != value:
             raise ConfigError(f"{where} declares {name} {declared!r}, and its configuration has {value!r}.")
-    if inputs.isolated != inputs.agent.startswith("process:"):
+    if bool(inputs.isolated) != inputs.agent.startswith("process:"):
         raise ConfigError(f"{where} declares isolated {inputs.isolated} for the agent '{inputs.agent}'.")
     segmentation = record.segmentation or _Segmentation()
     absent = sorted({*(segmentation.sensors or ())} - {*inputs.sensors})

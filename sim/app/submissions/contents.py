@@ -19,7 +19,7 @@ from sim.app.evaluation.results import RunRecord
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
 from sim.core.reading import Count, Metres, Name, Seed, disguise_of, parse_json, read_bytes, read_gzip_json
-from sim.task.result import EpisodeResult
+from sim.task.result import EpisodeResult, Isolation
 
 FORMAT: Literal["stubborn-submission-1"] = "stubborn-submission-1"
 SUFFIX = ".json.gz"
@@ -51,8 +51,8 @@ class Inputs(msgspec.Struct, forbid_unknown_fields=True):
     sensors: Annotated[tuple[Short, ...], Meta(max_length=50)]
     noise: Name
     uses_ground_truth: bool
-    isolated: bool
-    """The agent ran in a process of its own (`--agent process:COMMAND`), which got observations and nothing else."""
+    isolated: Isolation
+    """The agent ran in a process of its own (`--agent process:COMMAND`), or also in namespaces of Linux."""
 
 
 class SplitOf(msgspec.Struct, forbid_unknown_fields=True):
