@@ -9,6 +9,7 @@ from __future__ import annotations
 import ctypes
 import importlib
 import os
+import shutil
 import sys
 from typing import Any
 
@@ -60,6 +61,35 @@ def choose_backend() -> str:
     return "osmesa" if not _is_installed("egl") and _is_installed("osmesa") else "egl"
 
 
+MIN_CACHE_BYTES = 64 << 20
+"""Free space of the folder of Mesa's shader cache, with less of which it is not used."""
+
+
+def free_cache_bytes() -> int:
+    """Returns the free space for Mesa's cache of shaders."""
+    cache = (
+        os.environ.get("MESA_SHADER_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    )
+    while not os.path.isdir(cache) and cache != os.path.dirname(cache):
+        cache = os.path.dirname(cache)
+    try:
+        return shutil.disk_usage(cache or ".").free
+    except OSError:
+        return 0
+
+
+def memory_limit() -> str:
+    """Returns a sentence on the limit of this process's memory (`ulimit -v`); "" if it has none."""
+    try:
+        import resource
+    except ImportError:
+        return ""
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if limit == resource.RLIM_INFINITY:
+        return ""
+    return f"This process is limited to {limit >> 20} MB of memory (ulimit -v), which may be the cause. "
+
+
 def make_context(width_px: int, height_px: int) -> Any:
     """Returns a new OpenGL context of the chosen backend, even if the user has imported MuJoCo before this module.
 
@@ -80,8 +110,8 @@ def make_context(width_px: int, height_px: int) -> Any:
     except Exception as error:  # EGL, OSMesa and GLFW raise different classes
         reason = " ".join(str(error).split())[:200]
         raise RenderError(
-            f"OpenGL did not start with MUJOCO_GL={BACKEND} ({reason}). Import sim before any other OpenGL code. "
-            f"{_REMEDY}"
+            f"OpenGL did not start with MUJOCO_GL={BACKEND} ({reason}). {memory_limit()}Import sim before any other "
+            f"OpenGL code. {_REMEDY}"
         ) from None
 
 
@@ -122,6 +152,11 @@ os.environ.setdefault("LP_NUM_THREADS", "1")
 # PyTorch's threads spin for milliseconds while they wait for each other. With two other processes on two cores, a
 # frame of the network then takes 200 ms; with this limit 62, and with one thread 44 (docs/performance.md).
 os.environ.setdefault("GOMP_SPINCOUNT", "30000")
+
+if (
+    free_cache_bytes() < MIN_CACHE_BYTES
+):  # Mesa maps the files of its cache; a full disk would end the process by SIGBUS
+    os.environ.setdefault("MESA_SHADER_CACHE_DISABLE", "true")
 
 import mujoco  # noqa: E402
 

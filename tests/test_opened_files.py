@@ -21,7 +21,8 @@ from sim.app.evaluation.results import RunDirectory
 from sim.core.errors import ConfigError
 from sim.core.files import open_to_grow
 from sim.core.geometry import compiling
-from sim.core.reading import image_size_px, read_csv, read_json
+from sim.core.pictures import image_size_px
+from sim.core.reading import read_csv, read_json
 from sim.task.result import EpisodeResult
 from sim.training.segmentation.dataset import read_members, read_shard
 from sim.training.views.coco import decode_mask
@@ -74,6 +75,8 @@ EXCEPTIONS = {
     ("tools/benchmarks/against.py", "tarfile.open"): "the output of git",
     ("sim/app/bridges/process_guard.py", "open"): "states of processes in /proc, which no user names",
     ("sim/app/bridges/process_guard.py", "os.open"): "/dev/null",
+    ("sim/app/bridges/process_boundary.py", "open"): "files of the kernel in /proc/self",
+    ("sim/app/bridges/process_boundary.py", "os.open"): "/dev/null",
     ("sim/app/bridges/stubborn_client.py", "os.open"): "runs in the agent's process; memory that the simulator names",
     ("sim/homes/housegen/imported/infinigen_worker.py", "open"): "runs in the user's Python; a new part file",
     ("sim/app/commands/habitat/setup.py", "distribution.read_text"): "a file of the installed package",

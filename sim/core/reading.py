@@ -38,13 +38,17 @@ MAX_BYTES = 64 << 20
 """Largest JSON file that is read, also after decompression; the largest that ships has 0.3 MB."""
 MAX_LINES_BYTES = 512 << 20
 """Largest file of lines (`results.jsonl`): about 700,000 episodes."""
-MAX_PIXELS = 64_000_000
-"""Pixels of the largest image that is decoded."""
+MAX_EMPTY_LINES = 10_000
+"""A small compressed file can have billions of them."""
 MAX_TAR_HEADER_BYTES = 2048
 """Largest extended header of a member of a tar file; the time of `tarfile` grows with the square of its size."""
 _TAR_EXTENSIONS = (
     tarfile.XHDTYPE, tarfile.XGLTYPE, tarfile.SOLARIS_XHDTYPE, tarfile.GNUTYPE_LONGNAME, tarfile.GNUTYPE_LONGLINK
 )  # fmt: skip
+_ALIKE = {"LATIN", "CYRILLIC", "GREEK", "ARMENIAN", "CHEROKEE"}
+"""Alphabets with letters of the same shape."""
+_UNSEEN = ("Cc", "Cf", "Cs", "Zl", "Zp")
+"""Categories of characters that are invisible, change the direction of writing, or control a terminal."""
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF32_LE, "utf-32-le"),
@@ -273,7 +277,8 @@ class TextLine(NamedTuple):
 def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> Iterator[TextLine]:
     """Yields the lines of a file, which may be gzipped; empty lines are left out.
 
-    The file is read line by line, so that it may be of any size; a line has at most `MAX_BYTES`.
+    The file is read line by line, so that it may be of any size; a line has at most `MAX_BYTES`, and at most
+    `MAX_EMPTY_LINES` lines are empty.
 
     Raises:
         ObjectNavError: of class `error`; the file cannot be read, or a line is too long.
@@ -283,6 +288,7 @@ def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErr
         size = max(1, packed.seek(0, os.SEEK_END))
         packed.seek(0)
         stream = gzip.GzipFile(fileobj=packed) if zipped else packed
+        empty = 0
         for number in itertools.count(1):
             try:
                 line = stream.readline(MAX_BYTES + 1)
@@ -292,6 +298,9 @@ def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErr
                 raise error(f"{what} '{file}', line {number} is longer than {MAX_BYTES >> 20} MB.")
             if not line:
                 return
+            empty += not line.strip()
+            if empty > MAX_EMPTY_LINES:
+                raise error(f"{what} '{file}', line {number}: more than {MAX_EMPTY_LINES:,} lines are empty.")
             if line.strip():
                 yield TextLine(number, line, min(1.0, packed.tell() / size))
 
@@ -398,39 +407,27 @@ def read_npz(
         raise error(f"'{file}' is not a {what}: {reason_of(fault)}.") from None
 
 
-def image_size_px(content: bytes) -> tuple[int, int] | None:
-    """Returns width and height of a PNG or JPEG image from its header; None if it is neither."""
-    if content[:8] == b"\x89PNG\r\n\x1a\n" and len(content) >= 24:
-        width, height = struct.unpack(">II", content[16:24])
-        return width, height
-    position = 2
-    while content[:2] == b"\xff\xd8" and position + 9 <= len(content) and content[position] == 0xFF:
-        while position + 10 <= len(content) and content[position + 1] == 0xFF:
-            position += 1  # a marker may follow any number of fill bytes
-        marker, length = content[position + 1], int.from_bytes(content[position + 2 : position + 4], "big")
-        if marker == 0x01 or 0xD0 <= marker <= 0xD7:  # these markers have no length
-            position += 2
-            continue
-        if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
-            height, width = struct.unpack(">HH", content[position + 5 : position + 9])
-            return width, height
-        position += 2 + max(length, 1)
-    return None
+def disguise_of(text: str) -> str:
+    """Returns a phrase on why a text can look like another one; "": it cannot.
 
-
-def require_small_image(content: bytes, *, where: str, error: type[ObjectNavError] = ConfigError) -> None:
-    """Raises an error if an image is not a PNG or JPEG, or has more than `MAX_PIXELS` pixels."""
-    size = image_size_px(content)
-    if size is None:
-        raise error(f"{where} is neither a PNG nor a JPEG image.")
-    if size[0] * size[1] > MAX_PIXELS:
-        raise error(f"{where} has {size[0]} x {size[1]} pixels; at most {MAX_PIXELS // 1_000_000} million are allowed.")
+    Invisible characters and those that change the direction of writing are found, characters that are variants of
+    others (Unicode's form NFKC), and words that mix the alphabets with letters of the same shape.
+    """
+    if any(unicodedata.category(letter) in (*_UNSEEN, "Cn", "Co") for letter in text):
+        return "has an invisible character, or one that changes the direction of writing"
+    if unicodedata.normalize("NFKC", text) != text:
+        return f"has variants of characters; write '{ascii(unicodedata.normalize('NFKC', text))[1:-1]}'"
+    for word in re.split(r"[\W\d_]+", text):
+        alphabets = {unicodedata.name(letter, "").partition(" ")[0] for letter in word} & _ALIKE
+        if len(alphabets) > 1:
+            return f"has a word with letters of {' and '.join(sorted(name.title() for name in alphabets))}"
+    return ""
 
 
 def printable(text: str) -> str:
-    """Returns text in which control characters and lone surrogates are written as escapes, for a terminal."""
+    """Returns text for a terminal: control and invisible characters and lone surrogates are written as escapes."""
     return "".join(
-        letter if letter in "\n\t" or unicodedata.category(letter) not in ("Cc", "Cs", "Zl", "Zp") else _escape(letter)
+        letter if letter in "\n\t" or unicodedata.category(letter) not in _UNSEEN else _escape(letter)
         for letter in text
     )
 

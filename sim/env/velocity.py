@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import reprlib
 from typing import Any
 
 import numpy as np
@@ -73,11 +74,15 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
 
     def _clipped(self, action: ArrayLike) -> tuple[float, float, float]:
         """Returns speed, turn rate and STOP, within the space."""
-        command = np.asarray(action, np.float64)
+        try:
+            given = np.asarray(action)
+            command = given.astype(np.float64) if given.dtype.kind in "bifuO" else np.zeros(0)
+        except (TypeError, ValueError, OverflowError):
+            command = np.zeros(0)
         if command.shape != (3,) or not np.isfinite(command).all():
             raise ConfigError(
                 f"An action is three finite numbers: m/s forward, rad/s to the left, and STOP above 0.5; got "
-                f"{action!r}."
+                f"{reprlib.repr(action)}."
             )
         space = self.action_space
         assert isinstance(space, spaces.Box)

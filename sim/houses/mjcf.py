@@ -18,7 +18,8 @@ from xml.parsers import expat
 import numpy as np
 
 from sim.core.errors import HouseError, ObjectNavError
-from sim.core.reading import MAX_BYTES, image_size_px, open_plain, printable, read_bytes, reason_of
+from sim.core.pictures import image_size_px
+from sim.core.reading import MAX_BYTES, open_plain, printable, read_bytes, reason_of
 from sim.gl import mujoco
 from sim.houses.attachments import Attachment, attach, attachment_of, use_absolute_paths
 from sim.houses.mjcf_text import Composition, as_utf8

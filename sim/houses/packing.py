@@ -19,7 +19,8 @@ import cv2
 import numpy as np
 
 from sim.core.errors import HouseError
-from sim.core.reading import MAX_PIXELS, image_size_px, read_bytes, reason_of
+from sim.core.pictures import decode_picture, image_size_px
+from sim.core.reading import read_bytes, reason_of
 from sim.gl import mujoco
 from sim.houses.house import House
 from sim.houses.references import asset_path
@@ -121,16 +122,12 @@ def reduced_image(content: bytes, most_px: int, *, cells: bool, where: str) -> b
         where: name of the file, for messages.
 
     Raises:
-        HouseError: the image is broken, or larger than `MAX_PIXELS`.
+        HouseError: the image is broken, or too large.
     """
     width, height = image_size_px(content) or (0, 0)
     if max(width, height) <= most_px or not content.startswith(b"\x89PNG"):
         return content
-    if width * height > MAX_PIXELS:
-        raise HouseError(f"{where} has {width} x {height} pixels; at most {MAX_PIXELS} pixels are read.")
-    image = cv2.imdecode(np.frombuffer(content, dtype=np.uint8), cv2.IMREAD_UNCHANGED)
-    if image is None:
-        raise HouseError(f"{where} is not an image that can be read.")
+    image = decode_picture(content, cv2.IMREAD_UNCHANGED, where=where, error=HouseError)
     if image.dtype == np.uint16:
         image = np.right_shift(np.asarray(image, np.uint16), 8).astype(np.uint8)
     factor = most_px / max(width, height)

@@ -145,6 +145,9 @@ class RolloutResult(EpisodeMetrics, frozen=True, kw_only=True, omit_defaults=Tru
         return msgspec.structs.replace(self, wall_time_s=None, steps_per_s=None)
 
 
+Isolation = bool | Literal["namespace"]
+
+
 class EpisodeResult(RolloutResult, frozen=True, kw_only=True):
     """A line of `results.jsonl`."""
 
@@ -153,8 +156,9 @@ class EpisodeResult(RolloutResult, frozen=True, kw_only=True):
     goal: Name
     agent: str
     uses_ground_truth: bool
-    isolated: bool
-    """True: the agent ran in a process of its own that got observations and nothing else."""
+    isolated: Isolation
+    """True: the agent ran in a process of its own, as the same user; `namespace`: also without network, and without
+    access to the houses, the results and other processes."""
     semantics: str
     seed: Seed
     """Seed of the run."""

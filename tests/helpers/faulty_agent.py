@@ -88,12 +88,21 @@ def forks_and_answers(header: dict) -> None:
     sleep()
 
 
+def stops_guard() -> None:
+    """Stops the process that would end this one, after starting another one apart."""
+    fork(apart=True)
+    os.kill(os.getppid(), signal.SIGSTOP)
+    sleep()
+
+
 def act(header: dict) -> None:
     """Answers a request for an action, or does what the fault says."""
     good = {**ANSWERS["act"], "id": header["id"]}
     instead = {
         "no_answer": sleep,
         "forks": lambda: forks_and_answers(header),
+        "stops_guard": stops_guard,
+        "escapes": lambda: (os.write(2, b"\x1b]0;title\x07\x1b[31mred\x1b[0m\x1b[2J 50%\r60%\n"), write(message(good))),
         "late_answer": lambda: (time.sleep(0.6), write(message(good))),
         "drip": drip,
         "flood_stdout": lambda: flood(1),

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from sim.homes.housegen.imported.meshes import library
+from sim.homes.housegen.imported.scene_files import library
 
 trimesh = library("trimesh")
 Mesh: TypeAlias = Any

@@ -52,3 +52,25 @@ def test_a_context_is_current_in_any_thread_after_another_one_used_it() -> None:
     with ThreadPoolExecutor(1) as pool:
         assert pool.submit(use).result()
     assert use()
+
+
+@pytest.mark.parametrize(("free", "expected"), [(0, "true"), (1 << 40, "None")])
+def test_the_cache_of_shaders_is_not_used_on_a_full_disk(free: int, expected: str) -> None:
+    code = (
+        f"import os, shutil, types; shutil.disk_usage = lambda folder: types.SimpleNamespace(free={free})\n"
+        "import sim.gl; print(os.environ.get('MESA_SHADER_CACHE_DISABLE'))"
+    )
+    done = _run(code, MESA_SHADER_CACHE_DIR="/no/such/folder")
+    assert done.stdout.strip() == expected, done.stderr
+
+
+def test_a_limit_of_memory_is_named_where_opengl_does_not_start() -> None:
+    code = (
+        "import resource; from sim import gl; assert gl.memory_limit() == ''\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))\n"
+        "import mujoco.egl as egl\n"
+        "def fails(*_): raise RuntimeError('no memory')\n"
+        "egl.GLContext = fails; gl.make_context(8, 8)"
+    )
+    done = _run(code, MUJOCO_GL="egl")
+    assert "(no memory). This process is limited to 4096 MB of memory" in done.stderr

@@ -413,8 +413,8 @@ def takes_config(argument: inspect.Parameter) -> bool:
 
 def called(value: object) -> object:
     """Returns the result of the function that a text `module:NAME()` names; returns any other value unchanged."""
-    call = CALL.match(value) if isinstance(value, str) else None
-    if call is None or call.end() != len(call.string):
+    call = CALL.fullmatch(value) if isinstance(value, str) else None
+    if call is None:
         return value
     return getattr(importlib.import_module(call.group(1)), call.group(2))()
 

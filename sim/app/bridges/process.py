@@ -11,6 +11,7 @@ from __future__ import annotations
 import functools
 import shlex
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated, Literal, TypeVar
 
 import cv2
@@ -21,7 +22,7 @@ from numpy.typing import NDArray
 
 from sim.app.bridges.habitat.config import make_config
 from sim.app.bridges.habitat.conversions import Conversion
-from sim.app.bridges.process_command import ProcessConfig, command_of
+from sim.app.bridges.process_command import ProcessConfig, command_of, is_bounded
 from sim.app.bridges.process_pipe import AgentProcess, Answer
 from sim.app.bridges.stubborn_client import MAX_HEADER_BYTES, ProtocolError, unpack_arrays
 from sim.app.evaluation.own_code import one_line
@@ -104,6 +105,7 @@ class ProcessAgent:
         camera, robot, success, max_steps: the task, whose description is sent to the agent.
         config: the options of the agent.
         step_timeout_s: longest time of a call; 0: no limit.
+        hidden: files and folders of the run that a process in namespaces does not see.
 
     Raises:
         ConfigError: the process cannot be started or does not answer.
@@ -119,11 +121,13 @@ class ProcessAgent:
         config: ProcessConfig,
         max_steps: int,
         step_timeout_s: float = 0.0,
+        hidden: Sequence[Path] = (),
         **others: object,
     ) -> None:
         self.name = f"{PROCESS}{shlex.join(command)}"
         """The name as it is given to `--agent`."""
         self._command, self._config, self._limit_s = list(command), config, step_timeout_s or float("inf")
+        self._hidden = [str(path) for path in (*hidden, *config.hidden)] if is_bounded(config) else None
         self._setup = {
             "camera": as_json(camera),
             "robot": as_json(robot),
@@ -197,7 +201,7 @@ class ProcessAgent:
 
     def _start(self) -> AgentProcess:
         """Starts the process and returns it."""
-        process = self._process = AgentProcess(self._command)
+        process = self._process = AgentProcess(self._command, self._hidden)
         request = {"type": "start", "setup": self._setup, "memory": process.memory}
         ready, _ = self._ask(request, _Ready, within_s=self._config.start_timeout_s)
         if ready.interface != self._config.interface:

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import os
 import re
 import shlex
+import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
+from sim.app.evaluation.own_code import one_line
 from sim.app.options import PROCESS
 from sim.core.errors import ConfigError
 from sim.core.geometry.numbers import require_numbers
 
+BOUNDARY = Path(__file__).with_name("process_boundary.py")
 Interface = Literal["stubborn", "habitat"]
+Boundary = Literal["none", "auto", "namespace"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,9 +41,20 @@ class ProcessConfig(BridgeConfig):
     """With `habitat`: the data set that numbers the goals, `mp3d` or `hm3d`."""
     normalize_depth: bool = True
     """With `habitat`: depth is scaled to [0, 1]; False: metres."""
+    boundary: Boundary = "none"
+    """`namespace`: the process has no network and sees neither the houses, nor the results, nor other processes (Linux
+    where users may make namespaces); `auto`: the same where it is possible; `none`: it runs as the same user."""
+    hidden: tuple[Path, ...] = ()
+    """Further files and folders that a process in namespaces does not see."""
 
     def __post_init__(self) -> None:
         require_numbers(self)
+        if self.boundary not in get_args(Boundary):
+            raise ConfigError(
+                f"ProcessConfig.boundary must be one of {', '.join(get_args(Boundary))}, got '{self.boundary}'."
+            )
+        if self.hidden and self.boundary == "none":
+            raise ConfigError("agent.hidden needs agent.boundary=namespace or auto.")
         if self.interface not in get_args(Interface):
             raise ConfigError(
                 f"ProcessConfig.interface must be one of {', '.join(get_args(Interface))}, got '{self.interface}'."
@@ -63,6 +80,33 @@ def command_of(name: str) -> list[str]:
     if not words or not words[0]:
         raise ConfigError(f"--agent '{name}': a command must follow, for example {PROCESS}'python my_agent.py'.")
     return words
+
+
+@functools.cache
+def fault_of_namespaces() -> str:
+    """Returns the reason why this machine does not allow the namespaces of `process_boundary`; "": it allows them."""
+    if sys.platform != "linux":
+        return f"they need Linux, this is {sys.platform}"
+    words = [sys.executable, "-I", "-S", str(BOUNDARY)]
+    try:
+        tried = subprocess.run(words, capture_output=True, text=True, timeout=20.0, check=False)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return one_line(str(error))
+    return "" if tried.returncode == 0 else one_line(tried.stderr) or f"status {tried.returncode}"
+
+
+def is_bounded(config: object) -> bool:
+    """Returns whether the agent with this configuration runs in namespaces.
+
+    Raises:
+        ConfigError: it must, and this machine does not allow them.
+    """
+    if not isinstance(config, ProcessConfig) or config.boundary == "none":
+        return False
+    fault = fault_of_namespaces()
+    if fault and config.boundary == "namespace":
+        raise ConfigError(f"agent.boundary=namespace is not possible on this machine: {fault}.")
+    return not fault
 
 
 def files_of(name: str) -> list[Path]:

@@ -3,16 +3,20 @@
 The guard is a program of its own between the simulator and the agent, so that it still runs if either of the two is
 killed. It needs nothing but Python. When the simulator has ended, the control socket is closed.
 
-    python process_guard.py CONTROL COMMAND ...
+    python process_guard.py CONTROL HIDDEN KEPT COMMAND ...
 
-CONTROL is the number of an open socket to the simulator. When the command has ended or could not be started, the guard
-writes one line to it: `ended STATUS`, `killed SIGNAL` or `failed REASON`.
+CONTROL is the number of an open socket to the simulator. HIDDEN is JSON: null, or a list of paths, for a command in
+namespaces in which they are hidden (`process_boundary`). KEPT is JSON: file descriptors that the command gets. When the
+command has ended or could not be started, the guard writes one line to CONTROL: `ended STATUS`, `killed SIGNAL` or
+`failed REASON`.
 """
 
 from __future__ import annotations
 
 import contextlib
 import ctypes
+import functools
+import json
 import os
 import select
 import signal
@@ -29,12 +33,20 @@ ENDING_S = 3.0
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36  # sys/prctl.h
 
 
-def main(control: socket.socket, command: list[str]) -> None:
+def main(control: socket.socket, hidden: list[str] | None, kept: list[int], command: list[str]) -> None:
     """Runs the command until it or the simulator has ended, then kills all processes of the command that remain."""
     _prctl(_PR_SET_CHILD_SUBREAPER, 1)  # processes whose parent has ended become children of this one
+    reading, report = os.pipe()
+    begin, passed = _end_with_guard, kept
     try:
+        if hidden is not None:
+            sys.path.append(os.path.dirname(os.path.abspath(__file__)))  # this file is run without the user's modules
+            import process_boundary  # pyright: ignore[reportMissingImports]
+
+            process_boundary.enter(hidden)
+            begin, passed = functools.partial(process_boundary.begin, report), [*kept, report]
         # The command gets a session of its own, so that Ctrl-C does not reach it.
-        agent = subprocess.Popen(command, start_new_session=True, preexec_fn=_end_with_guard)
+        agent = subprocess.Popen(command, start_new_session=True, preexec_fn=begin, pass_fds=passed)
     except (OSError, ValueError, subprocess.SubprocessError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         _say(control, f"failed {reason}: '{command[0]}'")
@@ -42,8 +54,11 @@ def main(control: socket.socket, command: list[str]) -> None:
     nothing = os.open(os.devnull, os.O_RDWR)
     for number in (0, 1, 2):  # only the agent holds the pipes from here on, so that they are closed when it ends
         os.dup2(nothing, number)
+    os.close(report)
     _wait(agent, control)
     status = agent.poll()
+    if hidden is not None and status is not None:  # that of the first process of the namespace
+        status = os.waitstatus_to_exitcode(int(os.read(reading, 20) or b"9"))
     _end_all(agent)
     if status is not None:
         _say(control, f"ended {status}" if status >= 0 else f"killed {-status}")
@@ -106,4 +121,4 @@ def _say(control: socket.socket, line: str) -> None:
 
 
 if __name__ == "__main__":
-    main(socket.socket(fileno=int(sys.argv[1])), sys.argv[2:])
+    main(socket.socket(fileno=int(sys.argv[1])), json.loads(sys.argv[2]), json.loads(sys.argv[3]), sys.argv[4:])

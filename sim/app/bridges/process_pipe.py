@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import json
 import mmap
 import os
+import re
 import select
 import signal
 import socket
@@ -19,12 +21,13 @@ import sys
 import time
 import weakref
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.app.bridges import process_guard, stubborn_client
+from sim.app.bridges import stubborn_client
 from sim.app.bridges.stubborn_client import MARK, PREFIX, ProtocolError
 from sim.app.evaluation.own_code import one_line
 from sim.app.evaluation.watch import TICK_S
@@ -38,6 +41,12 @@ TAIL_LINES, TAIL_BYTES = 6, 2000
 """Number of the last lines of standard error that an error message repeats, and of the bytes that are kept."""
 PRINTED_BYTES = 1 << 16
 """Largest number of bytes of an agent's output that the terminal shows in each episode."""
+GUARD = Path(__file__).with_name("process_guard.py")
+ENVIRONMENT = frozenset((
+    "PATH", "HOME", "USER", "LANG", "TERM", "TMPDIR", "TZ", "VIRTUAL_ENV", "CONDA_PREFIX", "PYTHONPATH",
+    "LD_LIBRARY_PATH", "CUDA_VISIBLE_DEVICES", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS",
+))  # fmt: skip
+"""Variables of the environment that a process in namespaces gets, with those of the locale (LC_...)."""
 CLOSING_S = 2.0
 """Longest time in which the agent may end by itself after its pipe was closed."""
 GUARD_S = 5.0
@@ -45,6 +54,8 @@ GUARD_S = 5.0
 _PIPE_BYTES = 1 << 20
 """Size of the pipes, the largest that Linux allows without privileges."""
 _CHUNK_BYTES = 1 << 20
+_COLOURS = re.compile(r"\x1b\[[0-9;]*m")
+"""Sequences for colours in a terminal; other sequences are shown as escapes."""
 
 
 class Answer(NamedTuple):
@@ -65,14 +76,20 @@ class AgentProcess:
 
     Args:
         command: program and arguments.
+        hidden: files and folders that the process does not see; it then runs in namespaces (`process_boundary`), with
+            the variables of `ENVIRONMENT` only. None: it runs as any other process of the user.
 
     Raises:
         AgentError: the operating system does not start another process.
     """
 
-    def __init__(self, command: Sequence[str]) -> None:
+    def __init__(self, command: Sequence[str], hidden: Sequence[str] | None = None) -> None:
         self._control, theirs = socket.socketpair()
-        words = [sys.executable, "-I", "-S", process_guard.__file__, str(theirs.fileno()), *command]
+        self._memory = _SharedMemory.make(is_inherited=hidden is not None)
+        kept = [] if hidden is None or self._memory is None else [self._memory.handle]
+        settings = str(theirs.fileno()), json.dumps(hidden), json.dumps(kept)
+        words = [sys.executable, "-I", "-S", str(GUARD), *settings, *command]
+        known = {name: value for name, value in os.environ.items() if name in ENVIRONMENT or name.startswith("LC_")}
         pipe = subprocess.PIPE
         try:
             self._guard = subprocess.Popen(
@@ -81,7 +98,8 @@ class AgentProcess:
                 stdin=pipe,
                 stdout=pipe,
                 stderr=pipe,
-                pass_fds=(theirs.fileno(),),
+                pass_fds=(theirs.fileno(), *kept),
+                env=None if hidden is None else known,
                 start_new_session=True,
             )
         except OSError as error:
@@ -104,7 +122,6 @@ class AgentProcess:
         self._printed_bytes = 0
         self._end = ""
         """A text on how the process has ended, for messages; "" while it runs."""
-        self._memory = _SharedMemory.make()
         self._number = 0
 
     @property
@@ -252,7 +269,7 @@ class AgentProcess:
             shown += "\n[the agent prints more, which is left out]\n"
         if shown:
             with contextlib.suppress(OSError, ValueError):
-                sys.stderr.write(shown)
+                sys.stderr.write(printable(_COLOURS.sub("", shown.replace("\r\n", "\n").replace("\r", "\n"))))
 
     def _next_message(self) -> Answer | None:
         """Removes the next message from the received bytes and returns it; None while it is not complete.
@@ -281,24 +298,39 @@ class AgentProcess:
 
 
 class _SharedMemory:
-    """Memory for observations, which the process of the agent opens by its path."""
+    """Memory for observations, which the process of the agent opens by its path.
 
-    def __init__(self, handle: int) -> None:
-        self._stream = os.fdopen(handle, "r+b", buffering=0)
+    Args:
+        handle: file descriptor of the memory.
+        is_inherited: the process of the agent has the same file descriptor.
+    """
+
+    def __init__(self, handle: int, *, is_inherited: bool) -> None:
+        self._stream, self.handle = os.fdopen(handle, "r+b", buffering=0), handle
         key = os.urandom(16).hex()
         self._stream.write(key.encode())
-        self.description = {"path": f"/proc/{os.getpid()}/fd/{handle}", "key": key}
+        owner = "self" if is_inherited else os.getpid()
+        self.description = {"path": f"/proc/{owner}/fd/{handle}", "key": key}
         self._view = np.zeros(0, np.uint8)
 
     @classmethod
-    def make(cls) -> _SharedMemory | None:
-        """Returns new memory; None if the operating system does not provide any."""
-        if not hasattr(os, "memfd_create"):
+    def make(cls, *, is_inherited: bool) -> _SharedMemory | None:
+        """Returns new memory; None if the operating system does not provide any that cannot be shortened.
+
+        The agent's process can open the memory for writing. If it could also shorten it, the next write of the
+        simulator would end the simulator by SIGBUS.
+        """
+        if not hasattr(os, "memfd_create") or not hasattr(fcntl, "F_ADD_SEALS"):
             return None
+        handle = -1
         try:
-            return cls(os.memfd_create("stubborn"))
+            handle = os.memfd_create("stubborn", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
+            fcntl.fcntl(handle, fcntl.F_ADD_SEALS, fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_SEAL)
         except OSError:
+            if handle >= 0:
+                os.close(handle)
             return None
+        return cls(handle, is_inherited=is_inherited)
 
     def write(self, arrays: Mapping[str, NDArray]) -> None:
         """Writes arrays one after the other."""
@@ -336,6 +368,7 @@ def _end(guard: subprocess.Popen[bytes], control: socket.socket, within_s: float
     with contextlib.suppress(OSError, ValueError):
         select.select([control], [], [], within_s)
     control.close()
+    guard.send_signal(signal.SIGCONT)  # the agent, a process of the same user, may have stopped its guard
     try:
         guard.wait(GUARD_S)
     except subprocess.TimeoutExpired:

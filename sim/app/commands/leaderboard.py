@@ -2,12 +2,14 @@
 
     stubborn leaderboard leaderboard
 
-Each submission without a current report is verified first (`stubborn verify`). A submission that is refused, has a
-different episode, chose its episodes or has another robot is named and left out; the exit status is then 1.
+Each submission is verified first (`stubborn verify`), once on this machine: the outcome is kept in the user's cache.
+Reports next to the submissions are written and never read. A submission that is refused, has a different episode, chose
+its episodes, has another robot or is a copy is named and left out; the exit status is then 1.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import secrets
 from dataclasses import dataclass
@@ -18,14 +20,16 @@ import tyro
 
 from sim.app import cli
 from sim.app.analysis.tables import to_markdown
-from sim.app.commands.verify import audit
-from sim.app.submissions.audit import Choices
+from sim.app.commands.verify import audit, truth_of_agents
+from sim.app.composition.agents import SPECS
+from sim.app.composition.driven import HUMAN_NAME
+from sim.app.submissions.audit import Choices, check
 from sim.app.submissions.contents import read_submission
-from sim.app.submissions.leaderboard import Row, csv_of, is_current, report_file, submission_files, tables
-from sim.app.submissions.report import Report, read_report
+from sim.app.submissions.leaderboard import Row, csv_of, report_file, submission_files, tables, without_copies
+from sim.app.submissions.report import is_of, kept_file, read_report
 from sim.core.errors import ConfigError, ObjectNavError
 from sim.core.files import write_atomically, write_together
-from sim.core.reading import printable, sha256_of
+from sim.core.reading import printable, read_text
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,13 +51,16 @@ def main(args: Args) -> int:
     rows, left_out = [], []
     for file in submission_files(args.folder):
         try:
-            row = Row(file, read_submission(file), _report(args, file))
+            row = _row(args, file)
         except ObjectNavError as error:  # the houses of a split can be broken too
             left_out.append(f"{file.name}: {error}")
             continue
         if row.refusal:
             left_out.append(f"{file.name}: {row.refusal}.")
-        rows.append(row)
+        else:
+            rows.append(row)
+    rows, copies = without_copies(rows)
+    left_out += [f"{copy}." for copy in copies]
     shown = tables(rows)
     if not shown:
         raise ConfigError(f"No submission in '{args.folder}' can be shown. {' '.join(left_out)}")
@@ -64,16 +71,20 @@ def main(args: Args) -> int:
     return int(bool(left_out))
 
 
-def _report(args: Args, file: Path) -> Report:
-    """Returns the report on a submission; it is verified if there is no report, or one of another file or version."""
-    kept = report_file(args.folder, file)
-    if kept.is_file() and not args.again:
-        report = read_report(kept)
-        if is_current(report, sha256_of(file, what="Submission")):
-            return report
+def _row(args: Args, file: Path) -> Row:
+    """Returns the row of a submission, which is replayed unless this machine has replayed it before."""
     name = read_submission(file).manifest.split.name
     folder = next((split for split in args.splits if split.resolve().name == name), None)
-    print(f"Verifying {file.name}.")
     choices = Choices(split=folder, draw_seed=secrets.randbits(32), workers=args.workers)
-    write_atomically(kept, json.dumps(audit(file, choices), indent=2) + "\n")
-    return read_report(kept)
+    checked = check(file, choices, truth_of_agents())
+    kept, report = kept_file(checked), None
+    if kept.is_file() and not args.again:
+        with contextlib.suppress(ConfigError):  # of another form: it is written again
+            report = read_report(kept)
+    if report is None or not is_of(report, checked, choices.tolerance_m):
+        print(f"Verifying {file.name}.")
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(kept, json.dumps(audit(file, choices), indent=2) + "\n")
+        report = read_report(kept)
+    write_atomically(report_file(args.folder, file), read_text(kept, what="Report"))
+    return Row(file, checked.submission, report, frozenset((*SPECS, HUMAN_NAME)))

@@ -17,7 +17,7 @@ import tyro
 
 from sim.app import cli
 from sim.app.analysis.comparison import read_run
-from sim.app.submissions.checks import truth_of
+from sim.app.submissions.checks import PLACES, isolation_of, truth_of
 from sim.app.submissions.contents import SUFFIX, write_submission
 from sim.app.submissions.leaderboard import MIN_EPISODES
 from sim.app.submissions.packing import About, pack
@@ -52,7 +52,7 @@ def main(args: Args) -> int:
     submission = pack(read_run(args.run), about)
     size = write_submission(out, submission)
     inputs, count = submission.manifest.inputs, len(submission.episodes)
-    isolated = "in a process of its own" if inputs.isolated else "in the process of the simulator"
+    isolated = PLACES[isolation_of(inputs)]
     print(f"{out}: {count} episodes of {submission.manifest.split.name}, {size / 1000:.0f} KB.")
     segmentation = submission.config_tree(where=str(out)).get("segmentation") or {}
     semantics = inputs.semantics if segmentation.get("name") else "not used"

@@ -31,13 +31,17 @@ from sim.app import cli
 from sim.app.analysis.metrics import SPL, SUCCESS, mean_cell
 from sim.app.composition.agents import SPECS
 from sim.app.submissions.audit import FRAMES, Checked, Choices, check, counts, verdicts
-from sim.app.submissions.checks import truth_of
+from sim.app.submissions.checks import PLACES, isolation_of, truth_of
 from sim.app.submissions.leaderboard import results_of
 from sim.app.submissions.report import report_of
 from sim.app.submissions.verdicts import TOLERANCE_M, Verdict
+from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
 from sim.core.paths import processor
 from sim.core.reading import printable
+
+MAX_TOLERANCE_M = 0.1
+"""With more, a replay would prove nothing about lengths."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,11 +63,13 @@ class Args:
     nonstandard: bool = False
     """Replay also a run with another robot, camera, task or noise than the standard ones."""
     report: cli.OutFile | None = None
-    """JSON file for the outcome, which `stubborn leaderboard` reads."""
+    """JSON file for the outcome."""
 
 
 def main(args: Args) -> int:
     """Verifies the file, prints every episode and a summary; returns the exit status."""
+    if args.tolerance_m > MAX_TOLERANCE_M:
+        raise ConfigError(f"--tolerance-m must be at most {MAX_TOLERANCE_M:g} m, got {args.tolerance_m:g} m.")
     choices = Choices(
         split=args.split,
         frames=args.frames,
@@ -144,9 +150,10 @@ def _summary(checked: Checked, choices: Choices, outcome: list[Verdict], seconds
         yield f"Verified: these actions lead to these results.{rest}"
     yield _known_paths(checked, outcome)
     yield (
-        f"Declared by the authors; a replay cannot prove it: agent '{inputs.agent}'"
-        f"{' in a process of its own' if inputs.isolated else ', not in a process of its own'}; ground truth "
-        f"{truth_of(inputs)}; sensors {', '.join(inputs.sensors) or 'none'}."
+        f"Declared by the authors; a replay cannot prove it: agent '{inputs.agent}' "
+        f"{PLACES[isolation_of(inputs)]}; ground truth {truth_of(inputs)}; "
+        f"sensors {', '.join(inputs.sensors) or 'none'}"
+        f"{'; the seed, which has no effect on physics without noise' if inputs.noise == 'none' else ''}."
     )
 
 

@@ -9,15 +9,19 @@ from __future__ import annotations
 import dataclasses
 import inspect
 from collections.abc import Mapping
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
+from sim.app.bridges.process_command import ProcessConfig, fault_of_namespaces, is_bounded
 from sim.app.composition.imports import import_attribute
 from sim.app.evaluation.own_code import place_of, text_of
 from sim.app.evaluation.watch import FACTORY_S, is_stop, marked
 from sim.app.options import HABITAT, is_process
 from sim.core.errors import AgentError, ConfigError, ObjectNavError, did_you_mean
 from sim.core.interface import Agent, AgentFactory, AgentSpec, Segmenter
+from sim.core.paths import assets_dir
+from sim.houses.sidecar import sidecar_path
 from stubborn import agents
 from stubborn.agent import AgentConfig
 from stubborn.detection.verification import Verifier
@@ -98,8 +102,10 @@ def _find_habitat_agent(name: str) -> AgentSpec:
     return bridge.spec_of(name, declared)
 
 
-def notes_on(name: str) -> tuple[str, ...]:
-    """Returns sentences about an agent after `find_agent`; a run prints them in its header."""
+def notes_on(name: str, config: object) -> tuple[str, ...]:
+    """Returns sentences about an agent with a configuration after `find_agent`; a run prints them in its header."""
+    if isinstance(config, ProcessConfig) and config.boundary == "auto" and not is_bounded(config):
+        return (f"The agent's process has no boundary, since namespaces are not possible: {fault_of_namespaces()}.",)
     if not name.startswith(HABITAT):
         return ()
     from sim.app.bridges.habitat import stand_in
@@ -143,8 +149,17 @@ def build_agent(
     verifier: Verifier,
     config: object,
     step_timeout_s: float = 0.0,
+    out: Path | None = None,
 ) -> Agent:
-    """Returns a new agent for an environment; `step_timeout_s` limits the time of its calls (0: no limit).
+    """Returns a new agent for an environment.
+
+    Args:
+        name: as for `find_agent`.
+        spec: its specification.
+        env: the environment.
+        segmenter, verifier, config: its parts.
+        step_timeout_s: largest time of its calls; 0: no limit.
+        out: folder of the results, which an agent in namespaces does not see.
 
     Raises:
         ConfigError: the factory does not take the arguments of `sim.core.interface.AgentFactory`.
@@ -159,6 +174,8 @@ def build_agent(
     }
     if spec.uses_ground_truth:
         parts["truth"] = env
+    if is_process(name):
+        parts["hidden"] = hidden_from_agents(env, out)
     try:
         with marked(f"Agent '{name}', its factory", FACTORY_S):
             return spec.build(name, max_steps=env.task_config.max_steps, step_timeout_s=step_timeout_s, **parts)
@@ -171,6 +188,16 @@ def build_agent(
             raise
         reason = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
         raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error
+
+
+def hidden_from_agents(env: ObjectNavEnv, out: Path | None) -> list[Path]:
+    """Returns the files and folders that an agent in namespaces does not see: houses, episodes and results."""
+    here, files = Path.cwd(), [Path(file).resolve() for file in env.split.house_paths.values()]
+    folders = {assets_dir().resolve(), *([] if out is None else [out.resolve()])}
+    folders |= {file.parent for file in files if not here.is_relative_to(file.parent)}
+    single = {path for file in files if here.is_relative_to(file.parent) for path in (file, sidecar_path(file))}
+    paths = sorted(path for path in (*folders, *single) if path.exists())
+    return [path for path in paths if not any(path != other and path.is_relative_to(other) for other in folders)]
 
 
 def _resets_without_arguments(factory: object) -> bool:

@@ -10,7 +10,7 @@ from typing import cast
 
 import msgspec
 
-from sim.app.bridges.process_command import files_of, is_file
+from sim.app.bridges.process_command import files_of, is_bounded, is_file
 from sim.app.composition.segmenters import NetworkConfig, file_sha256, precision_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.own_code import hash_of_own
@@ -110,7 +110,7 @@ def result_of(setup: Setup, episode: Episode, result: RolloutResult) -> EpisodeR
         goal=episode.goal,
         agent=setup.options.agent,
         uses_ground_truth=setup.uses_ground_truth,
-        isolated=is_process(setup.options.agent),
+        isolated="namespace" if is_bounded(setup.config.agent) else is_process(setup.options.agent),
         semantics=setup.options.semantics,
         seed=setup.options.seed,
         motion=setup.config.robot.motion,

@@ -60,6 +60,7 @@ def build_parts(setup: Setup, *, watched: bool) -> Parts:
         verifier=setup.verifier,
         config=config.agent,
         step_timeout_s=setup.options.step_limit_s,
+        out=setup.options.out,
     )
     return Parts(env, agent, seen_by(setup, agent, segmenter), spec.painter(agent) if spec.painter else None)
 

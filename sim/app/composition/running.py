@@ -72,7 +72,7 @@ def run_missing(
             f"{options.agent}{segmentation}, {display.counted(len(episodes), 'episode')} of {split['name']} "
             f"(version {split['version']}), rendered by {versions['gl_renderer']}; results in {options.out}"
         )
-        for note in notes_on(options.agent):
+        for note in notes_on(options.agent, setup.config.agent):
             console.print(note, highlight=False, soft_wrap=True)
         for note in filter(None, (setup.borrowed_parameters, setup.missing_calibration)):
             console.print(note, highlight=False, markup=False, soft_wrap=True)

@@ -29,6 +29,7 @@ from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES, TRUE_IMAGES, AgentSpec, CameraModel, SegmenterSpec
 from sim.core.invocation import command
+from sim.core.reading import printable
 from sim.episodes.splits import Split, is_in_words
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
@@ -216,6 +217,7 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
     segmentation = find_segmentation(options.semantics, options.weights)
     spec = spec or find_agent(options.agent)
     settings = {} if options.config_file is None else read_settings(options.config_file)
+    _require_no_code(settings, options.config_file)
     settings |= parse_assignments(options.config)
     config = with_fields(_presets(options, spec, segmentation), settings)
     verification, verifier = _verified(segmentation.spec, config.verification)
@@ -232,6 +234,20 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
     )
     _check_sensors(setup)
     return setup
+
+
+def _require_no_code(settings: Mapping[str, object], file: Path | None) -> None:
+    """Raises ConfigError if a settings file calls a function, which only the command line may do."""
+    from sim.app.bridges.habitat_client import CALL
+
+    for path, value in settings.items():
+        words = value if isinstance(value, list) else [value]
+        call = next((word for word in words if isinstance(word, str) and CALL.fullmatch(word)), None)
+        if call is not None:
+            raise ConfigError(
+                f"--config-file '{file}': '{path}' would call the function '{printable(call)}'; a file must not run "
+                f"code. Give it on the command line: --config '{path}={printable(call)}'."
+            )
 
 
 def _received(content: bytes) -> Setup:

@@ -18,11 +18,15 @@ import msgspec
 
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
-from sim.core.reading import Count, Name, read_json
+from sim.core.reading import Name, read_json
 
 FORMAT: Literal["stubborn-announcement-1"] = "stubborn-announcement-1"
 Commit = Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{40}\Z")]
 """The hash of a commit, or another number of 40 hexadecimal digits."""
+MAX_HOUSES, MAX_EPISODES = 10_000, 20_000
+Houses = Annotated[int, msgspec.Meta(ge=1, le=MAX_HOUSES)]
+Episodes = Annotated[int, msgspec.Meta(ge=1, le=MAX_EPISODES)]
+"""Sizes of sealed splits: everybody who reveals one makes it again, at minutes a house."""
 Statement = Annotated[str, msgspec.Meta(min_length=10, max_length=500, pattern=r"^[^\x00-\x1f\x7f-\x9f]*\Z")]
 
 
@@ -39,8 +43,8 @@ class Announcement(msgspec.Struct, forbid_unknown_fields=True):
     https://github.com/torvalds/linux after 2026-12-24 00:00 UTC."""
     beacon_by: Literal["others", "authors"]
     """Who makes the beacon: `authors` means that they could choose it."""
-    houses: Count
-    episodes: Count
+    houses: Houses
+    episodes: Episodes
 
 
 def write_published(file: Path, content: msgspec.Struct, what: str) -> None:

@@ -10,7 +10,7 @@ from typing import Literal
 
 import msgspec
 
-from sim.app.submissions.contents import Entry, Inputs, Submission
+from sim.app.submissions.contents import PLACE_EVERY, Entry, Inputs, Submission
 from sim.app.submissions.setting import Setting
 from sim.core.errors import ConfigError
 from sim.core.interface import TRUE_IMAGES, Action
@@ -36,6 +36,7 @@ class _Tree(msgspec.Struct):
 class _Segmentation(msgspec.Struct):
     name: str | None = None
     truth: tuple[str, ...] | None = None
+    sensors: tuple[str, ...] | None = None
 
 
 class _Recorded(msgspec.Struct):
@@ -77,6 +78,19 @@ def truth_of(inputs: Inputs) -> Truth:
     if inputs.uses_ground_truth or inputs.semantics == "gt":
         return "yes"
     return "noisy" if inputs.semantics == "noisy" else "none"
+
+
+PLACES = {
+    "no": "in the process of the simulator",
+    "yes": "in a process of its own, as the same user",
+    "namespace": "in a process of its own, in namespaces",
+}
+"""Where an agent ran, by `isolation_of`."""
+
+
+def isolation_of(inputs: Inputs) -> str:
+    """Returns whether the agent ran in a process of its own, as the authors declare it: yes, no, or namespace."""
+    return inputs.isolated if isinstance(inputs.isolated, str) else "yes" if inputs.isolated else "no"
 
 
 def coverage(submission: Submission, split: Split) -> tuple[bool, str]:
@@ -128,9 +142,12 @@ def _require_declared(submission: Submission, config: Mapping[str, object], sett
         declared = getattr(inputs, name)
         if declared != value:
             raise ConfigError(f"{where} declares {name} {declared!r}, and its configuration has {value!r}.")
-    if inputs.isolated != inputs.agent.startswith("process:"):
+    if bool(inputs.isolated) != inputs.agent.startswith("process:"):
         raise ConfigError(f"{where} declares isolated {inputs.isolated} for the agent '{inputs.agent}'.")
     segmentation = record.segmentation or _Segmentation()
+    absent = sorted({*(segmentation.sensors or ())} - {*inputs.sensors})
+    if absent:
+        raise ConfigError(f"{where}: its segmentation reads '{absent[0]}', which is not among the sensors of the run.")
     true_images = TRUE_IMAGES & {*inputs.sensors, *(segmentation.truth or ())}
     if segmentation.name == "ground truth":
         true_images |= {"semantic"}
@@ -156,8 +173,8 @@ def _require_entry(entry: Entry, known: Episode, submission: Submission, setting
     if result.is_error:
         if result.success or result.spl or result.soft_spl:
             raise ConfigError(f"{where} ended with an error and cannot be a success.")
-        if actions:
-            raise ConfigError(f"{where} ended with an error and is not replayed; it cannot have actions.")
+        if actions or entry.places_m:
+            raise ConfigError(f"{where} ended with an error and is not replayed; it cannot have actions or positions.")
         return
     if result.num_steps != len(actions):
         raise ConfigError(f"{where} has {len(actions)} actions, and its result counts {result.num_steps}.")
@@ -166,6 +183,9 @@ def _require_entry(entry: Entry, known: Episode, submission: Submission, setting
     if STOP in actions[:-1]:
         raise ConfigError(f"{where} has actions after STOP, which ends an episode.")
     _require_coherent(result, actions, where)
+    places = -(-len(actions) // PLACE_EVERY)
+    if len(entry.places_m) != places:
+        raise ConfigError(f"{where} has {len(entry.places_m)} positions; {len(actions)} actions have {places}.")
 
 
 def _require_coherent(result: EpisodeResult, actions: str, where: str) -> None:

@@ -18,8 +18,8 @@ from msgspec import Meta
 from sim.app.evaluation.results import RunRecord
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
-from sim.core.reading import Count, Metres, Name, Seed, parse_json, read_bytes, read_gzip_json
-from sim.task.result import EpisodeResult
+from sim.core.reading import Count, Metres, Name, Seed, disguise_of, parse_json, read_bytes, read_gzip_json
+from sim.task.result import EpisodeResult, Isolation
 
 FORMAT: Literal["stubborn-submission-1"] = "stubborn-submission-1"
 SUFFIX = ".json.gz"
@@ -51,8 +51,8 @@ class Inputs(msgspec.Struct, forbid_unknown_fields=True):
     sensors: Annotated[tuple[Short, ...], Meta(max_length=50)]
     noise: Name
     uses_ground_truth: bool
-    isolated: bool
-    """The agent ran in a process of its own (`--agent process:COMMAND`), which got observations and nothing else."""
+    isolated: Isolation
+    """The agent ran in a process of its own (`--agent process:COMMAND`), or also in namespaces of Linux."""
 
 
 class SplitOf(msgspec.Struct, forbid_unknown_fields=True):
@@ -126,7 +126,21 @@ def read_submission(file: Path) -> Submission:
     twice = next((name for name, count in counts.items() if count > 1), None)
     if twice is not None:
         raise ConfigError(f"Submission '{file}' has the episode '{twice}' {counts[twice]} times; each counts once.")
+    _require_plain_texts(submission.manifest, file)
     return submission
+
+
+def _require_plain_texts(manifest: Manifest, file: Path) -> None:
+    """Raises ConfigError if a text of the manifest can look like another one."""
+    inputs = manifest.inputs
+    texts = (
+        manifest.name, *manifest.authors, manifest.description, manifest.split.name, manifest.split.version,
+        inputs.agent, inputs.semantics, inputs.noise, *inputs.sensors,
+    )  # fmt: skip
+    for text in texts:
+        reason = disguise_of(text)
+        if reason:
+            raise ConfigError(f"Submission '{file}': the text '{ascii(text)[1:-1]}' {reason}.")
 
 
 def write_submission(file: Path, submission: Submission) -> int:

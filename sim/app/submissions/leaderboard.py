@@ -1,7 +1,7 @@
 """The table of a leaderboard: a row for each verified submission of a folder.
 
 FOLDER/submissions/NAME.json.gz     one file for each row, as `stubborn submit` writes it
-FOLDER/reports/NAME.json            the outcome of its verification
+FOLDER/reports/NAME.json            the outcome of its verification, written by `stubborn leaderboard` and never read
 FOLDER/table.md, FOLDER/table.csv   written by `stubborn leaderboard`
 """
 
@@ -15,18 +15,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
+
 from sim.app.analysis.metrics import COLLISIONS, SPL, SUCCESS, episodes_of, mean_cell
 from sim.app.analysis.tables import Cell, ResultTable
-from sim.app.submissions.checks import truth_of
+from sim.app.submissions.checks import isolation_of, truth_of
 from sim.app.submissions.contents import SUFFIX, Submission
 from sim.app.submissions.report import Report
 from sim.app.submissions.sealing import Origin
 from sim.core.errors import ConfigError
-from sim.robot.config import PHYSICS_VERSION
 from sim.task.result import EpisodeResult
 
 MIN_EPISODES = 50
 """Least number of episodes of a row; replicates do not count. In 20, the interval of a success of 65 % is 42 points."""
+_FILE_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*")
 SUBMISSIONS, REPORTS = "submissions", "reports"
 HEADER = (
     "row", "authors", "ground truth (declared)", "own process (declared)", "noise", "episodes", "success %", "SPL",
@@ -48,6 +50,8 @@ class Row:
     file: Path
     submission: Submission
     report: Report
+    shipped: frozenset[str]
+    """Names of the agents that ship with the simulator, and of a person."""
 
     @property
     def episodes(self) -> int:
@@ -65,9 +69,13 @@ class Row:
             return f"it has {self.episodes} episodes; a row needs {MIN_EPISODES}"
         if self.report.nonstandard:
             return f"not the standard: {self.report.nonstandard[0]}"
-        inputs = self.submission.manifest.inputs
-        if ":" in inputs.agent and not inputs.isolated:
+        manifest = self.submission.manifest
+        agent = manifest.inputs.agent.partition("+")[0]  # "human+stubborn": a person and an agent
+        if agent not in self.shipped and not manifest.inputs.isolated:
             return "its agent did not run in a process of its own (--agent process:COMMAND)"
+        named = next((name for name in self.shipped if _letters(name) == _letters(manifest.name)), agent)
+        if named != agent:
+            return f"its name is that of the shipped agent '{named}', and its agent is '{manifest.inputs.agent}'"
         return ""
 
 
@@ -75,9 +83,14 @@ def submission_files(folder: Path) -> list[Path]:
     """Returns the files of the submissions in a folder of a leaderboard, by name.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: there is none, or one has a name that a spreadsheet or a terminal could interpret.
     """
     files = sorted((folder / SUBMISSIONS).glob(f"*{SUFFIX}"))
+    odd = next((file.name for file in files if not _FILE_NAME.fullmatch(file.name)), None)
+    if odd is not None:
+        raise ConfigError(
+            f"'{folder / SUBMISSIONS}': the file name '{odd}' is not allowed; use A-Z, a-z, 0-9, '_', '-' and '.'."
+        )
     if not files:
         raise ConfigError(f"'{folder / SUBMISSIONS}' holds no submission (*{SUFFIX}); `stubborn submit` writes one.")
     return files
@@ -88,20 +101,26 @@ def report_file(folder: Path, submission: Path) -> Path:
     return folder / REPORTS / f"{submission.name.removesuffix(SUFFIX)}.json"
 
 
-def is_current(report: Report, sha256: str) -> bool:
-    """Returns whether a report is that of this file, by this version of the physics."""
-    return report.sha256 == sha256 and report.physics == PHYSICS_VERSION and report.oracle_paths is not None
+def without_copies(rows: Sequence[Row]) -> tuple[list[Row], list[str]]:
+    """Returns the rows without those whose content is that of an earlier one, and a phrase for each of these."""
+    first: dict[bytes, Row] = {}
+    copies = []
+    for row in rows:
+        earlier = first.setdefault(msgspec.json.encode(row.submission), row)
+        if earlier is not row:
+            copies.append(f"{row.file.name}: its content is that of {earlier.file.name}")
+    return list(first.values()), copies
 
 
 def tables(rows: Sequence[Row]) -> list[ResultTable]:
-    """Returns a table for each split, sealed splits before public ones.
+    """Returns a table for each split, of rows that are not refused; sealed splits come before public ones.
 
     In a table, rows with less ground truth come first, then those with more success.
     """
     ranked = []
     repeats = repeated(rows)
     by_split: dict[tuple[int, str, str, str], list[Row]] = {}
-    for row in (row for row in rows if not row.refusal):
+    for row in rows:
         by_split.setdefault((_ORDER.index(row.report.origin), *_split(row)), []).append(row)
     for (number, name, version, sha256), members in sorted(by_split.items()):
         origin = _ORDER[number]
@@ -153,8 +172,8 @@ _MEANINGS: Mapping[Origin, str] = {
 }
 NOTES = (
     "Verified: every row's actions were replayed, and lead to its success, SPL and collisions; an episode that ended "
-    "with an error counts as a failure, without collisions. Intervals of 95 % are over houses. Authors, ground truth "
-    "and own process are what the authors declare.",
+    "with an error counts as a failure, without collisions. Intervals of 95 % are over houses. Authors, agent, ground "
+    "truth and own process are what the authors declare; no agent is run again.",
     "Known paths: episodes in which every action is the oracle's + further successes on a path at most 5 % longer than "
     "the shortest one + episodes of 20 actions and more with exactly the actions of another row.",
 )
@@ -166,13 +185,13 @@ def csv_of(rows: Sequence[Row]) -> str:
     writer = csv.writer(stream)
     writer.writerow(CSV_COLUMNS)
     repeats = repeated(rows)
-    for row in sorted((row for row in rows if not row.refusal), key=lambda row: (_split(row), _rank(row))):
+    for row in sorted(rows, key=lambda row: (_split(row), _rank(row))):
         manifest, lines = row.submission.manifest, results_of(row.submission)
         estimates = [mean_cell(metric, lines).estimate for metric in (SUCCESS, SPL, COLLISIONS)]
         numbers = (n for estimate in estimates for n in (estimate.mean, estimate.low, estimate.high))
         writer.writerow([
             *_split(row), manifest.name, "; ".join(manifest.authors), " ".join(manifest.links), manifest.inputs.agent,
-            truth_of(manifest.inputs), "yes" if manifest.inputs.isolated else "no", manifest.inputs.noise, row.episodes,
+            truth_of(manifest.inputs), isolation_of(manifest.inputs), manifest.inputs.noise, row.episodes,
             *("" if n is None else round(n, 6) for n in numbers), _verified(row), row.report.origin,
             row.report.oracle_paths, row.report.shortest_paths, repeats[row.file.name], row.file.name,
         ])  # fmt: skip
@@ -189,13 +208,24 @@ def _cells(row: Row, repeats: int) -> list[Cell | str]:
     return [
         plain(", ".join(manifest.authors)),
         truth_of(manifest.inputs),
-        "yes" if manifest.inputs.isolated else "no",
+        plain(_process(row)),
         plain(manifest.inputs.noise),
         str(row.episodes),
         *(mean_cell(metric, lines) for metric in (SUCCESS, SPL, COLLISIONS)),
         _verified(row),
         f"{row.report.oracle_paths} + {row.report.shortest_paths} + {repeats}",
     ]
+
+
+def _process(row: Row) -> str:
+    """Returns whether the agent ran in a process of its own, else the name of the shipped agent that is declared."""
+    inputs = row.submission.manifest.inputs
+    return isolation_of(inputs) if inputs.isolated else f"no, {inputs.agent}"
+
+
+def _letters(name: str) -> str:
+    """Returns the letters and digits of a name in lower case."""
+    return "".join(filter(str.isalnum, name.lower()))
 
 
 def _verified(row: Row) -> str:

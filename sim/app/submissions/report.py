@@ -1,7 +1,12 @@
-"""The outcome of a verification as JSON, which the leaderboard reads."""
+"""The outcome of a verification as JSON.
+
+The leaderboard keeps the outcomes of its own verifications in the user's cache. It never reads the report next to a
+submission, which may come from the authors.
+"""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
@@ -65,6 +70,27 @@ def report_of(checked: Checked, choices: Choices, verdicts: Sequence[Verdict], s
             f"{verdict.episode_id}: {verdict.judgement}: {verdict.text}" for verdict in verdicts if verdict.text
         ],
     }
+
+
+def is_of(report: Report, checked: Checked, tolerance_m: float) -> bool:
+    """Returns whether a report is the outcome of verifying this file with this version of the physics."""
+    entries = checked.submission.episodes
+    errors = sum(entry.result.is_error for entry in entries)
+    counted = report.equal + report.within_tolerance + report.different + report.errors
+    stated = (report.sha256, report.physics, report.episodes, counted, report.errors, report.is_first)
+    setting = (list(report.nonstandard), report.tolerance_m, report.origin)
+    return (
+        stated == (checked.sha256, PHYSICS_VERSION, len(entries), len(entries), errors, checked.is_first)
+        and setting == (list(checked.changes), tolerance_m, checked.origin)
+        and None not in (report.oracle_paths, report.shortest_paths)
+    )
+
+
+def kept_file(checked: Checked) -> Path:
+    """Returns the file in the user's cache of the outcome of verifying a submission."""
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    split = checked.submission.manifest.split.sha256
+    return cache / "stubborn-objectnav" / "verified" / f"{checked.sha256}_{split[:16]}_{PHYSICS_VERSION}.json"
 
 
 def read_report(file: Path) -> Report:

@@ -17,9 +17,9 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from sim.app.submissions.announcement import Commit, read_announcement
+from sim.app.submissions.announcement import Commit, Episodes, Houses, read_announcement
 from sim.core.errors import ConfigError
-from sim.core.reading import Count, Name, read_json, read_text, sha256_of
+from sim.core.reading import Name, read_json, read_text, sha256_of
 from sim.episodes.house_list import house_maker
 from sim.episodes.splits import Split
 from sim.homes.housegen.splits.recipes import SPLITS, Recipe
@@ -31,6 +31,8 @@ LIKE = "test"
 """The split whose kinds and sizes of houses a sealed one has."""
 FIRST_SEED, SEEDS = 10**9, 2**40
 """Seeds of sealed houses: above those of all shipped splits, and too many to try them all."""
+MIN_DIGITS = 8
+"""Different digits of a secret; a random one has fewer in less than one of 10^18 cases."""
 TRIES = 20
 """Seeds of one house that are tried until one gives a house."""
 
@@ -49,8 +51,8 @@ class Seal(msgspec.Struct, forbid_unknown_fields=True):
     split_sha256: Digest
     secret_sha256: Digest | None
     """None: the houses come from elsewhere, and the split itself is revealed."""
-    houses: Count
-    episodes: Count
+    houses: Houses
+    episodes: Episodes
     made_with: Annotated[dict[Name, Name], msgspec.Meta(max_length=50)]
     """Versions of the generator and of the packages on which the houses depend."""
     announcement_sha256: Digest | None = None
@@ -183,6 +185,8 @@ def read_secret(file: Path) -> str:
     secret = read_text(file, what="Secret", most=1000).strip()
     if len(secret) != 64 or not set(secret) <= set("0123456789abcdef"):
         raise ConfigError(f"'{file}' holds no secret: 64 hexadecimal digits, as `stubborn seal make` writes them.")
+    if len(set(secret)) < MIN_DIGITS:
+        raise ConfigError(f"'{file}' holds no secret: with {len(set(secret))} different digits, it can be guessed.")
     return secret
 
 

@@ -19,10 +19,11 @@ hold the identity and the result of the episode as JSON. Each episode has its fi
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import json
 import urllib.parse
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO
 
@@ -38,6 +39,7 @@ from sim.core.errors import ConfigError
 from sim.core.files import part_file
 from sim.core.geometry.pose import Pose
 from sim.core.interface import SCAN, Action
+from sim.core.reading import reason_of
 from sim.env.objectnav import ObjectNavEnv
 from sim.sensors.scan import ScanSensor
 from sim.sensors.sensor import SensorContext
@@ -111,12 +113,25 @@ class McapLog:
         self._floor_z_m: float | None = None
         """Floor of the storey whose map was written last."""
 
+    @contextlib.contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Raises ConfigError with the name of the file where it cannot be written, for example on a full disk."""
+        try:
+            yield
+        except OSError as error:
+            file = mcap_file(self._run, self._env.episode.episode_id)
+            raise ConfigError(f"Cannot write the recording '{file}': {reason_of(error)}.") from None
+
     def begin(self, env: ObjectNavEnv) -> None:
         """Starts the episode's file."""
         self.close()
-        episode = env.episode
         self._env, self._floor_z_m = env, None
-        self._part = part_file(mcap_file(self._run, episode.episode_id), what="recording")
+        self._part = part_file(mcap_file(self._run, env.episode.episode_id), what="recording")
+        with self._writing():
+            self._begin(env)
+
+    def _begin(self, env: ObjectNavEnv) -> None:
+        episode = env.episode
         self._stream = self._part.open("wb")
         self._out = RosMessages(self._stream)
         scans = [sensor for sensor in env.sensors if isinstance(sensor, ScanSensor)]
@@ -126,6 +141,10 @@ class McapLog:
 
     def decided(self, moment: Moment) -> None:
         """Writes what the agent saw, where it was and what it does."""
+        with self._writing():
+            self._write(moment)
+
+    def _write(self, moment: Moment) -> None:
         env, out = self._env, self._out
         world, time_s = env.scene.world, float(env.scene.world.data.time)
         true, believed = world.pose, _believed(moment)
@@ -154,16 +173,18 @@ class McapLog:
     def end(self, result: RolloutResult) -> None:
         """Writes the result and completes the file."""
         assert self._stream is not None
-        self._out.describe("result", msgspec.to_builtins(result.without_times()))
-        self._out.finish()
-        self._stream.close()
+        with self._writing():
+            self._out.describe("result", msgspec.to_builtins(result.without_times()))
+            self._out.finish()
+            self._stream.close()
         self._stream = None
         self._part.replace(mcap_file(self._run, self._env.episode.episode_id))
 
     def close(self) -> None:
         """Discards the recording of an unfinished episode."""
         if self._stream is not None:
-            self._stream.close()
+            with contextlib.suppress(OSError):  # a full disk: `close` writes what it holds, and frees it all the same
+                self._stream.close()
             self._stream = None
             self._part.unlink(missing_ok=True)
 

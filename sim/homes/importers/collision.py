@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_fill_holes
 
 from sim.core.errors import HouseError
-from sim.homes.housegen.imported.meshes import library
+from sim.homes.housegen.imported.scene_files import library
 from sim.homes.importers.surfaces import Surface
-from sim.homes.importers.visual import samples, welded
+from sim.homes.importers.visual import samples, spacing_within, welded
 
 CELL_M = 0.05
 MIN_SIDE_M = 0.01
@@ -27,6 +27,8 @@ SHIFTS = 5
 """Places of the grid that are tried along each axis: with the best one, uneven walls stay within one layer of cells."""
 MAX_CELLS = 60_000_000
 """Cells of the grid of one object; of a larger object the cells are larger."""
+MAX_POINTS = 4_000_000
+"""Points of the surface of one object that fill the cells; with more, the cells are larger, too."""
 CONCAVITY_M = 0.03
 """Largest depth of a hollow that a convex part fills, metres."""
 MAX_PARTS = 64
@@ -43,9 +45,11 @@ def collision_boxes(
         cell_m: edge of a cell.
         is_filled: the inside of closed outlines of each level is filled too, so that no free place remains there.
     """
-    points = np.vstack([samples(corners_m, 0.5 * cell_m)[0], _on_edges(corners_m, 0.5 * cell_m)])
-    while np.prod(np.ptp(points, axis=0) / cell_m + 2.0) > MAX_CELLS:
+    size_m = np.ptp(corners_m.reshape(-1, 3), axis=0)
+    while np.prod(size_m / cell_m + 2.0) > MAX_CELLS:
         cell_m *= 1.5
+    cell_m = 2.0 * spacing_within(corners_m, 0.5 * cell_m, MAX_POINTS)
+    points = np.vstack([samples(corners_m, 0.5 * cell_m)[0], _on_edges(corners_m, 0.5 * cell_m)])
     origin = _origin(points, cell_m)
     index = np.floor((points - origin) / cell_m).astype(np.int64)
     low = index.min(axis=0)

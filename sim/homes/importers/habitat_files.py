@@ -253,8 +253,9 @@ def _listed(file: Path, paths: Mapping[str, list[str]], suffix: str) -> Iterator
     for pattern in itertools.chain.from_iterable(paths.values()):
         if not pattern or pattern.startswith(("/", "~")) or ".." in pattern.split("/"):
             continue
+        below = "/".join(part for part in pattern.split("/") if part not in ("", "."))
         try:
-            matches = itertools.islice(file.parent.glob(pattern.rstrip("/")), MAX_FILES)
+            matches = itertools.islice(file.parent.glob(below) if below else [file.parent], MAX_FILES)
             for match in matches:
                 inner = itertools.islice(match.iterdir(), MAX_FILES) if match.is_dir() else [match]
                 for entry in inner:

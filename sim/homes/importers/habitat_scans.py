@@ -112,7 +112,7 @@ def read_hm3d_text(file: Path, losses: Losses) -> tuple[dict[int, Annotation], d
             continue
         try:
             ident, colour, name, region = next(csv.reader([line]))
-            code, instance, of_region = int(colour, 16), int(ident), int(region)
+            code, instance, of_region = int(colour, 16), _number(ident), _number(region)
         except (ValueError, csv.Error):
             raise HouseError(
                 f"{what}, line {number}: expected 'id,RRGGBB,\"category\",region', got '{printable(line)[:80]}'."
@@ -124,6 +124,14 @@ def read_hm3d_text(file: Path, losses: Losses) -> tuple[dict[int, Annotation], d
         colours[code] = instance
         notes[instance] = Annotation(name, _named(name, losses), of_region)
     return notes, colours
+
+
+def _number(word: str) -> int:
+    """Returns an identifier; raises ValueError if it is not a whole number, or has more digits than a file needs."""
+    number = int(word)
+    if abs(number) >= 1 << 31:
+        raise ValueError(word)
+    return number
 
 
 def _named(name: str, losses: Losses) -> str:
@@ -151,11 +159,11 @@ def read_house_text(file: Path) -> tuple[dict[int, Annotation], dict[int, str]]:
         words = line.split()
         try:
             if words[:1] == ["C"]:
-                categories[int(words[1])] = (words[3].replace("#", " "), category_of_label(words[5]))
+                categories[_number(words[1])] = (words[3].replace("#", " "), category_of_label(words[5]))
             elif words[:1] == ["R"]:
-                kinds[int(words[1])] = kind_of_region(words[5])
+                kinds[_number(words[1])] = kind_of_region(words[5])
             elif words[:1] == ["O"]:
-                regions.append((int(words[1]), int(words[2]), int(words[3])))
+                regions.append((_number(words[1]), _number(words[2]), _number(words[3])))
         except (ValueError, IndexError):
             raise HouseError(f"{what}, line {number} is not a line of this format: '{printable(line)[:60]}'.") from None
         if max(len(regions), len(categories), len(kinds)) > MAX_OBJECTS:

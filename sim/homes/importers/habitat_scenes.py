@@ -33,7 +33,7 @@ from sim.homes.importers.habitat_files import (  # fmt: skip
 )
 from sim.homes.importers.habitat_names import UNKNOWN, category_of
 from sim.homes.importers.losses import Losses
-from sim.homes.importers.mesh_house import STRUCTURE, MeshObject, RoomArea, Shape
+from sim.homes.importers.mesh_house import STRUCTURE, MeshObject, RoomArea, Shape, require_few
 from sim.homes.importers.surfaces import Y_UP, Surface, read_surfaces
 
 PUSHED_KG = 15.0
@@ -64,6 +64,7 @@ def read_scene(file: Path, dataset: SceneDataset, losses: Losses, texture_px: in
         HouseError: the scene or its stage is missing or broken; the message names file and place.
     """
     scene = read_json(file, SceneInstance, what="Scene", error=HouseError)
+    require_few(len(scene.object_instances))
     try:
         semantics = dataset.semantics(scene, file.name.removesuffix(SCENE))
     except ConfigError as error:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from sim.core.errors import ConfigError, HouseError
 from sim.homes.importers.floors import LEVEL_M, find_levels, level_triangles
 from sim.homes.importers.losses import Losses
-from sim.homes.importers.mesh_house import MeshConfig, MeshHouse, MeshObject, Shape, build_house
+from sim.homes.importers.mesh_house import MeshConfig, MeshHouse, MeshObject, Shape, build_house, require_few
 from sim.homes.importers.obj import read_obj, used_files
 from sim.homes.importers.surfaces import FORMATS, Y_UP, Surface, Up, parts_of, read_surfaces
 from sim.houses.labels import VOID, categories_by_rules
@@ -96,6 +96,7 @@ def import_mesh(file: Path, *, rules: Mapping[str, str], up: Axis, config: MeshC
     try:
         surfaces = _read(file, axis, config.texture_px, losses)
         nodes = _nodes(surfaces)
+        require_few(len(nodes))
         by_rule = categories_by_rules([node.name for node in nodes], rules)
         proposals = _proposals(nodes, by_rule)
         proposed = {proposal.name: proposal.category for proposal in proposals}
@@ -140,13 +141,14 @@ def _proposals(nodes: Sequence[_Node], by_rule: Mapping[str, str]) -> tuple[Prop
     categories = {**{name: proposal.category for name, proposal in named.items()}, **by_rule}
     floors = [node.corners_m for node in nodes if categories.get(node.name) == "floor"]
     everything = np.concatenate([node.corners_m for node in nodes])
+    size_m = np.ptp(everything.reshape(-1, 3), axis=0)
     lowest_m = find_levels(np.concatenate(floors) if floors else everything)[0]
     for node in nodes:
         if node.name in categories:
             continue
         points = node.corners_m.reshape(-1, 3) - np.array([0.0, 0.0, lowest_m])
         category = category_by_size(points.min(axis=0), points.max(axis=0))
-        if category is None and _is_whole(node, everything):
+        if category is None and _is_whole(node, size_m):
             category = "wall"
         named[node.name] = Proposal(node.name, category or OTHER, "size" if category else "unknown")
     return tuple(named.values())
@@ -156,11 +158,10 @@ def _materials(node: _Node) -> list[str]:
     return list(dict.fromkeys(surface.material for surface in node.surfaces if surface.material))
 
 
-def _is_whole(node: _Node, everything: NDArray[np.float64]) -> bool:
-    """Returns whether a node extends over the home."""
-    size = np.ptp(node.corners_m.reshape(-1, 3), axis=0)
-    total = np.ptp(everything.reshape(-1, 3), axis=0)
-    return bool((size[:2] >= WHOLE_SHARE * total[:2]).all() and size[2] >= WHOLE_M)
+def _is_whole(node: _Node, home_m: NDArray[np.float64]) -> bool:
+    """Returns whether a node extends over a home of this size (3,)."""
+    size_m = np.ptp(node.corners_m.reshape(-1, 3), axis=0)
+    return bool((size_m[:2] >= WHOLE_SHARE * home_m[:2]).all() and size_m[2] >= WHOLE_M)
 
 
 def _objects(nodes: Sequence[_Node], categories: Mapping[str, str], losses: Losses) -> list[MeshObject]:

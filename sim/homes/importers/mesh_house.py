@@ -28,7 +28,7 @@ from sim.homes.housegen.imported.meshes import areas
 from sim.homes.importers.collision import collision_boxes, convex_parts
 from sim.homes.importers.floors import LEVEL_M, Storey, find_levels, level_triangles, make_storeys
 from sim.homes.importers.losses import Losses
-from sim.homes.importers.surfaces import Surface
+from sim.homes.importers.surfaces import MAX_TRIANGLES, Surface
 from sim.homes.importers.visual import Skin, make_skins
 
 Collision = Literal["boxes", "convex"]
@@ -39,6 +39,8 @@ FLAT_M = 0.02
 MIN_VERTICES = 4
 """MuJoCo refuses meshes with fewer; a single triangle gets its last corner again."""
 MIN_TRIANGLES = 24
+MAX_OBJECTS = 5_000
+"""Objects of a house."""
 TEXTURE_BYTES = 192 << 20
 """Pictures of a house are reduced until they fit."""
 ROOM_M = 2.5
@@ -134,6 +136,10 @@ def build_house(
     Raises:
         HouseError: the floor is missing, or MuJoCo cannot build the house; the message does not name the house.
     """
+    require_few(len(objects))
+    triangles = sum(len(surface.faces) for item in objects for surface in item.shape.surfaces)
+    if triangles > MAX_TRIANGLES:
+        raise HouseError(f"it shows {triangles:,} triangles; at most {MAX_TRIANGLES:,} are allowed.")
     floors = _together([item for item in objects if item.category == "floor"])
     levels = find_levels(floors)
     solids = [item for item in objects if item.is_solid and item.category not in ("floor", "ceiling")]
@@ -152,6 +158,12 @@ def build_house(
         "texture_mb": round(builder.texture_bytes / 1e6, 1), **losses.as_json(),
     }  # fmt: skip
     return MeshHouse(builder.files(), report)
+
+
+def require_few(objects: int) -> None:
+    """Raises HouseError if a house has more than `MAX_OBJECTS` objects."""
+    if objects > MAX_OBJECTS:
+        raise HouseError(f"it has {objects:,} objects; at most {MAX_OBJECTS:,} are allowed.")
 
 
 def _together(objects: Sequence[MeshObject]) -> NDArray[np.float64]:
@@ -196,7 +208,7 @@ class _Builder:
         self._textures: dict[int, str] = {}
         self._kept: list[NDArray[np.uint8] | None] = []  # so that no other picture gets the same identity
         self._parts: dict[tuple[int, str, bool], tuple[Shape, _Parts]] = {}
-        self._texture_px = config.texture_px
+        self._texture_px, self._meshes = config.texture_px, 0
         self.triangles = self.collision_geoms = self.texture_bytes = 0
         self.spec = mujoco.MjSpec()
         self.spec.modelname = name
@@ -361,7 +373,8 @@ class _Builder:
         return self._put_mesh(content + np.array([0, 1, 2], "<i4").tobytes())
 
     def _put_mesh(self, content: bytes) -> str:
-        name = f"m{len(self.spec.meshes):04d}"
+        name = f"m{self._meshes:04d}"
+        self._meshes += 1
         file = f"{self._name}_files/{name}.msh"
         self._files[file] = content
         self.spec.add_mesh(name=name, file=file)

@@ -20,8 +20,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError, HouseError
-from sim.core.reading import printable, read_bytes, require_small_image
-from sim.homes.importers.surfaces import FARTHEST_M, GREY, MAX_FILE_BYTES, MAX_TRIANGLES, WHITE, Paint, Surface
+from sim.core.pictures import decode_picture
+from sim.core.reading import printable, read_bytes
+from sim.homes.housegen.imported.scene_files import MAX_CORNERS
+from sim.homes.housegen.imported.sources import Skipped, path_inside
+from sim.homes.importers.surfaces import (
+    FARTHEST_M,
+    GREY,
+    MAX_FILE_BYTES,
+    MAX_TRIANGLES,
+    WHITE,
+    Paint,
+    Surface,
+    is_near,
+    read_inside,
+)  # fmt: skip
 
 MAX_MATERIALS = 10_000
 PICTURE_OPTIONS = {
@@ -82,9 +95,12 @@ def read_obj(file: Path, *, texture_px: int, losses: Counter[str]) -> list[Surfa
     if not content.faces:
         raise HouseError(f"{where} has no triangles.")
     vertices = np.array(content.vertices, dtype=np.float64)
-    if not bool((np.abs(vertices) <= FARTHEST_M).all()):
-        raise HouseError(f"{where}: a vertex is not finite or beyond {FARTHEST_M:g} m.")
-    return [_surface(content, vertices, *key) for key in content.faces]
+    all_uv = np.nan_to_num(np.array(content.uv, dtype=np.float64).reshape(-1, 2))
+    surfaces = [_surface(content, vertices, all_uv, *key) for key in content.faces]
+    near = [surface for surface in surfaces if is_near(surface.vertices_m, surface.node, losses)]
+    if not near:
+        raise HouseError(f"{where} has no triangles: each has a vertex that is not finite or beyond {FARTHEST_M:g} m.")
+    return near
 
 
 def _vertex(words: list[str]) -> list[float]:
@@ -96,9 +112,9 @@ def _vertex(words: list[str]) -> list[float]:
 
 def _add_face(content: _Content, node: str, material: str, words: list[str]) -> None:
     """Adds a polygon as triangles; raises ValueError if it is broken."""
-    corners = [_corner(content, word) for word in words]
-    if len(corners) < 3:
-        raise ValueError("a face needs three vertices")
+    corners = [_corner(content, word) for word in words[: MAX_CORNERS + 1]]
+    if not 3 <= len(corners) <= MAX_CORNERS:
+        raise ValueError(f"a face needs three vertices or more, at most {MAX_CORNERS:,}; it has {len(corners):,}")
     content.triangles += len(corners) - 2
     if content.triangles > MAX_TRIANGLES:
         raise ValueError(f"the file has more than {MAX_TRIANGLES:,} triangles")
@@ -117,15 +133,16 @@ def _corner(content: _Content, word: str) -> Corner:
     return vertex, at if uv and 0 <= at < len(content.uv) else -1
 
 
-def _surface(content: _Content, vertices_m: NDArray[np.float64], node: str, material: str) -> Surface:
+def _surface(
+    content: _Content, vertices_m: NDArray[np.float64], all_uv: NDArray[np.float64], node: str, material: str
+) -> Surface:
+    """Returns the surface of a node and a material."""
     corners = np.array(content.faces[node, material], dtype=np.int64).reshape(-1, 2)
     used, faces = np.unique(corners, axis=0, return_inverse=True)
     paint = content.paints.get(material, Paint(GREY))
     if paint.picture is not None:
-        if content.uv and bool((used[:, 1] >= 0).all()):
-            paint = replace(paint, uv=np.nan_to_num(np.array(content.uv, dtype=np.float64)[used[:, 1]]))
-        else:
-            paint = Paint(GREY)  # no part of the picture belongs to a triangle
+        shows = len(all_uv) > 0 and bool((used[:, 1] >= 0).all())
+        paint = replace(paint, uv=all_uv[used[:, 1]]) if shows else Paint(GREY)  # no part of the picture belongs to it
     return Surface(node, material, vertices_m[used[:, 0]], faces.reshape(-1, 3).astype(np.int32), paint)
 
 
@@ -179,10 +196,10 @@ def _is_value(word: str) -> bool:
 def used_files(file: Path) -> Iterator[Path]:
     """Yields the files of its folder that an OBJ file and its materials name, whether they exist or not."""
     for named in _words_after("mtllib", file):
-        materials = _path_inside(file.parent, " ".join(named))
+        materials = path_inside(file.parent, " ".join(named))
         if materials is not None:
             yield materials
-            pictures = (_path_inside(file.parent, _picture_name(words)) for words in _words_after("map_Kd", materials))
+            pictures = (path_inside(file.parent, _picture_name(words)) for words in _words_after("map_Kd", materials))
             yield from (picture for picture in pictures if picture is not None)
 
 
@@ -198,35 +215,22 @@ def _words_after(key: str, file: Path) -> Iterator[list[str]]:
             yield words[1:]
 
 
-def _path_inside(folder: Path, name: str) -> Path | None:
-    """Returns the path of a named file in the folder or below it; None if it is elsewhere."""
-    base = folder.resolve()
-    target = (base / name.replace("\\", "/")).resolve()
-    return target if target.is_relative_to(base) else None
-
-
 def _file_inside(folder: Path, name: str, losses: Counter[str]) -> bytes | None:
     """Returns a file of the folder or below it; None if it is missing.
 
     Raises:
         HouseError: it is outside of the folder.
     """
-    target = _path_inside(folder, name)
-    if target is None:
-        raise HouseError(f"A mesh in '{folder}' uses '{printable(name)[:100]}', which is outside of its folder.")
     try:
-        return read_bytes(target, what="File", most=MAX_FILE_BYTES)
-    except ConfigError:
+        return read_inside(folder, name)
+    except Skipped:
         losses[f"The file '{printable(name)[:60]}' is missing; its colours were lost."] += 1
         return None
 
 
 def _pixels(content: bytes, name: str, texture_px: int) -> NDArray[np.uint8]:
     """Returns the pixels (h, w, 3) of a picture, RGB, at most `texture_px` along its longer side."""
-    require_small_image(content, where=f"Picture '{printable(name)[:60]}'", error=HouseError)
-    picture = cv2.imdecode(np.frombuffer(content, dtype=np.uint8), cv2.IMREAD_COLOR)
-    if picture is None:
-        raise HouseError(f"Picture '{printable(name)[:60]}' cannot be read.")
+    picture = decode_picture(content, where=f"Picture '{printable(name)[:60]}'", error=HouseError)
     factor = texture_px / max(picture.shape[:2])
     if factor < 1.0:
         size = max(1, round(picture.shape[1] * factor)), max(1, round(picture.shape[0] * factor))

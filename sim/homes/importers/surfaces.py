@@ -7,41 +7,28 @@ lie in the folder of the file or below it.
 
 from __future__ import annotations
 
-import io
-import struct
+import functools
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
-from urllib.parse import unquote
+from typing import Any, Literal
 
 import numpy as np
-from msgspec import Meta, Struct
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError, HouseError, ObjectNavError
-from sim.core.reading import MAX_PIXELS, parse_json, printable, read_bytes, reason_of
-from sim.homes.housegen.imported.meshes import library, resolver
-from sim.homes.housegen.imported.sources import Skipped
+from sim.core.reading import printable, read_bytes, reason_of
+from sim.homes.housegen.imported.scene_files import gltf_parts, library, load_scene
+from sim.homes.housegen.imported.sources import Skipped, path_inside
 
 FORMATS = ("glb", "gltf", "obj", "ply")
 MAX_FILE_BYTES = 1 << 30
-MAX_NUMBERS = 200_000_000
-"""Numbers that the accessors of a glTF file may announce."""
 MAX_TRIANGLES = 20_000_000
 """Triangles of a file, those of repeated meshes counted each time."""
-MAX_NODES = 100_000
 FARTHEST_M = 2_000.0
 """Largest coordinate of a vertex."""
 GREY, WHITE = (0.7, 0.7, 0.7, 1.0), (1.0, 1.0, 1.0, 1.0)
-_LOST = {
-    "KHR_texture_basisu": "A file has pictures in the Basis format, which cannot be read; they became plain colours.",
-    "EXT_texture_webp": "A file has pictures in the WebP format, which may have been left out.",
-}
-_REFUSED = {
-    "KHR_draco_mesh_compression": "Draco", "EXT_meshopt_compression": "meshopt", "KHR_meshopt_compression": "meshopt",
-}  # fmt: skip
 Up = Literal["y", "z"]
 """The axis of a file that points up: y in glTF and in Habitat, z in Matterport's scans and in this project."""
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -118,28 +105,23 @@ def read_surfaces(
         HouseError: the file cannot be read, is too large, or has a number that is not allowed; one line.
         ConfigError: a package is not installed.
     """
-    trimesh, kind = library("trimesh", extra="import"), file.suffix.lower().lstrip(".")
+    kind, losses = file.suffix.lower().lstrip("."), Counter() if losses is None else losses
     where = f"Mesh '{printable(str(file))}'"
     if kind not in FORMATS:
         raise HouseError(f"{where}: unsupported format '{printable(kind)}'; use {', '.join(FORMATS)}.")
     content = read_bytes(file, what="Mesh", error=HouseError, most=MAX_FILE_BYTES)
-    if kind in ("glb", "gltf"):
-        _require_sane_gltf(content, kind, where, Counter() if losses is None else losses)
-    elif kind == "ply":
-        _require_sane_ply(content, where)
+    read = functools.partial(read_inside, file.parent)
+    scene = load_scene(content, kind, where=where, most=MAX_TRIANGLES, read=read, losses=losses, extra="import")
     try:
-        scene = trimesh.load_scene(
-            io.BytesIO(content), file_type=kind, resolver=_resolver(trimesh, file.parent), process=False
-        )
-        surfaces = list(_surfaces(trimesh, scene, texture_px, where))
+        surfaces = list(_surfaces(scene, texture_px, losses))
     except ObjectNavError:
         raise
-    except Exception as error:  # a reader meets any error in a broken file
+    except Exception as error:  # trimesh computes parts of a scene when they are asked for
         raise HouseError(
             f"{where} cannot be read ({type(error).__name__}: {printable(reason_of(error))[:100]})."
         ) from None
     if not surfaces:
-        raise HouseError(f"{where} has no triangles.")
+        raise HouseError(f"{where} has no triangles.{' '.join(['', *losses][:3])}")
     if up == "y":
         turn = np.eye(4)
         turn[:3, :3] = Y_UP
@@ -147,35 +129,44 @@ def read_surfaces(
     return surfaces
 
 
-def _surfaces(trimesh: Any, scene: Any, texture_px: int | None, where: str) -> Iterator[Surface]:
+def _surfaces(scene: Any, texture_px: int | None, losses: Counter[str]) -> Iterator[Surface]:
     """Yields the surfaces of a scene of trimesh."""
-    total, painted = 0, dict[int, NDArray[np.uint8]]()
+    painted = dict[int, NDArray[np.uint8] | None]()
+    trimesh = library("trimesh", extra="import")
     for node in scene.graph.nodes_geometry:
         transform, name = scene.graph[node]
         mesh = scene.geometry[name]
         if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
             continue
-        total += len(mesh.faces)
-        if total > MAX_TRIANGLES:
-            raise HouseError(f"{where} has more than {MAX_TRIANGLES:,} triangles.")
         vertices = np.asarray(mesh.vertices, dtype=np.float64)
         faces = np.asarray(mesh.faces, dtype=np.int32)
         if faces.min() < 0 or faces.max() >= len(vertices):
-            raise HouseError(f"{where}, node '{printable(str(node))}': a triangle names a vertex that does not exist.")
+            leave_out(str(node), "a triangle names a vertex that does not exist", losses)
+            continue
         material = getattr(mesh.visual, "material", None)
         surface = Surface(
             str(node), str(getattr(material, "name", None) or ""), vertices, faces,
-            _paint(mesh, material, texture_px, painted, where), _face_ids(mesh),
+            _paint(mesh, material, texture_px, painted, losses), _face_ids(mesh),
         ).moved(np.asarray(transform, dtype=np.float64))  # fmt: skip
-        if not bool((np.abs(surface.vertices_m) <= FARTHEST_M).all()):
-            raise HouseError(
-                f"{where}, node '{printable(str(node))}': a vertex is not finite or beyond {FARTHEST_M:g} m."
-            )
-        yield surface
+        if is_near(surface.vertices_m, str(node), losses):
+            yield surface
+
+
+def is_near(vertices_m: NDArray[np.float64], node: str, losses: Counter[str]) -> bool:
+    """Returns whether all vertices of a node are finite and within `FARTHEST_M`; else the node is reported."""
+    near = bool((np.abs(vertices_m) <= FARTHEST_M).all())
+    if not near:
+        leave_out(node, f"a vertex is not finite or beyond {FARTHEST_M:g} m", losses)
+    return near
+
+
+def leave_out(node: str, reason: str, losses: Counter[str]) -> None:
+    """Reports a node that is left out."""
+    losses[f"'{printable(node)[:60]}' was left out: {reason}."] += 1
 
 
 def _paint(
-    mesh: Any, material: Any, texture_px: int | None, painted: dict[int, NDArray[np.uint8]], where: str
+    mesh: Any, material: Any, texture_px: int | None, painted: dict[int, NDArray[np.uint8] | None], losses: Counter[str]
 ) -> Paint:
     """Returns the appearance of a mesh of trimesh; `painted` keeps decoded pictures by the identity of their source."""
     uv, rgba = getattr(mesh.visual, "uv", None), GREY
@@ -201,8 +192,9 @@ def _paint(
     if image is None or uv is None or len(uv) != len(mesh.vertices) or not np.isfinite(uv).all():
         return Paint(rgba)
     if id(image) not in painted:
-        painted[id(image)] = _pixels(image, texture_px, where)
-    return Paint(rgba, painted[id(image)], np.asarray(uv, dtype=np.float64))
+        painted[id(image)] = _pixels(image, texture_px, losses)
+    picture = painted[id(image)]
+    return Paint(rgba) if picture is None else Paint(rgba, picture, np.asarray(uv, dtype=np.float64))
 
 
 def _bytes_of(colours: NDArray[Any]) -> NDArray[np.uint8]:
@@ -212,16 +204,19 @@ def _bytes_of(colours: NDArray[Any]) -> NDArray[np.uint8]:
     return (colours >> 8).astype(np.uint8) if colours.dtype == np.uint16 else colours.astype(np.uint8)
 
 
-def _pixels(image: Any, texture_px: int | None, where: str) -> NDArray[np.uint8]:
-    """Returns the pixels of a picture (h, w, 3), at most `texture_px` along its longer side."""
+def _pixels(image: Any, texture_px: int | None, losses: Counter[str]) -> NDArray[np.uint8] | None:
+    """Returns the pixels of a picture (h, w, 3), at most `texture_px` along its longer side; None if it is damaged."""
     width, height = image.size
-    if width * height > MAX_PIXELS:
-        raise HouseError(f"{where}: a picture has {width} x {height} pixels; at most {MAX_PIXELS:,} are allowed.")
-    image = image.convert("RGB")
+    try:
+        small = image.convert("RGB")
+    except (OSError, ValueError, SyntaxError):
+        losses["A picture is damaged and cannot be read."] += 1
+        return None
+    image.close()  # its pixels would stay in memory as long as the scene
     if texture_px is not None and max(width, height) > texture_px:
         share = texture_px / max(width, height)
-        image = image.resize((max(1, round(width * share)), max(1, round(height * share))), 4)  # 4: mean of the pixels
-    return np.asarray(image, dtype=np.uint8)
+        small = small.resize((max(1, round(width * share)), max(1, round(height * share))), 4)  # 4: mean of the pixels
+    return np.asarray(small, dtype=np.uint8)
 
 
 def _face_ids(mesh: Any) -> NDArray[np.int64] | None:
@@ -235,105 +230,32 @@ def _face_ids(mesh: Any) -> NDArray[np.int64] | None:
     return ids if len(ids) == len(mesh.faces) else None
 
 
-# ---- limits before decoding -----------------------------------------------------------------------------------------
-
-
-class _Accessor(Struct):
-    count: Annotated[int, Meta(ge=0)] = 0
-
-
-class _Node(Struct):
-    children: list[int] = []
-
-
-class _Gltf(Struct):
-    accessors: list[_Accessor] = []
-    nodes: Annotated[list[_Node], Meta(max_length=MAX_NODES)] = []
-    extensionsRequired: list[str] = []
-    extensionsUsed: list[str] = []
-
-
-class _Part(Struct):
-    uri: str = ""
-
-
-class _Parts(Struct):
-    buffers: list[_Part] = []
-    images: list[_Part] = []
+# ---- files that a mesh names ----------------------------------------------------------------------------------------
 
 
 def parts_of(file: Path) -> Iterator[Path]:
-    """Yields the files of buffers and pictures that a .gltf file names; nothing if it cannot be read."""
+    """Yields the files of its folder that a .gltf file names, buffers and pictures; nothing if it cannot be read."""
     try:
-        content = read_bytes(file, what="Mesh", most=MAX_FILE_BYTES)
-        parts = parse_json(content, _Parts, where=f"Mesh '{file}'")
-    except ConfigError:
+        names = list(gltf_parts(read_bytes(file, what="Mesh", error=HouseError, most=MAX_FILE_BYTES), f"Mesh '{file}'"))
+    except HouseError:
         return
-    for part in (*parts.buffers, *parts.images):
-        if part.uri and not part.uri.startswith("data:"):
-            yield file.parent / unquote(part.uri)
+    for name in names:
+        part = path_inside(file.parent, name)
+        if part is not None:
+            yield part
 
 
-def _require_sane_gltf(content: bytes, kind: str, where: str, losses: Counter[str]) -> None:
-    """Raises HouseError if a glTF file announces too much, is compressed, or has a loop of nodes."""
-    text = content
-    if kind == "glb":
-        if len(content) < 20 or content[:4] != b"glTF":
-            raise HouseError(f"{where} is not a GLB file.")
-        length, chunk = struct.unpack("<I4s", content[12:20])
-        if chunk != b"JSON" or length > len(content) - 20:
-            raise HouseError(f"{where} is a damaged GLB file: its first part is incomplete.")
-        text = content[20 : 20 + length].rstrip(b"\0 ")
-    document = parse_json(text, _Gltf, where=where, error=HouseError)
-    if sum(accessor.count for accessor in document.accessors) > MAX_NUMBERS:
-        raise HouseError(f"{where} announces more than {MAX_NUMBERS:,} numbers.")
-    for name in document.extensionsRequired:
-        if name in _REFUSED:
-            raise HouseError(f"{where} is compressed by {_REFUSED[name]}, which cannot be read; decompress it first.")
-    for name in {*document.extensionsRequired, *document.extensionsUsed} & set(_LOST):
-        losses[_LOST[name]] += 1
-    _require_tree([node.children for node in document.nodes], where)
+def read_inside(folder: Path, name: str) -> bytes:
+    """Returns a file of the folder or below it.
 
-
-def _require_tree(children: list[list[int]], where: str) -> None:
-    """Raises HouseError if a node has two parents or is below itself, or names a node that does not exist."""
-    named = Counter(child for nodes in children for child in nodes)
-    if any(not 0 <= child < len(children) for child in named):
-        raise HouseError(f"{where}: a node has a child that does not exist.")
-    if any(count > 1 for count in named.values()):
-        raise HouseError(f"{where}: a node is the child of several nodes.")
-    seen, todo = 0, [n for n in range(len(children)) if n not in named]
-    while todo:
-        seen += 1
-        todo += children[todo.pop()]
-    if seen < len(children):  # each has one parent: those that are not reached are in a loop
-        raise HouseError(f"{where}: its nodes form a loop.")
-
-
-def _require_sane_ply(content: bytes, where: str) -> None:
-    """Raises HouseError if a PLY file announces more elements than it has bytes."""
-    head = content[: content.find(b"end_header") + 1 or 1 << 16][: 1 << 16]
-    for line in head.splitlines():
-        words = line.split()
-        if words[:1] == [b"element"] and len(words) == 3 and words[2].isdigit() and int(words[2]) > len(content):
-            raise HouseError(f"{where} announces {int(words[2])} elements, but has {len(content)} bytes.")
-
-
-def _resolver(trimesh: Any, folder: Path) -> Any:
-    """Returns trimesh's access to the files that a mesh names: buffers, materials, pictures of its own folder."""
-    base = folder.resolve()
-
-    def read(name: str) -> bytes:
-        try:
-            target = (base / name).resolve()
-            outside = not target.is_relative_to(base)
-        except (OSError, ValueError, RuntimeError):
-            raise HouseError(f"A mesh in '{folder}' uses the invalid file name '{printable(name)[:100]}'.") from None
-        if outside:
-            raise HouseError(f"A mesh in '{folder}' uses '{printable(name)[:100]}', which is outside of its folder.")
-        try:
-            return read_bytes(target, what="File", most=MAX_FILE_BYTES)
-        except ConfigError as error:
-            raise Skipped(str(error)) from None
-
-    return resolver(trimesh, read, "")
+    Raises:
+        HouseError: it is outside of the folder.
+        Skipped: it is missing or cannot be read.
+    """
+    target = path_inside(folder, name)
+    if target is None:
+        raise HouseError(f"A mesh in '{folder}' uses '{printable(name)[:100]}', which is outside of its folder.")
+    try:
+        return read_bytes(target, what="File", most=MAX_FILE_BYTES)
+    except ConfigError as error:
+        raise Skipped(str(error)) from None

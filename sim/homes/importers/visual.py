@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from sim.homes.housegen.imported.meshes import Part, areas, library
+from sim.homes.housegen.imported.meshes import Part, areas
 from sim.homes.housegen.imported.reduction import is_alike, reduced
+from sim.homes.housegen.imported.scene_files import library
 from sim.homes.housegen.imported.sources import Skipped
 from sim.homes.importers.surfaces import WHITE, Paint, Surface
 
@@ -233,6 +234,8 @@ def _picture(
     width, height = squares.size_px
     area_m2 = sum(float(areas(surface.vertices_m, surface.faces).sum()) for surface in surfaces)
     spacing_m = max(texel_m, math.sqrt(area_m2 / MAX_SAMPLES))
+    everything = np.concatenate([surface.corners_m for surface in surfaces])
+    spacing_m = spacing_within(everything, spacing_m, 4 * MAX_SAMPLES)  # long thin triangles have many for their area
     sampled = [samples(surface.corners_m, spacing_m) for surface in surfaces]
     colours = np.vstack([
         _colours(surface, face, weights) for surface, (_, face, weights) in zip(surfaces, sampled, strict=True)
@@ -281,12 +284,9 @@ def samples(
         corners_m: (m, 3, 3).
         spacing_m: largest distance of neighbouring points of a row, and of neighbouring rows.
     """
-    sides = np.linalg.norm(corners_m[:, [1, 2, 0]] - corners_m, axis=2)  # from each corner to the next
-    first = sides.argmax(axis=1)
+    first, base, height = _base_and_height(corners_m)
     turn = (first[:, None] + np.arange(3)) % 3
-    a, b, c = np.take_along_axis(corners_m, turn[:, :, None], axis=1).transpose(1, 0, 2)
-    height = np.linalg.norm(np.cross(b - a, c - a), axis=1) / np.maximum(sides.max(axis=1), 1e-12)
-    along, across = (_steps(length / spacing_m) for length in (sides.max(axis=1), height))
+    along, across = (_steps(length / spacing_m) for length in (base, height))
     corners, faces, shares = [], [], []
     for n, rows in np.unique(np.stack([along, across], axis=1), axis=0).tolist():
         mine = np.flatnonzero((along == n) & (across == rows))
@@ -298,6 +298,30 @@ def samples(
         faces.append(np.repeat(mine, len(weights)))
         shares.append(of_corner.reshape(-1, 3))
     return np.vstack(corners), np.concatenate(faces), np.vstack(shares)
+
+
+def spacing_within(corners_m: NDArray[np.float64], spacing_m: float, most: int) -> float:
+    """Returns the spacing, or a larger one with which `samples` gives at most so many points and 4 for each triangle.
+
+    Args:
+        corners_m: (m, 3, 3).
+        spacing_m: wanted distance of neighbouring points.
+        most: number of points.
+    """
+    _, base, height = _base_and_height(corners_m)
+    while ((_steps(base / spacing_m) + 1) * (_steps(height / spacing_m) + 1)).sum() > most + 4 * len(corners_m):
+        spacing_m *= 1.25
+    return spacing_m
+
+
+def _base_and_height(
+    corners_m: NDArray[np.float64],
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    """Returns the first corner (m,) of the longest side of triangles, the length of this side, and the height on it."""
+    sides = np.linalg.norm(corners_m[:, [1, 2, 0]] - corners_m, axis=2)  # from each corner to the next
+    base = sides.max(axis=1)
+    twice = np.linalg.norm(np.cross(corners_m[:, 1] - corners_m[:, 0], corners_m[:, 2] - corners_m[:, 0]), axis=1)
+    return sides.argmax(axis=1), base, twice / np.maximum(base, 1e-12)
 
 
 def _steps(wanted_px: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -22,6 +22,7 @@ from jaxtyping import Float32, Float64, Shaped, UInt8, UInt16
 from torch.utils.data import IterableDataset, get_worker_info
 
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, ConfigError
+from sim.core.pictures import decode_picture
 from sim.core.reading import (
     MAX_BYTES,
     Count,
@@ -30,7 +31,6 @@ from sim.core.reading import (
     open_plain,
     parse_json,
     read_json,
-    require_small_image,
 )
 
 GOAL_IDS = np.array([MPCAT40_ID[name] for name in GOAL_CATEGORIES])
@@ -429,11 +429,7 @@ def _image(file: Path, key: str, part: str, parts: dict[str, bytes], flag: int) 
 
 def _read_image(content: bytes, flag: int, where: str) -> Shaped[np.ndarray, "h w *channels"]:
     """Returns an image; raises ConfigError if it is too large or cannot be read."""
-    require_small_image(content, where=where)
-    image = cv2.imdecode(np.frombuffer(content, np.uint8), flag)
-    if image is None:
-        raise ConfigError(f"{where} cannot be read.")
-    return image
+    return decode_picture(content, flag, where=where)
 
 
 def tile(pictures: Sequence[UInt8[np.ndarray, "h w 3"]], columns: int) -> UInt8[np.ndarray, "rows cols 3"]:

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.interface import MPCAT40, MPCAT40_ID, ConfigError
-from sim.core.reading import MAX_PIXELS, Count, convert
+from sim.core.pictures import MAX_PIXELS
+from sim.core.reading import Count, convert
 from sim.houses.labels import Instance
 
 STUFF: tuple[str, ...] = ("void", "wall", "floor", "ceiling")

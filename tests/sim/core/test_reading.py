@@ -15,7 +15,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from sim.core import reading
+from sim.core import pictures, reading
 from sim.core.errors import HouseError
 from sim.core.interface import ConfigError
 from tests.helpers import wording
@@ -189,23 +189,30 @@ def test_a_pipe_in_place_of_a_file_is_refused_and_not_waited_for(kind: str, tmp_
 def test_the_size_of_a_jpeg_is_found_behind_fill_bytes() -> None:
     content = cv2.imencode(".jpg", np.zeros((30, 50, 3), np.uint8))[1].tobytes()
     filled = content.replace(b"\xff\xc0", b"\xff" * 700 + b"\xc0", 1)
-    assert reading.image_size_px(filled) == (50, 30)
+    assert pictures.image_size_px(filled) == (50, 30)
 
 
 @pytest.mark.parametrize("suffix", [".png", ".jpg"])
 def test_the_size_of_an_image_is_read_from_its_header(suffix: str) -> None:
     content = cv2.imencode(suffix, np.zeros((30, 50, 3), np.uint8))[1].tobytes()
-    assert reading.image_size_px(content) == (50, 30)
-    reading.require_small_image(content, where="Image")
-    with pytest.raises(ConfigError, match="neither a PNG nor a JPEG"):
-        reading.require_small_image(content[:10], where="Image")
+    assert pictures.image_size_px(content) == (50, 30)
+    pictures.require_small_image(content, where="Image")
+    with pytest.raises(ConfigError, match="unsupported format"):
+        pictures.require_small_image(content[:10], where="Image")
     bomb = content[:16] + (60_000).to_bytes(4, "big") * 2 + content[24:]
     if suffix == ".png":
         with pytest.raises(ConfigError, match="60000 x 60000"):
-            reading.require_small_image(bomb, where="Image")
+            pictures.require_small_image(bomb, where="Image")
 
 
 def test_control_characters_and_lone_surrogates_are_written_as_escapes() -> None:
     assert reading.printable("a\x1b[31mb\u009bc\udcff [d] é") == "a\\x1b[31mb\\x9bc\\udcff [d] é"
     assert reading.first_unprintable(["a b", "ü"]) is None
     assert reading.first_unprintable(["a", "b\x1b[0m"]) == "b\x1b[0m"
+
+
+def test_a_file_of_empty_lines_ends_soon(tmp_path: Path) -> None:
+    file = tmp_path / "lines.gz"
+    file.write_bytes(gzip.compress(b"{}\n" + b"\n" * 300_000))
+    with pytest.raises(ConfigError, match="line 10002: more than 10,000 lines are empty"):
+        list(reading.json_lines(file, what="Scenes"))

@@ -184,6 +184,13 @@ def test_what_is_not_allowed_is_refused(env: ObjectNavVelocityEnv, tmp_path: Pat
     for action in ((0.1, 0.0), (np.nan, 0.0, 0.0)):
         with pytest.raises(ConfigError, match=wording.AN_ACTION_IS_THREE_FINITE_NUMBERS):
             env.step(np.array(action))
+    foreign: tuple[Any, ...] = (
+        "abc", ("0.1", "0", "0"), {"speed": 1}, None, 1j, (1j, 0, 0), (10**400, 0, 0), [[1, 2], [3]], object(),
+        (None, 0, 0), ("\ud800", 0, 0), np.array(["1", "2", "3"]), np.array([1, 2, 3], "datetime64[s]"), ([1], 2, 3),
+    )  # fmt: skip
+    for action in foreign:
+        with pytest.raises(ConfigError, match=wording.AN_ACTION_IS_THREE_FINITE_NUMBERS):
+            env.step(action)
     with pytest.raises(ConfigError, match="needs an ObjectNavVelocityEnv, got ObjectNavEnv"):
         DiscreteActions(ObjectNavEnv())
 

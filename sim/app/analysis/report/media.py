@@ -8,13 +8,12 @@ import urllib.parse
 from pathlib import Path
 
 import cv2
-import numpy as np
 
 from sim.app.analysis.comparison import Run
 from sim.app.evaluation.last_view import picture_file
 from sim.app.viewers.video import video_file
-from sim.core.errors import ConfigError
-from sim.core.reading import read_bytes, require_small_image
+from sim.core.pictures import decode_picture
+from sim.core.reading import read_bytes
 
 THUMBNAIL_PX = (128, 96)
 """Largest width and height of a thumbnail: 2 to 4 KB each."""
@@ -47,10 +46,7 @@ def thumbnail(file: Path) -> str:
         ConfigError: the file is not an image, or too large.
     """
     content = read_bytes(file, what="Picture")
-    require_small_image(content, where=f"Picture '{file}'")
-    image = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_COLOR)
-    if image is None:
-        raise ConfigError(f"Picture '{file}' cannot be decoded.")
+    image = decode_picture(content, where=f"Picture '{file}'")
     height, width = image.shape[:2]
     scale = min(1.0, THUMBNAIL_PX[0] / width, THUMBNAIL_PX[1] / height)
     size_px = max(1, round(scale * width)), max(1, round(scale * height))

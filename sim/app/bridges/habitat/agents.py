@@ -3,7 +3,7 @@
 The fields of the agent's configuration are the arguments of the class's constructor and `BRIDGE_FIELDS`;
 `--config agent.KEY=VALUE` sets them. A required argument called `config` or `task_config` gets the configuration of the
 run (`sim.app.bridges.habitat.config.make_config`), with the entries of a YAML file if its value names one. A value of
-the form `module:NAME()` is replaced by the result of that function.
+the form `module:NAME()` is replaced by the result of that function; `--config` may have one, a settings file may not.
 """
 
 from __future__ import annotations

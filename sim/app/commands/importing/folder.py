@@ -27,6 +27,7 @@ from sim.core.reading import convert, printable, read_json, sha256_of
 from sim.episodes.splits import LABELS_FILE, labels_of
 from sim.homes.importers.losses import added
 from sim.homes.importers.mesh_house import Collision, MeshConfig
+from sim.homes.importers.surfaces import MAX_FILE_BYTES
 from sim.houses.load import load_house
 
 SourceT = TypeVar("SourceT")
@@ -207,8 +208,15 @@ def file_works(files: Iterable[Path], used_by: Callable[[Path], Iterable[Path]])
     """Yields the houses of files, each of which depends on its file and on those that `used_by` returns."""
     for file in files:
         used = [file, *used_by(file)] if file.is_file() else []
-        sums = [sha256_of(part, what="File") for part in used if part.is_file()]
-        yield Work(file.stem, " ".join(sums).encode(), file)
+        yield Work(file.stem, " ".join(map(_sum_of, used)).encode(), file)
+
+
+def _sum_of(file: Path) -> str:
+    """Returns the hash of a file; "": its reader will refuse it."""
+    try:
+        return sha256_of(file, what="File") if file.stat().st_size <= MAX_FILE_BYTES else ""
+    except (ObjectNavError, OSError, ValueError):
+        return ""
 
 
 def _tried(make: Callable[[SourceT], Made], source: SourceT) -> Made | _Failed:

@@ -18,7 +18,7 @@ from pathlib import Path
 from sim.app import cli
 from sim.app.commands import episodes
 from sim.app.evaluation.parallel import ordered_map
-from sim.app.submissions.announcement import Commit, read_announcement, secret_of, write_published
+from sim.app.submissions.announcement import Commit, Episodes, Houses, read_announcement, secret_of, write_published
 from sim.app.submissions.sealing import (  # fmt: skip
     LIKE,
     VERSION,
@@ -69,7 +69,11 @@ def main(args: Args) -> int:
         return _make_announced(args, args.announced)
     if args.beacon is not None or args.secret_file is None:
         raise ConfigError("Give --secret-file FILE, or --announced FILE together with --beacon HASH.")
+    convert(args.houses, Houses, where="--houses")
+    convert(args.episodes, Episodes, where="--episodes")
     secret = read_secret(args.secret_file) if args.from_secret else new_secret(args.secret_file)
+    args.out.mkdir(mode=0o700, parents=True, exist_ok=True)
+    args.out.chmod(0o700)  # the houses are secret until the deadline
     split = make_split(args.out, secret, houses=args.houses, episode_count=args.episodes, workers=args.workers)
     write_published(seal_file(args.out), seal_of(split, secret), "a seal")
     print(f"{args.out}: {args.houses} houses, {args.episodes} episodes, sha256 {split.sha256}.")

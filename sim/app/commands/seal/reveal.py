@@ -76,7 +76,7 @@ def _require_order(announced: Path, file: Path, seal: Seal, repository: Path) ->
 
 
 def _made(args: Args, seal: Seal) -> Split:
-    """Returns the split of the secret; one that is not the sealed one is removed."""
+    """Returns the split of the secret; the files of one that is not the sealed one are removed."""
     if seal.secret_sha256 is None:
         raise ConfigError(f"'{args.seal}' is the seal of houses without a secret: give their folder, --split FOLDER.")
     if args.out is None or args.out.resolve().name != seal.name:
@@ -85,11 +85,14 @@ def _made(args: Args, seal: Seal) -> Split:
     require_empty(args.out)
     for other in other_versions(seal):
         print(f"Made with another version: {other}. The houses may differ.", flush=True)
+    existed = args.out.is_dir()
     try:
         split = make_split(args.out, secret, houses=seal.houses, episode_count=seal.episodes, workers=args.workers)
         require_sealed(split, seal)
     except BaseException:  # Ctrl-C too
         shutil.rmtree(args.out, ignore_errors=True)
+        if existed:
+            args.out.mkdir(exist_ok=True)
         raise
     return split
 

@@ -5,17 +5,18 @@ Reading is by trimesh, of the extra `models`; `reduction` reduces the triangles 
 
 from __future__ import annotations
 
-import importlib
-import io
+import functools
 import posixpath
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.core.errors import ConfigError
+from sim.core.errors import HouseError
+from sim.homes.housegen.imported.scene_files import library, load_scene
 from sim.homes.housegen.imported.sources import Entry, Skipped
 
 MAX_SOURCE_TRIANGLES = 1_500_000
@@ -49,57 +50,29 @@ def read_parts(entry: Entry) -> tuple[Part, ...]:
     Raises:
         Skipped: the file cannot be read, or has no surface.
     """
-    trimesh = library("trimesh")
     kind = posixpath.splitext(entry.file)[1].lower().lstrip(".")
     if kind not in _FORMATS:
         raise Skipped(f"unsupported format '{kind}'; use {', '.join(_FORMATS)}")
     content = entry.read(entry.file)
-    files = resolver(trimesh, entry.read, posixpath.dirname(entry.file))
+    losses = Counter[str]()
     try:
-        scene = trimesh.load_scene(io.BytesIO(content), file_type=kind, resolver=files, process=False)
+        read = functools.partial(_read_next_to, entry, posixpath.dirname(entry.file))
+        scene = load_scene(content, kind, where="its mesh", most=MAX_SOURCE_TRIANGLES, read=read, losses=losses)
+        trimesh = library("trimesh")
         raw = [_coloured(mesh) for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)]
-    except Exception as error:  # a reader meets any error in a broken file
+    except HouseError as error:
+        raise Skipped(str(error).rstrip(".")) from None
+    except Exception as error:  # trimesh computes parts of a scene when they are asked for
         raise Skipped(f"its mesh cannot be read ({type(error).__name__}: {str(error)[:80]})") from None
-    if sum(len(part.faces) for part in raw) > MAX_SOURCE_TRIANGLES:
-        raise Skipped(f"it has more than {MAX_SOURCE_TRIANGLES} triangles")
+    if losses:
+        raise Skipped(next(iter(losses)).rstrip("."))
     if not raw or not all(np.isfinite(part.vertices_m).all() for part in raw):
         raise Skipped("its mesh has no triangles, or a vertex that is not finite")
     return _joined(_fitted([part for part in raw if part.rgba[3] > 0.02], entry))
 
 
-def library(name: str, *, extra: str = "models") -> Any:
-    """Returns a package of an extra; raises ConfigError if it is not installed."""
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        raise ConfigError(
-            f"Reading models needs the package '{name}', which is not installed: pip install "
-            f"'stubborn-objectnav[{extra}]'."
-        ) from None
-
-
-def resolver(trimesh: Any, read: Callable[[str], bytes], folder: str) -> Any:
-    """Returns trimesh's access to the files that a model names: materials, textures, buffers."""
-
-    class Inside(trimesh.resolvers.Resolver):
-        def __init__(self) -> None: ...
-
-        def get(self, name: str) -> bytes:
-            try:
-                return read(posixpath.join(folder, str(name).strip().replace("\\", "/")))
-            except Skipped as error:  # trimesh goes without a material or a picture that is missing
-                raise FileNotFoundError(str(error)) from None
-
-        def write(self, name: str, data: object) -> None:
-            raise PermissionError(name)
-
-        def keys(self) -> list[str]:
-            return []
-
-        def namespaced(self, namespace: str) -> Any:
-            return resolver(trimesh, read, posixpath.join(folder, namespace))
-
-    return Inside()
+def _read_next_to(entry: Entry, folder: str, name: str) -> bytes:
+    return entry.read(posixpath.join(folder, name))
 
 
 # ---- colour ----------------------------------------------------------------------------------------------------------

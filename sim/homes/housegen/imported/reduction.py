@@ -10,7 +10,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
-from sim.homes.housegen.imported.meshes import Part, areas, library, merged
+from sim.homes.housegen.imported.meshes import Part, areas, merged
+from sim.homes.housegen.imported.scene_files import library
 from sim.homes.housegen.imported.sources import Skipped
 
 MAX_TRIANGLES, MAX_PLANT_TRIANGLES = 1_500, 2_000

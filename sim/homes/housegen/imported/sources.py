@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
-from sim.core.reading import convert, open_plain, read_bytes, read_text, reason_of
+from sim.core.reading import convert, open_plain, printable, read_bytes, read_text, reason_of
 from sim.homes.housegen.furniture.item import Mount
 from sim.homes.housegen.furniture.uses import fault_of_uses
 from sim.homes.housegen.imported.labels import Label, Size, label_of, label_of_category
@@ -33,7 +33,7 @@ MAX_FILE_BYTES = 200_000_000
 SIZE_M = (0.02, 6.0)
 """Allowed lengths of the sides of a model."""
 TABLES = ("models.csv", "models.toml")
-_PROPERTY = re.compile(r"\s*([\w.]+)#(\d+)\s*[=:]\s*(.*)")
+_PROPERTY = re.compile(r"\s*([\w.]+)#(\d{1,9})\s*[=:]\s*(.*)")
 _HEADER = re.compile(r"\s*(license|name)\s*[=:]\s*(.*)")
 _COLUMNS = ("file", "category", "width_m", "depth_m", "height_m")
 
@@ -117,7 +117,7 @@ def _sweet_home_entry(file: Path, archive: zipfile.ZipFile, properties: Mapping[
     except Skipped as reason:
         return name, str(reason)
     except (KeyError, ValueError) as error:
-        return name, f"its entry cannot be read ({error})"
+        return name, f"its entry cannot be read ({str(error)[:80]})"
     if properties.get("doorOrWindow") == "true":
         return name, "a door or a window"
     label = label_of(name, properties.get("category", ""), size_m, elevation_m)
@@ -147,7 +147,8 @@ def _read_zip(archive: zipfile.ZipFile, path: str) -> bytes:
 
 def _unescaped(text: str) -> str:
     """Returns a value of a properties file, in which characters outside of ASCII are written as \\uXXXX."""
-    return re.sub(r"\\u([0-9a-fA-F]{4})", lambda match: chr(int(match[1], 16)), text)
+    text = re.sub(r"\\u([0-9a-fA-F]{4})", lambda match: chr(int(match[1], 16)), text)
+    return text.encode("utf-16", errors="surrogatepass").decode("utf-16", errors="replace")  # joins pairs of surrogates
 
 
 # ---- folders with a table --------------------------------------------------------------------------------------------
@@ -187,8 +188,8 @@ def _row_entry(folder: Path, row: Mapping[str, Any]) -> Found:
         _finite(front, elevation_m)
     except Skipped as reason:
         return file, str(reason)
-    except (TypeError, ValueError) as error:
-        return file, f"its row cannot be read ({error})"
+    except (TypeError, ValueError, OverflowError) as error:
+        return file, f"its row cannot be read ({str(error)[:80]})"
     mount = row.get("mount") or "floor"
     uses = row.get("uses") or ()
     uses = tuple(uses.split()) if isinstance(uses, str) else tuple(map(str, uses))
@@ -207,13 +208,23 @@ def _row_entry(folder: Path, row: Mapping[str, Any]) -> Found:
 
 
 def _read_file(folder: Path, path: str) -> bytes:
-    file = (folder / path.replace("\\", "/")).resolve()
-    if not file.is_relative_to(folder.resolve()):
-        raise Skipped(f"'{path}' leads out of the folder")
+    file = path_inside(folder, path)
+    if file is None:
+        raise Skipped(f"'{printable(path)}' leads out of the folder")
     try:
         return read_bytes(file, what="Model", most=MAX_FILE_BYTES)
     except ConfigError as error:
         raise Skipped(str(error).rstrip(".")) from None
+
+
+def path_inside(folder: Path, name: str) -> Path | None:
+    """Returns the path of a named file in the folder or below it; None if it is elsewhere or has an invalid name."""
+    base = folder.resolve()
+    try:
+        target = (base / name.replace("\\", "/")).resolve()
+    except (OSError, ValueError, RuntimeError):
+        return None
+    return target if target.is_relative_to(base) else None
 
 
 def _finite(*numbers: float) -> None:

@@ -26,7 +26,7 @@ from sim.app.commands.report import Args, main
 from sim.app.evaluation.last_view import picture_file
 from sim.app.viewers.video import VideoWriter, video_file
 from sim.core.interface import ConfigError
-from sim.core.reading import image_size_px
+from sim.core.pictures import image_size_px
 from sim.task.explanations import explain, marks
 from sim.task.ground_truth import GroundTruth
 from sim.task.result import METRICS, EpisodeResult, StopTarget
@@ -246,7 +246,7 @@ def test_the_last_picture_is_linked_and_its_thumbnail_is_part_of_the_page(record
     jpeg = base64.b64decode(episodes[2]["thumbs"][0])
     assert image_size_px(jpeg) == (128, 96)
     assert len(jpeg) < 6_000  # 200 of them are less than 1.6 MB in the page
-    assert "is neither a PNG nor a JPEG image" in page
+    assert "has an unsupported format" in page
     assert "1 of 4 episodes have no pictures of the end (they were run without --record)." in page
 
 

@@ -42,11 +42,12 @@ PARTS: dict[str, Any] = {
 }
 SOON_S = 0.3
 """Limit of a call in tests of agents that do not answer."""
-SLOW = ("no_answer", "forks", "late_answer", "drip", "flood_stderr", "sigstop")
+SLOW = ("no_answer", "forks", "stops_guard", "late_answer", "drip", "flood_stderr", "sigstop")
 """Faults that end at the limit of a call."""
 FAULTS = {
     "no_answer": "no answer within 0.3 s",
     "forks": "no answer within 0.3 s",
+    "stops_guard": "no answer within 0.3 s",
     "late_answer": "no answer within 0.3 s",
     "drip": "a message does not begin with b'|no answer within 0.3 s",
     "flood_stdout": "a message does not begin with b'(garbage|arbage)",
@@ -202,6 +203,48 @@ def test_what_an_agent_prints_is_shown_up_to_a_limit(tmp_path: Path, capsys: pyt
     printed = capsys.readouterr().err
     assert process_pipe.PRINTED_BYTES <= len(printed) < process_pipe.PRINTED_BYTES + 200
     assert printed.endswith("[the agent prints more, which is left out]\n")
+
+
+def test_an_agent_cannot_control_the_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    agent = make("escapes", tmp_path)
+    agent.reset("chair", 0)
+    agent.act(OBSERVATION)
+    agent.close()
+    assert capsys.readouterr().err == "\\x1b]0;title\\x07red\\x1b[2J 50%\n60%\n"
+
+
+SHORTENING = """
+import os, sys
+from sim.app.bridges.stubborn_client import serve
+class Agent:
+    def reset(self, goal, seed): pass
+    def act(self, observation):
+        links = ["/proc/self/fd/%d" % n for n in range(100) if os.path.lexists("/proc/self/fd/%d" % n)]
+        memory, *_ = [link for link in links if os.readlink(link).startswith("/memfd:stubborn")]
+        handle = os.open(memory, os.O_RDWR)
+        for size in (0, 100):
+            try:
+                os.ftruncate(handle, size)
+            except PermissionError:
+                print("refused", file=sys.stderr)
+        return 1
+serve(lambda setup: Agent())
+"""
+SHORTENED = """
+import sys
+from tests.sim.app.bridges.test_process import *
+agent = ProcessAgent([sys.executable, "-c", SHORTENING], **PARTS, config=ProcessConfig())
+agent.reset("chair", 0)
+print([int(agent.act(OBSERVATION)) for _ in range(3)])
+agent.close()
+"""
+
+
+def test_an_agent_that_shortens_the_shared_memory_does_not_end_the_simulator() -> None:
+    words = [sys.executable, "-c", SHORTENED]
+    host = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    assert (host.returncode, host.stdout) == (0, "[1, 1, 1]\n"), host.stderr
+    assert host.stderr.count("refused") == 6
 
 
 HOST = """

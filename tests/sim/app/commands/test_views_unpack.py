@@ -59,7 +59,7 @@ BOMB = png(np.uint8)[:16] + (60_000).to_bytes(4, "big") * 2 + png(np.uint8)[24:]
         ({"json": b"[" * 100_000}, "record of view 'v'"),
         ({"json": b'{"a": NaN}'}, "not JSON"),
         ({"semantic_png": BOMB}, "60000 x 60000"),
-        ({"semantic_png": b"no image"}, "neither a PNG nor a JPEG"),
+        ({"semantic_png": b"no image"}, "unsupported format"),
         ({"semantic_png": png(np.uint16)}, "labels of uint16"),
         ({"depth_png": png(np.uint8, 3)}, "depth of uint8"),
         ({"rgb_png": png(np.uint8, 3)[:40]}, "cannot be read"),

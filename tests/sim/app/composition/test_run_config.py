@@ -16,6 +16,7 @@ from sim.app.composition.record import error_result, record_of
 from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
 from sim.core.configuration import as_json, field_paths, with_fields
+from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
 from sim.episodes.episode import Episode
 from stubborn import detection, exploration
@@ -34,6 +35,26 @@ def test_presets_then_the_file_then_the_command_line(tmp_path: Path) -> None:
     assert config.camera.width_px == 160
     assert config.noise.depth.axial_m == 0.003
     assert with_fields(config, {"noise.depth.axial_m": 0.0}).noise.depth.axial_1_m == config.noise.depth.axial_1_m
+
+
+@pytest.mark.parametrize("value", ['"loader:main()"', '["a", "loader:main()"]'])
+def test_a_settings_file_calls_no_function_and_the_command_line_may(
+    value: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    called = tmp_path / "called"
+    (tmp_path / "loader.py").write_text(f"import pathlib\npathlib.Path({str(called)!r}).touch()\nmain = str\n")
+    (tmp_path / "mine.py").write_text(
+        "class Agent:\n def __init__(self, checkpoint): ...\n def reset(self): ...\n def act(self, seen): ...\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "settings.toml"
+    file.write_text(f"[agent]\ncheckpoint = {value}\n")
+    options = RunOptions(agent="habitat:mine:Agent", semantics="gt", config_file=file)
+    with pytest.raises(ConfigError, match=r"a file must not run code\. Give it on the command line"):
+        resolve(options)
+    assert not called.exists()
+    given = resolve(replace(options, config_file=None, config=("agent.checkpoint=loader:main()",)))
+    assert given.settings == {"agent.checkpoint": "loader:main()"}
 
 
 @pytest.mark.parametrize("agent", ["stubborn", "stubborn-plus", "frontier", "random", "oracle"])

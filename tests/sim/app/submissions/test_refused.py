@@ -122,6 +122,16 @@ REFUSED: dict[str, tuple[Edit, str]] = {
         "it cannot have actions",
     ),
     "an error that succeeds": (in_first_result(end_reason="error"), "ended with an error and cannot be a success"),
+    "too few places": (lambda c: c["episodes"][0].update(places_m=[]), "has 0 positions; "),
+    "too many places": (lambda c: c["episodes"][0]["places_m"].append([0.0, 0.0]), " positions; "),
+    "a segmentation whose sensors were not there": (
+        in_config(segmentation={"name": "mine", "sensors": ["rgb"]}),
+        "its segmentation reads 'rgb', which is not among the sensors",
+    ),
+    "a name that is written backwards": (in_manifest(name="our \u202e agent"), "has an invisible character"),
+    "a name with a space of no width": (in_manifest(name="stub\u200bborn"), "has an invisible character"),
+    "an author with a Cyrillic letter": (in_manifest(authors=["\u0410nn Smith"]), "letters of Cyrillic and Latin"),
+    "a name in letters of formulas": (in_manifest(name="\U0001d42c\U0001d42d"), "variants of characters; write 'st'"),
     "a place on the moon": (lambda c: c["episodes"][0].update(places_m=[[4e8, 0.0]]), "places_m"),
 }
 

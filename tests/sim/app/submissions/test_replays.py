@@ -194,4 +194,5 @@ def test_an_episode_that_ended_with_an_error_is_a_failure_and_is_not_replayed(fo
     content = content_of(folder / "random.json.gz")
     content["episodes"] = content["episodes"][:1]
     together(in_first_result(end_reason="error", success=0.0, spl=0.0, soft_spl=0.0), in_actions(lambda a: ""))(content)
+    content["episodes"][0]["places_m"] = []
     assert [verdict.judgement for verdict in judged(folder, written(tmp_path / "e.json.gz", content))] == ["error"]

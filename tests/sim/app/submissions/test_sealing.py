@@ -22,7 +22,7 @@ from tests.helpers import wording
 from tests.helpers.submissions import tiny_split
 
 STUDIO = Recipe(name="studio", seed=0, pool="heldout", kind="studio", area_m2=55.0)
-SECRET, OTHER = "0123456789abcdef" * 4, "0" * 64
+SECRET, OTHER = "0123456789abcdef" * 4, "0123456789abcdee" * 4
 
 
 def test_a_published_split_is_revealed_by_its_folder_and_a_changed_one_is_not(
@@ -54,6 +54,41 @@ def test_a_seal_with_other_counts_is_of_no_split(tmp_path: Path, change: dict[st
         reveal.main(reveal.Args(seal=seal, split=split))
 
 
+@pytest.mark.parametrize("change", [{"houses": 10**12}, {"episodes": 10**12}, {"houses": 0}])
+def test_a_seal_of_more_houses_than_anybody_can_make_is_refused(tmp_path: Path, change: dict[str, Any]) -> None:
+    split, seal = tiny_split(tmp_path), tmp_path / "tiny.sealed.json"
+    publish.main(publish.Args(split=split))
+    seal.write_text(json.dumps(json.loads(seal.read_text()) | change))
+    with pytest.raises(ConfigError, match=rf"field '{next(iter(change))}': expected int"):
+        reveal.main(reveal.Args(seal=seal, split=split))
+    with pytest.raises(ConfigError, match=rf"--{next(iter(change))}: expected int"):
+        make.main(make.Args(out=tmp_path / "new", secret_file=tmp_path / "secret", **change))
+    assert not (tmp_path / "secret").exists()
+
+
+def test_a_sealed_split_is_for_its_owner_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(make, "make_split", lambda folder, *_, **__: load_split(tiny_split(folder)))
+    out = tmp_path / "new"
+    assert make.main(make.Args(out=out, secret_file=tmp_path / "secret")) == 0
+    assert out.stat().st_mode & 0o777 == 0o700
+
+
+def test_a_folder_of_the_user_stays_when_revealing_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(folder: Path, *_: object, **__: object) -> None:
+        (folder / "half.xml").write_text("")
+        raise ConfigError("The disk is full.")
+
+    monkeypatch.setattr(reveal, "make_split", broken)
+    seal, secret, out = tmp_path / "tiny.sealed.json", tmp_path / "secret", tmp_path / "empty" / "tiny"
+    announcement.write_published(seal, sealing.seal_of(load_split(tiny_split(tmp_path)), SECRET), "a seal")
+    secret.write_text(SECRET)
+    out.mkdir(parents=True)
+    with pytest.raises(ConfigError, match="The disk is full"):
+        reveal.main(reveal.Args(seal=seal, secret_file=secret, out=out))
+    assert out.is_dir()
+    assert not list(out.iterdir())
+
+
 def test_the_hash_of_a_secret_does_not_hold_it_and_a_new_one_is_for_its_owner_only(tmp_path: Path) -> None:
     file = tmp_path / "secret"
     secret = sealing.new_secret(file)
@@ -64,7 +99,7 @@ def test_the_hash_of_a_secret_does_not_hold_it_and_a_new_one_is_for_its_owner_on
         sealing.new_secret(file)
 
 
-@pytest.mark.parametrize("text", ["", "abc", "0" * 63, "g" * 64, "0" * 2000])
+@pytest.mark.parametrize("text", ["", "abc", "0" * 63, "g" * 64, "0" * 2000, "0" * 64, "01" * 32])
 def test_what_is_no_secret_is_refused(tmp_path: Path, text: str) -> None:
     (tmp_path / "secret").write_text(text)
     with pytest.raises(ConfigError, match=wording.HOLDS_NO_SECRET_IS_TOO_LARGE):

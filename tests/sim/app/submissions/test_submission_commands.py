@@ -5,7 +5,9 @@ from __future__ import annotations
 import copy
 import csv
 import json
+import os
 import shutil
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,18 +17,23 @@ import pytest
 
 from sim.app.analysis.comparison import read_run
 from sim.app.commands import leaderboard, submit, verify
+from sim.app.composition.agents import SPECS
+from sim.app.composition.driven import HUMAN_NAME
 from sim.app.submissions.contents import Submission, read_submission
 from sim.app.submissions.leaderboard import LONG_ACTIONS, Row, repeated, tables
 from sim.app.submissions.packing import About, pack
 from sim.app.submissions.report import Report, read_report
 from sim.app.submissions.sealing import Origin
 from sim.core.errors import ConfigError
+from sim.core.reading import sha256_of
 from sim.robot.config import PHYSICS_VERSION
 from tests.helpers import wording
 from tests.helpers.submissions import (
     content_of,
     written,
 )
+
+SHIPPED = frozenset((*SPECS, HUMAN_NAME))
 
 
 def test_the_exit_status_says_whether_the_results_hold(
@@ -57,7 +64,7 @@ def test_an_agent_that_gets_no_segmentation_declares_none(
 ) -> None:
     words = submit.Args(run=folder / "process", name="x", authors=(), out=tmp_path / "x.json.gz")
     assert submit.main(words) == 0
-    assert "in a process of its own; semantics not used; " in capsys.readouterr().out
+    assert "in a process of its own, as the same user; semantics not used; " in capsys.readouterr().out
 
 
 def test_a_run_without_its_actions_is_refused_with_the_command_that_records(folder: Path, tmp_path: Path) -> None:
@@ -81,12 +88,18 @@ def test_a_run_that_cannot_be_replayed_is_not_packed(folder: Path, field: str, v
         pack(replace(run, config={**run.config, field: value}), About(name="x", authors=()))
 
 
+def small_rows(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Allows rows of three episodes with small images, in an empty leaderboard with an empty cache."""
+    monkeypatch.setattr("sim.app.submissions.setting.Setting.changes", lambda setting: [])
+    monkeypatch.setattr("sim.app.submissions.leaderboard.MIN_EPISODES", 3)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    (tmp_path / "submissions").mkdir()
+
+
 def test_the_leaderboard_has_the_rows_that_hold(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("sim.app.submissions.setting.Setting.changes", lambda setting: [])  # the images are small
-    monkeypatch.setattr("sim.app.submissions.leaderboard.MIN_EPISODES", 3)
-    (tmp_path / "submissions").mkdir()
+    small_rows(monkeypatch, tmp_path)
     content = content_of(folder / "random.json.gz")
     content["manifest"] |= {"name": "Our <b>agent</b> [x](y) | z", "authors": ["A. *Author*"]}
     written(tmp_path / "submissions" / "good.json.gz", content)
@@ -124,6 +137,132 @@ def test_the_leaderboard_has_the_rows_that_hold(
     assert leaderboard.main(args) == 0
 
 
+def test_a_report_that_comes_with_a_forged_submission_is_not_read(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    small_rows(monkeypatch, tmp_path)
+    good = tmp_path / "submissions" / "a.json.gz"
+    content = content_of(folder / "random.json.gz")
+    written(good, content)
+    args = leaderboard.Args(folder=tmp_path, splits=(folder / "tiny",))
+    assert leaderboard.main(args) == 0
+    report = json.loads((tmp_path / "reports" / "a.json").read_text())
+    content["episodes"][0]["result"]["collisions"] = 99
+    forged = written(tmp_path / "submissions" / "b.json.gz", content)
+    claim = report | {"sha256": sha256_of(forged, what="Submission")}
+    (tmp_path / "reports" / "b.json").write_text(json.dumps(claim))
+    assert leaderboard.main(args) == 1
+    assert "b.json.gz: 1 episodes are different" in capsys.readouterr().out
+    assert len([line for line in (tmp_path / "table.md").read_text().splitlines() if line.startswith("| ")]) == 3
+    assert "| equal | 0 + 0 + 0 |" in (tmp_path / "table.md").read_text(), "the forged copy does not count"
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"equal": 0}, {"episodes": 0, "equal": 0}, {"tolerance_m": 1e9}, {"is_first": False}, {"origin": "organiser"},
+        {"errors": 1, "equal": 2}, {"nonstandard": ["x"]}, {"physics": 1}, {"oracle_paths": None},
+    ],
+)  # fmt: skip
+def test_a_report_that_contradicts_its_submission_is_made_again(
+    change: dict[str, Any], folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    small_rows(monkeypatch, tmp_path)
+    written(tmp_path / "submissions" / "a.json.gz", content_of(folder / "random.json.gz"))
+    args = leaderboard.Args(folder=tmp_path, splits=(folder / "tiny",))
+    assert leaderboard.main(args) == 0
+    (kept,) = (tmp_path / "cache").rglob("*.json")
+    report = json.loads(kept.read_text())
+    kept.write_text(json.dumps(report | change))
+    assert leaderboard.main(args) == 0
+    again = json.loads(kept.read_text())
+    assert {key: again[key] for key in change} == {key: report[key] for key in change}
+
+
+def test_one_content_under_three_names_is_one_row(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    small_rows(monkeypatch, tmp_path)
+    for name in ("a", "b", "c"):
+        (tmp_path / "submissions" / f"{name}.json.gz").write_bytes((folder / "random.json.gz").read_bytes())
+    assert leaderboard.main(leaderboard.Args(folder=tmp_path, splits=(folder / "tiny",))) == 1
+    printed = capsys.readouterr().out
+    assert "b.json.gz: its content is that of a.json.gz." in printed
+    assert "c.json.gz: its content is that of a.json.gz." in printed
+    assert len(list(csv.DictReader((tmp_path / "table.csv").open()))) == 1
+
+
+@pytest.mark.parametrize("name", ['=HYPERLINK("x").json.gz', "a\u202eb.json.gz", "-a.json.gz", "a b.json.gz"])
+def test_a_file_name_that_can_be_interpreted_is_refused(name: str, tmp_path: Path) -> None:
+    (tmp_path / "submissions").mkdir()
+    (tmp_path / "submissions" / name).write_bytes(b"")
+    with pytest.raises(ConfigError, match="is not allowed; use A-Z"):
+        leaderboard.main(leaderboard.Args(folder=tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("agent", "name", "reason"),
+    [
+        ("mine", "Ours", "did not run in a process of its own"),
+        ("mine\uff1aNAME", "Ours", "did not run in a process of its own"),
+        ("mine:NAME", "Ours", "did not run in a process of its own"),
+        ("random", "Stubborn-Plus", "its name is that of the shipped agent 'stubborn-plus', and its agent is 'random'"),
+        ("random", "Random", ""),
+        ("human+stubborn", "A person", ""),
+    ],
+)
+def test_a_foreign_agent_needs_a_process_of_its_own_and_a_name_of_its_own(
+    agent: str, name: str, reason: str, folder: Path
+) -> None:
+    row = row_of(read_submission(folder / "random.json.gz"), "a.json.gz", "public")
+    inputs = msgspec.structs.replace(row.submission.manifest.inputs, agent=agent)
+    manifest = msgspec.structs.replace(row.submission.manifest, inputs=inputs, name=name)
+    row = replace(row, submission=msgspec.structs.replace(row.submission, manifest=manifest))
+    assert row.refusal == "" if not reason else reason in row.refusal
+
+
+def test_every_submission_that_a_pull_request_changes_is_verified_by_the_code_of_the_base(tmp_path: Path) -> None:
+    def git(*words: str, folder: Path) -> None:
+        who = ("-c", "user.name=a", "-c", "user.email=a@b")
+        subprocess.run(["git", *who, *words], cwd=folder, check=True, capture_output=True)
+
+    origin, base = tmp_path / "origin", tmp_path / "base"
+    submissions = origin / "leaderboard" / "submissions"
+    submissions.mkdir(parents=True)
+    git("init", "-q", "-b", "main", folder=origin)
+    (origin / ".ci").mkdir()
+    shutil.copy(Path(__file__).parents[4] / ".ci" / "submissions", origin / ".ci")
+    for name in ("renamed", "changed", "linked", "deleted", "kept"):
+        (submissions / f"{name}.json.gz").write_text(f"{name} " + "a line\n" * 50)
+    git("add", ".", folder=origin)
+    git("commit", "-qm", "base", folder=origin)
+    git("clone", "-q", str(origin), str(base), folder=tmp_path)
+    git("checkout", "-qb", "entry", folder=origin)
+    (submissions / "renamed.json.gz").rename(submissions / "moved =x.json.gz")
+    (submissions / "moved =x.json.gz").write_text("renamed " + "a line\n" * 49 + "forged\n")
+    (submissions / "changed.json.gz").write_text("new")
+    (submissions / "linked.json.gz").unlink()
+    (submissions / "linked.json.gz").symlink_to("kept.json.gz")
+    (submissions / "deleted.json.gz").unlink()
+    (submissions / "added.json.gz").write_text("new")
+    (origin / ".ci" / "submissions").write_text("exit 0\n")
+    git("add", "-A", ".", folder=origin)
+    git("commit", "-qm", "entry", folder=origin)
+    git("update-ref", "refs/pull/7/head", "HEAD", folder=origin)
+    git("checkout", "-q", "main", folder=origin)
+    stand_in = tmp_path / "verify"
+    stand_in.write_text(f'#!/bin/sh\ntest -f "$4" && echo "$4" >> {tmp_path}/verified\n')
+    stand_in.chmod(0o755)
+    subprocess.run(["bash", ".ci/submissions", "7"], cwd=base, check=True, env={**os.environ, "VERIFY": str(stand_in)})
+    names = {Path(line).name for line in (tmp_path / "verified").read_text().splitlines()}
+    assert names == {"moved =x.json.gz", "changed.json.gz", "linked.json.gz", "added.json.gz"}
+
+
+def test_a_tolerance_that_proves_nothing_is_refused(folder: Path) -> None:
+    with pytest.raises(ConfigError, match=r"at most 0\.1 m"):
+        verify.main(verify.Args(file=folder / "random.json.gz", tolerance_m=1e9))
+
+
 def test_replicates_are_no_further_episodes_of_a_row(folder: Path) -> None:
     submission = read_submission(folder / "oracle.json.gz")
     copies = [
@@ -133,7 +272,7 @@ def test_replicates_are_no_further_episodes_of_a_row(folder: Path) -> None:
     ]
     report = Report("0" * 64, 1, 120, 120, 0, 0, 0, 0, is_first=True, nonstandard=(), tolerance_m=0.01)
     fake = msgspec.structs.replace(submission, episodes=copies)
-    assert Row(Path("x"), fake, report).episodes == 3
+    assert Row(Path("x"), fake, report, SHIPPED).episodes == 3
 
 
 def test_the_leaderboard_of_the_repository_is_that_of_its_files(
@@ -145,6 +284,10 @@ def test_the_leaderboard_of_the_repository_is_that_of_its_files(
     if any(read_report(file).physics != PHYSICS_VERSION for file in (shipped / "reports").iterdir()):
         pytest.skip("the rows are of an older version of the physics")
     shutil.copytree(shipped, tmp_path / "leaderboard")
+    names = {sha256_of(file, what="Submission"): file.name for file in (shipped / "submissions").iterdir()}
+    monkeypatch.setattr(
+        leaderboard, "kept_file", lambda checked: shipped / "reports" / names[checked.sha256].replace(".gz", "")
+    )
     assert leaderboard.main(leaderboard.Args(folder=tmp_path / "leaderboard")) == 0
     for name in ("table.md", "table.csv"):
         assert (tmp_path / "leaderboard" / name).read_bytes() == (shipped / name).read_bytes()
@@ -162,7 +305,7 @@ def row_of(submission: Submission, name: str, origin: Origin) -> Row:
         "0" * 64, 1, count, count, 0, 0, 0, 0, is_first=True, nonstandard=(), tolerance_m=0.01, origin=origin,
         oracle_paths=7, shortest_paths=2,
     )  # fmt: skip
-    return Row(Path(name), msgspec.structs.replace(submission, episodes=copies), report)
+    return Row(Path(name), msgspec.structs.replace(submission, episodes=copies), report, SHIPPED)
 
 
 def test_sealed_rows_are_ranked_apart_from_public_ones_and_repeated_actions_are_counted(folder: Path) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
+import os
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -210,3 +212,21 @@ def test_without_the_writer_the_message_names_the_extra(monkeypatch: pytest.Monk
     monkeypatch.setattr(mcap_log.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(ConfigError, match=r"pip install .*\[ros\]"):
         mcap_log.require_mcap()
+
+
+def test_a_full_disk_is_one_line_with_the_file_and_leaves_no_part(
+    house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    for name in ("write", "finish"):
+        with monkeypatch.context() as patched:
+            patched.setattr(mcap_log.RosMessages, name, full)
+            env, log = make_env(house), McapLog(tmp_path)
+            episode = Episode("one", "sofa_room", "sofa", START, 1.0)
+            with pytest.raises(ConfigError, match=r"recording '.*one\.mcap': No space left"):
+                play_episode(env, Scripted(), episode, seed=0, viewers=[log])
+            log.close()
+            env.close()
+        assert not [file for file in tmp_path.rglob("*") if file.is_file()]

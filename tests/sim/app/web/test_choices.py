@@ -114,7 +114,8 @@ def test_an_episode_of_a_run_has_its_options_but_no_file_or_code_that_is_not_off
     offered: Any = choices.as_json()
     first = offered["splits"]["traps"]["wedged_spawn"]["bed"][0]
     line = a_result(episode_id=first, house="wedged_spawn", goal="bed")
-    settings = {"task.max_steps": 30, "agent.weights": "/etc/passwd", "agent.name": "plain", "agent.list": ["../x"]}
+    settings = {"task.max_steps": 30, "agent.weights": "/etc/passwd", "agent.name": "plain", "agent.list": ["../x"],
+                "agent.code": "mine:main()"}  # fmt: skip
     record: RunRecord = {"agent": "random", "semantics": "noisy", "split": "traps", "seed": 7, "noise": "harsh"}
     request = choices.again({**record, "settings": settings}, line, "person")
     assert (request.options.seed, request.options.noise, request.driver) == (7, "harsh", "person")

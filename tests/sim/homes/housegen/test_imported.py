@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -111,6 +112,15 @@ def test_the_colour_of_a_picture_is_that_of_the_places_shown(tmp_path: Path) -> 
     )
     _, shape = imported(folder, "table")
     assert shape.parts[0].rgba[:3] == pytest.approx((0.98, 0.04, 0.04), abs=0.03)
+
+
+def test_a_model_with_a_picture_of_another_format_is_left_out_with_the_formats(tmp_path: Path) -> None:
+    image = pytest.importorskip("PIL.Image")
+    folder = write_folder(tmp_path)
+    image.new("RGB", (8, 8)).save(folder / "wood.png", "EPS")
+    (folder / "model.mtl").write_text("newmtl wood\nKd 1 1 1\nmap_Kd wood.png\n")
+    (reason,) = set(reasons(folder))
+    assert reason == "A picture has an unsupported format; use PNG, JPEG, WebP, BMP, GIF"
 
 
 def test_a_table_collides_as_its_top_and_its_legs_and_carries_objects(tmp_path: Path) -> None:
@@ -255,6 +265,35 @@ def test_bad_entries_of_a_catalogue_are_left_out_with_a_reason(tmp_path: Path) -
     assert len(found) == len(entries)  # the broken file is among them, the good one is not
     for part in ("leads out of the zip", "has no 'nothing.obj'", "a door", "no category", "format 'doc'", "90", "nan"):
         assert any(part in reason for reason in found), part
+
+
+def test_numbers_and_texts_that_python_cannot_hold_are_left_out_with_a_reason(tmp_path: Path) -> None:
+    many = "9" * 5000
+    entries = [
+        properties("a", "/chair.obj", creator="A \\ud800 \\ud83d\\ude00"),
+        properties("b", "/chair.obj", width=many),
+    ]
+    write_catalogue(tmp_path / "a" / "a.sh3f", entries, {"chair.obj": obj_text(CHAIR), "model.mtl": MATERIALS})
+    with zipfile.ZipFile(tmp_path / "a" / "b.sh3f", "w") as archive:
+        archive.writestr("PluginFurnitureCatalog.properties", f"name#{many}=Chair\n")
+    assert len(reasons(tmp_path / "a")) == 1
+    (model,) = import_all(tmp_path / "a", tmp_path / "out")
+    assert model.author == "A \N{REPLACEMENT CHARACTER} \N{GRINNING FACE}"
+    folder = write_folder(tmp_path / "b")
+    table = (folder / "models.csv").read_text()
+    (folder / "models.csv").write_text(
+        table + f"cha\0ir.obj,chair,dining,0.5,0.5,0.9,0,,,floor\nchair0.obj,chair,dining,{many},0.5,0.9,0,,,floor\n"
+    )
+    found = reasons(folder)
+    assert len(found) == 2
+    assert any("cha\\x00ir.obj" in reason for reason in found)
+    (folder / "models.csv").unlink()
+    row = '[[model]]\nfile = "chair0.obj"\ncategory = "chair"\nwidth_m = {}\ndepth_m = 1\nheight_m = 1\n'
+    (folder / "models.toml").write_text(row.format("9" * 400))
+    assert any("cannot be read" in reason for reason in reasons(folder))
+    (folder / "models.toml").write_text(row.format(many))
+    with pytest.raises(ConfigError, match=r"models\.toml' cannot be read"):
+        reasons(folder)
 
 
 def test_models_with_uses_by_which_no_room_asks_are_left_out_with_those_that_exist(tmp_path: Path) -> None:

@@ -203,6 +203,9 @@ def test_broken_scans_are_one_line_with_file_and_place(tmp_path: Path) -> None:
     text = (scan / "two.semantic.txt").read_text()
     for broken, reason in (
         ("nothing\n", "line 1: "), (text + "7,XX,wall,0\n", "line 13: expected"),
+        (text + f'{2**63},0C0C0C,"wall",0\n', "line 13: expected"),
+        (text + f'12,0C0C0C,"wall",{2**63}\n', "line 13: expected"),
+        (text + f'{"9" * 5000},0C0C0C,"wall",0\n', "line 13: expected"),
         (text + '12,0A0A0A,"wall",0\n', "line 13: the colour 0A0A0A is not allowed or occurs twice"),
     ):  # fmt: skip
         (scan / "two.semantic.txt").write_text(broken)
@@ -214,6 +217,9 @@ def test_broken_scans_are_one_line_with_file_and_place(tmp_path: Path) -> None:
     assert "'two.glb'" in failure(scan)
     scan = write_mp3d(tmp_path / "b")
     text = (scan / "two.house").read_text()
+    for number in ("x", str(2**63), "9" * 5000):
+        (scan / "two.house").write_text(text.replace("O 3 ", f"O {number} "))
+        assert "is not a line of this format" in failure(scan)
     (scan / "two.house").write_text(text.replace("O 3 ", "O x "))
     assert "is not a line of this format" in failure(scan)
     (scan / "two.house").write_text(text)
@@ -244,6 +250,16 @@ def test_broken_data_sets_are_one_line_and_broken_objects_are_left_out(tmp_path:
     assert "no configuration 'stages/home'" in failure(file)
     file.write_text("[]")
     assert "expected" in failure(file)
+
+
+def test_the_folder_of_a_data_set_may_be_named_by_a_dot(tmp_path: Path) -> None:
+    file = write_dataset(tmp_path)
+    content = json.loads(file.read_text())
+    for section in ("stages", "objects", "scene_instances"):
+        for suffix, patterns in content.get(section, {}).get("paths", {}).items():
+            content[section]["paths"][suffix] = [".", "./.", *(f"./{pattern}" for pattern in patterns)]
+    file.write_text(json.dumps(content))
+    assert import_source(find_sources(file)[0], MeshConfig()).report["rooms"] > 0
 
 
 _JSON = st.recursive(

@@ -14,8 +14,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from sim.app.commands.importing import mesh as command
+from sim.app.commands.importing.folder import file_works
 from sim.core.errors import ConfigError, HouseError
 from sim.gl import mujoco
+from sim.homes.importers import mesh_house
 from sim.homes.importers.losses import Losses
 from sim.homes.importers.mesh import files_of, find_files, import_mesh
 from sim.homes.importers.mesh_house import MeshConfig, MeshObject, Shape, build_house
@@ -201,6 +203,8 @@ def test_a_home_in_one_node_gets_a_floor_and_walls(tmp_path: Path) -> None:
         ("mtllib ../other.mtl", wording.OUTSIDE_OF_ITS_FOLDER),
         ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", wording.NO_LEVEL_FLOOR),
         ("v 0 0 0\nv 1 0 0\nf 1 2", "three vertices"),
+        ("v 0 0 0\nf" + " 1" * 20_000, "at most 10,000"),
+        ("mtllib a\0b", wording.OUTSIDE_OF_ITS_FOLDER),
     ],
 )
 def test_a_broken_file_is_one_line_with_file_and_place(text: str, message: str, tmp_path: Path) -> None:
@@ -239,3 +243,24 @@ def test_any_lines_of_an_obj_file_give_surfaces_or_one_line(
         fault = str(error)
     assert "\n" not in fault
     assert "any.obj" in fault or not fault
+
+
+def test_a_home_has_few_objects(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mesh_house, "MAX_OBJECTS", 3)
+    lines = ["v 0 0 0", "v 3 0 0", "v 3 0 3", *(f"o part{number}\nf 1 2 3" for number in range(4))]
+    (tmp_path / "home.obj").write_text("\n".join(lines))
+    with pytest.raises(HouseError, match="it has 4 objects; at most 3 are allowed"):
+        import_mesh(tmp_path / "home.obj", rules={}, up="y", config=MeshConfig())
+
+
+def test_files_outside_of_the_folder_are_not_hashed_and_a_broken_one_ends_no_import(tmp_path: Path) -> None:
+    folder = tmp_path / "homes"
+    folder.mkdir()
+    (tmp_path / "large.bin").write_bytes(b"x")
+    (folder / "inside.bin").write_bytes(b"x")
+    uris = ["../large.bin", str(tmp_path / "large.bin"), "a\0b", "inside.bin"]
+    (folder / "a.gltf").write_text(json.dumps({"buffers": [{"uri": uri} for uri in uris]}))
+    assert [part.name for part in files_of(folder / "a.gltf")] == ["inside.bin"]
+    (folder / "b.glb").mkdir()
+    works = list(file_works([folder / "b.glb", folder / "a.gltf"], files_of))
+    assert [work.name for work in works] == ["b", "a"]

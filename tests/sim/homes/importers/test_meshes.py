@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+import base64
+import contextlib
+import io
 import json
+import os
 import struct
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import PIL.Image
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sim.core.errors import HouseError
+from sim.homes.importers import collision, surfaces
 from sim.homes.importers.collision import CELL_M, collision_boxes, convex_parts, joined_cells
 from sim.homes.importers.floors import find_levels, make_storeys
 from sim.homes.importers.surfaces import Paint, Surface, read_surfaces
-from sim.homes.importers.visual import make_skins, pixels_at, samples
+from sim.homes.importers.visual import make_skins, pixels_at, samples, spacing_within
 from tests.helpers import wording
 from tests.helpers.scanned import DOOR_Y_M, PIECES, Mesh, Piece, painted, triangles_of, trimesh, uneven
 
@@ -191,3 +198,159 @@ def test_pictures_of_a_mesh_are_read_once_and_reduced(tmp_path: Path) -> None:
     assert surface.paint.picture is not None
     assert surface.paint.picture.shape == (16, 16, 3)
     assert surface.paint.picture[8, 8].tolist() == [200, 100, 50]
+
+
+# ---- pictures that are no pictures -----------------------------------------------------------------------------------
+
+
+def eps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[bytes, Path]:
+    """Returns an EPS picture, and the file that exists when Ghostscript has been started."""
+    started = tmp_path / "started"
+    program = tmp_path / "bin" / "gs"
+    program.parent.mkdir()
+    program.write_text(f"#!/bin/sh\ntouch {started}\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{program.parent}:{os.environ['PATH']}")
+    monkeypatch.setattr("PIL.EpsImagePlugin.gs_binary", None)
+    content = io.BytesIO()
+    PIL.Image.new("RGB", (8, 8)).save(content, "EPS")
+    with contextlib.suppress(OSError):
+        PIL.Image.open(io.BytesIO(content.getvalue())).load()
+    assert started.exists(), "Pillow would start the program"
+    started.unlink()
+    return content.getvalue(), started
+
+
+def pictured(image: dict[str, Any], data: bytes) -> bytes:
+    """Returns a GLB file of a triangle with a picture, whose bytes may be the second buffer view."""
+    header = {
+        **TRIANGLE, "images": [image], "textures": [{"source": 0}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 0}]}],
+        "accessors": [*TRIANGLE["accessors"], {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC2"}],
+        "bufferViews": [
+            {"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": len(data)}
+        ],
+        "buffers": [{"byteLength": 36 + len(data)}],
+    }  # fmt: skip
+    return glb(header, CORNERS + data + b"\0" * (-len(data) % 4))
+
+
+@pytest.mark.parametrize("kind", ["png", "jpeg"])
+@pytest.mark.parametrize("source", ["view", "data", "file"])
+def test_a_picture_in_postscript_starts_no_program_and_is_reported(
+    source: str, kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    content, started = eps(tmp_path, monkeypatch)
+    (tmp_path / "a.eps").write_bytes(content)
+    image: dict[str, Any] = {
+        "view": {"bufferView": 1}, "data": {"uri": f"data:image/{kind};base64,{base64.b64encode(content).decode()}"},
+        "file": {"uri": "a.eps"},
+    }[source]  # fmt: skip
+    (tmp_path / "x.glb").write_bytes(pictured({**image, "mimeType": f"image/{kind}"}, content))
+    losses = Counter[str]()
+    (surface,) = read_surfaces(tmp_path / "x.glb", texture_px=16, losses=losses)
+    assert not started.exists()
+    assert surface.paint.picture is None
+    assert list(losses) == ["A picture has an unsupported format; use PNG, JPEG, WebP, BMP, GIF."]
+
+
+def test_a_damaged_picture_is_reported_and_the_mesh_is_kept(tmp_path: Path) -> None:
+    content = io.BytesIO()
+    PIL.Image.fromarray(np.random.default_rng(0).integers(0, 255, (64, 64, 3), np.uint8)).save(content, "PNG")
+    losses = Counter[str]()
+    (tmp_path / "x.glb").write_bytes(pictured({"bufferView": 1}, content.getvalue()[:-4000]))
+    (surface,) = read_surfaces(tmp_path / "x.glb", texture_px=16, losses=losses)
+    assert surface.paint.picture is None
+    assert list(losses) == ["A picture is damaged and cannot be read."]
+
+
+def test_a_picture_that_a_ply_file_lacks_prints_nothing(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "x.ply").write_text(
+        "ply\nformat ascii 1.0\ncomment TextureFile no.png\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+    )
+    assert len(read_surfaces(tmp_path / "x.ply")) == 1
+    assert capfd.readouterr().err == ""
+
+
+# ---- limits ----------------------------------------------------------------------------------------------------------
+
+
+def test_the_surface_of_an_object_has_few_points_however_large_it_is() -> None:
+    garden = np.array([[[0, 0, 0], [100, 0, 0], [100, 100, 0]], [[0, 0, 0], [100, 100, 0], [0, 100, 0.0]]])
+    spokes = np.arange(0.0, 6.2, 1e-4)
+    rim = np.stack([5 * np.cos(spokes), 5 * np.sin(spokes), 0 * spokes], axis=1)
+    fan = np.stack([np.broadcast_to(rim[0], rim[1:-1].shape), rim[1:-1], rim[2:]], axis=1)
+    for corners in (garden, fan):
+        spacing = spacing_within(corners, 0.025, 500_000)
+        assert 0.025 < spacing < 2.0
+        count = len(samples(corners, spacing)[0])
+        assert 100_000 < count <= 500_000 + 4 * len(corners)
+    assert spacing_within(garden[:, :, :] * 0.01, 0.025, 500_000) == 0.025
+
+
+def test_boxes_of_a_garden_still_contain_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(collision, "MAX_POINTS", 20_000)
+    garden = np.array([[[0, 0, 0], [100, 0, 0], [100, 100, 0]], [[0, 0, 0], [100, 100, 0], [0, 100, 0.0]]])
+    boxes = collision_boxes(garden)
+    assert boxes[:, :2].min() == 0.0
+    assert boxes[:, 3:5].max() == 100.0
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"accessors": [{"componentType": 5126, "count": 60_000_000, "type": "VEC3"}]},
+        {"accessors": [{"componentType": 5126, "count": 1_000, "type": "MAT4"}]},
+        {
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}] * 5_000}],
+            "accessors": [{"componentType": 5126, "count": 1_000, "type": "VEC3"}],
+        },
+    ],
+)
+def test_a_gltf_file_has_few_numbers_for_its_bytes(changed: dict[str, Any], tmp_path: Path) -> None:
+    (tmp_path / "x.glb").write_bytes(glb({**TRIANGLE, **changed}, CORNERS))
+    with pytest.raises(HouseError, match=r"announces more than [\d,]+ numbers, the limit for [\d,]+ bytes"):
+        read_surfaces(tmp_path / "x.glb")
+
+
+def test_triangles_and_vertices_count_for_each_node(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(surfaces, "MAX_TRIANGLES", 100)
+    nodes = {"scenes": [{"nodes": list(range(50))}], "nodes": [{"mesh": 0}] * 50}
+    (tmp_path / "x.glb").write_bytes(glb({**TRIANGLE, **nodes}, CORNERS))
+    with pytest.raises(HouseError, match="more than 100 triangles or vertices"):
+        read_surfaces(tmp_path / "x.glb")
+    (tmp_path / "y.glb").write_bytes(glb({**TRIANGLE, "nodes": [{"mesh": 0}] * 20_001}, CORNERS))
+    with pytest.raises(HouseError, match="nodes"):
+        read_surfaces(tmp_path / "y.glb")
+
+
+PLY = "ply\nformat {} 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+
+
+@pytest.mark.parametrize("kind", ["ascii", "binary_little_endian"])
+def test_a_face_of_a_ply_file_has_few_vertices(kind: str, tmp_path: Path) -> None:
+    head = PLY.format(kind) + "property list uint uint vertex_indices\nend_header\n"
+    corners, numbers = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32), np.arange(100_000, dtype="<u4") % 3
+    if kind == "ascii":
+        lines = [" ".join(map(str, row)) for row in (*corners.tolist(), [100_000, *numbers.tolist()])]
+        body = "\n".join(lines).encode() + b"\n"
+    else:
+        body = corners.tobytes() + struct.pack("<I", 100_000) + numbers.tobytes()
+    (tmp_path / "x.ply").write_bytes(head.encode() + body)
+    with pytest.raises(HouseError, match="a face with more than 10,000 vertices"):
+        read_surfaces(tmp_path / "x.ply")
+
+
+def test_a_broken_node_is_named_and_left_out_and_the_others_are_kept(tmp_path: Path) -> None:
+    header = {
+        **TRIANGLE, "scenes": [{"nodes": [0, 1]}],
+        "nodes": [{"mesh": 0, "name": "chair"}, {"mesh": 0, "name": "sky", "translation": [9e4, 0, 0]}],
+    }  # fmt: skip
+    (tmp_path / "x.glb").write_bytes(glb(header, CORNERS))
+    losses = Counter[str]()
+    (surface,) = read_surfaces(tmp_path / "x.glb", losses=losses)
+    assert surface.node == "chair"
+    assert list(losses) == ["'sky' was left out: a vertex is not finite or beyond 2000 m."]
