@@ -1,8 +1,8 @@
 """`--mcap`: writes each episode as an MCAP file of standard ROS 2 messages (https://mcap.dev), the extra `ros`.
 
-Topics, types and quality of service are those of `sim.app.viewers.ros.topics`: images, scan, `/odom`, `/pose`, `/tf` and
-the velocity that the action aims at (`/cmd_vel`) once before each action, `/imu` and `/bumper` if the agent observes
-them, `/tf_static` once, and `/map` when a storey is entered. The true frame `map` is in `/tf`.
+Topics, types and quality of service are those of `sim.app.viewers.ros.topics`: images, scan, `/odom`, `/pose`, `/tf`
+and the velocity that the action aims at (`/cmd_vel`) once before each action, `/imu` and `/bumper` if the agent
+observes them, `/tf_static` once, and `/map` when a storey is entered. The true frame `map` is in `/tf`.
 
 An image or scan that the agent does not observe is the true one. Times are simulated. Metadata `episode` and `result`
 hold the identity and the result of the episode as JSON. Each episode has its file `<out>/mcap/<episode_id>.mcap`.

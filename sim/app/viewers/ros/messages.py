@@ -1,8 +1,8 @@
 """Builds ROS 2 messages, as dicts, from images, scans, poses and grids of this project.
 
 Units and frames are those of REP-103: metres, radians, x forward, y left, z up; in optical frames z forward, x right,
-y down. The frames are those of REP-105: `map` (the house) -> `odom` (the start pose, where the robot's odometry believes
-it to be) -> `base_link` (on the floor below the robot's axis) -> `camera_link` -> `camera_optical_frame`, and `laser`.
+y down. The frames are those of REP-105: `map` (the house) -> `odom` (the start pose, as the robot's odometry believes)
+-> `base_link` (on the floor below the robot's axis) -> `camera_link` -> `camera_optical_frame`, and `laser`.
 The frame `start` is the true start pose; poses of the task's sensors `gps` and `compass` are in it.
 """
 

@@ -11,7 +11,7 @@ topic                                         type                       content
 /imu                                          sensor_msgs/Imu            accelerations and turn rates
 /bumper                                       std_msgs/Int8MultiArray    1 for each sector of the hull with a contact
 /odom                                         nav_msgs/Odometry          pose and velocity by wheels and gyro
-/pose                                         geometry_msgs/PoseStamped  pose by `gps` and `compass`, in the frame `start`
+/pose                                         geometry_msgs/PoseStamped  pose by `gps` and `compass`, frame `start`
 /tf, /tf_static                               tf2_msgs/TFMessage         frames (`sim.app.viewers.ros.messages`)
 /map                                          nav_msgs/OccupancyGrid     the true floor plan of the storey
 /cmd_vel                                      geometry_msgs/Twist        the velocity that the robot is to have
