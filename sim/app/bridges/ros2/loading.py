@@ -9,15 +9,21 @@ from __future__ import annotations
 import array
 import functools
 import importlib
+import importlib.metadata
 import importlib.util
+import os
 import shlex
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from sim.core.errors import ConfigError
 from sim.core.invocation import command, program
 
+FILES = Path(__file__).parent / "files"
+KILTED = 9
+"""Version of `rclpy` in ROS 2 Kilted."""
 _ARRAY_CODES = {"uint8": "B", "int8": "b", "float": "f", "double": "d"}
 """Types of elements whose sequences `rclpy` takes as arrays without a test of each element."""
 
@@ -76,6 +82,7 @@ def started(ros_args: str) -> Any:
         ConfigError: ROS 2 is missing, or does not take the arguments.
     """
     require_ros()
+    _share_memory()
     rclpy, signals = importlib.import_module("rclpy"), importlib.import_module("rclpy.signals")
     words = ["--ros-args", *shlex.split(ros_args)] if ros_args else []
     context = rclpy.Context()
@@ -85,6 +92,14 @@ def started(ros_args: str) -> Any:
         reason = " ".join(str(error).split())
         raise ConfigError(f"ROS 2 does not start with --ros-args '{ros_args}': {reason}") from None
     return context
+
+
+def _share_memory() -> None:
+    """Gives Fast DDS shared memory for images, unless the user has a profile of their own."""
+    names = "FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE"  # of ROS 2 Kilted and later, and before
+    if not any(name in os.environ for name in names):
+        is_new = int(importlib.metadata.version("rclpy").split(".")[0]) >= KILTED
+        os.environ[names[0] if is_new else names[1]] = str(FILES / "fastdds.xml")
 
 
 def overrides(ros_args: str) -> dict[str, Any]:

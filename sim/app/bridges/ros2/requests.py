@@ -1,4 +1,4 @@
-"""What other nodes ask of the robot, kept between the thread of ROS 2 and that of the simulation; and the pace of both."""
+"""What other nodes ask of the robot, kept between the thread of ROS 2 and that of the simulation; and its pace."""
 
 from __future__ import annotations
 

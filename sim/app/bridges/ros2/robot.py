@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import secrets
 import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -104,6 +105,8 @@ class LiveRobot:
             depth_encoding=config.depth,
         )
         node.advertise([name for name in PUBLISHED if name != "/map" or config.map])
+        self._run = secrets.token_hex(4)
+        """Tells the episodes of this run from those of another one."""
         self._number, self._offset_s = 0, 0.0
         self._floor_z_m: float | None = None
         self._before: tuple[float, NDArray] | None = None
@@ -122,7 +125,7 @@ class LiveRobot:
         if self.config.wait:
             self._wait_for_driver()
         time_s = self.time_s
-        about = {"number": self._number, "goal": goal, "seed": seed, "stamp": messages.stamp(time_s)}
+        about = {"run": self._run, "number": self._number, "goal": goal, "seed": seed, "stamp": messages.stamp(time_s)}
         self._send("/episode", time_s, messages.text(json.dumps(about)))
         self._send("/goal", time_s, messages.text(goal))
         self._send("/tf_static", time_s, self._topics.at_start(time_s))
@@ -167,7 +170,9 @@ class LiveRobot:
             self._stream.close()
             self._part.unlink(missing_ok=True)
         if self._number:
-            self.node.publish("/episode", messages.text(json.dumps({"number": self._number, "over": True})))
+            self.node.publish(
+                "/episode", messages.text(json.dumps({"run": self._run, "number": self._number, "over": True}))
+            )
         self.node.close()
 
     @property
@@ -302,7 +307,7 @@ def run_driven(
     name: str | None = None,
     on_step: OnStep | None = None,
 ) -> RolloutResult:
-    """Runs an episode of an `ObjectNavVelocityEnv` at the pace of the node, and publishes its result; see `run_stepped`.
+    """Runs an episode of an `ObjectNavVelocityEnv` at the node's pace, and publishes its result; see `run_stepped`.
 
     Viewers and the agent, a `NodeDriver`, are not asked: velocities come from other nodes.
     """

@@ -67,7 +67,7 @@ def depth_image(
     return _image(time_s, np.rint(seen_m * np.float32(1000.0)).astype("<u2"), encoding)
 
 
-def depth_of(content: bytes, encoding: str, camera: CameraModel) -> NDArray[np.float32]:
+def depth_of(content: bytes | memoryview, encoding: str, camera: CameraModel) -> NDArray[np.float32]:
     """Returns the depth image (h, w), metres, in the content of a message of `depth_image`.
 
     What has no distance is 0, and what is out of range `max_depth_m`. `16UC1` does not tell one from the other, so that
