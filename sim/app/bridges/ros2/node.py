@@ -33,8 +33,10 @@ from sim.app.viewers.ros.topics import TOPICS, Delivery
 _log = logging.getLogger(__name__)
 NAME = "stubborn"
 _FRAMES = "tf2_msgs/TFMessage"
+COMMANDS_KEPT = 1000
+"""Number of velocities or actions that wait to be read."""
 ACKNOWLEDGED_S = 1.0
-"""Longest time in which subscribers may confirm the last messages before the node ends."""
+"""Longest time in which subscribers may confirm that an episode begins or ends."""
 
 
 class RobotNode:
@@ -91,12 +93,15 @@ class RobotNode:
         """Returns the number of publishers of velocities and actions."""
         return sum(self._node.count_publishers(self._node.resolve_topic_name(name)) for name in _COMMANDS)
 
+    def await_readers(self, topic: str) -> None:
+        """Waits until all subscribers have the last message of a topic, for a short time at most."""
+        duration = importlib.import_module("rclpy.duration").Duration(seconds=ACKNOWLEDGED_S)
+        self._publisher(topic).wait_for_all_acked(duration)
+
     def close(self) -> None:
         """Ends the node, after subscribers have got the last result."""
-        duration = importlib.import_module("rclpy.duration").Duration(seconds=ACKNOWLEDGED_S)
         for topic in ("/result", "/episode"):
-            if topic in self._publishers:
-                self._publishers[topic].wait_for_all_acked(duration)
+            self.await_readers(topic)
         self._executor.shutdown(timeout_sec=ACKNOWLEDGED_S)
         self._thread.join(ACKNOWLEDGED_S)
         self._node.destroy_node()
@@ -137,7 +142,7 @@ class RobotNode:
         return self._publishers[topic]
 
     def _listen(self) -> None:
-        node, requests, reliable = self._node, self.requests, quality(Delivery.RELIABLE)
+        node, requests = self._node, self.requests
 
         def moved(message: Any) -> None:
             requests.command(message.linear.x, message.angular.z, self.now_s)
@@ -156,7 +161,7 @@ class RobotNode:
             ("geometry_msgs/PointStamped", "/stop_target", aimed),
             ("std_msgs/Float64", "/stop_confidence", sure),
         ):
-            node.create_subscription(message_class(kind), topic, call, reliable)
+            node.create_subscription(message_class(kind), topic, call, quality(Delivery.RELIABLE, depth=COMMANDS_KEPT))
         services = importlib.import_module("std_srvs.srv")
         for name in ("stop", "step", "reset", "next_episode"):
             node.create_service(services.Trigger, f"~/{name}", self._flagging(name))

@@ -174,9 +174,10 @@ class AgentNode:
             kind = message_class(TOPICS[topic].type)
             self._node.create_subscription(kind, topic, call, quality(delivery))
 
+        # First, so that a new episode is known before its first observation: the robot sends that one later.
+        subscribe("/episode", self._announce, Delivery.LATCHED)
         for topic in self._needed:
             subscribe(topic, self._keeping(topic, reads[topic]), Delivery.LATCHED if stepped else Delivery.STREAM)
-        subscribe("/episode", self._announce, Delivery.LATCHED)
         if not stepped:
             subscribe("/odom", self._drive, Delivery.RELIABLE)
             subscribe("/bumper", self._touch, Delivery.STREAM)

@@ -127,6 +127,7 @@ class LiveRobot:
         time_s = self.time_s
         about = {"run": self._run, "number": self._number, "goal": goal, "seed": seed, "stamp": messages.stamp(time_s)}
         self._send("/episode", time_s, messages.text(json.dumps(about)))
+        self.node.await_readers("/episode")
         self._send("/goal", time_s, messages.text(goal))
         self._send("/tf_static", time_s, self._topics.at_start(time_s))
         if self.config.paused and self._number == 1:
