@@ -132,6 +132,7 @@ _SHIPPED = "stubborn/segmentation/weights/rednet.safetensors"
 LAB_PYTHON = ".venv-habitat/bin/python"
 """The Python that `stubborn habitat setup` makes."""
 _LAB = "needs habitat-lab; `make test-habitat` runs it"
+_ROS = "needs ROS 2; `make test-ros` runs such a command"
 _NEEDS_SETUP = Only("makes or needs a whole environment; .ci/run does that")
 _RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
 _HOUSES = "stubborn houses generate --houses 1 --kind flat --area-m2 90 --rooms gym --hazards glass --out {tmp}/houses"
@@ -537,6 +538,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     "stubborn habitat 'evaluate.py --runs 1' --split val --episodes 5": Only(_LAB),
     "stubborn habitat setup": Only(_LAB),
+    # docs/ros.md
+    "stubborn ros setup": Only("makes an environment; `make test-ros` runs it"),
+    ".venv-ros2/bin/stubborn ros --split val --episodes 20 --out runs/mine": Only(_ROS),
+    ".venv-ros2/bin/stubborn ros --map --ground-truth-tf --wait --only val_0000": Only(_ROS),
+    ".venv-ros2/bin/python examples/ros_drive.py 5.41 7.3": Only(_ROS),
     f"{LAB_PYTHON} -m tools.research.habitat_parity --episodes 50 --view-points "
     "data/datasets/objectnav/stubborn/v1/val/val.json.gz --out parity.csv": Only(_LAB),
     f"{LAB_PYTHON} examples/train_habitat.py habitat_baselines.num_updates=2": Only(_LAB),

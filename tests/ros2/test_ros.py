@@ -318,5 +318,5 @@ def test_an_episode_that_was_reset_or_given_up_counts_as_an_error(robots: Robots
     lines = robots.lines()
     assert [line["end_reason"] for line in lines] == ["error", "error"]
     assert [line["error"].rpartition(": ")[2] for line in lines] == [
-        "another node reset the episode", "another node gave the episode up",
+        "Another node reset the episode.", "Another node gave the episode up.",
     ]  # fmt: skip

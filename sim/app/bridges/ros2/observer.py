@@ -138,12 +138,12 @@ class AgentNode:
             AgentError: the robot does not offer it, or does not answer.
         """
         if not self._stop.wait_for_service(timeout_sec=ACKNOWLEDGED_S):
-            raise AgentError(f"no node offers the service '{STOP}'; remap it with --ros-args")
+            raise AgentError(f"No node offers the service '{STOP}'; remap it with --ros-args.")
         future = self._stop.call_async(self._stop.srv_type.Request())
         until = time.monotonic() + ACKNOWLEDGED_S
         while not future.done():
             if time.monotonic() > until:
-                raise AgentError(f"the service '{STOP}' does not answer")
+                raise AgentError(f"The service '{STOP}' does not answer.")
             self.spin(0.1)
 
     def send(self, speed_m_s: float, rate_rad_s: float) -> None:
@@ -212,7 +212,7 @@ class AgentNode:
     def _colour(self, message: Any) -> dict[str, NDArray]:
         self._require_size(message)
         if message.encoding not in ("rgb8", "bgr8"):
-            raise AgentError(f"unsupported encoding '{message.encoding}' of colour; use rgb8 or bgr8")
+            raise AgentError(f"Unsupported encoding '{message.encoding}' of colour; use rgb8 or bgr8.")
         image = np.frombuffer(message.data, np.uint8).reshape(message.height, message.step)
         image = image[:, : 3 * message.width].reshape(message.height, message.width, 3)
         return {"rgb": np.ascontiguousarray(image if message.encoding == "rgb8" else image[:, :, ::-1])}
@@ -225,8 +225,8 @@ class AgentNode:
         camera = self._camera
         if (message.width, message.height) != (camera.width_px, camera.height_px):
             raise AgentError(
-                f"an image has {message.width} x {message.height} pixels, the agent's camera {camera.width_px} x "
-                f"{camera.height_px}: give --config camera.width_px={message.width} camera.height_px={message.height}"
+                f"An image has {message.width} x {message.height} pixels, the agent's camera {camera.width_px} x "
+                f"{camera.height_px}: give --config camera.width_px={message.width} camera.height_px={message.height}."
             )
 
 

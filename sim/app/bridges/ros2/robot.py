@@ -266,7 +266,7 @@ class NodeDriver:
         self.robot.close()
 
 
-_GIVEN_UP = {"reset": "another node reset the episode", "next_episode": "another node gave the episode up"}
+_GIVEN_UP = {"reset": "Another node reset the episode.", "next_episode": "Another node gave the episode up."}
 
 
 def run_stepped(

@@ -11,7 +11,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from sim.app import cli
 from sim.app.analysis import display
@@ -103,9 +103,9 @@ def main(args: Args) -> int:
     from sim.app.composition.setup import resolve
 
     names = {field.name for field in fields(RunOptions)} - {"mcap"}
-    shared = {name: value for name, value in vars(args).items() if name in names}
+    shared: dict[str, Any] = {name: value for name, value in vars(args).items() if name in names}
     out = args.out or Path("runs") / time.strftime("ros_%Y-%m-%d_%H-%M-%S")
-    options = RunOptions(agent=ros.AGENT, **shared | {"out": out})
+    options = RunOptions(agent=ros.AGENT, **{**shared, "out": out})
     config = RosConfig(
         rate_hz=args.rate,
         time_limit_s=args.time_limit,

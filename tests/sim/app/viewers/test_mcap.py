@@ -6,7 +6,7 @@ import json
 import math
 from collections import defaultdict
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -164,7 +164,9 @@ def test_frames_lead_from_the_map_to_the_true_pose_and_odometry_is_what_was_beli
 
 def test_channels_have_the_quality_of_service_of_their_topics(recorded: tuple) -> None:
     with AnyReader([recorded[0]]) as reader:
-        offered = {connection.topic: connection.ext.offered_qos_profiles for connection in reader.connections}
+        offered = {
+            connection.topic: cast(Any, connection.ext).offered_qos_profiles for connection in reader.connections
+        }
     assert set(offered) == WRITTEN
     for name, (quality,) in offered.items():
         of_topic = TOPICS[name].delivery
@@ -186,7 +188,7 @@ def test_depth_in_metres_is_exact_and_says_what_is_too_near_and_too_far() -> Non
     assert isinstance(rounded, bytes)
     expected_m = np.array([[0.0, 0.5, 1.235], [3.999, 5.0, 0.0]], np.float32)
     np.testing.assert_array_equal(messages.depth_of(rounded, "16UC1", camera), expected_m)
-    with pytest.raises(ValueError, match="use 16UC1 or 32FC1"):
+    with pytest.raises(ConfigError, match="use 16UC1 or 32FC1"):
         messages.depth_of(content, "8UC1", camera)
 
 
