@@ -1,7 +1,8 @@
-"""An agent that acts by a script, and whose confidence is a checksum of all that it has seen."""
+"""Agents for robots of ROS 2: one whose confidence is a checksum of all that it has seen, one that turns and thinks."""
 
 from __future__ import annotations
 
+import time
 import zlib
 
 import numpy as np
@@ -35,4 +36,16 @@ class Witness:
         return 1.25, -0.5
 
 
+class Turner:
+    """Turns on the spot, ten times in a second at most."""
+
+    def reset(self, goal: str, seed: int) -> None:
+        pass
+
+    def act(self, observation: Observation) -> Action:
+        time.sleep(0.1)
+        return Action.TURN_LEFT
+
+
+TURNER = AgentSpec(make=lambda **_: Turner(), sensors=("rgb", "depth"), uses_segmentation=False)
 WITNESS = AgentSpec(make=lambda **_: Witness(), sensors=("rgb", "depth", "imu", "odometry"), uses_segmentation=False)

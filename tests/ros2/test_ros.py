@@ -231,6 +231,23 @@ def test_in_stepped_mode_an_agent_sees_bit_by_bit_what_it_sees_in_process(robots
     assert lines[0]["stop_target_xy_m"] is not None
 
 
+def test_an_agent_that_takes_the_place_of_a_killed_one_goes_on(robots: Robots, peer: Peer) -> None:
+    from nav_msgs.msg import Odometry
+
+    words = ("-m", "sim.app.commands.main", "ros", "agent", "--agent", "tests.helpers.ros_agents:TURNER", "--stepped")
+    robot = robots.robot("--stepped", "--config", *SMALL, "task.max_steps=150")
+    peer.hear("/odom", Odometry, latched=True)
+    for _ in range(3):
+        agent, before = robots.start(*words, "--config", *SMALL), len(peer.heard["/odom"])
+        peer.spin_until(lambda before=before: len(peer.heard["/odom"]) > before + 10)
+        agent.kill()
+        agent.wait()
+    robots.start(*words, "--config", *SMALL)
+    assert robots.wait(robot) == 0, robots.said(0)
+    (line,) = robots.lines()
+    assert (line["end_reason"], line["num_steps"]) == ("max_steps", 150)
+
+
 def test_an_agent_drives_a_robot_in_real_time_by_velocities(robots: Robots) -> None:
     robot = robots.robot("--wait", "--rate", "25", "--time-limit", "60", "--config", *SMALL)
     agent = robots.start(

@@ -87,7 +87,8 @@ class RobotNode:
             counts.messages += 1
         except Exception as error:  # RCLError and others: a peer that has gone must not stop the simulation
             counts.failed_messages += 1
-            _log.warning("A message of %s could not be published: %s", topic, error)
+            if counts.failed_messages == 1:
+                _log.warning("A message of %s could not be published: %s", topic, error)
 
     def drivers(self) -> int:
         """Returns the number of publishers of velocities and actions."""
@@ -161,11 +162,26 @@ class RobotNode:
             ("geometry_msgs/PointStamped", "/stop_target", aimed),
             ("std_msgs/Float64", "/stop_confidence", sure),
         ):
-            node.create_subscription(message_class(kind), topic, call, quality(Delivery.RELIABLE, depth=COMMANDS_KEPT))
+            self._subscribe(kind, topic, call)
         services = importlib.import_module("std_srvs.srv")
         for name in ("stop", "step", "reset", "next_episode"):
             node.create_service(services.Trigger, f"~/{name}", self._flagging(name))
         node.create_service(services.SetBool, "~/pause", self._pausing)
+
+    def _subscribe(self, kind: str, topic: str, call: Callable[[Any], None]) -> None:
+        """Subscribes to a topic; all messages that wait are read at once, so that a flood delays no newer one."""
+
+        def read(message: Any) -> None:
+            call(message)
+            for _ in range(COMMANDS_KEPT):
+                with subscription.handle:
+                    taken = subscription.handle.take_message(subscription.msg_type, False)
+                if taken is None:
+                    return
+                call(taken[0])
+
+        kept = quality(Delivery.RELIABLE, depth=COMMANDS_KEPT)
+        subscription = self._node.create_subscription(message_class(kind), topic, read, kept)
 
     def _flagging(self, name: str) -> Callable[[Any, Any], Any]:
         def call(request: Any, response: Any) -> Any:

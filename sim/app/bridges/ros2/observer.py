@@ -115,7 +115,9 @@ class AgentNode:
         self._readings.clear()
 
     def act(self, action: Action) -> None:
-        """Publishes a discrete action, for a robot in stepped mode."""
+        """Publishes a discrete action, for a robot in stepped mode; waits for the robot if it is not known yet."""
+        while self._action.get_subscription_count() == 0:
+            self.spin(0.1)
         self._action.publish(message_class("std_msgs/UInt8")(data=int(action)))
 
     def state(self, target_xy_m: tuple[float, float] | None, confidence: float | None) -> None:
