@@ -66,10 +66,20 @@ class ActionController:
         limits: those of the base.
         period_s: time of a period.
         start: the state at the start of the episode.
+        delay_s: time until a command has an effect; the controller then predicts the state by it.
     """
 
-    def __init__(self, hold: Callable[[float, float], Held], limits: Limits, period_s: float, start: Held) -> None:
+    def __init__(
+        self,
+        hold: Callable[[float, float], Held],
+        limits: Limits,
+        period_s: float,
+        start: Held,
+        *,
+        delay_s: float = 0.0,
+    ) -> None:
         self._base, self._limits, self._period_s, self._last = hold, limits, period_s, start
+        self._delay_s = delay_s
         self._heading = start.yaw_rad
         """Heading reference in the start frame."""
         self._speed = self._rate = 0.0
@@ -91,7 +101,7 @@ class ActionController:
         cos, sin = math.cos(self._heading), math.sin(self._heading)
         for _ in range(round(LONGEST_S / self._period_s)):
             x, y, yaw, *_ = self._last
-            left_m = FORWARD_M - ((x - x0) * cos + (y - y0) * sin)
+            left_m = FORWARD_M - ((x - x0) * cos + (y - y0) * sin) - self._speed * self._delay_s
             if abs(left_m) <= POSITION_TOLERANCE_M:
                 break
             speed = stopping_velocity(left_m, self._speed, self._limits.acceleration_m_s2, self._period_s)
@@ -111,7 +121,7 @@ class ActionController:
     def _align(self) -> None:
         """Turns until the heading is that of the reference, or something blocks the robot."""
         for _ in range(round(LONGEST_S / self._period_s)):
-            error = wrap_angle(self._heading - self._last.yaw_rad)
+            error = wrap_angle(self._heading - self._last.yaw_rad) - self._rate * self._delay_s
             if abs(error) <= HEADING_TOLERANCE_RAD:
                 break
             self._hold(0.0, stopping_velocity(error, self._rate, self._limits.turn_acceleration_rad_s2, self._period_s))
@@ -133,8 +143,8 @@ class ActionController:
                 return
 
     def _correction(self, yaw_rad: float) -> float:
-        """Returns the turn rate that reduces the heading error."""
-        return HEADING_GAIN * wrap_angle(self._heading - yaw_rad) / self._period_s
+        """Returns the turn rate that reduces the heading error; a base with a delay needs a smaller one."""
+        return HEADING_GAIN * wrap_angle(self._heading - yaw_rad) / (self._period_s + 2.0 * self._delay_s)
 
     def _hold(self, speed_m_s: float, rate_rad_s: float) -> None:
         """Holds velocities for a period."""

@@ -275,7 +275,7 @@ def test_rough_peers_stop_nothing_and_no_command_is_lost(robots: Robots, peer: P
     robot = robots.robot("--wait", "--time-limit", "20", "--rate", "12.5", "--config", *SMALL)
     peer.hear("/result", String, latched=True)
     peer.hear("/clock", Clock)
-    publisher = peer.node.create_publisher(Twist, "/cmd_vel", rclpy.qos.QoSProfile(depth=2000))
+    publisher = peer.node.create_publisher(Twist, "/cmd_vel", rclpy.qos.QoSProfile(depth=10_000))
     peer.spin_until(lambda: publisher.get_subscription_count() > 0)
     listener = "import rclpy; from sensor_msgs.msg import Image; from rclpy.qos import *; rclpy.init(); " \
         "n = rclpy.create_node('slow'); import time; " \

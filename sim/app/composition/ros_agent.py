@@ -128,7 +128,10 @@ class _Driver:
 
     def __init__(self, node: AgentNode, announced: Announced, limits: Limits) -> None:
         self._wheels = Wheels(node, announced)
-        self._controller = ActionController(self._wheels.hold, limits, self._wheels.period_s, self._wheels.at_rest())
+        period_s = self._wheels.period_s
+        self._controller = ActionController(
+            self._wheels.hold, limits, period_s, self._wheels.at_rest(), delay_s=period_s
+        )
 
     def perform(self, action: Action) -> int:
         """Performs an action; returns the stamp (ns) of the state after it."""

@@ -33,7 +33,7 @@ from sim.app.viewers.ros.topics import TOPICS, Delivery
 _log = logging.getLogger(__name__)
 NAME = "stubborn"
 _FRAMES = "tf2_msgs/TFMessage"
-COMMANDS_KEPT = 1000
+COMMANDS_KEPT = 10_000
 """Number of velocities or actions that wait to be read."""
 ACKNOWLEDGED_S = 1.0
 """Longest time in which subscribers may confirm that an episode begins or ends."""

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from sim.app.bridges.ros2.node import RobotNode
 from sim.app.bridges.ros2.requests import Pace
 from sim.app.evaluation.rollout import OnStep, play_episode, record_target, rollout_result
+from sim.app.evaluation.watch import count_steps
 from sim.app.viewers.mcap_log import RosMessages, mcap_file, true_map
 from sim.app.viewers.ros import messages
 from sim.app.viewers.ros.topics import TOPICS, RobotTopics
@@ -359,6 +360,7 @@ def _drive(robot: LiveRobot, env: ObjectNavVelocityEnv, observation: Observation
             observation, _, stopped, out_of_time, _ = env.step((speed, rate, float(stop)))
         except PhysicsError as failure:
             return str(failure)
+        count_steps(requests.counts.periods)
         done = stopped or out_of_time
         robot.publish(observation)
     return None

@@ -8,6 +8,7 @@ docs/ros.md lists topics, services and parameters. The results are those of `stu
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -118,6 +119,9 @@ def main(args: Args) -> int:
         console.print(f"tf2_msgs is not installed: /tf is not published (`{command('ros', 'setup')}` builds it).")
     episodes, split, _ = episodes_of(setup)
     setup = replace(setup, options=replace(options, episodes=len(episodes)))
+    if not args.stepped:  # a step is a period
+        task = replace(setup.config.task, max_steps=math.ceil(config.time_limit_s / config.period_s - 1e-6))
+        setup = replace(setup, config=replace(setup.config, task=task))
     results, summary = run_missing(setup, episodes, split, console, runner=ros.RUNNER)
     display.print_results(console, results, summary)
     return 1 if summary["errors"] else 0
