@@ -276,12 +276,16 @@ def test_rough_peers_stop_nothing_and_no_command_is_lost(robots: Robots, peer: P
     peer.hear("/result", String, latched=True)
     peer.hear("/clock", Clock)
     publisher = peer.node.create_publisher(Twist, "/cmd_vel", rclpy.qos.QoSProfile(depth=10_000))
-    peer.spin_until(lambda: publisher.get_subscription_count() > 0)
+
+    def times() -> list[tuple[int, int]]:
+        return [(message.clock.sec, message.clock.nanosec) for message in peer.heard["/clock"]]
+
+    peer.spin_until(lambda: publisher.get_subscription_count() > 0 and len(times()) > 5)  # each has found the other
     listener = "import rclpy; from sensor_msgs.msg import Image; from rclpy.qos import *; rclpy.init(); " \
         "n = rclpy.create_node('slow'); import time; " \
         f"n.create_subscription(Image, '{COLOUR}/image_raw', lambda m: time.sleep(1.0), qos_profile_sensor_data); " \
         "rclpy.spin(n)"  # fmt: skip
-    sent = 1
+    sent = 1  # the one that is not finite
     for _ in range(3):
         killed, begin = robots.start("-c", listener), time.monotonic()
         while time.monotonic() - begin < 2.0:
@@ -293,9 +297,6 @@ def test_rough_peers_stop_nothing_and_no_command_is_lost(robots: Robots, peer: P
     bad.linear.x = math.nan
     publisher.publish(bad)
     peer.call("pause", SetBool, data=True)
-
-    def times() -> list[tuple[int, int]]:
-        return [(message.clock.sec, message.clock.nanosec) for message in peer.heard["/clock"]]
 
     peer.spin_until(lambda: len(times()) > 4 and len(set(times()[-4:])) == 1)  # a clock that runs repeats no time
     stood = times()[-1]

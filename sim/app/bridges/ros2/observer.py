@@ -84,6 +84,8 @@ class AgentNode:
         self.odometry: tuple[int, Pose, float, float] | None = None
         """Stamp (ns), pose, speed (m/s) and turn rate (rad/s) of the last message of `/odom`."""
         self.touched = False
+        self._wheels: tuple[tuple[Any, Callable[[Any], None]], ...] = ()
+        """The subscriptions of `catch_up`, and what reads their messages."""
         self._listen({entry.topic: entry.read for entry in inputs.values()}, stepped)
         reliable = quality(Delivery.RELIABLE)
         make = self._node.create_publisher
@@ -154,6 +156,16 @@ class AgentNode:
         message.linear.x, message.angular.z = float(speed_m_s), float(rate_rad_s)
         self._velocity.publish(message)
 
+    def catch_up(self) -> None:
+        """Reads all messages of `/odom` and `/bumper` that wait: more than one does after the agent has thought."""
+        for subscription, read in self._wheels:
+            while True:
+                with subscription.handle:
+                    taken = subscription.handle.take_message(subscription.msg_type, False)
+                if taken is None:
+                    break
+                read(taken[0])
+
     def close(self) -> None:
         """Ends the node."""
         self._executor.shutdown(timeout_sec=1.0)
@@ -172,17 +184,22 @@ class AgentNode:
         }
 
     def _listen(self, reads: dict[str, Callable[[Any], dict[str, NDArray]]], stepped: bool) -> None:
-        def subscribe(topic: str, call: Callable[[Any], None], delivery: Delivery) -> None:
+        def subscribe(topic: str, call: Callable[[Any], None], delivery: Delivery) -> Any:
             kind = message_class(TOPICS[topic].type)
-            self._node.create_subscription(kind, topic, call, quality(delivery))
+            return self._node.create_subscription(kind, topic, call, quality(delivery))
 
         # First, so that a new episode is known before its first observation: the robot sends that one later.
         subscribe("/episode", self._announce, Delivery.LATCHED)
         for topic in self._needed:
             subscribe(topic, self._keeping(topic, reads[topic]), Delivery.LATCHED if stepped else Delivery.STREAM)
-        if not stepped:
-            subscribe("/odom", self._drive, Delivery.RELIABLE)
-            subscribe("/bumper", self._touch, Delivery.STREAM)
+        self._wheels = (
+            ()
+            if stepped
+            else (
+                (subscribe("/odom", self._drive, Delivery.RELIABLE), self._drive),
+                (subscribe("/bumper", self._touch, Delivery.STREAM), self._touch),
+            )
+        )
 
     def _keeping(self, topic: str, read: Callable[[Any], dict[str, NDArray]]) -> Callable[[Any], None]:
         def keep(message: Any) -> None:
@@ -242,6 +259,7 @@ class Wheels:
 
     def hold(self, speed_m_s: float, rate_rad_s: float) -> Held:
         """Publishes a velocity and returns the state at the next message of `/odom`."""
+        self._node.catch_up()
         before_ns = self._stamp()
         self._node.send(speed_m_s, rate_rad_s)
         self._next(before_ns)
@@ -280,6 +298,7 @@ class Wheels:
             self._node.spin(0.1)
 
     def _period_s(self) -> float:
+        self._node.catch_up()
         first = self._stamp()
         self._next(first)
         second = self._stamp()
