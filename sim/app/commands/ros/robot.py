@@ -49,7 +49,7 @@ class Args:
     paused: bool = False
     """Begin with simulated time paused; the service pause starts it."""
     ros_args: str = ""
-    """What ROS 2 takes after --ros-args, in quotation marks: "-r /odom:=/odom_bridge -p split:=test". Parameters have
+    """What ROS 2 takes after --ros-args, in quotation marks: "-r /odom:=/wheel/odom -p split:=test". Parameters have
     the names of the options of this command."""
     split: str = "val"
     """A shipped split, or a folder laid out like one."""
