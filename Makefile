@@ -10,7 +10,7 @@ TORCH_INDEX :=
 unexport PYTHONDONTWRITEBYTECODE
 TORCH := $(shell grep '^torch==' constraints.txt)
 
-.PHONY: setup system-libraries run test test-all lint types docs habitat test-habitat clean
+.PHONY: setup system-libraries run test test-all lint types docs habitat test-habitat ros test-ros clean
 
 setup: system-libraries $(STAMP)
 
@@ -45,6 +45,14 @@ test-habitat: habitat
 	@echo "== the tests with the real habitat-lab, in its own environment"
 	@.venv-habitat/bin/python -c "import pytest" 2> /dev/null || .venv-habitat/bin/python -m pip install --quiet pytest
 	.venv-habitat/bin/python -m pytest -q -c /dev/null --rootdir . --import-mode=importlib --noconftest -p no:cacheprovider tests/habitat_lab
+
+ros: setup
+	@test -d .venv-ros2 || $(BIN)/stubborn ros setup
+
+test-ros: ros
+	@echo "== the tests with ROS 2, in its own environment"
+	@.venv-ros2/bin/python -c "import pytest, rosbags" 2> /dev/null || .venv-ros2/bin/python -m pip install --quiet pytest rosbags
+	.venv-ros2/bin/python -m pytest -q -c /dev/null --rootdir . --import-mode=importlib --noconftest -p no:cacheprovider tests/ros2
 
 lint: setup
 	$(BIN)/ruff check .

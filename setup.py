@@ -9,6 +9,7 @@ setup(
     package_data={
         "sim.assets": ["mjcf_houses/**/*"],
         "sim.app.analysis.report": ["page/*"],
+        "sim.app.bridges.ros2": ["files/**/*"],
         "sim.app.web": ["page/*"],
         "sim.core": ["words/*"],
         "sim.houses": ["*.csv"],

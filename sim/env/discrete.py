@@ -1,9 +1,13 @@
-"""The reference controller: performs discrete actions in `ObjectNavVelocityEnv`, from `gps` and `compass` alone."""
+"""The reference controller: performs discrete actions by velocities, from poses alone.
+
+`DiscreteActions` applies it to `ObjectNavVelocityEnv`; the node of an agent applies it to any robot of ROS 2.
+"""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import gymnasium
 import numpy as np
@@ -25,6 +29,133 @@ BACK_OFF_M_S = -0.1
 """Speed of the period in which the robot moves back from what blocked it."""
 LONGEST_S = 4.0
 """Longest time of an action."""
+SLOW_SHARE = 0.25
+"""A base that follows its command by less than this share does not move as it should."""
+
+
+class Held(NamedTuple):
+    """The state of a base after a period."""
+
+    x_m: float
+    """Metres forward of the start pose, as observed."""
+    y_m: float
+    """Metres to the left of it."""
+    yaw_rad: float
+    blocked: bool
+    """True: a contact blocks the base."""
+    collided: bool
+    """True: it began to do so in this period."""
+    over: bool
+    """True: the episode has ended."""
+
+
+class Limits(NamedTuple):
+    """The largest velocities and accelerations of a base."""
+
+    speed_m_s: float
+    rate_rad_s: float
+    acceleration_m_s2: float
+    turn_acceleration_rad_s2: float
+
+
+class ActionController:
+    """Performs motions from rest to rest. It keeps an absolute heading, and ends a motion when the base is blocked.
+
+    Args:
+        hold: holds a speed (m/s) and a turn rate (rad/s) for a period and returns the state after it.
+        limits: those of the base.
+        period_s: time of a period.
+        start: the state at the start of the episode.
+        delay_s: time until a command has an effect; the controller then predicts the state by it.
+    """
+
+    def __init__(
+        self,
+        hold: Callable[[float, float], Held],
+        limits: Limits,
+        period_s: float,
+        start: Held,
+        *,
+        delay_s: float = 0.0,
+    ) -> None:
+        self._base, self._limits, self._period_s, self._last = hold, limits, period_s, start
+        self._delay_s = delay_s
+        self._heading = start.yaw_rad
+        """Heading reference in the start frame."""
+        self._speed = self._rate = 0.0
+        """Velocities that the base reaches by the last command, m/s and rad/s."""
+        self.collided = False
+        """Whether a contact ended the last action."""
+
+    def perform(self, action: Action) -> None:
+        """Performs MOVE_FORWARD, TURN_LEFT or TURN_RIGHT."""
+        self.collided = False
+        if action == Action.MOVE_FORWARD:
+            self._forward()
+        else:
+            self._turn(TURN_RAD if action == Action.TURN_LEFT else -TURN_RAD)
+
+    def _forward(self) -> None:
+        """Drives ahead along the heading reference."""
+        x0, y0 = self._last.x_m, self._last.y_m
+        cos, sin = math.cos(self._heading), math.sin(self._heading)
+        for _ in range(round(LONGEST_S / self._period_s)):
+            x, y, yaw, *_ = self._last
+            left_m = FORWARD_M - ((x - x0) * cos + (y - y0) * sin) - self._speed * self._delay_s
+            if abs(left_m) <= POSITION_TOLERANCE_M:
+                break
+            speed = stopping_velocity(left_m, self._speed, self._limits.acceleration_m_s2, self._period_s)
+            self._hold(speed, self._correction(yaw))
+            if self._last.over or self.collided:
+                break
+        self._finish()
+
+    def _turn(self, angle_rad: float) -> None:
+        """Turns on the spot to the next heading reference; a blocked turn takes the nearest one."""
+        before, self._heading = self._heading, wrap_angle(self._heading + angle_rad)
+        self._align()
+        if abs(wrap_angle(self._heading - self._last.yaw_rad)) > 0.5 * abs(angle_rad):
+            self._heading = before
+        self._finish()
+
+    def _align(self) -> None:
+        """Turns until the heading is that of the reference, or something blocks the robot."""
+        for _ in range(round(LONGEST_S / self._period_s)):
+            error = wrap_angle(self._heading - self._last.yaw_rad) - self._rate * self._delay_s
+            if abs(error) <= HEADING_TOLERANCE_RAD:
+                break
+            self._hold(0.0, stopping_velocity(error, self._rate, self._limits.turn_acceleration_rad_s2, self._period_s))
+            if self._last.over or self.collided:
+                break
+
+    def _finish(self) -> None:
+        """Brings the robot to rest; one that was blocked first moves back a little and turns to its heading."""
+        if self.collided and not self._last.over:
+            self._hold(BACK_OFF_M_S, 0.0)
+            self._align()
+        for _ in range(round(LONGEST_S / self._period_s)):
+            before = self._last
+            if self._last.over:
+                return
+            self._hold(0.0, self._correction(before.yaw_rad))
+            moved_m = math.hypot(self._last.x_m - before.x_m, self._last.y_m - before.y_m)
+            if moved_m <= REST_M and abs(wrap_angle(self._last.yaw_rad - before.yaw_rad)) <= REST_RAD:
+                return
+
+    def _correction(self, yaw_rad: float) -> float:
+        """Returns the turn rate that reduces the heading error; a base with a delay needs a smaller one."""
+        return HEADING_GAIN * wrap_angle(self._heading - yaw_rad) / (self._period_s + 2.0 * self._delay_s)
+
+    def _hold(self, speed_m_s: float, rate_rad_s: float) -> None:
+        """Holds velocities for a period."""
+        limits = self._limits
+        self._last = self._base(speed_m_s, rate_rad_s)
+        change, turn = limits.acceleration_m_s2 * self._period_s, limits.turn_acceleration_rad_s2 * self._period_s
+        self._speed = _towards(self._speed, limits.speed_m_s, speed_m_s, change)
+        self._rate = _towards(self._rate, limits.rate_rad_s, rate_rad_s, turn)
+        if self._last.blocked:
+            self._speed = self._rate = 0.0
+        self.collided = self.collided or self._last.collided
 
 
 class DiscreteActions(gymnasium.Wrapper[dict[str, NDArray], Any, dict[str, NDArray], Any]):
@@ -50,108 +181,43 @@ class DiscreteActions(gymnasium.Wrapper[dict[str, NDArray], Any, dict[str, NDArr
         self.action_space = spaces.Discrete(len(Action))
         self._period_s = base.period_s
         drive = base.robot_config.drive
-        self._most = drive.speed_m_s, drive.turn_speed_rad_s
-        self._acceleration, self._turn_acceleration = drive.acceleration_m_s2, drive.turn_acceleration_rad_s2
-        self._heading = 0.0
-        """Heading reference in the start frame."""
-        self._speed = self._rate = 0.0
-        """Velocities that the base reaches by the last command, m/s and rad/s."""
+        self._limits = Limits(
+            drive.speed_m_s, drive.turn_speed_rad_s, drive.acceleration_m_s2, drive.turn_acceleration_rad_s2
+        )
         self._last: tuple[Any, ...] = ()
         """The return value of the last period."""
 
     def reset(self, **options: Any) -> tuple[dict[str, NDArray], dict[str, Any]]:
         """Starts an episode."""
         observation, info = self.env.reset(**options)
-        self._speed = self._rate = 0.0
-        self._heading, self._last = float(observation["compass"][0]), (observation, 0.0, False, False, info)
+        self._last = (observation, 0.0, False, False, info)
+        start = self._state(blocked=False, collided=False)
+        self._controller = ActionController(self._hold, self._limits, self._period_s, start)
         return observation, info
 
     def step(self, action: int) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
         """Performs one action."""
         if not self._last:
             raise gymnasium.error.ResetNeeded("Call reset() before the first step.")
-        action = Action(action)
-        self._reward, self._collided = 0.0, False
+        action, self._reward, collided = Action(action), 0.0, False
         if action == Action.STOP:
             self._hold(0.0, 0.0, stop=1.0)
-        elif action == Action.MOVE_FORWARD:
-            self._forward()
         else:
-            self._turn(TURN_RAD if action == Action.TURN_LEFT else -TURN_RAD)
+            self._controller.perform(action)
+            collided = self._controller.collided
         observation, _, terminated, truncated, info = self._last
-        return observation, self._reward, terminated, truncated, info | {"collided": self._collided}
+        return observation, self._reward, terminated, truncated, info | {"collided": collided}
 
-    def _forward(self) -> None:
-        """Drives ahead along the heading reference."""
-        x0, y0, _ = self._pose
-        cos, sin = math.cos(self._heading), math.sin(self._heading)
-        for _ in range(round(LONGEST_S / self._period_s)):
-            x, y, yaw = self._pose
-            left_m = FORWARD_M - ((x - x0) * cos + (y - y0) * sin)
-            if abs(left_m) <= POSITION_TOLERANCE_M:
-                break
-            speed = stopping_velocity(left_m, self._speed, self._acceleration, self._period_s)
-            self._hold(speed, self._correction(yaw))
-            if self._over or self._collided:
-                break
-        self._finish()
-
-    def _turn(self, angle_rad: float) -> None:
-        """Turns on the spot to the next heading reference; a blocked turn takes the nearest one."""
-        before, self._heading = self._heading, wrap_angle(self._heading + angle_rad)
-        self._align()
-        if abs(wrap_angle(self._heading - self._pose[2])) > 0.5 * abs(angle_rad):
-            self._heading = before
-        self._finish()
-
-    def _align(self) -> None:
-        """Turns until the heading is that of the reference, or something blocks the robot."""
-        for _ in range(round(LONGEST_S / self._period_s)):
-            error = wrap_angle(self._heading - self._pose[2])
-            if abs(error) <= HEADING_TOLERANCE_RAD:
-                break
-            self._hold(0.0, stopping_velocity(error, self._rate, self._turn_acceleration, self._period_s))
-            if self._over or self._collided:
-                break
-
-    def _finish(self) -> None:
-        """Brings the robot to rest; one that was blocked first moves back a little and turns to its heading."""
-        if self._collided and not self._over:
-            self._hold(BACK_OFF_M_S, 0.0)
-            self._align()
-        for _ in range(round(LONGEST_S / self._period_s)):
-            before = self._pose
-            if self._over:
-                return
-            self._hold(0.0, self._correction(before[2]))
-            x, y, yaw = self._pose
-            if math.hypot(x - before[0], y - before[1]) <= REST_M and abs(wrap_angle(yaw - before[2])) <= REST_RAD:
-                return
-
-    def _correction(self, yaw_rad: float) -> float:
-        """Returns the turn rate that reduces the heading error."""
-        return HEADING_GAIN * wrap_angle(self._heading - yaw_rad) / self._period_s
-
-    def _hold(self, speed_m_s: float, rate_rad_s: float, stop: float = 0.0) -> None:
+    def _hold(self, speed_m_s: float, rate_rad_s: float, stop: float = 0.0) -> Held:
         """Holds velocities for a period."""
         self._last = self.env.step(np.array([speed_m_s, rate_rad_s, stop], np.float32))
-        self._speed = _towards(self._speed, self._most[0], speed_m_s, self._acceleration * self._period_s)
-        self._rate = _towards(self._rate, self._most[1], rate_rad_s, self._turn_acceleration * self._period_s)
-        if self._last[4]["blocked"]:
-            self._speed = self._rate = 0.0
         self._reward += float(self._last[1])
-        self._collided = self._collided or bool(self._last[4]["collided"])
+        return self._state(blocked=bool(self._last[4]["blocked"]), collided=bool(self._last[4]["collided"]))
 
-    @property
-    def _pose(self) -> tuple[float, float, float]:
-        """Metres forward and left of the start pose, and yaw, as observed."""
-        observation = self._last[0]
+    def _state(self, *, blocked: bool, collided: bool) -> Held:
+        observation, _, terminated, truncated, _ = self._last
         x_m, y_m = observation["gps"].tolist()
-        return x_m, y_m, float(observation["compass"][0])
-
-    @property
-    def _over(self) -> bool:
-        return bool(self._last[2] or self._last[3])
+        return Held(x_m, y_m, float(observation["compass"][0]), blocked, collided, bool(terminated or truncated))
 
 
 def stopping_velocity(remaining: float, velocity: float, acceleration: float, period_s: float) -> float:

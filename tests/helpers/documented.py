@@ -57,7 +57,7 @@ def blocks(page: Path) -> Iterator[Block]:
 def canonical(words: Sequence[str]) -> str:
     """Returns a command in the form of `TRIALS`, which names `.venv/bin/stubborn run` and `python -m sim.run` alike."""
     first, rest = words[0], list(words[1:])
-    if first in ("stubborn", ".venv/bin/stubborn"):
+    if first in ("stubborn", ".venv/bin/stubborn", ".venv-ros2/bin/stubborn"):
         return shlex.join(["stubborn", *rest])
     if first not in ("python", PYTHON) or not rest:
         return shlex.join(words)
@@ -135,7 +135,18 @@ _SMALL = "--house examples/my_house.xml --goal sofa"
 _SHIPPED = "stubborn/segmentation/weights/rednet.safetensors"
 LAB_PYTHON = ".venv-habitat/bin/python"
 """The Python that `stubborn habitat setup` makes."""
+FOREIGN = (LAB_PYTHON, ".venv-ros2/bin/python", "ros2")
+"""Programs of other environments."""
 _LAB = "needs habitat-lab; `make test-habitat` runs it"
+_ROS = "needs ROS 2; `make test-ros` runs such a command"
+_RGBD = tuple(f"/camera/{image}/image_raw" for image in ("color", "aligned_depth_to_color"))
+_INTERNNAV = "  ".join(
+    (
+        "-r /odom:=/odom_bridge -r /cmd_vel:=/cmd_vel_bridge",
+        *(f"-r {topic}:=/camera{topic}" for topic in _RGBD),
+        *(f"-p qos_overrides./camera{topic}.publisher.reliability:=reliable" for topic in _RGBD),
+    )
+)
 _NEEDS_SETUP = Only("makes or needs a whole environment; .ci/run does that")
 _RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
 _HOUSES = "stubborn houses generate --houses 1 --kind flat --area-m2 90 --rooms gym --hazards glass --out {tmp}/houses"
@@ -550,6 +561,20 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     "stubborn habitat 'evaluate.py --runs 1' --split val --episodes 5": Only(_LAB),
     "stubborn habitat setup": Only(_LAB),
+    # docs/ros.md
+    "stubborn ros setup": Only("makes an environment; `make test-ros` runs it"),
+    "stubborn ros --split val --episodes 20 --out runs/mine": Only(_ROS),
+    "stubborn ros --map --ground-truth-tf --wait --only val_0000": Only(_ROS),
+    ".venv-ros2/bin/python examples/ros_drive.py 5.41 7.3": Only(_ROS),
+    "stubborn ros '--ros-args=-r /odom:=/wheel/odom -p split:=test -p rate:=25.0'": Only(_ROS),
+    "stubborn ros --stepped --depth 32FC1 --episodes 20 --out runs/stepped": Only(_ROS),
+    "stubborn ros agent --agent stubborn-plus --stepped --once": Only(_ROS),
+    "stubborn ros --wait --rate 25 --episodes 20 --out runs/real": Only(_ROS),
+    "stubborn ros agent --agent stubborn-plus --once": Only(_ROS),
+    f"stubborn ros --wall-time --wait '--ros-args={_INTERNNAV}'": Only("needs the client of InternNav"),
+    "ros2 launch nav2_bringup navigation_launch.py use_sim_time:=true params_file:=examples/nav2.yaml": Only(
+        "needs a ROS installation with Nav2"
+    ),
     f"{LAB_PYTHON} -m tools.research.habitat_parity --episodes 50 --view-points "
     "data/datasets/objectnav/stubborn/v1/val/val.json.gz --out parity.csv": Only(_LAB),
     f"{LAB_PYTHON} examples/train_habitat.py habitat_baselines.num_updates=2": Only(_LAB),

@@ -42,6 +42,11 @@ COMMANDS: Mapping[str, Command] = {
     ),
     "habitat setup": Command("sim.app.commands.habitat.setup", "Make an environment with habitat-lab"),
     "habitat dataset": Command("sim.app.commands.habitat.dataset", "Write a split as Habitat's ObjectNav files"),
+    "ros": Command(
+        "sim.app.commands.ros.robot", "Run a robot as a node of ROS 2, which other nodes drive", stopped=RUN_STOPPED
+    ),
+    "ros agent": Command("sim.app.commands.ros.agent", "Run an agent as a node of ROS 2, which drives a robot"),
+    "ros setup": Command("sim.app.commands.ros.setup", "Make an environment with the wheels of ROS 2"),
     "web": Command("sim.app.commands.web", "Watch an agent, or drive the robot, in the browser"),
     "gallery": Command("sim.app.commands.gallery", "Render pictures of houses and sheets of furniture"),
     "houses generate": Command("sim.app.commands.houses.generate", "Generate houses"),

@@ -11,7 +11,7 @@ import inspect
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 from sim.app.bridges.process_command import ProcessConfig, fault_of_namespaces, is_bounded
 from sim.app.composition.imports import import_attribute
@@ -19,7 +19,7 @@ from sim.app.evaluation.own_code import place_of, text_of
 from sim.app.evaluation.watch import FACTORY_S, is_stop, marked
 from sim.app.options import HABITAT, is_process
 from sim.core.errors import AgentError, ConfigError, ObjectNavError, did_you_mean
-from sim.core.interface import Agent, AgentFactory, AgentSpec, Segmenter
+from sim.core.interface import Agent, AgentFactory, AgentSpec, CameraModel, RobotModel, Segmenter, SuccessRule
 from sim.core.paths import assets_dir
 from sim.houses.sidecar import sidecar_path
 from stubborn import agents
@@ -29,6 +29,7 @@ from stubborn.exploration.explorer import ExplorerConfig
 
 if TYPE_CHECKING:  # a list of the agents needs neither MuJoCo nor OpenGL
     from sim.env.objectnav import ObjectNavEnv
+    from sim.task.config import TaskConfig
 
 
 def _make_oracle(*, truth: ObjectNavEnv, **_: object) -> Agent:
@@ -140,10 +141,23 @@ def takes_explorer(spec: AgentSpec) -> bool:
     return isinstance(spec.config, AgentConfig)
 
 
+class KnownRobot(Protocol):
+    """The facts of robot and task that an agent may know: an `ObjectNavEnv` has them, and so has any other robot."""
+
+    @property
+    def camera_model(self) -> CameraModel: ...  # noqa: D102
+    @property
+    def robot_model(self) -> RobotModel: ...  # noqa: D102
+    @property
+    def success_rule(self) -> SuccessRule: ...  # noqa: D102
+    @property
+    def task_config(self) -> TaskConfig: ...  # noqa: D102
+
+
 def build_agent(
     name: str,
     spec: AgentSpec,
-    env: ObjectNavEnv,
+    env: KnownRobot,
     *,
     segmenter: Segmenter,
     verifier: Verifier,

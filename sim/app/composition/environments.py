@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sim.app.composition.setup import Setup
 from sim.app.options import RunOptions
@@ -27,23 +27,26 @@ def make_env(setup: Setup, *, sensors: tuple[str | Sensor, ...], truth: tuple[st
         sensors: sensors in the observation.
         truth: further images, without noise, that are rendered.
     """
+    return ObjectNavEnv(**env_options(setup), sensors=sensors, truth=truth)
+
+
+def env_options(setup: Setup) -> dict[str, Any]:
+    """Returns the arguments of the environment of a run, except for sensors and true images."""
     options, config = setup.options, setup.config
-    return ObjectNavEnv(
-        split=options.split,
-        house=options.house,
-        labels=options.labels,
-        root=options.root,
-        goal=options.goal if options.house is not None else None,
-        start=setup.start,
-        sensors=sensors,
-        truth=truth,
-        profile=config.profile,
-        noise=config.noise,
-        robot=config.robot,
-        camera=config.camera,
-        scan=config.scan,
-        task=config.task,
-    )
+    return {
+        "split": options.split,
+        "house": options.house,
+        "labels": options.labels,
+        "root": options.root,
+        "goal": options.goal if options.house is not None else None,
+        "start": setup.start,
+        "profile": config.profile,
+        "noise": config.noise,
+        "robot": config.robot,
+        "camera": config.camera,
+        "scan": config.scan,
+        "task": config.task,
+    }
 
 
 class RunEpisodes(NamedTuple):

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import traceback
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from sim.app.composition.agents import build_agent
 from sim.app.composition.environments import make_env
@@ -17,15 +19,33 @@ from sim.app.evaluation.own_code import text_of
 from sim.app.evaluation.rollout import play_episode, record_episode
 from sim.app.evaluation.watch import is_stop
 from sim.app.viewers import selection
-from sim.app.viewers.viewer import VIEWER_IMAGES, MapPainter, SeesFrames
+from sim.app.viewers.viewer import VIEWER_IMAGES, MapPainter, SeesFrames, Viewer
 from sim.core.errors import ConfigError, ObjectNavError, RenderError, debug
 from sim.core.interface import Agent, Closable
 from sim.env.memory import give_large_blocks_pages_of_their_own, return_freed_memory
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.seeds import episode_seeds
-from sim.task.result import EpisodeResult
+from sim.task.result import EpisodeResult, RolloutResult
 from sim.task.trajectory import SplitName
+
+
+class Play(Protocol):
+    """A function that runs an episode, such as `play_episode`."""
+
+    def __call__(
+        self,
+        env: ObjectNavEnv,
+        agent: Agent,
+        episode: Episode,
+        *,
+        seed: int,
+        seed_of_agent: int | None = None,
+        viewers: Sequence[Viewer] = (),
+        name: str | None = None,
+    ) -> RolloutResult:
+        """Returns the result without the episode and the agent."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -38,6 +58,8 @@ class Parts:
     """The segmentation that the agent acts on, if viewers need it; None: it has none."""
     painter: MapPainter | None
     """Draws the agent's map; None: it has none."""
+    play: Play = play_episode
+    """Runs one episode."""
 
 
 def build_parts(setup: Setup, *, watched: bool) -> Parts:
@@ -66,14 +88,19 @@ def build_parts(setup: Setup, *, watched: bool) -> Parts:
 
 
 class EpisodeRunner:
-    """Runs episodes in one process; see `sim.app.evaluation.workers`."""
+    """Runs episodes in one process; see `sim.app.evaluation.workers`.
 
-    def __init__(self, setup: Setup) -> None:
+    Args:
+        setup: the setup of the run.
+        make: makes the environment and the agent.
+    """
+
+    def __init__(self, setup: Setup, make: Callable[[Setup], Parts] | None = None) -> None:
         give_large_blocks_pages_of_their_own()
         setup = self._setup = setup.with_absolute_paths()  # the agent may change the folder of the process
         options = self._options = setup.options
-        parts = build_parts(setup, watched=options.watched)
-        self._env, self._agent = parts.env, parts.agent
+        parts = build_parts(setup, watched=options.watched) if make is None else make(setup)
+        self._env, self._agent, self._play = parts.env, parts.agent, parts.play
         setup.require_planned(self._env.split)
         self._house = ""
         self._viewers = selection.make(options, parts.painter, parts.seen)
@@ -86,7 +113,7 @@ class EpisodeRunner:
         seeds = episode_seeds(options.seed, episode.episode_id, options.seed_key)
         try:
             self._require_same_house(episode.house)
-            ended = play_episode(
+            ended = self._play(
                 self._env,
                 self._agent,
                 episode,

@@ -30,7 +30,12 @@ from sim.task.result import EpisodeResult
 
 
 def run_missing(
-    setup: Setup, episodes: Sequence[Episode], split: Mapping[str, str], console: Console
+    setup: Setup,
+    episodes: Sequence[Episode],
+    split: Mapping[str, str],
+    console: Console,
+    *,
+    runner: str = f"{RUNNER}:EpisodeRunner",
 ) -> tuple[list[EpisodeResult], dict[str, Any]]:
     """Runs the episodes that the folder of the run, `--out`, does not hold yet.
 
@@ -39,6 +44,7 @@ def run_missing(
         episodes: those of `episodes_of`, or some of them.
         split: identity of their source, from `episodes_of`.
         console: for progress.
+        runner: what makes the runner of a worker from the setup, `module:function`.
 
     Returns:
         All lines of the folder, and their summary.
@@ -81,7 +87,7 @@ def run_missing(
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
             if (cache := choose_cache()) is not None:
                 console.print(f"Neither the installation nor a home folder can be written: {cache} keeps the result.")
-        spec = RunnerSpec(f"{RUNNER}:EpisodeRunner", setup)
+        spec = RunnerSpec(runner, setup)
         progress = ProgressReport(console, total=len(todo), max_steps=setup.config.task.max_steps)
 
         def lost(episode: Episode, reason: str) -> EpisodeResult:

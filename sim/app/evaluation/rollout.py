@@ -108,26 +108,12 @@ class _RunningEpisode:
         action = next_action(self.agent, self.observation, where)
         if action is Action.STOP:
             self.confidence = confidence_of(self.agent, where)
-            self._record_target(target_of(self.agent, where))
+            record_target(self.env, self.observation, target_of(self.agent, where))
         images = self.env.truth_images
         moment = Moment(step=self.steps + 1, observation=self.observation, images=images, action=action)
         for viewer in self.viewers:
             viewer.decided(moment)
         return action
-
-    def _record_target(self, target_xy_m: tuple[float, float] | None) -> None:
-        """Records, in the world frame, the place for which the agent stops.
-
-        It is taken relative to the pose that the agent observed, and applied to the true pose: noise of `gps` and
-        `compass` then does not count as a wrong place.
-        """
-        if target_xy_m is None:
-            return
-        scene, observation = self.env.scene, self.observation
-        observed = Pose(float(observation["gps"][0]), float(observation["gps"][1]), float(observation["compass"][0]))
-        ahead = Pose(*target_xy_m, 0.0).relative_to(observed)
-        x_m, y_m = scene.world.pose.place_of(ahead.x_m, ahead.y_m)
-        scene.task.stops_for(round(x_m, 6), round(y_m, 6))
 
     def _carry_out(self, action: Action) -> None:
         self.observation, _, terminated, truncated, info = self.env.step(action)
@@ -239,6 +225,21 @@ def target_of(agent: Agent, where: str) -> tuple[float, float] | None:
         )
     x_m, y_m = place.tolist()
     return x_m, y_m
+
+
+def record_target(env: ObjectNavEnv, observation: Observation, target_xy_m: tuple[float, float] | None) -> None:
+    """Records, in the world frame, the place for which an agent stops (`target_of`); None: it states none.
+
+    The place is taken relative to the pose that the agent observed, and applied to the true pose: noise of `gps` and
+    `compass` then does not count as a wrong place.
+    """
+    if target_xy_m is None:
+        return
+    scene = env.scene
+    observed = Pose(float(observation["gps"][0]), float(observation["gps"][1]), float(observation["compass"][0]))
+    ahead = Pose(*target_xy_m, 0.0).relative_to(observed)
+    x_m, y_m = scene.world.pose.place_of(ahead.x_m, ahead.y_m)
+    scene.task.stops_for(round(x_m, 6), round(y_m, 6))
 
 
 def record_episode(env: ObjectNavEnv, run: Path, recording: Recording) -> None:

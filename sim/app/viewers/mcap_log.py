@@ -1,17 +1,8 @@
 """`--mcap`: writes each episode as an MCAP file of standard ROS 2 messages (https://mcap.dev), the extra `ros`.
 
-============================  ===========================  ========================================================
-topic                         type                         content, once before each action
-============================  ===========================  ========================================================
-/camera/image_raw             sensor_msgs/Image            colour as the agent saw it, `rgb8`
-/camera/depth/image_raw       sensor_msgs/Image            depth in millimetres, `16UC1`
-/camera/camera_info           sensor_msgs/CameraInfo       intrinsics of both
-/scan                         sensor_msgs/LaserScan        the lidar
-/odom                         nav_msgs/Odometry            pose by `gps` and `compass`, with their noise
-/tf                           tf2_msgs/TFMessage           all frames (`sim.app.viewers.ros.messages`)
-/cmd_vel                      geometry_msgs/Twist          the velocity that the action aims at
-/map                          nav_msgs/OccupancyGrid       the true floor plan of the storey, when it is entered
-============================  ===========================  ========================================================
+Topics, types and quality of service are those of `sim.app.viewers.ros.topics`: images, scan, `/odom`, `/pose`, `/tf`
+and the velocity that the action aims at (`/cmd_vel`) once before each action, `/imu` and `/bumper` if the agent
+observes them, `/tf_static` once, and `/map` when a storey is entered. The true frame `map` is in `/tf`.
 
 An image or scan that the agent does not observe is the true one. Times are simulated. Metadata `episode` and `result`
 hold the identity and the result of the episode as JSON. Each episode has its file `<out>/mcap/<episode_id>.mcap`.
@@ -34,10 +25,10 @@ from numpy.typing import NDArray
 
 from sim.app.viewers.ros import messages
 from sim.app.viewers.ros.definitions import definition
+from sim.app.viewers.ros.topics import TOPICS, RobotTopics, offered_qos_profiles
 from sim.app.viewers.viewer import Moment
 from sim.core.errors import ConfigError
 from sim.core.files import part_file
-from sim.core.geometry.pose import Pose
 from sim.core.interface import SCAN, Action
 from sim.core.reading import reason_of
 from sim.env.objectnav import ObjectNavEnv
@@ -47,16 +38,6 @@ from sim.task.result import RolloutResult
 from sim.world.freespace import FreeSpace
 
 FOLDER = "mcap"
-TOPICS: Mapping[str, str] = {
-    "/camera/image_raw": "sensor_msgs/Image",
-    "/camera/depth/image_raw": "sensor_msgs/Image",
-    "/camera/camera_info": "sensor_msgs/CameraInfo",
-    "/scan": "sensor_msgs/LaserScan",
-    "/odom": "nav_msgs/Odometry",
-    "/tf": "tf2_msgs/TFMessage",
-    "/cmd_vel": "geometry_msgs/Twist",
-    "/map": "nav_msgs/OccupancyGrid",
-}
 
 
 def require_mcap() -> None:
@@ -83,12 +64,29 @@ class RosMessages:
         from mcap_ros2.writer import Writer
 
         self._writer = Writer(stream)
-        types = {name: name.replace("/", "/msg/") for name in TOPICS.values()}
-        self._schemas = {name: self._writer.register_msgdef(types[name], definition(name)) for name in types}
+        self._channels: set[str] = set()
+        names = {topic.type for topic in TOPICS.values()}
+        self._schemas = {
+            name: self._writer.register_msgdef(name.replace("/", "/msg/"), definition(name)) for name in sorted(names)
+        }
 
     def write(self, topic: str, time_s: float, message: messages.Message) -> None:
         """Writes one message at a simulated time."""
-        self._writer.write_message(topic, self._schemas[TOPICS[topic]], message, round(time_s * 1e9))
+        if topic not in self._channels:
+            self._add_channel(topic)
+        self._writer.write_message(topic, self._schemas[TOPICS[topic].type], message, round(time_s * 1e9))
+
+    def _add_channel(self, topic: str) -> None:
+        """Adds the channel of a topic with its quality of service, for which the writer has no argument."""
+        kind, delivery = TOPICS[topic]
+        channel = self._writer._writer.register_channel(
+            topic=topic,
+            message_encoding="cdr",
+            schema_id=self._schemas[kind].id,
+            metadata={"offered_qos_profiles": offered_qos_profiles(delivery)},
+        )
+        self._writer._channel_ids[topic] = channel
+        self._channels.add(topic)
 
     def describe(self, name: str, content: Mapping[str, object]) -> None:
         """Writes metadata: a name, and JSON values by key."""
@@ -136,8 +134,13 @@ class McapLog:
         self._out = RosMessages(self._stream)
         scans = [sensor for sensor in env.sensors if isinstance(sensor, ScanSensor)]
         self._scan = scans[0] if scans else ScanSensor(config=env.scan_config)
+        self._robot = RobotTopics(
+            camera=env.camera_model, camera_forward_m=env.robot_model.camera_forward_m, scan=self._scan.config
+        )
         about = {"episode_id": episode.episode_id, "house": episode.house, "goal": episode.goal}
         self._out.describe("episode", about)
+        time_s = float(env.scene.world.data.time)
+        self._out.write("/tf_static", time_s, self._robot.at_start(time_s))
 
     def decided(self, moment: Moment) -> None:
         """Writes what the agent saw, where it was and what it does."""
@@ -147,24 +150,20 @@ class McapLog:
     def _write(self, moment: Moment) -> None:
         env, out = self._env, self._out
         world, time_s = env.scene.world, float(env.scene.world.data.time)
-        true, believed = world.pose, _believed(moment)
-        self._write_map(time_s, true.floor_z_m)
-        tree = messages.transforms(
-            time_s,
-            true,
-            believed,
-            camera=env.camera_model,
-            camera_forward_m=env.robot_model.camera_forward_m,
-            laser_height_m=self._scan.config.height_m,
-        )
-        out.write("/tf", time_s, tree)
-        out.write("/odom", time_s, messages.odometry(time_s, believed))
-        out.write("/camera/image_raw", time_s, messages.colour_image(time_s, moment.seen("rgb")))
-        out.write(
-            "/camera/depth/image_raw", time_s, messages.depth_image(time_s, moment.seen("depth"), env.camera_model)
-        )
-        out.write("/camera/camera_info", time_s, messages.camera_info(time_s, env.camera_model))
-        out.write("/scan", time_s, messages.laser_scan(time_s, self._scan_at(moment), self._scan.config))
+        floor_z_m = world.pose.floor_z_m
+        if floor_z_m != self._floor_z_m:
+            self._floor_z_m = floor_z_m
+            out.write("/map", time_s, true_map(env, time_s))
+        own = world.odometry
+        readings = {
+            "odometry": np.array([own.x_m, own.y_m, own.yaw_rad], np.float32),
+            **moment.observation,
+            "rgb": moment.seen("rgb"),
+            "depth": moment.seen("depth"),
+            "scan": self._scan_at(moment),
+        }
+        for topic, message in self._robot.at(time_s, readings, true=world.pose):
+            out.write(topic, time_s, message)
         out.write("/cmd_vel", time_s, self._command(moment.action))
 
     def moved(self, info: Mapping[str, object]) -> None:
@@ -188,15 +187,6 @@ class McapLog:
             self._stream = None
             self._part.unlink(missing_ok=True)
 
-    def _write_map(self, time_s: float, floor_z_m: float) -> None:
-        """Writes the floor plan of the storey that the robot is on, if it is another one than before."""
-        if floor_z_m == self._floor_z_m:
-            return
-        self._floor_z_m = floor_z_m
-        space = self._env.scene.task.truth.space(floor_z_m)
-        grid = messages.occupancy_grid(time_s, space.frame, *_occupied_and_free(space), floor_z_m)
-        self._out.write("/map", time_s, grid)
-
     def _scan_at(self, moment: Moment) -> NDArray[np.float32]:
         """Returns the scan that the agent observed, or the true one."""
         if SCAN in moment.observation:
@@ -212,10 +202,11 @@ class McapLog:
         return messages.twist(drive.speed_m_s if action == Action.MOVE_FORWARD else 0.0, turn.get(action, 0.0))
 
 
-def _believed(moment: Moment) -> Pose:
-    """Returns the pose in the start frame that the agent observed."""
-    x_m, y_m = moment.observation["gps"].tolist()
-    return Pose(x_m, y_m, float(moment.observation["compass"][0]))
+def true_map(env: ObjectNavEnv, time_s: float) -> messages.Message:
+    """Returns `nav_msgs/OccupancyGrid` of the floor plan of the storey that the robot is on."""
+    floor_z_m = env.scene.world.pose.floor_z_m
+    space = env.scene.task.truth.space(floor_z_m)
+    return messages.occupancy_grid(time_s, space.frame, *_occupied_and_free(space), floor_z_m)
 
 
 def _occupied_and_free(space: FreeSpace) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:

@@ -55,9 +55,9 @@ def main(args: Args) -> int:
     begin = time.monotonic()
     print(f"{args.out}: habitat-lab, habitat-baselines and this project; about two minutes and 2.5 GB.", flush=True)
     venv.create(args.out, with_pip=True)
-    _install(args.out, *FIRST)
-    _install(args.out, "--no-build-isolation", GYM)
-    _install(args.out, *PINNED, *this_project())
+    install(args.out, *FIRST)
+    install(args.out, "--no-build-isolation", GYM)
+    install(args.out, *PINNED, *this_project())
     (packages,) = args.out.glob("lib/python*/site-packages")
     (packages / "stubborn_habitat_sim.pth").write_text(STARTUP)
     python = args.out / "bin" / "python"
@@ -85,7 +85,8 @@ def this_project() -> list[str]:
     )
 
 
-def _install(folder: Path, *what: str) -> None:
+def install(folder: Path, *what: str) -> None:
+    """Installs packages in an environment; raises ConfigError with what pip printed if it fails."""
     _call(
         [str(folder / "bin" / "python"), "-m", "pip", "install", "--quiet", *what],
         f"pip could not install {' '.join(what)}",

@@ -1,7 +1,8 @@
 """The definitions of the standard ROS 2 messages that a recording has, as its schemas need them.
 
-The fields are those of the packages `builtin_interfaces`, `std_msgs`, `geometry_msgs`, `sensor_msgs`, `nav_msgs` and
-`tf2_msgs` of ROS 2 (Humble to Jazzy); a test compares their hashes with those of the package `rosbags`.
+The fields are those of the packages `builtin_interfaces`, `std_msgs`, `geometry_msgs`, `sensor_msgs`, `nav_msgs`,
+`rosgraph_msgs` and `tf2_msgs` of ROS 2 (Humble to Kilted); a test compares their hashes with those of the package
+`rosbags`.
 """
 
 from __future__ import annotations
@@ -13,11 +14,17 @@ _SEPARATOR = "=" * 80
 FIELDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "builtin_interfaces/Time": ("int32 sec", "uint32 nanosec"),
+        "rosgraph_msgs/Clock": ("builtin_interfaces/Time clock",),
         "std_msgs/Header": ("builtin_interfaces/Time stamp", "string frame_id"),
+        "std_msgs/String": ("string data",),
+        "std_msgs/MultiArrayDimension": ("string label", "uint32 size", "uint32 stride"),
+        "std_msgs/MultiArrayLayout": ("std_msgs/MultiArrayDimension[] dim", "uint32 data_offset"),
+        "std_msgs/Int8MultiArray": ("std_msgs/MultiArrayLayout layout", "int8[] data"),
         "geometry_msgs/Vector3": ("float64 x", "float64 y", "float64 z"),
         "geometry_msgs/Point": ("float64 x", "float64 y", "float64 z"),
         "geometry_msgs/Quaternion": ("float64 x 0", "float64 y 0", "float64 z 0", "float64 w 1"),
         "geometry_msgs/Pose": ("geometry_msgs/Point position", "geometry_msgs/Quaternion orientation"),
+        "geometry_msgs/PoseStamped": ("std_msgs/Header header", "geometry_msgs/Pose pose"),
         "geometry_msgs/PoseWithCovariance": ("geometry_msgs/Pose pose", "float64[36] covariance"),
         "geometry_msgs/Twist": ("geometry_msgs/Vector3 linear", "geometry_msgs/Vector3 angular"),
         "geometry_msgs/TwistWithCovariance": ("geometry_msgs/Twist twist", "float64[36] covariance"),
@@ -55,6 +62,15 @@ FIELDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
             "uint32 binning_x",
             "uint32 binning_y",
             "sensor_msgs/RegionOfInterest roi",
+        ),
+        "sensor_msgs/Imu": (
+            "std_msgs/Header header",
+            "geometry_msgs/Quaternion orientation",
+            "float64[9] orientation_covariance",
+            "geometry_msgs/Vector3 angular_velocity",
+            "float64[9] angular_velocity_covariance",
+            "geometry_msgs/Vector3 linear_acceleration",
+            "float64[9] linear_acceleration_covariance",
         ),
         "sensor_msgs/LaserScan": (
             "std_msgs/Header header",

@@ -1,31 +1,36 @@
 """Builds ROS 2 messages, as dicts, from images, scans, poses and grids of this project.
 
 Units and frames are those of REP-103: metres, radians, x forward, y left, z up; in optical frames z forward, x right,
-y down. The frames are those of REP-105: `map` (the house) -> `odom` (the start pose, where the robot believes it to be)
+y down. The frames are those of REP-105: `map` (the house) -> `odom` (the start pose, as the robot's odometry believes)
 -> `base_link` (on the floor below the robot's axis) -> `camera_link` -> `camera_optical_frame`, and `laser`.
+The frame `start` is the true start pose; poses of the task's sensors `gps` and `compass` are in it.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.errors import ConfigError
 from sim.core.geometry.grid import GridFrame
 from sim.core.geometry.pose import Pose
 from sim.core.interface import CameraModel
 from sim.sensors.scan import ScanConfig
 
 Message = dict[str, object]
-MAP, ODOM, BASE, CAMERA, OPTICAL, LASER = (
-    "map", "odom", "base_link", "camera_link", "camera_optical_frame", "laser",
+MAP, ODOM, START, BASE, CAMERA, OPTICAL, LASER = (
+    "map", "odom", "start", "base_link", "camera_link", "camera_optical_frame", "laser",
 )  # fmt: skip
+DepthEncoding = Literal["16UC1", "32FC1"]
+"""Encoding of a depth image: whole millimetres, or metres as float32."""
 _TO_OPTICAL = {"x": -0.5, "y": 0.5, "z": -0.5, "w": 0.5}
 """Rotation of an optical frame in that of its camera."""
+_UNTURNED = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
 OCCUPIED, FREE, UNKNOWN = 100, 0, -1
 """Values of an occupancy grid."""
-
 
 DEEPEST_M = 65.535
 """The largest distance of `16UC1`."""
@@ -47,13 +52,38 @@ def colour_image(time_s: float, image: NDArray[np.uint8]) -> Message:
     return _image(time_s, image, "rgb8")
 
 
-def depth_image(time_s: float, depth_m: NDArray[np.float32], camera: CameraModel) -> Message:
-    """Returns `sensor_msgs/Image` of a depth image (h, w), in whole millimetres (`16UC1`).
+def depth_image(
+    time_s: float, depth_m: NDArray[np.float32], camera: CameraModel, encoding: DepthEncoding = "16UC1"
+) -> Message:
+    """Returns `sensor_msgs/Image` of a depth image (h, w).
 
-    Pixels without a distance, and those at the limit of the camera's range or of the encoding or farther, are 0.
+    With `16UC1`, in whole millimetres, pixels without a distance, and those at the limit of the camera's range or of
+    the encoding or farther, are 0. With `32FC1`, in metres, the former are NaN and the latter +infinity (REP-117,
+    REP-118).
     """
+    if encoding == "32FC1":
+        far = np.where(depth_m >= camera.max_depth_m, np.float32(np.inf), depth_m)
+        return _image(time_s, np.where(depth_m <= 0.0, np.float32(np.nan), far).astype("<f4"), encoding)
     seen_m = np.where(depth_m < min(camera.max_depth_m, DEEPEST_M), depth_m, np.float32(0.0))
-    return _image(time_s, np.rint(seen_m * np.float32(1000.0)).astype("<u2"), "16UC1")
+    return _image(time_s, np.rint(seen_m * np.float32(1000.0)).astype("<u2"), encoding)
+
+
+def depth_of(content: bytes | memoryview, encoding: str, camera: CameraModel) -> NDArray[np.float32]:
+    """Returns the depth image (h, w), metres, in the content of a message of `depth_image`.
+
+    What has no distance is 0, and what is out of range `max_depth_m`. `16UC1` does not tell one from the other, so that
+    both are 0.
+
+    Raises:
+        ConfigError: the encoding is unknown.
+    """
+    shape = camera.height_px, camera.width_px
+    if encoding == "16UC1":
+        return np.frombuffer(content, "<u2").reshape(shape).astype(np.float32) / np.float32(1000.0)
+    if encoding != "32FC1":
+        raise ConfigError(f"Unsupported encoding '{encoding}' of depth; use 16UC1 or 32FC1.")
+    read_m = np.frombuffer(content, "<f4").reshape(shape)
+    return np.nan_to_num(np.minimum(read_m, np.float32(camera.max_depth_m)), nan=0.0)
 
 
 def _image(time_s: float, image: NDArray, encoding: str) -> Message:
@@ -109,15 +139,52 @@ def laser_scan(time_s: float, distance_m: NDArray[np.float32], scan: ScanConfig)
     }
 
 
-def odometry(time_s: float, believed: Pose) -> Message:
-    """Returns `nav_msgs/Odometry` of a robot at rest at a pose in the frame `odom`."""
+def inertia(time_s: float, reading: NDArray[np.float32]) -> Message:
+    """Returns `sensor_msgs/Imu` of a reading of the sensor `imu` (6,), which has no orientation."""
+    acceleration, rate = reading[:3].astype(np.float64).tolist(), reading[3:].astype(np.float64).tolist()
+    return {
+        "header": header(time_s, BASE),
+        "orientation": _UNTURNED,
+        "orientation_covariance": [-1.0] + [0.0] * 8,
+        "angular_velocity": dict(zip("xyz", rate, strict=True)),
+        "angular_velocity_covariance": [0.0] * 9,
+        "linear_acceleration": dict(zip("xyz", acceleration, strict=True)),
+        "linear_acceleration_covariance": [0.0] * 9,
+    }
+
+
+def contacts(reading: NDArray[np.int8]) -> Message:
+    """Returns `std_msgs/Int8MultiArray` of a reading of the sensor `bumper` (sectors,): the first is ahead."""
+    layout = {"dim": [{"label": "sector", "size": len(reading), "stride": len(reading)}], "data_offset": 0}
+    return {"layout": layout, "data": reading.tolist()}
+
+
+def text(content: str) -> Message:
+    """Returns `std_msgs/String`."""
+    return {"data": content}
+
+
+def odometry(time_s: float, believed: Pose, speed_m_s: float = 0.0, rate_rad_s: float = 0.0) -> Message:
+    """Returns `nav_msgs/Odometry` of a robot at a pose in the frame `odom`, with its velocity in its own frame."""
     nothing = [0.0] * 36
     return {
         "header": header(time_s, ODOM),
         "child_frame_id": BASE,
         "pose": {"pose": _pose(believed), "covariance": nothing},
-        "twist": {"twist": twist(0.0, 0.0), "covariance": nothing},
+        "twist": {"twist": twist(speed_m_s, rate_rad_s), "covariance": nothing},
     }
+
+
+def located(time_s: float, pose: Pose) -> Message:
+    """Returns `geometry_msgs/PoseStamped` of a pose in the frame `start`."""
+    return {"header": header(time_s, START), "pose": _pose(pose)}
+
+
+def pose_of(message: Any) -> Pose:
+    """Returns the pose on a floor in an object with the fields of `geometry_msgs/Pose`."""
+    place, turn = message.position, message.orientation
+    yaw_rad = math.atan2(2.0 * (turn.w * turn.z + turn.x * turn.y), 1.0 - 2.0 * (turn.y * turn.y + turn.z * turn.z))
+    return Pose(place.x, place.y, yaw_rad, place.z)
 
 
 def twist(speed_m_s: float, rate_rad_s: float) -> Message:
@@ -125,23 +192,29 @@ def twist(speed_m_s: float, rate_rad_s: float) -> Message:
     return {"linear": {"x": speed_m_s, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": rate_rad_s}}
 
 
-def transforms(
-    time_s: float, true: Pose, believed: Pose, *, camera: CameraModel, camera_forward_m: float, laser_height_m: float
-) -> Message:
-    """Returns `tf2_msgs/TFMessage` with all frames.
+def moving_frames(time_s: float, believed: Pose, true: Pose | None) -> Message:
+    """Returns `tf2_msgs/TFMessage` with the frames that move.
 
     Args:
         time_s: of the message.
-        true: pose of the robot in the house; its floor is the height of `odom`.
-        believed: pose of the robot in the start frame, according to its sensors.
+        believed: pose of the robot in `odom`, by its odometry.
+        true: pose of the robot in the house, whose floor is the height of `odom`; None: without the frame `map`.
+    """
+    frames = [] if true is None else [_transform(time_s, MAP, ODOM, _pose(_origin(true, believed)))]
+    return {"transforms": [*frames, _transform(time_s, ODOM, BASE, _pose(believed))]}
+
+
+def fixed_frames(time_s: float, camera: CameraModel, *, camera_forward_m: float, laser_height_m: float) -> Message:
+    """Returns `tf2_msgs/TFMessage` with the frames that are fixed to the robot.
+
+    Args:
+        time_s: of the message.
         camera: its height.
         camera_forward_m: distance of the camera ahead of the robot's axis.
         laser_height_m: height of the lidar.
     """
     return {
         "transforms": [
-            _transform(time_s, MAP, ODOM, _pose(_origin(true, believed))),
-            _transform(time_s, ODOM, BASE, _pose(believed)),
             _transform(time_s, BASE, CAMERA, _pose(Pose(camera_forward_m, 0.0, 0.0, camera.height_m))),
             _transform(time_s, CAMERA, OPTICAL, _pose(Pose(0.0, 0.0, 0.0)) | {"orientation": _TO_OPTICAL}),
             _transform(time_s, BASE, LASER, _pose(Pose(0.0, 0.0, 0.0, laser_height_m))),

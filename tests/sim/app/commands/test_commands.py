@@ -184,7 +184,7 @@ def _parse(command: str) -> Any:
     program, argv = documented.program_of(command)
     if words[0] == "stubborn":
         return _parse_options(COMMANDS[program].module, argv) if program in COMMANDS else _list_of(program, argv)
-    if words[0] == documented.LAB_PYTHON:
+    if words[0] in documented.FOREIGN:
         return None
     if words[0] != PYTHON:
         raise ConfigError(f"no test knows what to make of '{words[0]}'")

@@ -8,16 +8,17 @@ import math
 import os
 from collections import defaultdict
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from sim.app.evaluation.rollout import play_episode
 from sim.app.viewers import mcap_log
-from sim.app.viewers.mcap_log import TOPICS, McapLog, mcap_file
+from sim.app.viewers.mcap_log import McapLog, mcap_file
 from sim.app.viewers.ros import messages
 from sim.app.viewers.ros.definitions import FIELDS, definition
+from sim.app.viewers.ros.topics import COLOUR, DEPTH, TOPICS
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action, CameraModel, ConfigError, Observation
 from sim.env.objectnav import ObjectNavEnv
@@ -33,6 +34,10 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore  # noqa: E
 CAMERA = CameraModel(width_px=160, height_px=120)
 START = Pose(-1.5, 1.0, math.radians(30.0))
 ACTIONS = (Action.MOVE_FORWARD, Action.TURN_LEFT, Action.MOVE_FORWARD, Action.TURN_RIGHT, Action.STOP)
+ONCE = {"/map", "/tf_static"}
+LIVE = {"/clock", "/goal", "/episode", "/result"}
+"""Topics of a running robot, which a recording does not need."""
+WRITTEN = set(TOPICS) - LIVE
 STANDARD = get_typestore(Stores.ROS2_JAZZY)
 """The types as ROS 2 Jazzy defines them."""
 
@@ -49,7 +54,11 @@ class Scripted:
 
 
 def make_env(house: Path, **options: Any) -> ObjectNavEnv:
-    settings = {"sensors": ("rgb", "depth", "scan"), "noise": "realsense", "scan": ScanConfig(rays=90)}
+    settings = {
+        "sensors": ("rgb", "depth", "scan", "imu", "bumper", "odometry"),
+        "noise": "realsense",
+        "scan": ScanConfig(rays=90),
+    }
     return ObjectNavEnv(
         house=house, goal="sofa", camera=CAMERA, truth=("rgb", "depth", "semantic"), **settings | options
     )
@@ -92,10 +101,9 @@ def test_a_definition_is_that_of_ros(name: str) -> None:
 
 
 def test_every_topic_has_a_message_for_each_action_in_order_of_time(read: dict[str, list]) -> None:
-    assert set(read) == set(TOPICS)
-    assert {topic: len(of_topic) for topic, of_topic in read.items()} == dict.fromkeys(TOPICS, len(ACTIONS)) | {
-        "/map": 1
-    }
+    assert {topic: len(of_topic) for topic, of_topic in read.items()} == dict.fromkeys(
+        WRITTEN, len(ACTIONS)
+    ) | dict.fromkeys(ONCE, 1)
     for of_topic in read.values():
         times = [time_ns for time_ns, _ in of_topic]
         assert times == sorted(times)
@@ -106,7 +114,7 @@ def test_every_topic_has_a_message_for_each_action_in_order_of_time(read: dict[s
 
 def test_images_and_scans_are_those_that_the_agent_saw(recorded: tuple, read: dict[str, list]) -> None:
     for i, seen in enumerate(recorded[1].seen):
-        image, depth, scan = (read[topic][i][1] for topic in ("/camera/image_raw", "/camera/depth/image_raw", "/scan"))
+        image, depth, scan = (read[topic][i][1] for topic in (f"{COLOUR}/image_raw", f"{DEPTH}/image_raw", "/scan"))
         assert (image.encoding, image.step) == ("rgb8", 480)
         np.testing.assert_array_equal(image.data.reshape(120, 160, 3), seen["rgb"])
         depth_m = depth.data.view("<u2").reshape(120, 160) / 1000.0
@@ -115,7 +123,13 @@ def test_images_and_scans_are_those_that_the_agent_saw(recorded: tuple, read: di
         np.testing.assert_array_equal(scan.ranges[near], seen["scan"][near])
         assert np.isneginf(scan.ranges[~near]).all()
         assert scan.angle_increment == pytest.approx(math.tau / 90)
-    info = read["/camera/camera_info"][0][1]
+        for camera, picture in ((COLOUR, image), (DEPTH, depth)):
+            assert read[f"{camera}/camera_info"][i][1].header == picture.header
+        motion, felt = read["/imu"][i][1], read["/bumper"][i][1]
+        inertia = [getattr(of, axis) for of in (motion.linear_acceleration, motion.angular_velocity) for axis in "xyz"]
+        assert inertia == seen["imu"].tolist()
+        assert felt.data.tolist() == seen["bumper"].tolist()
+    info = read[f"{DEPTH}/camera_info"][0][1]
     assert (info.width, info.height, info.k[0], info.k[2]) == (160, 120, pytest.approx(CAMERA.focal_px), 79.5)
 
 
@@ -128,9 +142,12 @@ def test_frames_lead_from_the_map_to_the_true_pose_and_odometry_is_what_was_beli
     recorded: tuple, read: dict[str, list]
 ) -> None:
     _, agent, _, poses = recorded
-    for (_, tree), (_, odometry), seen, pose in zip(read["/tf"], read["/odom"], agent.seen, poses, strict=False):
-        frames = {transform.child_frame_id: transform for transform in tree.transforms}
-        parents = {transform.child_frame_id: transform.header.frame_id for transform in tree.transforms}
+    fixed = read["/tf_static"][0][1]
+    for (_, tree), (_, odometry), (_, located), seen, pose in zip(
+        read["/tf"], read["/odom"], read["/pose"], agent.seen, poses, strict=False
+    ):
+        frames = {transform.child_frame_id: transform for transform in tree.transforms + fixed.transforms}
+        parents = {name: transform.header.frame_id for name, transform in frames.items()}
         assert parents == {
             "odom": "map", "base_link": "odom", "camera_link": "base_link", "laser": "base_link",
             "camera_optical_frame": "camera_link",
@@ -141,9 +158,40 @@ def test_frames_lead_from_the_map_to_the_true_pose_and_odometry_is_what_was_beli
         y_m = odom.translation.y + math.sin(yaw) * base.translation.x + math.cos(yaw) * base.translation.y
         assert (x_m, y_m) == pytest.approx((pose.x_m, pose.y_m), abs=1e-6)
         assert math.remainder(yaw + yaw_of(base.rotation) - pose.yaw_rad, math.tau) == pytest.approx(0.0, abs=1e-6)
-        place = odometry.pose.pose.position
-        assert (place.x, place.y) == pytest.approx(seen["gps"].tolist(), abs=1e-6)
+        believed, known = messages.pose_of(odometry.pose.pose), messages.pose_of(located.pose)
+        assert [believed.x_m, believed.y_m, np.float32(believed.yaw_rad)] == seen["odometry"].tolist()
+        assert [known.x_m, known.y_m, np.float32(known.yaw_rad)] == [*seen["gps"].tolist(), seen["compass"][0]]
         assert frames["camera_link"].transform.translation.z == CAMERA.height_m
+
+
+def test_channels_have_the_quality_of_service_of_their_topics(recorded: tuple) -> None:
+    with AnyReader([recorded[0]]) as reader:
+        offered = {
+            connection.topic: cast(Any, connection.ext).offered_qos_profiles for connection in reader.connections
+        }
+    assert set(offered) == WRITTEN
+    for name, (quality,) in offered.items():
+        of_topic = TOPICS[name].delivery
+        assert (quality.reliability.name.lower(), quality.durability.name.lower(), quality.depth) == of_topic.value
+    assert offered["/map"][0].durability.name == "TRANSIENT_LOCAL"
+
+
+def test_depth_in_metres_is_exact_and_says_what_is_too_near_and_too_far() -> None:
+    seen_m = np.array([[0.0, 0.5, 1.2345678], [3.999, 4.9999995, 5.0]], np.float32)
+    camera = CameraModel(width_px=3, height_px=2)
+    image = messages.depth_image(0.0, seen_m, camera, "32FC1")
+    content = image["data"]
+    assert isinstance(content, bytes)
+    values = np.frombuffer(content, "<f4")
+    assert np.isnan(values[0])
+    assert np.isposinf(values[5])
+    np.testing.assert_array_equal(messages.depth_of(content, "32FC1", camera), seen_m)
+    rounded = messages.depth_image(0.0, seen_m, camera)["data"]
+    assert isinstance(rounded, bytes)
+    expected_m = np.array([[0.0, 0.5, 1.235], [3.999, 5.0, 0.0]], np.float32)
+    np.testing.assert_array_equal(messages.depth_of(rounded, "16UC1", camera), expected_m)
+    with pytest.raises(ConfigError, match="use 16UC1 or 32FC1"):
+        messages.depth_of(content, "8UC1", camera)
 
 
 def test_the_optical_frame_looks_ahead_with_y_down() -> None:
@@ -195,7 +243,7 @@ def test_recording_changes_no_result_and_needs_no_sensor_of_the_agent(house: Pat
         env.close()
     assert lines[0].without_times() == lines[1].without_times()
     with AnyReader([mcap_file(tmp_path, "a")]) as reader:
-        assert {connection.topic for connection in reader.connections} == set(TOPICS)
+        assert {connection.topic for connection in reader.connections} == WRITTEN - {"/imu", "/bumper"}
 
 
 def test_an_unfinished_recording_is_discarded(house: Path, tmp_path: Path) -> None:

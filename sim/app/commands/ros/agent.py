@@ -1,0 +1,71 @@
+"""Runs an agent as a node of ROS 2, which drives a robot over topics: `stubborn ros agent`.
+
+    stubborn ros agent --agent stubborn-plus --stepped
+    stubborn ros agent --agent stubborn-plus --pose /odom
+
+No simulator runs in this process; the robot may be `stubborn ros`, or a real one (docs/ros.md).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Literal
+
+from sim.app.bridges.ros2.loading import require_ros
+from sim.app.options import RunOptions
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Run an agent as a node of ROS 2, which drives a robot over topics."""
+
+    stepped: bool = False
+    """The robot waits for an action after each observation (`stubborn ros --stepped`); otherwise the node performs each
+    action by velocities on /cmd_vel, and reads /odom."""
+    pose: Literal["/pose", "/odom"] = "/pose"
+    """Topic of the robot's pose: that of ObjectNav's sensors or of a localisation, or the robot's odometry."""
+    once: bool = False
+    """End after the last episode of the robot, in place of waiting for others."""
+    ros_args: str = ""
+    """What ROS 2 takes after --ros-args, in quotation marks: "-r /pose:=/localization"."""
+    agent: str = "stubborn-plus"
+    """The agent: a name of `stubborn run --list-agents`, or your own as package.module:NAME."""
+    explorer: str | None = None
+    """The explorer of agents that take one."""
+    semantics: str = "rednet"
+    """Source of segmentation: rednet, or your own as package.module:NAME."""
+    weights: Path | None = None
+    """With --semantics rednet: your network in place of the shipped one."""
+    verification: str = "naive-bayes"
+    """Method that verifies candidates: naive-bayes (the paper's) or none."""
+    verifier: Path | None = None
+    """Parameters of verification in place of those shipped for this segmentation."""
+    robot: str | None = None
+    """The robot, if it is not the default one: an MJCF file with its sidecar next to it, or menagerie:NAME."""
+    config: tuple[str, ...] = ()
+    """FIELD=VALUE ...: fields of the configuration, for example camera.height_m=1.1 robot.drive.speed_m_s=0.3."""
+    config_file: Path | None = None
+    """A TOML or JSON file of such fields; --config is applied after it."""
+
+
+def main(args: Args) -> int:
+    """Drives until it is interrupted, or with --once until the robot's last episode; returns the exit status."""
+    require_ros()
+    from sim.app.bridges.ros2.observer import AgentNode
+    from sim.app.composition.ros_agent import RobotAgent
+    from sim.app.composition.setup import resolve
+
+    names = {field.name for field in fields(RunOptions)}
+    setup = resolve(RunOptions(**{name: value for name, value in vars(args).items() if name in names}))
+    node = AgentNode(
+        setup.config.camera, setup.config.sensors, stepped=args.stepped, pose=args.pose, ros_args=args.ros_args
+    )
+    try:
+        agent = RobotAgent(setup, node, stepped=args.stepped)
+        print(f"{args.agent} waits for a robot.", flush=True)
+        episodes = agent.run(once=args.once)
+    finally:
+        node.close()
+    print(f"{args.agent} drove in {episodes} episodes.")
+    return 0

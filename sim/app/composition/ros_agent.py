@@ -1,0 +1,139 @@
+"""Builds an agent without a simulator and lets it drive a robot over topics of ROS 2 (`sim.app.bridges.ros2`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, cast
+
+from sim.app.bridges.ros2.observer import AgentNode, Announced, Wheels
+from sim.app.composition.agents import build_agent
+from sim.app.composition.segmenters import NoSegmentation
+from sim.app.composition.setup import Setup
+from sim.app.evaluation.rollout import ask, confidence_of, next_action, target_of
+from sim.core.errors import ConfigError
+from sim.core.interface import Action, Agent, CameraModel, Observation, RobotModel, SuccessRule
+from sim.env.discrete import ActionController, Limits
+from sim.robot.config import RobotConfig
+from sim.task.config import TaskConfig
+
+WAIT_S = 0.1
+"""Longest time for which a call of ROS 2 waits, so that Ctrl-C is noticed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeclaredRobot:
+    """A robot as the configuration describes it (`sim.app.composition.agents.KnownRobot`)."""
+
+    camera_model: CameraModel
+    robot_config: RobotConfig
+    task_config: TaskConfig
+
+    @property
+    def robot_model(self) -> RobotModel:
+        """The part of the robot that agents know."""
+        return self.robot_config.model
+
+    @property
+    def success_rule(self) -> SuccessRule:
+        """The conditions under which a STOP succeeds."""
+        return self.task_config.success
+
+
+def build_apart(setup: Setup) -> Agent:
+    """Returns the agent of a setup, which gets observations and nothing else.
+
+    Raises:
+        ConfigError: the agent or its segmentation reads the ground truth of the simulator, or has sensors of its own.
+    """
+    spec, config = setup.spec, setup.config
+    if spec.uses_ground_truth or setup.truth:
+        named = setup.options.agent if spec.uses_ground_truth else f"--semantics {setup.options.semantics}"
+        raise ConfigError(f"'{named}' reads ground truth, which a robot does not have.")
+    own = [sensor.name for sensor in setup.sensors if not isinstance(sensor, str)]
+    if own:
+        raise ConfigError(f"The sensor '{own[0]}' is one of the simulator's; a robot has no topic for it.")
+    robot = DeclaredRobot(camera_model=config.camera, robot_config=config.robot, task_config=config.task)
+    make = cast(Any, setup.segmentation.make)  # a segmenter without ground truth reads the camera alone
+    segmenter = make(robot, config.detector) if spec.uses_segmentation else NoSegmentation()
+    return build_agent(
+        setup.options.agent, spec, robot, segmenter=segmenter, verifier=setup.verifier, config=config.agent
+    )
+
+
+class RobotAgent:
+    """An agent that drives a robot over topics, episode by episode.
+
+    Args:
+        setup: of the agent.
+        node: its node.
+        stepped: whether the robot waits for an action after each observation.
+    """
+
+    def __init__(self, setup: Setup, node: AgentNode, *, stepped: bool) -> None:
+        self._name, self._node, self._stepped = setup.options.agent, node, stepped
+        self._agent = build_apart(setup)
+        drive = setup.config.robot.drive
+        self._limits = Limits(
+            drive.speed_m_s, drive.turn_speed_rad_s, drive.acceleration_m_s2, drive.turn_acceleration_rad_s2
+        )
+
+    def run(self, *, once: bool) -> int:
+        """Drives in each episode that the robot announces; returns their number.
+
+        Args:
+            once: end when the robot says that its last episode is over; False: wait for others.
+        """
+        episodes, last = 0, None
+        while True:
+            announced = self._node.announced
+            if announced is not None and announced.over and once:
+                return episodes
+            if announced is None or announced.over or announced == last:
+                self._node.spin(WAIT_S)
+                continue
+            last = announced
+            episodes += 1
+            self._run_episode(announced)
+
+    def _run_episode(self, announced: Announced) -> None:
+        agent = self._agent
+        ask(f"Agent '{self._name}', reset", lambda: agent.reset(announced.goal, announced.seed))
+        driver = None if self._stepped else _Driver(self._node, announced, self._limits)
+        seen_ns, step = announced.stamp_ns - 1, 0
+        while (observed := self._next(announced, seen_ns)) is not None:
+            (seen_ns, observation), step = observed, step + 1
+            where = f"Agent '{self._name}', step {step}"
+            action = next_action(agent, observation, where)
+            if action is Action.STOP:
+                self._node.state(target_of(agent, where), confidence_of(agent, where))
+            if driver is None:
+                self._node.act(action)
+            elif action is Action.STOP:
+                return self._node.stop()
+            else:
+                seen_ns = driver.perform(action)
+        return None
+
+    def _next(self, announced: Announced, after_ns: int) -> tuple[int, Observation] | None:
+        """Returns the first complete observation after a stamp; None: the episode is over."""
+        while self._node.announced == announced:
+            if (observed := self._node.observation(after_ns)) is not None:
+                return observed
+            self._node.spin(WAIT_S)
+        return None
+
+
+class _Driver:
+    """Performs discrete actions by velocities."""
+
+    def __init__(self, node: AgentNode, announced: Announced, limits: Limits) -> None:
+        self._wheels = Wheels(node, announced)
+        period_s = self._wheels.period_s
+        self._controller = ActionController(
+            self._wheels.hold, limits, period_s, self._wheels.at_rest(), delay_s=period_s
+        )
+
+    def perform(self, action: Action) -> int:
+        """Performs an action; returns the stamp (ns) of the state after it."""
+        self._controller.perform(action)
+        return self._wheels.stamp_ns - 1

@@ -1,0 +1,114 @@
+"""The parts of the robot on ROS 2 that need no ROS; tests/ros2 tries the nodes."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import time
+
+import pytest
+
+from sim.app import cli
+from sim.app.bridges.ros2.requests import Pace, Requests
+from sim.app.bridges.ros2.robot import RosConfig
+from sim.app.commands.ros import agent, robot
+from sim.app.composition.ros_agent import build_apart
+from sim.app.composition.setup import resolve
+from sim.app.options import RunOptions
+from sim.core.interface import Action, ConfigError
+
+without_ros = pytest.mark.skipif(importlib.util.find_spec("rclpy") is not None, reason="there is ROS 2")
+
+
+@without_ros
+@pytest.mark.parametrize("command", [robot, agent])
+def test_without_ros_one_line_says_what_to_install(command: object, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.run(command.Args, command.main, []) == 2  # type: ignore[attr-defined]
+    said = capsys.readouterr().err.strip()
+    assert len(said.splitlines()) == 1
+    assert "needs rclpy" in said
+    assert "ros setup" in said
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
+def test_a_command_that_is_not_finite_is_refused_and_the_last_one_holds(bad: float) -> None:
+    requests = Requests()
+    requests.command(0.3, -0.2, 1.0)
+    requests.command(bad, 0.0, 1.1)
+    requests.command(0.0, bad, 1.1)
+    assert requests.velocity(1.2, timeout_s=0.5) == (0.3, -0.2)
+    assert (requests.counts.commands, requests.counts.refused_commands) == (3, 2)
+
+
+def test_a_command_ends_after_its_timeout() -> None:
+    requests = Requests()
+    assert requests.velocity(0.0, timeout_s=0.5) == (0.0, 0.0)
+    requests.command(0.3, 0.1, 1.0)
+    assert requests.velocity(1.5, timeout_s=0.5) == (0.3, 0.1)
+    assert requests.velocity(1.51, timeout_s=0.5) == (0.0, 0.0)
+
+
+def test_actions_come_in_order_and_those_for_an_earlier_observation_are_refused() -> None:
+    requests = Requests()
+    for number in (1, 2, 9):
+        requests.act(number)
+    assert [requests.action(0.0), requests.action(0.0), requests.action(0.0)] == [
+        Action.MOVE_FORWARD, Action.TURN_LEFT, None,
+    ]  # fmt: skip
+    requests.act(3)
+    requests.discard_actions()
+    assert requests.action(0.0) is None
+    assert (requests.counts.commands, requests.counts.refused_commands) == (4, 2)
+
+
+def test_a_new_episode_forgets_requests_and_keeps_the_pause() -> None:
+    requests = Requests()
+    requests.command(0.3, 0.1, 1.0)
+    requests.act(1)
+    requests.raise_flag("stop")
+    requests.stop_target, requests.stop_confidence = (1.0, 2.0), 0.5
+    requests.pause(True)
+    requests.begin()
+    assert requests.velocity(1.0, 0.5) == (0.0, 0.0)
+    assert requests.action(0.0) is None
+    assert (requests.stop_target, requests.stop_confidence, requests.counts.commands) == (None, None, 0)
+    assert requests.paused
+    assert not requests.take("stop")
+
+
+def test_a_flag_ends_a_wait_and_is_taken_once() -> None:
+    requests = Requests()
+    requests.raise_flag("reset")
+    begin_s = time.monotonic()
+    requests.wait(5.0)
+    assert time.monotonic() - begin_s < 1.0
+    assert [requests.take("reset"), requests.take("reset")] == [True, False]
+
+
+def test_the_pace_keeps_the_mean_rate_and_starts_anew_after_a_delay() -> None:
+    pace = Pace(0.02, speed=1.0)
+    assert not pace.begin()
+    assert 0.0 < pace.remaining_s() <= 0.02
+    time.sleep(0.025)  # late by less than a period: the next one is early
+    assert not pace.begin()
+    assert pace.remaining_s() <= 0.016
+    time.sleep(0.06)
+    assert pace.begin()
+    assert 0.0 < pace.remaining_s() <= 0.02
+    assert Pace(0.02, speed=0.0).remaining_s() == 0.0
+
+
+def test_options_that_contradict_each_other_are_refused() -> None:
+    with pytest.raises(ConfigError, match="time does not stand still"):
+        RosConfig(stepped=True, wall_time=True)
+    with pytest.raises(ConfigError, match="rate_hz > 0"):
+        RosConfig(rate_hz=0.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [({"agent": "oracle"}, "'oracle'"), ({"agent": "stubborn", "semantics": "gt"}, "--semantics gt")],
+)
+def test_an_agent_that_reads_ground_truth_cannot_drive_a_robot(options: dict[str, str], named: str) -> None:
+    with pytest.raises(ConfigError, match=f"{named}.* reads ground truth, which a robot does not have"):
+        build_apart(resolve(RunOptions(**options)))  # type: ignore[arg-type]
