@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from typing import Any, get_args
 
 from sim.core.errors import ConfigError
+from sim.renderer.profiles import get_profile
 from sim.robot.config import MotionKind
 from sim.sensors.noise import get_noise
 
@@ -30,6 +31,7 @@ class Options:
         if self.motion not in get_args(MotionKind):
             raise ConfigError(f"motion must be one of {', '.join(get_args(MotionKind))}, got '{self.motion}'.")
         get_noise(self.noise)
+        get_profile(self.profile)
 
 
 _chosen: dict[str, str] = {}

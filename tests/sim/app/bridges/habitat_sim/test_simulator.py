@@ -226,6 +226,8 @@ def test_options_apply_to_simulators_that_are_made_later(tmp_path: Path, monkeyp
         assert seen["rgb"].shape == (48, 64, 4)
     with pytest.raises(ConfigError, match="motion must be"):
         configure(motion="hovering")
+    with pytest.raises(ConfigError, match="profile 'bad'"):
+        configure(profile="bad")
     with pytest.raises(ConfigError, match="'speed'"):
         configure(speed="high")
 
