@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -27,7 +27,8 @@ from sim.app.bridges.habitat_sim.settings import (
     SensorSubType,
     SensorType,
 )
-from sim.core.errors import ConfigError, HouseError
+from sim.core.errors import ConfigError, EpisodeError, HouseError
+from sim.core.geometry.pose import Pose
 from sim.core.interface import Action, CameraModel
 from sim.episodes.habitat import to_rotation
 from sim.renderer.camera import Camera
@@ -39,6 +40,8 @@ from sim.sensors.standard import resolve_sensors
 from sim.task.objectnav import Task
 from sim.world.world import World
 
+_BESIDE_M = (0.0, 0.01, 0.02, 0.03, 0.05)
+"""Distances at which the robot is put if there is no room for it where a script put it."""
 FAR_M = 100.0
 """Depth of surfaces that are farther away, and of no surface."""
 _IMAGES = {SensorType.COLOR: "rgb", SensorType.DEPTH: "depth", SensorType.SEMANTIC: "geom"}
@@ -188,10 +191,11 @@ class Simulator:
         """Puts the robot where the agent was put, in physics, and begins the episode after a reset."""
         agent = self.agents[0]
         if self._fresh:
-            self.world.reset(agent.pose, self._conditions())
+            conditions = self._conditions()
+            _beside(agent.pose, lambda pose: self.world.reset(pose, conditions))
             self._fresh = False
         elif agent.put is not None:
-            self.world.put(agent.put)
+            _beside(agent.put, self.world.put)
         agent.put = None
 
     def _conditions(self) -> Conditions:
@@ -309,7 +313,9 @@ class Simulator:
 
     get_rigid_object_manager = get_articulated_object_manager = get_object_template_manager
 
-    def recompute_navmesh(self, pathfinder: PathFinder, navmesh_settings: Any = None) -> bool:
+    def recompute_navmesh(
+        self, pathfinder: PathFinder, navmesh_settings: Any = None, include_static_objects: bool = True
+    ) -> bool:
         """Returns True: the free space is always that of the house and the robot."""
         return True
 
@@ -367,6 +373,24 @@ class _NoObjects:
 
     def remove_all_objects(self) -> None:
         """Does nothing."""
+
+
+def _beside(pose: Pose, put: Callable[[Pose], None]) -> None:
+    """Calls `put` with a pose, or with one as near to it as the furniture allows: free space has cells of 2.5 cm.
+
+    Raises:
+        EpisodeError: there is no room for the robot within 5 cm.
+    """
+    first: EpisodeError | None = None
+    for distance_m in _BESIDE_M:
+        for angle in np.linspace(0.0, 2.0 * math.pi, 8 if distance_m else 1, endpoint=False):
+            dx_m, dy_m = distance_m * math.cos(angle), distance_m * math.sin(angle)
+            try:
+                return put(replace(pose, x_m=pose.x_m + dx_m, y_m=pose.y_m + dy_m))
+            except EpisodeError as error:
+                first = first or error
+    assert first is not None
+    raise first
 
 
 def _robot(agent: AgentConfiguration, motion: MotionKind) -> RobotConfig:

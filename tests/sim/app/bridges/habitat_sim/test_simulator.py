@@ -20,7 +20,7 @@ from sim.app.bridges.habitat_sim.settings import (
     SimulatorConfiguration,
 )
 from sim.app.bridges.habitat_sim.simulator import Simulator
-from sim.core.errors import ConfigError, HouseError
+from sim.core.errors import ConfigError, EpisodeError, HouseError
 from sim.houses.house import House
 from sim.houses.writing import house_text
 from tests.helpers.worlds import bed_behind_a_wall, room, with_box
@@ -85,6 +85,15 @@ def test_a_wall_ends_the_action_by_contact(empty: Simulator) -> None:
     assert empty.step(1)["collided"] is True
     assert empty.previous_step_collided
     assert empty.agents[0].state.position[2] == pytest.approx(-1.82, abs=0.01)
+
+
+def test_a_robot_that_was_put_into_a_wall_stands_beside_it(empty: Simulator) -> None:
+    put(empty, 0.0, -1.835)
+    assert empty.step(2)["collided"] is False
+    assert math.dist(empty.agents[0].state.position, (0.0, 0.0, -1.835)) <= 0.051
+    put(empty, 0.0, -1.95)
+    with pytest.raises(EpisodeError, match="cm inside 'wall"):
+        empty.step(2)
 
 
 def test_cameras_look_from_where_they_are_mounted(tmp_path: Path) -> None:
