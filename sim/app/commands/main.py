@@ -43,6 +43,9 @@ COMMANDS: Mapping[str, Command] = {
     "habitat setup": Command("sim.app.commands.habitat.setup", "Make an environment with habitat-lab"),
     "habitat dataset": Command("sim.app.commands.habitat.dataset", "Write a split as Habitat's ObjectNav files"),
     "web": Command("sim.app.commands.web", "Watch an agent, or drive the robot, in the browser"),
+    "serve detectors": Command(
+        "sim.app.commands.serve.detectors", "Serve detectors in the forms of VLFM's model servers"
+    ),
     "gallery": Command("sim.app.commands.gallery", "Render pictures of houses and sheets of furniture"),
     "houses generate": Command("sim.app.commands.houses.generate", "Generate houses"),
     "houses check": Command("sim.app.commands.houses.check", "Check houses for faults"),

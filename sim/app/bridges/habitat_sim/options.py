@@ -26,6 +26,8 @@ class Options:
     """Noise of cameras and drive, a preset of `sim.sensors.noise`. habitat-lab's gps and compass stay exact."""
     profile: str = "fast"
     """Rendering profile, `fast` or `good`."""
+    detectors: str = ""
+    """Address of `stubborn serve detectors`, to which each picture is sent with its truth."""
 
     def __post_init__(self) -> None:
         if self.motion not in get_args(MotionKind):

@@ -27,9 +27,11 @@ from sim.app.bridges.habitat_sim.settings import (
     SensorSubType,
     SensorType,
 )
+from sim.app.services.frames import Frame, register
 from sim.core.errors import ConfigError, EpisodeError, HouseError
-from sim.core.geometry.pose import Pose
+from sim.core.geometry.pose import BodyPose, Pose
 from sim.core.interface import Action, CameraModel
+from sim.detectors.noisy import LabelledObjects
 from sim.episodes.habitat import to_rotation
 from sim.renderer.camera import Camera
 from sim.renderer.gloss import geom_gloss
@@ -102,6 +104,7 @@ class Simulator:
         self._semantic_scene: SemanticScene | None = None
         instances = np.append(self.world.labels.geom_instance + 1, 0)  # the last entry is that of geom -1
         self._semantic_ids = instances.astype(np.uint32)
+        self._objects, self._frame_number = LabelledObjects.of(self.world), 0
 
     def _put_initially(self) -> None:
         """Puts the agent at a random place, as Habitat does, until it is put elsewhere."""
@@ -226,6 +229,8 @@ class Simulator:
             for seen in _by_eye(agent, specs):
                 noises = [self._noises[spec.uuid] for spec in seen if spec.uuid in self._noises]
                 names = {_IMAGES[spec.sensor_type] for spec in seen}.union(*(noise.images for noise in noises))
+                if self._options.detectors and "rgb" in names:
+                    names |= {"depth", "geom"}
                 if model not in self._cameras:
                     self._cameras[model] = Camera(
                         self.world.model, self.world.labels, camera=model, profile=self._options.profile
@@ -233,7 +238,32 @@ class Simulator:
                 eye = agent.eye(seen[0].uuid, model.height_m)
                 images = self._cameras[model].render(self.world.data, eye, sorted(names))
                 observations |= {spec.uuid: self._observation(spec, images) for spec in seen}
+                if self._options.detectors and "rgb" in names:
+                    colour = next(spec.uuid for spec in seen if spec.sensor_type == SensorType.COLOR)
+                    self._register(observations[colour], images, model, eye)
         return observations
+
+    def _register(self, rgba: NDArray, images: Mapping[str, NDArray], camera: CameraModel, eye: BodyPose) -> None:
+        """Sends a picture with its truth to the server of detectors."""
+        contract = CameraModel(
+            width_px=camera.width_px, height_px=camera.height_px, hfov_rad=camera.hfov_rad, height_m=camera.height_m
+        )
+        depth = np.minimum(images["depth"], contract.max_depth_m)
+        depth[depth < contract.min_depth_m] = 0.0
+        self._frame_number += 1
+        frame = Frame(
+            rgb=np.ascontiguousarray(rgba[..., :3]),
+            depth=depth.astype(np.float32),
+            objects=self._objects.of_geom[images["geom"]].astype(np.int16),
+            names=tuple(instance.name for instance in self.world.labels.instances),
+            categories=tuple(instance.category for instance in self.world.labels.instances),
+            middles_xy_m=self._objects.middle_xy_m,
+            eye_xy_m=(eye.x_m, eye.y_m),
+            seed=self._seed,
+            number=self._frame_number,
+            camera=contract,
+        )
+        register(self._options.detectors, frame)
 
     def _observation(self, spec: SensorSpec, images: Mapping[str, NDArray]) -> NDArray:
         """Returns the image of one camera in Habitat's form, with noise."""
