@@ -6,5 +6,6 @@
 | `words` | words of agents and of COCO, as categories of this project |
 | `detectors` | what is in a frame, by truth, with a network's errors, or by the shipped network |
 | `server` | the answers over HTTP |
+| `remote` | a segmenter that asks a server |
 | `hosting` | sockets and logs of a server |
 """

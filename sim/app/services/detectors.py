@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import cv2
 import numpy as np
@@ -14,9 +14,14 @@ from numpy.typing import NDArray
 
 from sim.app.services.frames import Frame
 from sim.app.services.words import categories_in, category_of
+from sim.core.errors import ConfigError
 from sim.core.interface import MPCAT40, CameraModel
+from sim.core.reading import reason_of
 from sim.detectors.noisy import LabelledObjects, NoisyConfig, NoisySegmenter
 from stubborn.segmentation.shipped import SHIPPED_REDNET
+
+if TYPE_CHECKING:
+    from stubborn.segmentation.network import NetworkSegmenter
 
 MIN_SHARE = 0.0005
 """Smaller segments are not reported, as a share of the picture."""
@@ -33,7 +38,7 @@ class Segment:
     mask: NDArray[np.bool_]
     """(h, w)."""
 
-    @cached_property
+    @functools.cached_property
     def box(self) -> tuple[float, float, float, float]:
         """Left, top, right and bottom edge, as shares of width and height."""
         height, width = self.mask.shape
@@ -85,16 +90,18 @@ class NetworkDetector:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._segmenters: dict[CameraModel, Any] = {}
 
     def posteriors(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32], camera: CameraModel) -> NDArray:
-        """Returns the probability of each category except void, float32 (40, h / 4, w / 4)."""
-        from stubborn.segmentation.network import NetworkSegmenter
+        """Returns the probability of each category except void, float32 (40, h / 4, w / 4).
 
+        Raises:
+            ConfigError: the network cannot take images of this size.
+        """
         with self._lock:
-            if camera not in self._segmenters:
-                self._segmenters[camera] = NetworkSegmenter.from_file(SHIPPED_REDNET, camera=camera, threads=1)
-            return self._segmenters[camera].posteriors({"rgb": rgb, "depth": depth})
+            try:
+                return _network(camera).posteriors({"rgb": rgb, "depth": depth})
+            except (RuntimeError, ValueError, IndexError) as error:
+                raise ConfigError(f"The network cannot take these images: {reason_of(error)}.") from None
 
     def __call__(self, frame: Frame) -> list[Segment]:
         """Returns the segments of a frame; the score is the mean probability of the category."""
@@ -110,6 +117,15 @@ class NetworkDetector:
                     score = float(posteriors[channel][small].mean())
                     segments.append(Segment(category=MPCAT40[channel + 1], score=score, mask=mask))
         return segments
+
+
+@functools.lru_cache(maxsize=4)
+def _network(camera: CameraModel) -> NetworkSegmenter:
+    """Returns the shipped network for a camera, as a run with `--semantics rednet` makes it."""
+    from stubborn.segmentation.network import NetworkSegmenter
+    from stubborn.segmentation.processor import computes_bf16
+
+    return NetworkSegmenter.from_file(SHIPPED_REDNET, camera=camera, threads=1, mirrored=computes_bf16())
 
 
 def detections(segments: Sequence[Segment], phrases: Mapping[str, str], least_score: float) -> dict[str, Any]:

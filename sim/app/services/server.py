@@ -6,6 +6,7 @@
 | /yolov7 | image, conf_thres | the same, with COCO's phrases |
 | /mobile_sam | image, bbox (pixels, xyxy) | cropped_mask: base64 of a byte per pixel |
 | /blip2itm | image, txt | response, `itm score`: share of the picture that shows what the text names |
+| /posteriors | an NPZ file of `sim.app.services.remote.view_bytes` | an NPY file: float32 (40, h, w) |
 | /frame | an NPZ file of `sim.app.services.frames.Frame` | nothing |
 
 Requests and replies are JSON, an image is base64 of a JPEG or PNG. A refused request is answered with status 400, a
@@ -32,6 +33,7 @@ from starlette.routing import Route
 
 from sim.app.services.detectors import (
     Detector,
+    NetworkDetector,
     Segment,
     detections,
     mask_in,
@@ -39,11 +41,13 @@ from sim.app.services.detectors import (
     share_of,
 )
 from sim.app.services.frames import MAX_FRAMES, Frame, Shelf, UnknownPictureError
+from sim.app.services.remote import posteriors_bytes, read_view
 from sim.app.services.words import COCO
 from sim.core.errors import ConfigError
 from sim.core.interface import MAX_SIDE_PX
 from sim.core.reading import parse_json, printable
 
+_BYTES = "application/octet-stream"
 MAX_BYTES = 1 << 28
 """Longest request: a frame of the largest camera has 9 bytes a pixel."""
 BOX_THRESHOLD = 0.35
@@ -57,6 +61,7 @@ class Answers:
 
     def __init__(self, detector: Detector) -> None:
         self._detector = detector
+        self._network = detector if isinstance(detector, NetworkDetector) else None
         self._shelf = Shelf()
         self._seen = OrderedDict[int, tuple[Frame, list[Segment]]]()
         self._lock = threading.Lock()
@@ -65,6 +70,12 @@ class Answers:
         """Registers a frame."""
         self._shelf.add(Frame.from_bytes(body))
         return Response(status_code=204)
+
+    def posteriors(self, body: bytes) -> Response:
+        """Runs the network on colour and depth of the request."""
+        if self._network is None:
+            raise ConfigError("`stubborn serve detectors --source network` starts a server that answers this.")
+        return Response(posteriors_bytes(self._network.posteriors(*read_view(body))), media_type=_BYTES)
 
     def gdino(self, body: bytes) -> Response:
         """Detects what the words of a caption name."""
@@ -169,6 +180,7 @@ def make_app(detector: Detector) -> Starlette:
     answers = Answers(detector)
     served: dict[str, Callable[[bytes], Response]] = {
         "/frame": answers.frame,
+        "/posteriors": answers.posteriors,
         "/gdino": answers.gdino,
         "/yolov7": answers.yolov7,
         "/mobile_sam": answers.mobile_sam,

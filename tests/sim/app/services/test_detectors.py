@@ -15,7 +15,9 @@ import pytest
 pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
 
 from sim.app.services.detectors import (
+    NetworkDetector,
     Segment,
+    _network,
     make_detector,
     mask_in,
     noisy_segments,
@@ -24,7 +26,8 @@ from sim.app.services.detectors import (
     true_segments,
 )
 from sim.app.services.frames import Frame, Shelf, UnknownPictureError
-from sim.app.services.server import make_app
+from sim.app.services.remote import read_posteriors, view_bytes
+from sim.app.services.server import Answers, make_app
 from sim.app.services.words import categories_in, category_of
 from sim.core.errors import ConfigError
 from sim.core.interface import CameraModel
@@ -117,7 +120,7 @@ def test_a_picture_finds_its_frame_after_compression_in_either_order_of_channels
     for one in frames:
         shelf.add(one)
     for one in frames:
-        sent = cv2.imdecode(cv2.imencode(".jpg", one.rgb)[1], cv2.IMREAD_COLOR)
+        sent = np.asarray(cv2.imdecode(cv2.imencode(".jpg", one.rgb)[1], cv2.IMREAD_COLOR))
         assert shelf.find(np.asarray(sent, np.uint8)) is one
         assert shelf.find(np.asarray(sent[..., ::-1], np.uint8)) is one
     with pytest.raises(UnknownPictureError, match="last 4 frames"):
@@ -218,3 +221,14 @@ def test_the_network_sees_a_frame_by_itself() -> None:
     assert len(found["boxes"]) == len(found["logits"]) == len(found["phrases"])
     segments = make_detector("network")(blank)
     assert sum(int(segment.mask.sum()) for segment in segments) > 0.9 * HEIGHT * WIDTH
+
+
+def test_posteriors_are_those_of_the_network_in_process(client: Client) -> None:
+    camera, one = CameraModel(width_px=WIDTH, height_px=HEIGHT), frame()
+    detector = NetworkDetector()
+    own = Answers(detector).posteriors(view_bytes(one.rgb, one.depth, camera))
+    direct = _network(camera).posteriors({"rgb": one.rgb.copy(), "depth": one.depth})
+    np.testing.assert_array_equal(read_posteriors(bytes(own.body), shape=(HEIGHT, WIDTH)), direct)
+    status, text = client.post("/posteriors", view_bytes(one.rgb, one.depth, camera))
+    assert status == 400
+    assert "--source network" in text
