@@ -58,6 +58,7 @@ ROOMS = (
     ("sim.app.evaluation",),
     ("sim.app.analysis",),
     ("sim.app.submissions",),
+    ("sim.app.services",),
     ("sim.app.bridges",),
     ("sim.app.composition",),
     ("sim.app.web",),

@@ -38,8 +38,8 @@ class RunOptions:
     explorer: str | None = None
     """The explorer of agents that take one: a name of --list-agents, or your own as package.module:NAME."""
     semantics: str = "rednet"
-    """Source of segmentation: rednet, noisy (ground truth with the errors of a network), gt (ground truth), or your own
-    as package.module:NAME."""
+    """Source of segmentation: rednet, noisy (ground truth with the errors of a network), gt (ground truth), a server of
+    detectors as http://HOST:PORT, or your own as package.module:NAME."""
     weights: Annotated[Path | None, Option(file_field="detector.weights")] = None
     """With --semantics rednet: your network in place of the shipped one."""
     verification: Annotated[str, Option(plain=True)] = "naive-bayes"
@@ -122,7 +122,11 @@ class RunOptions:
     def own_code(self) -> dict[str, str]:
         """The names of the user's code that this process imports, such as `package.module:NAME`, by option."""
         names = {"agent": self.agent, "explorer": self.explorer, "semantics": self.semantics}
-        return {option: name for option, name in names.items() if name and ":" in name and not is_process(name)}
+        return {
+            option: name
+            for option, name in names.items()
+            if name and ":" in name and not is_process(name) and not name.startswith(("http://", "https://"))
+        }
 
     @property
     def own_modules(self) -> list[str]:

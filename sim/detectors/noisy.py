@@ -15,7 +15,7 @@ import math
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, cast
 
 import cv2
 import numpy as np
@@ -120,6 +120,11 @@ class NoisySegmenter:
         self._world: World | None = None
         self._categories = np.zeros((1, 1), np.uint8)
 
+    @classmethod
+    def without_episode(cls, config: NoisyConfig) -> NoisySegmenter:
+        """Returns a detector for `classify` and `with_outlines`, which need no environment."""
+        return cls(cast(RunningEpisode, None), config)
+
     def categories(self, observation: Observation) -> NDArray[np.uint8]:
         """Returns the category that each pixel was given in the frame that was scored last; 0: none."""
         del observation
@@ -153,8 +158,7 @@ class NoisySegmenter:
         table[objects, classified.first] += classified.confidence
         table[:-1][classified.first == 0] = 1.0 / classes
         table[-1] = 1.0 / classes
-        down, right, _ = self._waves(shown.shape, rng)
-        warped = self._warped(shown, down, right)
+        warped = self.with_outlines(shown, rng)
         columns = np.ascontiguousarray(table.T[1:])
         return columns.take(warped.reshape(-1), axis=1).reshape(-1, *warped.shape)  # eight times as fast as indexing
 
@@ -228,6 +232,11 @@ class NoisySegmenter:
         soft = cv2.blur(scores, (3, 3), borderType=cv2.BORDER_REPLICATE)
         target_score, other_score = cv2.split(np.clip(soft, 0.0, 1.0))
         return Scores(np.asarray(target_score, np.float32), np.asarray(other_score, np.float32))
+
+    def with_outlines(self, shown: NDArray[np.intp], rng: np.random.Generator) -> NDArray[np.intp]:
+        """Returns an image (h, w) of objects with inexact outlines; -1 is no object."""
+        down, right, _ = self._waves(shown.shape, rng)
+        return self._warped(shown, down, right)
 
     def _waves(
         self, shape: tuple[int, ...], rng: np.random.Generator

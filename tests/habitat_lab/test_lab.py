@@ -246,3 +246,30 @@ def test_a_challenge_of_2021_evaluates_an_agent(tmp_path: Path) -> None:
     assert "TASK.UNKNOWN=1 has no effect here" in printed
     missing = run(["habitat", "agent.py"], tmp_path, CHALLENGE_CONFIG_FILE="other/challenge.yaml")
     assert "'other/challenge.yaml' does not exist" in missing.stderr
+
+
+def test_an_environment_class_of_2021_chooses_sensors_scenes_and_data_set(tmp_path: Path) -> None:
+    (tmp_path / "task.yaml").write_text(
+        "SIMULATOR:\n  SEMANTIC_SENSOR: {WIDTH: 64, HEIGHT: 48}\n  AGENT_0: {SENSORS: ['SEMANTIC_SENSOR']}\n"
+        "TASK: {MEASUREMENTS: ['SPL']}\nDATASET: {TYPE: PointNav-v1, EPISODES_DIR: 'episodes/'}\n"
+    )
+    (tmp_path / "old.py").write_text(
+        "from habitat import Config, RLEnv, make_dataset\n"
+        "from habitat.config.default import get_config\n"
+        "from gym.spaces.dict_space import Dict\n"
+        "config = get_config(config_paths=['task.yaml'])\n"
+        "config.DATASET.CONTENT_SCENES = ['val_05.glb', 'scan.glb']\n"
+        "class Own(RLEnv):\n"
+        "    def get_reward_range(self): return 0, 1\n"
+        "    def get_reward(self, observations): return 0\n"
+        "    def get_done(self, observations): return self._env.episode_over\n"
+        "    def get_info(self, observations): return self._env.get_metrics()\n"
+        "env = Own(config, make_dataset(config.DATASET.TYPE, config=config.DATASET))\n"
+        "observations = env.reset()\n"
+        "print(observations['semantic'].shape, env.step(1)[3]['spl'], config.DATASET.EPISODES_DIR)\n"
+        "print(env.habitat_env.sim.config.SCENE, {episode.scene_id for episode in env.episodes})\n"
+    )
+    done = run(["habitat", "old.py", "--split", "val"], tmp_path)
+    assert "(48, 64, 1) 0.0 episodes/\nmjcf_houses/val/val_05.xml {'mjcf_houses/val/val_05.xml'}" in done.stdout, (
+        done.stderr[-2000:]
+    )

@@ -48,6 +48,9 @@ COMMANDS: Mapping[str, Command] = {
     "ros agent": Command("sim.app.commands.ros.agent", "Run an agent as a node of ROS 2, which drives a robot"),
     "ros setup": Command("sim.app.commands.ros.setup", "Make an environment with the wheels of ROS 2"),
     "web": Command("sim.app.commands.web", "Watch an agent, or drive the robot, in the browser"),
+    "serve detectors": Command(
+        "sim.app.commands.serve.detectors", "Serve detectors in the forms of VLFM's model servers"
+    ),
     "gallery": Command("sim.app.commands.gallery", "Render pictures of houses and sheets of furniture"),
     "houses generate": Command("sim.app.commands.houses.generate", "Generate houses"),
     "houses check": Command("sim.app.commands.houses.check", "Check houses for faults"),

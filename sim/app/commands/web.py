@@ -7,9 +7,6 @@ http://127.0.0.1:8008 on your own machine.
 from __future__ import annotations
 
 import contextlib
-import importlib.util
-import logging
-import socket
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,10 +17,9 @@ from msgspec import Meta
 
 from sim.app import cli
 from sim.app.analysis import display
-from sim.core import invocation
+from sim.app.services.hosting import listen, require_web, show_errors_in_one_line
 from sim.core.configuration import with_absolute_paths
-from sim.core.errors import ConfigError, debug
-from sim.core.reading import printable
+from sim.core.errors import ConfigError
 
 if TYPE_CHECKING:
     from sim.app.web.choices import Offer
@@ -76,10 +72,8 @@ class Args:
 
 def main(args: Args) -> int:
     """Serves the page until it is interrupted; returns the exit status."""
-    missing = [name for name in ("starlette", "uvicorn", "websockets") if importlib.util.find_spec(name) is None]
-    if missing:
-        raise ConfigError(f"{invocation.program()} needs {', '.join(missing)}: pip install -e '.[web]'.")
-    listening = _listen(args.host, args.port)  # before the imports, which take seconds
+    require_web()
+    listening = listen(args.host, args.port)  # before the imports, which take seconds
     import uvicorn
 
     from sim.app.web.choices import Choices
@@ -95,9 +89,7 @@ def main(args: Args) -> int:
     config = uvicorn.Config(
         app, log_level="warning", access_log=False, ws_max_size=MAX_MESSAGE_BYTES, timeout_graceful_shutdown=1
     )
-    for handler in (*logging.getLogger("uvicorn").handlers, logging.lastResort):  # of all loggers, uvicorn's and others
-        if handler is not None:
-            handler.addFilter(in_one_line)
+    show_errors_in_one_line()
     names = sorted(hosts - HERE) or ["127.0.0.1"]
     addresses = ", ".join(f"http://{f'[{name}]' if ':' in name else name}:{port}" for name in names)
     display.make_console().print(
@@ -107,15 +99,6 @@ def main(args: Args) -> int:
     with contextlib.suppress(KeyboardInterrupt):
         uvicorn.Server(config).run(sockets=[listening])
     return 0
-
-
-def in_one_line(record: logging.LogRecord) -> bool:
-    """Replaces the traceback of a log record by the error, unless --debug is given: any client could fill the log."""
-    if record.exc_info and not debug():
-        error = record.exc_info[1]
-        line = " ".join(f"{record.getMessage()} {type(error).__name__}: {error}".split())
-        record.msg, record.args, record.exc_info, record.exc_text = printable(line), (), None, None
-    return True
 
 
 def offer(args: Args) -> Offer:
@@ -147,23 +130,6 @@ def offer(args: Args) -> Offer:
         houses=tuple(file.absolute() for file in args.house),
         options=options,
     )
-
-
-def _listen(host: str, port: int) -> socket.socket:
-    """Returns a listening socket.
-
-    Raises:
-        ConfigError: the address is not one of this machine, or the port is in use.
-    """
-    try:
-        family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-        listening = socket.socket(family, kind, protocol)
-        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listening.bind(address)
-        listening.listen()
-    except OSError as error:
-        raise ConfigError(f"Cannot listen on {host}, port {port}: {error.strerror or error}.") from None
-    return listening
 
 
 def entry(argv: Sequence[str] | None = None) -> int:

@@ -1,4 +1,4 @@
-"""Finds segmentations by name: `gt`, `noisy`, `rednet`, and users' own as `package.module:NAME`.
+"""Finds segmentations by name: `gt`, `noisy`, `rednet`, servers by address, and users' own as `package.module:NAME`.
 
 `rednet` imports PyTorch only on use: a process without a network stays small and starts fast.
 """
@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from safetensors import SafetensorError, safe_open
 
 from sim.app.composition.own_segmentation import load_specification, make_own
+from sim.app.services.remote import HttpConfig, HttpSegmenter, is_address
 from sim.core.configuration import as_json
-from sim.core.errors import ConfigError, did_you_mean
+from sim.core.errors import AgentError, ConfigError, did_you_mean
 from sim.core.interface import CameraModel, Observation, Scores, SegmentationSpec, Segmenter, SegmenterSpec
 from sim.core.invocation import command
 from sim.core.reading import open_plain, reason_of, sha256_of
@@ -128,17 +129,32 @@ def _make_network(env: ObjectNavEnv, config: NetworkConfig) -> Segmenter:
     return segmenter
 
 
+def _make_remote(env: ObjectNavEnv, config: HttpConfig) -> Segmenter:
+    """Returns the segmenter of a server, which is asked for one black image first, so that a run fails at its start."""
+    segmenter, camera = HttpSegmenter(env.camera_model, config), env.camera_model
+    try:
+        segmenter.posteriors(black_images(camera))
+    except AgentError as error:
+        raise ConfigError(str(error)) from None
+    return segmenter
+
+
 def require_size(segmenter: Segmenter, camera: CameraModel) -> None:
     """Raises ConfigError if a network cannot process the images of a camera; it is tried on one black image."""
     height, width = camera.height_px, camera.width_px
-    black = {"rgb": np.zeros((height, width, 3), np.uint8), "depth": np.zeros((height, width), np.float32)}
     try:
-        segmenter.posteriors(black)
+        segmenter.posteriors(black_images(camera))
     except (ConfigError, RuntimeError, ValueError, IndexError) as error:
         raise ConfigError(
             f"The network cannot take the camera's images, {width} pixels wide and {height} high "
             f"(camera.width_px, camera.height_px): {reason_of(error)}."
         ) from None
+
+
+def black_images(camera: CameraModel) -> Observation:
+    """Returns black images of a camera."""
+    height, width = camera.height_px, camera.width_px
+    return {"rgb": np.zeros((height, width, 3), np.uint8), "depth": np.zeros((height, width), np.float32)}
 
 
 KINDS: Mapping[str, SegmentationKind] = MappingProxyType(
@@ -170,7 +186,8 @@ def find_segmentation(semantics: str, weights: Path | None) -> SegmentationKind:
     """Returns a kind of segmentation.
 
     Args:
-        semantics: one of `KINDS`, or `package.module:NAME`, where NAME is a `SegmentationSpec` or a factory.
+        semantics: one of `KINDS`, the address of a server, or `package.module:NAME`, where NAME is a
+            `SegmentationSpec` or a factory.
         weights: the user's weights, whose file must exist; None: those that ship, where the kind needs some.
 
     Raises:
@@ -178,6 +195,13 @@ def find_segmentation(semantics: str, weights: Path | None) -> SegmentationKind:
     """
     if semantics in KINDS:
         kind = KINDS[semantics]
+    elif is_address(semantics):
+        kind = SegmentationKind(
+            description=f"the server of detectors at {semantics}",
+            spec=HttpSegmenter.spec,
+            config=HttpConfig(url=semantics),
+            make=_make_remote,
+        )
     elif all(semantics.partition(":")):
         own = load_specification(semantics)
         make = functools.partial(make_own, semantics, own)
@@ -187,7 +211,7 @@ def find_segmentation(semantics: str, weights: Path | None) -> SegmentationKind:
     else:
         raise ConfigError(
             f"Unknown --semantics '{semantics}'.{did_you_mean(semantics, KINDS)}"
-            f" Available: {', '.join(KINDS)}, or your own as "
+            f" Available: {', '.join(KINDS)}, the address of a server (http://HOST:PORT), or your own as "
             "package.module:NAME."
         )
     if weights is not None and not isinstance(kind.config, NetworkConfig):

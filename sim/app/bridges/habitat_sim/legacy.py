@@ -22,12 +22,15 @@ import habitat.core.benchmark
 import habitat.core.env
 import habitat.core.utils
 import numpy as np
+from habitat.config.default_structured_configs import HabitatSimSemanticSensorConfig
 from habitat.core.logging import logger
-from habitat.datasets import make_dataset
+from habitat.core.registry import registry
+from habitat.datasets import make_dataset as lab_dataset
 from habitat.utils.visualizations import utils as pictures
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from sim.app.bridges.habitat_sim.lab import get_config as config_of_split
+from sim.app.bridges.habitat_sim.settings import Configuration
 from sim.core.errors import ConfigError
 
 _MAIN = "habitat.simulator.agents.main_agent"
@@ -45,6 +48,7 @@ PLACES: Mapping[str, str] = {
 }
 """Where the trees of 2021 are today."""
 MOVED: Mapping[str, str] = {
+    "gym.spaces.dict_space": "gym.spaces.dict",
     "habitat.utils.gym_adapter": "habitat.gym.gym_wrapper",
     "habitat_baselines.utils.env_utils": "habitat_baselines.common.habitat_env_factory",
 }
@@ -53,7 +57,7 @@ OF_2021 = "configs/"
 """Folder of the configurations in repositories of habitat-lab until 2022, whose files are not here."""
 OPTIONS = frozenset({"split", "episodes", "seed", "max_steps", "categories", "width_px", "height_px"})
 """The options of `Env`."""
-WITHOUT_EFFECT = ("SIMULATOR.SEMANTIC_SENSOR", "habitat.simulator.agents.main_agent.sim_sensors.semantic_sensor")
+SENSORS = "SIMULATOR.AGENT_0.SENSORS"
 _options: dict[str, Any] = {}
 _told: set[str] = set()
 
@@ -65,10 +69,12 @@ def install(**options: Any) -> None:
     for name, function in (("merge_from_list", _merge_from_list), ("clone", _clone), ("freeze", _nothing)):
         setattr(DictConfig, name, function)
     DictConfig.defrost = _nothing
+    Configuration.SCENE = property(lambda config: config.sim_cfg.scene_id)  # pyright: ignore[reportAttributeAccessIssue]
     challenge = ModuleType("habitat.core.challenge")
     challenge.Challenge = Challenge  # pyright: ignore[reportAttributeAccessIssue]
     sys.modules["habitat.core.challenge"] = challenge
     names = {"Env": Env, "Benchmark": Benchmark, "Challenge": Challenge, "Config": DictConfig, "get_config": get_config}
+    names |= {"make_dataset": make_dataset}
     for module in (habitat, habitat.config.default, habitat.core.env, habitat.core.benchmark):
         vars(module).update({name: value for name, value in names.items() if module is habitat or name in vars(module)})
     for module, name, value in (
@@ -104,21 +110,44 @@ def get_config(
     """
     given = config_path if config_path is not None else config_paths
     files = given.split(",") if isinstance(given, str) else [str(path) for path in given or ()]
-    config = config_of_split(str(_options.get("split", "val")))
+    config = _open(config_of_split(str(_options.get("split", "val"))))
     for file in files:
         if Path(file).is_file():
             _merge(config, OmegaConf.load(file))
         elif (Path(habitat.config.default._HABITAT_CFG_DIR) / file).is_file():
-            config = config_of_split(str(_options.get("split", "val")), base=file)
+            config = _open(config_of_split(str(_options.get("split", "val")), base=file))
         elif file.startswith(OF_2021):
             _tell(f"Configuration '{file}' of an older habitat-lab: the task of this project is used.")
         else:
             raise ConfigError(f"Configuration file '{file}' does not exist.")
-    OmegaConf.set_readonly(config, False)
-    OmegaConf.set_struct(config, False)
     _add_tree_of_2021(config)
     _merge_from_list(config, _pairs(overrides if overrides is not None else opts))
     return config
+
+
+def make_dataset(id_dataset: str, *, config: Any = None, **arguments: Any) -> Any:
+    """Returns a data set, for a configuration of either layout; the option `--split` has priority.
+
+    Scenes that the split does not have are left out; if it has none of them, all of its houses are used.
+
+    Args:
+        id_dataset: its registered name.
+        config: `DATASET` of 2021, or `habitat.dataset`; None makes an empty data set.
+        arguments: those of habitat-lab.
+    """
+    if config is None:
+        return lab_dataset(id_dataset, **arguments)
+    config = OmegaConf.create({str(key).lower(): value for key, value in config.items()})
+    if "split" in _options:
+        id_dataset = config_of_split(_name_of_split(_options)).habitat.dataset.type
+        known = registry.get_dataset(id_dataset).get_scenes_to_load(config)
+        scenes = [Path(str(scene)).stem for scene in config.content_scenes]  # without .glb
+        config.content_scenes = [scene for scene in scenes if scene in known] or ["*"]
+    return lab_dataset(id_dataset, config=config, **arguments)
+
+
+def _name_of_split(options: Mapping[str, Any]) -> str:
+    return str(options["split"]) + ("-hm3d" if options.get("categories") == "hm3d" else "")
 
 
 class Env(habitat.core.env.Env):
@@ -136,12 +165,12 @@ class Env(habitat.core.env.Env):
         unknown = sorted(set(options) - OPTIONS)
         if unknown:
             raise ConfigError(f"Env has no option '{unknown[0]}'.")
-        split = str(options.get("split", "")) + ("-hm3d" if options.get("categories") == "hm3d" else "")
         if config is None:
             config = get_config()
         config = _carried_over(config)
-        if split:
-            config.habitat.dataset.type = config_of_split(split or "val").habitat.dataset.type
+        if "split" in options or options.get("categories") == "hm3d":
+            name = _name_of_split({"split": "val", **options})
+            config.habitat.dataset.type = config_of_split(name).habitat.dataset.type
         if "max_steps" in options:
             config.habitat.environment.max_episode_steps = int(options["max_steps"])
         if "seed" in options:
@@ -149,7 +178,7 @@ class Env(habitat.core.env.Env):
         for sensor in config.habitat.simulator.agents.main_agent.sim_sensors.values():
             sensor.width, sensor.height = options.get("width_px", sensor.width), options.get("height_px", sensor.height)
         if dataset is None:
-            dataset = make_dataset(config.habitat.dataset.type, config=config.habitat.dataset)
+            dataset = lab_dataset(config.habitat.dataset.type, config=config.habitat.dataset)
             count = options.get("episodes")
             if count is not None and not 1 <= int(count) <= len(dataset.episodes):
                 raise ConfigError(f"episodes must be 1 to {len(dataset.episodes)}, got {count}.")
@@ -193,6 +222,22 @@ class Challenge(Benchmark):
             logger.info(f"{name}: {value}")
 
 
+def _open(config: Any) -> Any:
+    """Returns a configuration that can be changed, with a semantic sensor that is off until a script lists it."""
+    OmegaConf.set_readonly(config, False)
+    OmegaConf.set_struct(config, False)
+    sensors = config.habitat.simulator.agents.main_agent.sim_sensors
+    if "semantic_sensor" not in sensors:
+        sensors.semantic_sensor = {**vars(HabitatSimSemanticSensorConfig()), "type": "", "hfov": 79}
+    return config
+
+
+def _use_sensors(config: Any, names: Any) -> None:
+    """Turns the semantic sensor on if it is listed; colour, depth and pose are always there."""
+    if "SEMANTIC_SENSOR" in names:
+        config.habitat.simulator.agents.main_agent.sim_sensors.semantic_sensor.type = "HabitatSimSemanticSensor"
+
+
 def _add_tree_of_2021(config: Any) -> None:
     """Adds the tree of 2021, with the values of today's."""
     old: Any = OmegaConf.create({})
@@ -200,13 +245,10 @@ def _add_tree_of_2021(config: Any) -> None:
         tree = OmegaConf.select(config, today)
         if tree is not None:
             OmegaConf.update(old, place, _upper(tree), force_add=True, merge=True)
-    OmegaConf.update(old, "SIMULATOR.SEMANTIC_SENSOR", {"WIDTH": 640, "HEIGHT": 480}, force_add=True, merge=True)
-    main = config.habitat.simulator.agents.main_agent.sim_sensors
-    if "semantic_sensor" not in main:
-        main.semantic_sensor = {"width": 640, "height": 480}
     old.SEED = config.habitat.seed
     config.merge_with(old)
-    OmegaConf.update(config, "_before", OmegaConf.to_container(old, resolve=False), force_add=True)
+    before = {key: value for key, value in OmegaConf.to_container(config).items() if key.isupper()}
+    OmegaConf.update(config, "_before", before, force_add=True)
 
 
 def _upper(tree: Any) -> dict[str, Any]:
@@ -230,14 +272,17 @@ def _carried_over(config: Any) -> Any:
         for path, value in _leaves(config, skip=("habitat", "_before")):
             if OmegaConf.select(before, path) == value:
                 continue
+            if path == SENSORS:
+                _use_sensors(config, value)
+                continue
             place = max((p for p in PLACES if path.startswith(f"{p}.")), key=len, default=None)
             today = "habitat.seed" if path == "SEED" else place and f"{PLACES[place]}{path[len(place) :].lower()}"
-            if today is None or OmegaConf.select(config, today) is None or path.startswith(WITHOUT_EFFECT):
+            if today is None or OmegaConf.select(config, today) is None:
                 _tell(f"The configuration's {path}={value!r} has no effect here.")
             else:
                 OmegaConf.update(config, today, value)
         main = config.habitat.simulator.agents.main_agent.sim_sensors
-        if "type" not in main.get("semantic_sensor", {"type": ""}):
+        if "semantic_sensor" in main and not main.semantic_sensor.get("type"):
             del main["semantic_sensor"]
     return OmegaConf.create({"habitat": config.habitat})
 
@@ -255,13 +300,16 @@ def _leaves(tree: Any, *, skip: Sequence[str] = (), path: str = "") -> Iterator[
 
 def _merge(config: Any, changes: Any) -> None:
     """Merges a file into a configuration: the tree of today as it is, that of 2021 translated."""
-    OmegaConf.set_readonly(config, False)
-    OmegaConf.set_struct(config, False)
     for path, value in _leaves(changes, skip=("defaults",)):
         place = max((p for p in PLACES if path.startswith(f"{p}.")), key=len, default=None)
         today = path if place is None else f"{PLACES[place]}{path[len(place) :].lower()}"
-        if place is not None and OmegaConf.select(config, today) is None:
-            _tell(f"The configuration's {path}={value!r} has no effect here.")
+        known = OmegaConf.select(config, today)
+        if place is not None and (known is None or isinstance(known, DictConfig)):  # such as a list of measures
+            OmegaConf.update(config, path, value, force_add=True)  # the script may read it
+            if path == SENSORS:
+                _use_sensors(config, value)
+            else:
+                _tell(f"The configuration's {path}={value!r} has no effect here.")
         else:
             OmegaConf.update(config, today, value, force_add=True)
 

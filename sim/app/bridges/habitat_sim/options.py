@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from typing import Any, get_args
 
 from sim.core.errors import ConfigError
+from sim.renderer.profiles import get_profile
 from sim.robot.config import MotionKind
 from sim.sensors.noise import get_noise
 
@@ -25,11 +26,14 @@ class Options:
     """Noise of cameras and drive, a preset of `sim.sensors.noise`. habitat-lab's gps and compass stay exact."""
     profile: str = "fast"
     """Rendering profile, `fast` or `good`."""
+    detectors: str = ""
+    """Address of `stubborn serve detectors`, to which each picture is sent with its truth."""
 
     def __post_init__(self) -> None:
         if self.motion not in get_args(MotionKind):
             raise ConfigError(f"motion must be one of {', '.join(get_args(MotionKind))}, got '{self.motion}'.")
         get_noise(self.noise)
+        get_profile(self.profile)
 
 
 _chosen: dict[str, str] = {}

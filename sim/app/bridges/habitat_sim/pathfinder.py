@@ -26,6 +26,8 @@ from sim.task.ground_truth import GroundTruth
 from sim.world.freespace import NEAREST_FREE_M, FreeSpace
 from sim.world.kinematic import Glide
 
+MARGIN_M = 0.15
+"""Margin of the box that contains the free space."""
 SNAP_M = 2.0
 """A point farther than this from the free space snaps to nothing, as with Habitat's navigation meshes."""
 
@@ -196,8 +198,13 @@ class PathFinder:
         return sum(float(storey.space.free.sum()) * storey.space.frame.cell_m**2 for storey in self.storeys)
 
     def get_bounds(self) -> tuple[Vector3, Vector3]:
-        """Returns the corners of the box around the free space of all storeys."""
+        """Returns the corners of the box around the free space of all storeys.
+
+        It has a margin of 0.15 m: contact can bring the robot some millimetres out of the cells of the free space, and
+        habitat-lab's map must contain it there.
+        """
         x0, y0, x1, y1 = np.array([_bounds_m(storey.space) for storey in self.storeys]).T
+        x0, y0, x1, y1 = x0 - MARGIN_M, y0 - MARGIN_M, x1 + MARGIN_M, y1 + MARGIN_M
         floors = [storey.floor_z_m for storey in self.storeys]
         low = to_position(float(x0.min()), float(y1.max()), min(floors))
         high = to_position(float(x1.max()), float(y0.min()), max(floors) + 2.5)

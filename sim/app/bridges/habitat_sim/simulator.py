@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -27,8 +27,11 @@ from sim.app.bridges.habitat_sim.settings import (
     SensorSubType,
     SensorType,
 )
-from sim.core.errors import ConfigError, HouseError
+from sim.app.services.frames import Frame, register
+from sim.core.errors import ConfigError, EpisodeError, HouseError
+from sim.core.geometry.pose import BodyPose, Pose
 from sim.core.interface import Action, CameraModel
+from sim.detectors.noisy import LabelledObjects
 from sim.episodes.habitat import to_rotation
 from sim.renderer.camera import Camera
 from sim.renderer.gloss import geom_gloss
@@ -39,6 +42,8 @@ from sim.sensors.standard import resolve_sensors
 from sim.task.objectnav import Task
 from sim.world.world import World
 
+_BESIDE_M = (0.0, 0.01, 0.02, 0.03, 0.05)
+"""Distances at which the robot is put if there is no room for it where a script put it."""
 FAR_M = 100.0
 """Depth of surfaces that are farther away, and of no surface."""
 _IMAGES = {SensorType.COLOR: "rgb", SensorType.DEPTH: "depth", SensorType.SEMANTIC: "geom"}
@@ -99,6 +104,7 @@ class Simulator:
         self._semantic_scene: SemanticScene | None = None
         instances = np.append(self.world.labels.geom_instance + 1, 0)  # the last entry is that of geom -1
         self._semantic_ids = instances.astype(np.uint32)
+        self._objects, self._frame_number = LabelledObjects.of(self.world), 0
 
     def _put_initially(self) -> None:
         """Puts the agent at a random place, as Habitat does, until it is put elsewhere."""
@@ -188,10 +194,11 @@ class Simulator:
         """Puts the robot where the agent was put, in physics, and begins the episode after a reset."""
         agent = self.agents[0]
         if self._fresh:
-            self.world.reset(agent.pose, self._conditions())
+            conditions = self._conditions()
+            _beside(agent.pose, lambda pose: self.world.reset(pose, conditions))
             self._fresh = False
         elif agent.put is not None:
-            self.world.put(agent.put)
+            _beside(agent.put, self.world.put)
         agent.put = None
 
     def _conditions(self) -> Conditions:
@@ -222,6 +229,8 @@ class Simulator:
             for seen in _by_eye(agent, specs):
                 noises = [self._noises[spec.uuid] for spec in seen if spec.uuid in self._noises]
                 names = {_IMAGES[spec.sensor_type] for spec in seen}.union(*(noise.images for noise in noises))
+                if self._options.detectors and "rgb" in names:
+                    names |= {"depth", "geom"}
                 if model not in self._cameras:
                     self._cameras[model] = Camera(
                         self.world.model, self.world.labels, camera=model, profile=self._options.profile
@@ -229,7 +238,32 @@ class Simulator:
                 eye = agent.eye(seen[0].uuid, model.height_m)
                 images = self._cameras[model].render(self.world.data, eye, sorted(names))
                 observations |= {spec.uuid: self._observation(spec, images) for spec in seen}
+                if self._options.detectors and "rgb" in names:
+                    colour = next(spec.uuid for spec in seen if spec.sensor_type == SensorType.COLOR)
+                    self._register(observations[colour], images, model, eye)
         return observations
+
+    def _register(self, rgba: NDArray, images: Mapping[str, NDArray], camera: CameraModel, eye: BodyPose) -> None:
+        """Sends a picture with its truth to the server of detectors."""
+        contract = CameraModel(
+            width_px=camera.width_px, height_px=camera.height_px, hfov_rad=camera.hfov_rad, height_m=camera.height_m
+        )
+        depth = np.minimum(images["depth"], contract.max_depth_m)
+        depth[depth < contract.min_depth_m] = 0.0
+        self._frame_number += 1
+        frame = Frame(
+            rgb=np.ascontiguousarray(rgba[..., :3]),
+            depth=depth.astype(np.float32),
+            objects=self._objects.of_geom[images["geom"]].astype(np.int16),
+            names=tuple(instance.name for instance in self.world.labels.instances),
+            categories=tuple(instance.category for instance in self.world.labels.instances),
+            middles_xy_m=self._objects.middle_xy_m,
+            eye_xy_m=(eye.x_m, eye.y_m),
+            seed=self._seed,
+            number=self._frame_number,
+            camera=contract,
+        )
+        register(self._options.detectors, frame)
 
     def _observation(self, spec: SensorSpec, images: Mapping[str, NDArray]) -> NDArray:
         """Returns the image of one camera in Habitat's form, with noise."""
@@ -309,7 +343,9 @@ class Simulator:
 
     get_rigid_object_manager = get_articulated_object_manager = get_object_template_manager
 
-    def recompute_navmesh(self, pathfinder: PathFinder, navmesh_settings: Any = None) -> bool:
+    def recompute_navmesh(
+        self, pathfinder: PathFinder, navmesh_settings: Any = None, include_static_objects: bool = True
+    ) -> bool:
         """Returns True: the free space is always that of the house and the robot."""
         return True
 
@@ -367,6 +403,24 @@ class _NoObjects:
 
     def remove_all_objects(self) -> None:
         """Does nothing."""
+
+
+def _beside(pose: Pose, put: Callable[[Pose], None]) -> None:
+    """Calls `put` with a pose, or with one as near to it as the furniture allows: free space has cells of 2.5 cm.
+
+    Raises:
+        EpisodeError: there is no room for the robot within 5 cm.
+    """
+    first: EpisodeError | None = None
+    for distance_m in _BESIDE_M:
+        for angle in np.linspace(0.0, 2.0 * math.pi, 8 if distance_m else 1, endpoint=False):
+            dx_m, dy_m = distance_m * math.cos(angle), distance_m * math.sin(angle)
+            try:
+                return put(replace(pose, x_m=pose.x_m + dx_m, y_m=pose.y_m + dy_m))
+            except EpisodeError as error:
+                first = first or error
+    assert first is not None
+    raise first
 
 
 def _robot(agent: AgentConfiguration, motion: MotionKind) -> RobotConfig:

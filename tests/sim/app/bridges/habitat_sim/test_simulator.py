@@ -1,4 +1,6 @@
+import http.server
 import math
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -9,7 +11,7 @@ import pytest
 from sim.app.bridges.habitat_sim.agent import AgentState
 from sim.app.bridges.habitat_sim.maths import Deg, Quaternion, Vector3, quat_from_coeffs, quat_rotate_vector
 from sim.app.bridges.habitat_sim.options import configure
-from sim.app.bridges.habitat_sim.pathfinder import GreedyFollowerError, MultiGoalShortestPath, ShortestPath
+from sim.app.bridges.habitat_sim.pathfinder import MARGIN_M, GreedyFollowerError, MultiGoalShortestPath, ShortestPath
 from sim.app.bridges.habitat_sim.settings import (
     ActionSpec,
     ActuationSpec,
@@ -20,7 +22,8 @@ from sim.app.bridges.habitat_sim.settings import (
     SimulatorConfiguration,
 )
 from sim.app.bridges.habitat_sim.simulator import Simulator
-from sim.core.errors import ConfigError, HouseError
+from sim.app.services.frames import Frame
+from sim.core.errors import ConfigError, EpisodeError, HouseError
 from sim.houses.house import House
 from sim.houses.writing import house_text
 from tests.helpers.worlds import bed_behind_a_wall, room, with_box
@@ -85,6 +88,15 @@ def test_a_wall_ends_the_action_by_contact(empty: Simulator) -> None:
     assert empty.step(1)["collided"] is True
     assert empty.previous_step_collided
     assert empty.agents[0].state.position[2] == pytest.approx(-1.82, abs=0.01)
+
+
+def test_a_robot_that_was_put_into_a_wall_stands_beside_it(empty: Simulator) -> None:
+    put(empty, 0.0, -1.835)
+    assert empty.step(2)["collided"] is False
+    assert math.dist(empty.agents[0].state.position, (0.0, 0.0, -1.835)) <= 0.051
+    put(empty, 0.0, -1.95)
+    with pytest.raises(EpisodeError, match="cm inside 'wall"):
+        empty.step(2)
 
 
 def test_cameras_look_from_where_they_are_mounted(tmp_path: Path) -> None:
@@ -181,7 +193,8 @@ def test_the_follower_drives_to_a_place_and_stops_there(tmp_path: Path) -> None:
 def test_the_pathfinder_knows_where_the_robot_fits(empty: Simulator) -> None:
     finder, reach_m = empty.pathfinder, 2.0 - empty.world.robot.radius_m
     low, high = finder.get_bounds()
-    assert (low.x, low.z, high.x, high.z) == pytest.approx((-reach_m, -reach_m, reach_m, reach_m), abs=0.03)
+    box_m = reach_m + MARGIN_M  # a robot that a contact ended is a little outside of the free cells
+    assert (low.x, low.z, high.x, high.z) == pytest.approx((-box_m, -box_m, box_m, box_m), abs=0.03)
     assert finder.is_navigable([1.7, 0.0, 0.0])
     assert not finder.is_navigable([1.9, 0.0, 0.0])
     assert not finder.is_navigable([0.0, 1.0, 0.0])
@@ -189,8 +202,9 @@ def test_the_pathfinder_knows_where_the_robot_fits(empty: Simulator) -> None:
     assert np.isnan(finder.snap_point([9.0, 0.0, 0.0])).all()
     assert finder.distance_to_closest_obstacle([1.0, 0.0, 0.0]) == pytest.approx(reach_m - 1.0, abs=0.03)
     view = finder.get_topdown_view(0.1, 0.0)
-    assert view.shape == pytest.approx((36, 36), abs=1)
-    assert view.all()
+    assert view.shape == pytest.approx((39, 39), abs=1)
+    assert view[2:-2, 2:-2].all()
+    assert not view[0].any()
     assert finder.island_radius([0.0, 0.0, 0.0]) == pytest.approx(reach_m * math.sqrt(2.0), abs=0.05)
     finder.seed(7)
     assert all(finder.is_navigable(finder.get_random_navigable_point()) for _ in range(5))
@@ -226,8 +240,44 @@ def test_options_apply_to_simulators_that_are_made_later(tmp_path: Path, monkeyp
         assert seen["rgb"].shape == (48, 64, 4)
     with pytest.raises(ConfigError, match="motion must be"):
         configure(motion="hovering")
+    with pytest.raises(ConfigError, match="profile 'bad'"):
+        configure(profile="bad")
     with pytest.raises(ConfigError, match="'speed'"):
         configure(speed="high")
+
+
+def test_each_picture_is_registered_with_its_truth_at_a_server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    got: list[Frame] = []
+
+    class Handler(http.server.BaseHTTPRequestHandler):
+        def do_POST(self) -> None:
+            got.append(Frame.from_bytes(self.rfile.read(int(self.headers["content-length"]))))
+            self.send_response(204)
+            self.end_headers()
+
+        def log_message(self, format: str, *args: object) -> None:
+            pass
+
+    monkeypatch.setattr("sim.app.bridges.habitat_sim.options._chosen", {})
+    with http.server.HTTPServer(("127.0.0.1", 0), Handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        monkeypatch.setenv("STUBBORN_HABITAT", f"detectors=http://127.0.0.1:{server.server_port}")
+        with simulator(tmp_path, bed_behind_a_wall()) as sim:
+            put(sim, 0.0, 0.0)
+            sim.get_sensor_observations()
+            seen = sim.step(2)
+            server.shutdown()
+            first, second = got
+            np.testing.assert_array_equal(second.rgb, seen["rgb"][..., :3])
+            assert (first.rgb != second.rgb).any()
+            assert second.number == first.number + 1
+            assert "bed" in second.categories
+            shown = {second.names[index] for index in np.unique(second.objects) if index >= 0}
+            named = [sim.semantic_scene.objects[number].category.name() for number in np.unique(seen["semantic"])]
+            assert {name.rsplit("_", 1)[0] for name in shown} == set(named) - {"void"}
+            server.server_close()
+            with pytest.raises(ConfigError, match="serve detectors"):
+                sim.step(2)
 
 
 def test_what_is_not_here_is_refused(tmp_path: Path) -> None:

@@ -1,0 +1,1 @@
+"""Servers that stand for models which agents reach over HTTP."""

@@ -1,0 +1,63 @@
+"""Serves detectors in the forms of VLFM's four model servers, from the simulator's truth or from the shipped network.
+
+    stubborn serve detectors --source noisy
+
+GroundingDINO, BLIP-2, MobileSAM and YOLOv7 have ports 12181 to 12184, as in VLFM and ApexNav; each port answers all
+forms. A simulator registers its frames there (docs/habitat.md).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated
+
+from msgspec import Meta
+
+from sim.app import cli
+from sim.app.analysis import display
+from sim.app.services.detectors import Source, make_detector
+from sim.app.services.hosting import listen, require_web, show_errors_in_one_line
+
+PORTS = 4
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Serve detectors in the forms of VLFM's model servers."""
+
+    source: Source = "truth"
+    """truth: exact boxes and masks; noisy: the truth with the errors of a network; network: the shipped network."""
+    port: Annotated[int, Meta(ge=1, le=65535 - PORTS + 1)] = 12181
+    """First of the four ports."""
+    host: str = "127.0.0.1"
+    """Address to listen on. There is no password."""
+
+
+def main(args: Args) -> int:
+    """Serves until it is interrupted; returns the exit status."""
+    require_web()
+    sockets = [listen(args.host, args.port + number) for number in range(PORTS)]
+    import uvicorn
+
+    from sim.app.services.server import make_app
+
+    config = uvicorn.Config(make_app(make_detector(args.source)), log_level="warning", access_log=False)
+    show_errors_in_one_line()
+    display.make_console().print(
+        f"Detectors ({args.source}) on http://{args.host}, ports {args.port} to {args.port + PORTS - 1}. "
+        "Ctrl-C ends the server.",
+        highlight=False,
+        soft_wrap=True,
+    )
+    sys.stdout.flush()
+    with contextlib.suppress(KeyboardInterrupt):
+        uvicorn.Server(config).run(sockets=sockets)
+    return 0
+
+
+def entry(argv: Sequence[str] | None = None) -> int:
+    """Runs the command line; returns its exit status."""
+    return cli.run(Args, main, argv)

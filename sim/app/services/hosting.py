@@ -1,0 +1,51 @@
+"""What every HTTP server of this project needs: the packages, a socket, and errors that stay one line of the log."""
+
+from __future__ import annotations
+
+import importlib.util
+import logging
+import socket
+
+from sim.core import invocation
+from sim.core.errors import ConfigError, debug
+from sim.core.reading import printable
+
+
+def require_web() -> None:
+    """Raises ConfigError if the packages of the extra `web` are not installed."""
+    missing = [name for name in ("starlette", "uvicorn", "websockets") if importlib.util.find_spec(name) is None]
+    if missing:
+        raise ConfigError(f"{invocation.program()} needs {', '.join(missing)}: pip install -e '.[web]'.")
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """Returns a listening socket.
+
+    Raises:
+        ConfigError: the address is not one of this machine, or the port is in use.
+    """
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        listening = socket.socket(family, kind, protocol)
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listening.bind(address)
+        listening.listen()
+    except OSError as error:
+        raise ConfigError(f"Cannot listen on {host}, port {port}: {error.strerror or error}.") from None
+    return listening
+
+
+def show_errors_in_one_line() -> None:
+    """Shortens the log of a server that `uvicorn.Config` has set up."""
+    for handler in (*logging.getLogger("uvicorn").handlers, logging.lastResort):  # of all loggers, uvicorn's and others
+        if handler is not None:
+            handler.addFilter(in_one_line)
+
+
+def in_one_line(record: logging.LogRecord) -> bool:
+    """Replaces the traceback of a log record by the error, unless --debug is given: any client could fill the log."""
+    if record.exc_info and not debug():
+        error = record.exc_info[1]
+        line = " ".join(f"{record.getMessage()} {type(error).__name__}: {error}".split())
+        record.msg, record.args, record.exc_info, record.exc_text = printable(line), (), None, None
+    return True

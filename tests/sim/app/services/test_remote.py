@@ -1,0 +1,351 @@
+"""A segmenter that asks a server, against servers that answer right, wrong or not at all."""
+
+from __future__ import annotations
+
+import base64
+import http.server
+import json
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+
+from sim.app.composition.segmenters import find_segmentation
+from sim.app.options import RunOptions
+from sim.app.services.remote import (
+    HttpConfig,
+    HttpSegmenter,
+    is_address,
+    posteriors_bytes,
+    read_posteriors,
+    read_view,
+    view_bytes,
+)
+from sim.core.errors import AgentError, ConfigError
+from sim.core.interface import MPCAT40_ID, CameraModel
+from sim.training.views.coco import encode_mask
+
+CAMERA = CameraModel(width_px=64, height_px=48)
+Handler = Callable[[http.server.BaseHTTPRequestHandler, bytes], None]
+
+
+class Server:
+    """A server whose answer each test states."""
+
+    def __init__(self, answer: Handler) -> None:
+        self.requests: list[tuple[str, bytes]] = []
+        owner = self
+
+        class OneHandler(http.server.BaseHTTPRequestHandler):
+            def do_POST(self) -> None:
+                body = self.rfile.read(int(self.headers["content-length"]))
+                owner.requests.append((self.path, body))
+                answer(self, body)
+
+            def log_message(self, format: str, *args: object) -> None:
+                pass
+
+        self._server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), OneHandler)
+        self._server.daemon_threads = True
+        threading.Thread(target=self._server.serve_forever, daemon=True).start()
+        self.url = f"http://127.0.0.1:{self._server.server_port}"
+
+    def close(self) -> None:
+        self._server.shutdown()
+        self._server.server_close()
+
+
+Start = Callable[[Handler], Server]
+
+
+@pytest.fixture
+def start(monkeypatch: pytest.MonkeyPatch) -> Iterator[Start]:
+    monkeypatch.setattr("sim.app.services.remote.WAIT_S", 0.0)
+    monkeypatch.setattr("sim.app.services.remote.VLFM_PORTS", {})  # both services on one port
+    servers: list[Server] = []
+
+    def made(answer: Handler) -> Server:
+        servers.append(Server(answer))
+        return servers[-1]
+
+    yield made
+    for server in servers:
+        server.close()
+
+
+def send(handler: http.server.BaseHTTPRequestHandler, data: bytes, status: int = 200) -> None:
+    handler.send_response(status)
+    handler.send_header("Content-Length", str(len(data)))
+    handler.end_headers()
+    handler.wfile.write(data)
+
+
+def view(seed: int = 0) -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    size = CAMERA.height_px, CAMERA.width_px
+    return {"rgb": rng.integers(0, 256, (*size, 3), np.uint8), "depth": rng.uniform(0.5, 5.0, size).astype(np.float32)}
+
+
+def probabilities(seed: int = 0) -> np.ndarray:
+    return np.random.default_rng(seed).dirichlet(np.ones(40), (12, 16)).transpose(2, 0, 1).astype(np.float32)
+
+
+def asking(url: str, **others: Any) -> HttpSegmenter:
+    return HttpSegmenter(CAMERA, HttpConfig(url=url, **others))
+
+
+def test_the_address_of_a_server_is_a_kind_of_segmentation() -> None:
+    kind = find_segmentation("http://localhost:12181", None)
+    assert kind.config == HttpConfig(url="http://localhost:12181")
+    assert RunOptions(semantics="http://localhost:12181").own_modules == []
+    assert is_address("https://[::1]:8000/detect")
+    assert not any(map(is_address, ("http://", "http:localhost", "http://host:port", "package.module:NAME", "gt")))
+    with pytest.raises(ConfigError, match="--weights go with"):
+        find_segmentation("http://localhost:12181", Path("weights"))
+
+
+@pytest.mark.parametrize("wrong", [{"url": "localhost"}, {"timeout_s": 0.0}, {"retries": -1}, {"box_threshold": 2.0}])
+def test_wrong_settings_are_refused(wrong: dict[str, Any]) -> None:
+    with pytest.raises(ConfigError, match="HttpConfig"):
+        replace(HttpConfig(url="http://localhost:1"), **wrong)
+
+
+def test_colour_and_depth_arrive_without_loss_and_posteriors_come_back(start: Start) -> None:
+    seen: list[Any] = []
+
+    def answer(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+        seen.append(read_view(body))
+        send(handler, posteriors_bytes(probabilities()))
+
+    server, observation = start(answer), view()
+    segmenter = asking(server.url)
+    np.testing.assert_array_equal(segmenter.posteriors(observation), probabilities())
+    scores = segmenter.scores(observation, "chair")
+    np.testing.assert_array_equal(scores.target, probabilities()[MPCAT40_ID["chair"] - 1])
+    assert [path for path, _ in server.requests] == ["/posteriors"]  # one request a frame
+    rgb, depth, camera = seen[0]
+    np.testing.assert_array_equal(rgb, observation["rgb"])
+    np.testing.assert_array_equal(depth, observation["depth"])
+    assert camera == CAMERA
+
+
+def test_boxes_and_masks_of_vlfms_servers_become_posteriors(start: Start) -> None:
+    mask = np.zeros((48, 64), np.uint8)
+    mask[8:40, 16:48] = 1
+
+    def answer(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+        if handler.path == "/gdino":
+            reply = {
+                "boxes": [[0.25, 0.2, 0.75, 0.8], [0.0, 0.0, 1.0, 1.0], [0.0, 0.0, 1.0, 1.0]],
+                "logits": [0.8, 0.1, 0.9],
+                "phrases": ["couch", "chair", "unicorn"],
+            }
+        else:
+            assert json.loads(body)["bbox"] == pytest.approx([16.0, 9.6, 48.0, 38.4])
+            reply = {"cropped_mask": base64.b64encode(mask.tobytes()).decode()}
+        send(handler, json.dumps(reply).encode())
+
+    server, observation = start(answer), view()
+    segmenter = asking(server.url, form="vlfm")
+    posteriors = segmenter.posteriors(observation)
+    assert posteriors.shape == (40, 12, 16)
+    np.testing.assert_allclose(posteriors.sum(axis=0), 1.0, atol=1e-5)
+    assert set(np.unique(segmenter.categories(observation))) == {0, MPCAT40_ID["sofa"]}
+    np.testing.assert_allclose(posteriors[MPCAT40_ID["sofa"] - 1][mask[2::4, 2::4] > 0], 0.8)
+    assert "chair . table . picture" in json.loads(server.requests[0][1])["caption"]
+    assert [path for path, _ in server.requests] == ["/gdino", "/mobile_sam"]
+
+
+def test_annotations_of_coco_become_posteriors(start: Start) -> None:
+    mask, observation = np.zeros((48, 64), np.bool_), view()
+    mask[8:40, 16:48] = True
+
+    def answer(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+        question = json.loads(body)
+        data = np.frombuffer(base64.b64decode(question["image"]), np.uint8)
+        sent = np.asarray(cv2.imdecode(data, cv2.IMREAD_COLOR))
+        np.testing.assert_array_equal(sent[..., ::-1], observation["rgb"])
+        assert "tv monitor" in question["words"]
+        annotations = [
+            {"category": "bed", "score": 0.6, "bbox": [0, 0, 64, 12]},
+            {"category": "couch", "score": 0.9, "bbox": [16, 8, 32, 32], "segmentation": encode_mask(mask)},
+            {"category": "dog", "score": 0.9, "bbox": [0, 0, 64, 48]},
+            {"category": "chair", "score": 0.2, "bbox": [0, 0, 64, 48]},
+        ]
+        send(handler, json.dumps({"annotations": annotations}).encode())
+
+    server = start(answer)
+    segmenter = asking(f"{server.url}/detect", form="coco")
+    shown = segmenter.categories(observation)
+    expected = np.zeros((48, 64), np.uint8)
+    expected[:12], expected[mask] = MPCAT40_ID["bed"], MPCAT40_ID["sofa"]
+    np.testing.assert_array_equal(shown, expected[2::4, 2::4])
+    np.testing.assert_allclose(segmenter.posteriors(observation).sum(axis=0), 1.0, atol=1e-5)
+    assert [path for path, _ in server.requests] == ["/detect"]
+
+
+def slow(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+    time.sleep(0.6)
+    send(handler, posteriors_bytes(probabilities()))
+
+
+def trickle(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+    data = posteriors_bytes(probabilities())
+    handler.send_response(200)
+    handler.send_header("Content-Length", str(len(data)))
+    handler.end_headers()
+    for first in range(8):
+        handler.wfile.write(data[first : first + 1])
+        handler.wfile.flush()
+        time.sleep(0.1)
+
+
+def closed(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+    handler.close_connection = True
+    handler.connection.close()
+
+
+def half(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+    data = posteriors_bytes(probabilities())
+    handler.send_response(200)
+    handler.send_header("Content-Length", str(len(data)))
+    handler.end_headers()
+    handler.wfile.write(data[: len(data) // 2])
+
+
+def body_of(data: bytes, status: int = 200) -> Handler:
+    return lambda handler, body: send(handler, data, status)
+
+
+def pickled(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+    stream = np.array([print], object)
+    import io
+
+    file = io.BytesIO()
+    np.save(file, stream, allow_pickle=True)
+    send(handler, file.getvalue())
+
+
+def as_json(**reply: Any) -> Handler:
+    return body_of(json.dumps(reply).encode())
+
+
+FAULTS: dict[str, tuple[Handler, str, str]] = {
+    "slow": (slow, "posteriors", "no reply in 0.3 s"),
+    "trickle": (trickle, "posteriors", "longer than 0.3 s"),
+    "closed": (closed, "posteriors", "closed connection|reset"),
+    "half": (half, "posteriors", r"ended after \d+ of \d+ bytes"),
+    "empty": (body_of(b""), "posteriors", "cannot be read as an NPY file"),
+    "garbage": (body_of(b"\x00\xff garbage"), "posteriors", "cannot be read as an NPY file"),
+    "code": (pickled, "posteriors", "cannot be read as an NPY file"),
+    "500": (body_of(b"<h1>broken\x1b[2J</h1>", 500), "posteriors", "status 500: <h1>broken"),
+    "404": (body_of(b"nothing here", 404), "posteriors", "status 404: nothing here"),
+    "type": (body_of(posteriors_bytes(probabilities().astype(np.float64))), "posteriors", "float32"),  # type: ignore[arg-type]
+    "size": (body_of(posteriors_bytes(probabilities()[:, :5])), "posteriors", r"shape \(40, 5, 16\)"),
+    "classes": (body_of(posteriors_bytes(probabilities()[:9])), "posteriors", r"shape \(9, 12, 16\)"),
+    "nan": (body_of(posteriors_bytes(probabilities() * np.float32(np.nan))), "posteriors", "outside"),
+    "negative": (body_of(posteriors_bytes(-probabilities())), "posteriors", "outside"),
+    "json": (body_of(b"{'boxes': []}"), "vlfm", "its reply"),
+    "list": (body_of(b"[1]"), "vlfm", "its reply"),
+    "fields": (as_json(boxes=[]), "vlfm", "lists boxes"),
+    "lengths": (as_json(boxes=[[0, 0, 1, 1]], logits=[], phrases=[]), "vlfm", "lists boxes"),
+    "words": (body_of(b'[{"category": 5, "score": 1, "bbox": [0, 0, 1, 1]}]'), "coco", "list of annotations"),
+    "bbox": (body_of(b'[{"category": "bed", "score": 1, "bbox": [0, "a", 1, 1]}]'), "coco", "list of annotations"),
+    "certain": (body_of(b'[{"category": "bed", "score": 2, "bbox": [0, 0, 1, 1]}]'), "coco", "scores outside"),
+    "mask": (
+        body_of(b'[{"category": "bed", "score": 1, "segmentation": {"size": [2, 2], "counts": [4]}}]'),
+        "coco",
+        "2 x 2",
+    ),
+    "runs": (
+        body_of(b'[{"category": "bed", "score": 1, "segmentation": {"size": [48, 64], "counts": [4]}}]'),
+        "coco",
+        "runs",
+    ),
+    "score": (as_json(boxes=[[0, 0, 1, 1]], logits=[7], phrases=["chair"]), "vlfm", "scores outside"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_of_the_server_is_one_sentence_after_all_attempts(start: Start, fault: str) -> None:
+    answer, form, words = FAULTS[fault]
+    server = start(answer)
+    segmenter = asking(server.url, form=form, timeout_s=0.3, retries=1)
+    with pytest.raises(AgentError, match=words) as error:
+        segmenter.posteriors(view())
+    assert "no valid reply in 2 attempts" in str(error.value)
+    assert "\n" not in str(error.value)
+    assert "\x1b" not in str(error.value)
+    assert len(server.requests) == 2
+
+
+def test_a_mask_of_another_size_is_refused(start: Start) -> None:
+    def answer(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+        reply: dict[str, Any] = {"boxes": [[0, 0, 1, 1]], "logits": [0.9], "phrases": ["chair"]}
+        if handler.path == "/mobile_sam":
+            reply = {"cropped_mask": base64.b64encode(bytes(10)).decode()}
+        send(handler, json.dumps(reply).encode())
+
+    with pytest.raises(AgentError, match="mask of 10 pixels for a picture of 3072"):
+        asking(start(answer).url, form="vlfm", retries=0).posteriors(view())
+
+
+def test_no_server_is_one_sentence() -> None:
+    with pytest.raises(AgentError, match=r"127.0.0.1:9/posteriors gave no valid reply in 1 attempts: .*refused"):
+        asking("http://127.0.0.1:9", retries=0).posteriors(view())
+
+
+def test_a_fault_that_ends_is_repaired_by_the_next_attempt(start: Start) -> None:
+    count = 0
+
+    def answer(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+        nonlocal count
+        count += 1
+        send(handler, posteriors_bytes(probabilities()), 503 if count < 3 else 200)
+
+    segmenter = asking(start(answer).url, retries=2)
+    np.testing.assert_array_equal(segmenter.posteriors(view()), probabilities())
+
+
+def test_kept_replies_need_no_server_and_only_valid_ones_are_kept(start: Start, tmp_path: Path) -> None:
+    replies = [posteriors_bytes(probabilities(1)), b"garbage"]
+    server = start(lambda handler, body: send(handler, replies.pop()))
+    segmenter = asking(server.url, cache=tmp_path, retries=1)
+    first = segmenter.posteriors(view(1))
+    assert len(server.requests) == 2
+    server.close = lambda: None  # type: ignore[method-assign]
+    server._server.shutdown()
+    server._server.server_close()
+    again = asking(server.url, cache=tmp_path, retries=0)
+    np.testing.assert_array_equal(again.posteriors(view(1)), first)
+    with pytest.raises(AgentError, match="no valid reply"):
+        again.posteriors(view(2))
+    (kept,) = [file for file in tmp_path.rglob("*") if file.is_file()]
+    kept.write_bytes(b"damaged")
+    with pytest.raises(AgentError, match=r"cached reply .* cannot be used"):
+        asking(server.url, cache=tmp_path).posteriors(view(1))
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"x",
+        view_bytes(view()["rgb"][:2], view()["depth"], CAMERA),
+        view_bytes(view()["rgb"], view()["depth"].astype(np.float64), CAMERA),  # type: ignore[arg-type]
+    ],
+)
+def test_other_bytes_are_no_view(data: bytes) -> None:
+    with pytest.raises(ConfigError, match="not a view"):
+        read_view(data)
+
+
+def test_posteriors_may_have_any_whole_fraction_of_the_size() -> None:
+    for rows, columns in ((48, 64), (12, 16), (3, 4)):
+        flat = np.full((40, rows, columns), 0.025, np.float32)
+        assert read_posteriors(posteriors_bytes(flat), shape=(48, 64)).shape == flat.shape
