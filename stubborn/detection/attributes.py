@@ -30,6 +30,11 @@ from stubborn.detection.tracks import Tracks
 FILE = Path(__file__).with_name("attributes.json")
 UNDECIDED, AT_LAST = 0.45, 0.7
 """Factor of a condition that is not decided, and the same when few actions are left."""
+_NO_COLOUR = 0.3
+"""Weight of the case that no one colour describes an object: people name the one that it looks like most."""
+_SEEN_ALONE = 0.85
+"""The factor of an object that was seen well but not beside what the wish names is this share of `UNDECIDED`: what is
+beside it may be out of the picture."""
 LATE_SHARE = 0.6
 """After this share of the actions, conditions that are not decided count as `AT_LAST`."""
 _LEAST_PIXELS = 60
@@ -147,7 +152,7 @@ class Attributes:
             result *= [self._room_factor(tracks, track, undecided) for track in candidates.tolist()]
         for beside in wish.beside:
             near = [self._is_at(tracks, track, beside) for track in candidates.tolist()]
-            result *= np.where(near, 1.0, np.where(well_seen, 0.1, undecided))
+            result *= np.where(near, 1.0, np.where(well_seen, _SEEN_ALONE * undecided, undecided))
         if wish.size is not None:
             result *= self._size_factors(tracks, candidates, result, undecided)
         return result.astype(np.float32)
@@ -159,6 +164,7 @@ class Attributes:
         fitted = _fitted().colours
         logits = np.array(fitted.weights) @ np.sqrt(counts / counts.sum()) + np.array(fitted.offsets)
         odds = np.exp(logits - logits.max())
+        odds[fitted.names.index("")] *= _NO_COLOUR
         return float(odds[fitted.names.index(self.wish.colour or "")] / odds.sum())
 
     def _room_factor(self, tracks: Tracks, track: int, undecided: float) -> float:
