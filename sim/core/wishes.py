@@ -134,10 +134,15 @@ def parse_wish(text: str) -> Wish:
     if match := _IN_ROOM.search(" " + rest):
         rooms, rest = ROOMS[match[1]], (" " + rest)[: match.start()].strip()
     is_word = rest in vocabulary().words  # "something to sit on" is one
-    head, *others = [("on", rest)] if is_word else _split_places(rest)
+    head, *others = [_first(rest)] if is_word else _split_places(rest)
     beside = tuple(Beside(place, *_other(words)) for place, words in others)
     wish = _noun_phrase(rest if not rooms else f"{rest} in the {match[1]}", head[1], beside)  # type: ignore[index]
     return Wish(**{**wish.__dict__, "rooms": rooms}) if rooms else wish
+
+
+def _first(phrase: str) -> tuple[Place, str]:
+    """Returns the first phrase in the form of the others; its place is not used."""
+    return "on", phrase
 
 
 def _split_places(rest: str) -> list[tuple[Place, str]]:
@@ -147,7 +152,8 @@ def _split_places(rest: str) -> list[tuple[Place, str]]:
     places = [_PLACES[word] for word in parts[1::2]]
     if any(not phrase.strip() for phrase in phrases):
         raise WishError(f"The goal '{rest}' must name an object on each side of '{parts[1]}'.")
-    return list(zip(["on", *places], (phrase.strip() for phrase in phrases), strict=True))  # type: ignore[arg-type]
+    later = zip(places, (phrase.strip() for phrase in phrases[1:]), strict=True)
+    return [_first(phrases[0].strip()), *later]
 
 
 def _other(words: str) -> tuple[frozenset[str], str]:

@@ -108,12 +108,12 @@ class Attributes:
             numbers = colour_numbers(rgb[seen].astype(np.float32) / 255.0)
             np.add.at(self._colours, (tracks[seen], numbers), 1.0)
         if objects is not None:
-            image, names = objects
+            image, every_name = objects
             pairs, counts = np.unique(np.stack([tracks[seen], image[seen]]), axis=1, return_counts=True)
             for (track, number), count in zip(pairs.T.tolist(), counts.tolist(), strict=True):
                 if number >= 0:
-                    of_track = self._names.setdefault(track, {})
-                    of_track[names[number]] = of_track.get(names[number], 0) + count
+                    name, of_track = every_name[number], self._names.setdefault(track, {})
+                    of_track[name] = of_track.get(name, 0) + count
 
     def mark(
         self,

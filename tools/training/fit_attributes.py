@@ -88,12 +88,12 @@ def _fit_colours(shares: dict[str, list[np.ndarray]]) -> dict[str, object]:
         labels += [name] * len(examples)
     fitted = LogisticRegression(class_weight="balanced", max_iter=2000, C=10.0)
     fitted.fit(np.sqrt(np.array(features)), labels)
-    right = fitted.predict(np.sqrt(np.array(features))) == np.array(labels)
+    right = np.asarray(fitted.predict(np.sqrt(np.array(features)))) == np.array(labels)
     print(f"\ncolours: {100 * right.mean():.0f} % of {len(labels)} examples")
     return {
         "names": list(fitted.classes_),
-        "weights": fitted.coef_.round(4).tolist(),
-        "offsets": fitted.intercept_.round(4).tolist(),
+        "weights": np.round(fitted.coef_, 4).tolist(),
+        "offsets": np.round(fitted.intercept_, 4).tolist(),
     }
 
 

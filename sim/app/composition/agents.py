@@ -29,6 +29,7 @@ from stubborn.exploration.explorer import ExplorerConfig
 
 if TYPE_CHECKING:  # a list of the agents needs neither MuJoCo nor OpenGL
     from sim.env.objectnav import ObjectNavEnv
+    from sim.episodes.splits import Split
     from sim.task.config import TaskConfig
 
 
@@ -204,9 +205,10 @@ def build_agent(
         raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error
 
 
-def hidden_from_agents(env: ObjectNavEnv, out: Path | None) -> list[Path]:
+def hidden_from_agents(env: KnownRobot, out: Path | None) -> list[Path]:
     """Returns the files and folders that an agent in namespaces does not see: houses, episodes and results."""
-    here, files = Path.cwd(), [Path(file).resolve() for file in env.split.house_paths.values()]
+    split: Split | None = getattr(env, "split", None)  # a robot elsewhere has none
+    here, files = Path.cwd(), [Path(file).resolve() for file in (split.house_paths.values() if split else ())]
     folders = {assets_dir().resolve(), *([] if out is None else [out.resolve()])}
     folders |= {file.parent for file in files if not here.is_relative_to(file.parent)}
     single = {path for file in files if here.is_relative_to(file.parent) for path in (file, sidecar_path(file))}

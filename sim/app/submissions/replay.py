@@ -27,7 +27,7 @@ from sim.task.objectnav import Task
 from sim.task.result import EpisodeMetrics
 from sim.world.world import World
 
-Look = Callable[[], NDArray[np.uint8]]
+Look = Callable[[], dict[str, NDArray]]
 """Returns the true segmentation (h, w) at the robot's current pose."""
 
 
@@ -105,8 +105,8 @@ def _scene(
         return world, Task(world, config, camera=setting.camera), None, lambda: None
     scene = Scene(loaded, robot=robot, camera=setting.camera, profile="fast", task=config)
 
-    def look() -> NDArray[np.uint8]:
-        return scene.camera.render(scene.world.data, scene.world.camera_pose, ("semantic",))["semantic"]
+    def look() -> dict[str, NDArray]:
+        return scene.camera.render(scene.world.data, scene.world.camera_pose, scene.task.images)
 
     return scene.world, scene.task, look, scene.close
 

@@ -88,7 +88,7 @@ def test_only_the_object_that_was_asked_for_counts():
     task.world.reset(Pose(2.2, 3.0, 0.0))
     task.begin("the red chair next to the desk", task.world.pose)
     assert task.distance_from("chair", task.start) == 0.0
-    assert task.metrics().distance_to_goal > 3.0
+    assert (task.metrics().distance_to_goal or 0.0) > 3.0
     assert task.images == ("semantic", "geom")
     geom = np.array(
         [[task.truth.instances("chair_01")[0].geom_ids[0], task.truth.instances("chair_00")[0].geom_ids[0]]]

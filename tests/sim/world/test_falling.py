@@ -89,7 +89,7 @@ def test_a_fall_ends_the_episode_without_success_and_counts_as_stairs():
     world.reset(Pose(-0.7, 0.0, 0.0))
     task.begin("bed", Pose(-0.7, 0.0, 0.0))
     while not task.done:
-        task.observe(FORWARD, world.move(FORWARD), np.zeros((4, 4), np.uint8))
+        task.observe(FORWARD, world.move(FORWARD), {"semantic": np.zeros((4, 4), np.uint8)})
     result = task.metrics()
     assert (result.end_reason, result.failure, result.success) == ("fallen", "stairs", 0.0)
     assert result.distance_to_goal is None
