@@ -164,10 +164,9 @@ def _read_materials(folder: Path, name: str, texture_px: int, paints: dict[str, 
             paints[current] = replace(paints[current], rgba=(*paints[current].rgba[:3], _share(words[-1])))
         elif words[:1] == ["map_Kd"] and current in paints and len(words) > 1:
             named = _picture_name(words[1:])
-            picture = _file_inside(folder, named, losses)
+            picture = _pixels(_file_inside(folder, named, losses), named, texture_px, losses)
             if picture is not None:
-                rgba = (*WHITE[:3], paints[current].rgba[3])
-                paints[current] = Paint(rgba, picture=_pixels(picture, named, texture_px))
+                paints[current] = Paint((*WHITE[:3], paints[current].rgba[3]), picture=picture)
 
 
 def _share(word: str) -> float:
@@ -228,9 +227,18 @@ def _file_inside(folder: Path, name: str, losses: Counter[str]) -> bytes | None:
         return None
 
 
-def _pixels(content: bytes, name: str, texture_px: int) -> NDArray[np.uint8]:
-    """Returns the pixels (h, w, 3) of a picture, RGB, at most `texture_px` along its longer side."""
-    picture = decode_picture(content, where=f"Picture '{printable(name)[:60]}'", error=HouseError)
+def _pixels(content: bytes | None, name: str, texture_px: int, losses: Counter[str]) -> NDArray[np.uint8] | None:
+    """Returns the pixels (h, w, 3) of a picture, RGB, at most `texture_px` along its longer side.
+
+    None: there is no picture, or it was refused, which is reported.
+    """
+    if content is None:
+        return None
+    try:
+        picture = decode_picture(content, where=f"Picture '{printable(name)[:60]}'", error=HouseError)
+    except HouseError as fault:
+        losses[f"{fault} It was left out."] += 1
+        return None
     factor = texture_px / max(picture.shape[:2])
     if factor < 1.0:
         size = max(1, round(picture.shape[1] * factor)), max(1, round(picture.shape[0] * factor))

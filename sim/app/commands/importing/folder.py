@@ -19,9 +19,10 @@ from msgspec import Meta
 from rich.console import Console
 
 from sim.app import cli
+from sim.app.evaluation.own_code import one_line
 from sim.app.evaluation.parallel import ordered_map
 from sim.app.viewers.house_pictures import draw_top, draw_views, titled
-from sim.core.errors import ConfigError, ObjectNavError
+from sim.core.errors import ConfigError, ObjectNavError, debug
 from sim.core.files import inside, write_atomically, write_picture
 from sim.core.reading import convert, printable, read_json, sha256_of
 from sim.episodes.splits import LABELS_FILE, labels_of
@@ -224,6 +225,10 @@ def _tried(make: Callable[[SourceT], Made], source: SourceT) -> Made | _Failed:
         return make(source)
     except ObjectNavError as error:
         return _Failed(str(error))
+    except Exception as error:  # data of others can meet any error: it must not end the import of the other houses
+        if debug():
+            raise
+        return _Failed(f"it cannot be imported ({type(error).__name__}: {one_line(str(error), 100)}).")
 
 
 def _again(report: Mapping[str, object]) -> Made:

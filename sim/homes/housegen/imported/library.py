@@ -15,11 +15,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.core.errors import ConfigError
+from sim.core.errors import ConfigError, debug
 from sim.core.files import inside, write_atomically
 from sim.core.invocation import command
 from sim.core.paths import assets_dir
-from sim.core.reading import MAX_BYTES, read_json, read_npz, sha256_of
+from sim.core.reading import MAX_BYTES, printable, read_json, read_npz, reason_of, sha256_of
 from sim.homes.housegen.furniture.item import Mount
 from sim.homes.housegen.imported.labels import Size
 from sim.homes.housegen.imported.meshes import Part, read_parts
@@ -243,6 +243,11 @@ def import_entries(entries: Sequence[Entry], folder: Path) -> Iterator[Model | t
             model, shape = import_model(entry)
         except Skipped as reason:
             yield entry.name, str(reason)
+            continue
+        except Exception as error:  # data of others can meet any error: it must not end the import of the other models
+            if debug():
+                raise
+            yield entry.name, f"it cannot be imported ({type(error).__name__}: {printable(reason_of(error))[:100]})"
             continue
         write_shape(folder, model, shape)
         yield model

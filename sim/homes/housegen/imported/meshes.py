@@ -64,8 +64,9 @@ def read_parts(entry: Entry) -> tuple[Part, ...]:
         raise Skipped(str(error).rstrip(".")) from None
     except Exception as error:  # trimesh computes parts of a scene when they are asked for
         raise Skipped(f"its mesh cannot be read ({type(error).__name__}: {str(error)[:80]})") from None
-    if losses:
-        raise Skipped(next(iter(losses)).rstrip("."))
+    refused = next((sentence for sentence in losses if sentence.startswith("A picture ")), None)
+    if refused is not None:
+        raise Skipped(refused.rstrip("."))
     if not raw or not all(np.isfinite(part.vertices_m).all() for part in raw):
         raise Skipped("its mesh has no triangles, or a vertex that is not finite")
     return _joined(_fitted([part for part in raw if part.rgba[3] > 0.02], entry))

@@ -36,6 +36,7 @@ _LOST = {
 _REFUSED = {
     "KHR_draco_mesh_compression": "Draco", "EXT_meshopt_compression": "meshopt", "KHR_meshopt_compression": "meshopt",
 }  # fmt: skip
+_SILENT = logging.NullHandler()
 _COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 _PLY_BYTES = {
     b"char": 1, b"uchar": 1, b"int8": 1, b"uint8": 1, b"short": 2, b"ushort": 2, b"int16": 2, b"uint16": 2,
@@ -80,7 +81,7 @@ def load_scene(
         _require_sane_gltf(content, kind, where, read, losses)
     elif kind == "ply":
         _require_sane_ply(content, where)
-    logging.getLogger("trimesh").setLevel(logging.CRITICAL + 1)  # it prints tracebacks of pictures that are missing
+    logging.getLogger("trimesh").addHandler(_SILENT)  # else Python prints its tracebacks of pictures that are missing
     try:
         with limited_pillow(lambda sentence: losses.update([sentence])):
             scene = trimesh.load_scene(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import json
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -265,6 +266,36 @@ def test_bad_entries_of_a_catalogue_are_left_out_with_a_reason(tmp_path: Path) -
     assert len(found) == len(entries)  # the broken file is among them, the good one is not
     for part in ("leads out of the zip", "has no 'nothing.obj'", "a door", "no category", "format 'doc'", "90", "nan"):
         assert any(part in reason for reason in found), part
+
+
+def test_a_model_that_announces_more_numbers_than_it_has_bytes_is_left_out(tmp_path: Path) -> None:
+    accessor = {"componentType": 5126, "count": 60_000_000, "type": "VEC3"}
+    gltf = {
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "accessors": [accessor],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    }  # fmt: skip
+    folder = write_folder(tmp_path)
+    (folder / "chair0.obj").rename(folder / "chair0.gltf")
+    (folder / "chair0.gltf").write_text(json.dumps(gltf))
+    (folder / "models.csv").write_text((folder / "models.csv").read_text().replace("chair0.obj", "chair0.gltf"))
+    (reason,) = reasons(folder)
+    assert "announces more than" in reason
+
+
+def test_an_error_that_nobody_expected_leaves_out_one_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(parts: object, *_: object) -> object:
+        if len(seen) == 0:
+            seen.append(parts)
+            raise ZeroDivisionError("by\nzero")
+        return reduced(parts, MAX_TRIANGLES)  # type: ignore[arg-type]
+
+    seen: list[object] = []
+    monkeypatch.setattr("sim.homes.housegen.imported.library.reduced", broken)
+    found = list(import_entries(entries_of(write_folder(tmp_path / "in")), tmp_path / "out"))
+    assert [made for made in found if not isinstance(made, Model)] == [
+        ("chair0", "it cannot be imported (ZeroDivisionError: by zero)")
+    ]
+    assert len(found) == 2
 
 
 def test_numbers_and_texts_that_python_cannot_hold_are_left_out_with_a_reason(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import re
 import shutil
 from collections import Counter
 from collections.abc import Callable
@@ -250,6 +251,14 @@ def test_broken_data_sets_are_one_line_and_broken_objects_are_left_out(tmp_path:
     assert "no configuration 'stages/home'" in failure(file)
     file.write_text("[]")
     assert "expected" in failure(file)
+
+
+def test_a_scene_of_too_many_instances_is_refused_before_they_are_placed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sim.homes.importers.mesh_house.MAX_OBJECTS", 2)
+    monkeypatch.setattr("sim.homes.importers.habitat_scenes.read_surfaces", lambda *_, **__: pytest.fail("it was read"))
+    assert re.search(r"it has \d+ objects; at most 2 are allowed", failure(write_dataset(tmp_path)))
 
 
 def test_the_folder_of_a_data_set_may_be_named_by_a_dot(tmp_path: Path) -> None:

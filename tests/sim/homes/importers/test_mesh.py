@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from sim.app.commands.importing import mesh as command
-from sim.app.commands.importing.folder import file_works
+from sim.app.commands.importing.folder import Made, Work, file_works, import_all
 from sim.core.errors import ConfigError, HouseError
 from sim.gl import mujoco
 from sim.homes.importers import mesh_house
@@ -264,3 +265,34 @@ def test_files_outside_of_the_folder_are_not_hashed_and_a_broken_one_ends_no_imp
     (folder / "b.glb").mkdir()
     works = list(file_works([folder / "b.glb", folder / "a.gltf"], files_of))
     assert [work.name for work in works] == ["b", "a"]
+
+
+def test_a_picture_that_is_refused_is_reported_and_the_home_is_kept(tmp_path: Path) -> None:
+    (tmp_path / "home.mtl").write_text("newmtl a\nmap_Kd a.png\nnewmtl b\nmap_Kd b.png\n")
+    (tmp_path / "a.png").write_bytes(b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 8 8\n")
+    (tmp_path / "b.png").write_bytes(cv2.imencode(".png", np.full((8, 8, 3), 200, np.uint8))[1].tobytes()[:60])
+    corners = "v 0 0 0\nv 3 0 0\nv 3 0 3\nvt 0 0\n"
+    (tmp_path / "home.obj").write_text(f"mtllib home.mtl\n{corners}usemtl a\nf 1/1 3/1 2/1\nusemtl b\nf 1/1 3/1 2/1\n")
+    losses = Counter[str]()
+    read = read_obj(tmp_path / "home.obj", texture_px=64, losses=losses)
+    assert [surface.paint.picture for surface in read] == [None, None]
+    assert sorted(losses) == [
+        "Picture 'a.png' has an unsupported format; use PNG, JPEG, WebP, BMP, GIF. It was left out.",
+        "Picture 'b.png' is damaged and cannot be read. It was left out.",
+    ]
+
+
+def _made(source: Path) -> Made:
+    if source.stem == "b":
+        raise RecursionError("maximum recursion depth exceeded\nin a file of somebody")
+    return Made({"house": source.stem, "rooms": 1, "area_m2": 9.0, **Losses().as_json()})
+
+
+def test_an_error_that_nobody_expected_is_named_and_the_other_homes_are_imported(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    works = [Work(name, b"", Path(name)) for name in ("a", "b", "c")]
+    assert import_all(works, _made, tmp_path, total=3, options="", pictures=0, workers=1) == 1
+    printed = capsys.readouterr()
+    assert "b: left out: it cannot be imported (RecursionError: maximum recursion depth exceeded in a" in printed.err
+    assert "2 houses with 2 rooms" in printed.out

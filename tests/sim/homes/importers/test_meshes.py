@@ -8,6 +8,8 @@ import io
 import json
 import os
 import struct
+import subprocess
+import sys
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -265,14 +267,19 @@ def test_a_damaged_picture_is_reported_and_the_mesh_is_kept(tmp_path: Path) -> N
     assert list(losses) == ["A picture is damaged and cannot be read."]
 
 
-def test_a_picture_that_a_ply_file_lacks_prints_nothing(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_picture_that_a_ply_file_lacks_prints_nothing(tmp_path: Path) -> None:
     (tmp_path / "x.ply").write_text(
         "ply\nformat ascii 1.0\ncomment TextureFile no.png\nelement vertex 3\nproperty float x\nproperty float y\n"
         "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
         "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
     )
-    assert len(read_surfaces(tmp_path / "x.ply")) == 1
-    assert capfd.readouterr().err == ""
+    code = (
+        "import sys, pathlib; from sim.homes.importers.surfaces import read_surfaces as read; "
+        "print(len(read(pathlib.Path(sys.argv[1]))))"
+    )
+    words = [sys.executable, "-c", code, str(tmp_path / "x.ply")]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("1\n", "")
 
 
 # ---- limits ----------------------------------------------------------------------------------------------------------
