@@ -149,10 +149,10 @@ def _split_places(rest: str) -> list[tuple[Place, str]]:
     """Returns the phrases of a wish between its words for places, each with the word before it."""
     parts = _BEFORE_PLACE.split(f" {rest} ")
     phrases = [parts[0], *parts[2::2]]
-    places = [_PLACES[word] for word in parts[1::2]]
+    places: list[Place] = [_PLACES[word] for word in parts[1::2]]
     if any(not phrase.strip() for phrase in phrases):
         raise WishError(f"The goal '{rest}' must name an object on each side of '{parts[1]}'.")
-    later = zip(places, (phrase.strip() for phrase in phrases[1:]), strict=True)
+    later: list[tuple[Place, str]] = list(zip(places, map(str.strip, map(str, phrases[1:])), strict=True))
     return [_first(phrases[0].strip()), *later]
 
 

@@ -112,7 +112,7 @@ class Attributes:
             pairs, counts = np.unique(np.stack([tracks[seen], image[seen]]), axis=1, return_counts=True)
             for (track, number), count in zip(pairs.T.tolist(), counts.tolist(), strict=True):
                 if number >= 0:
-                    name, of_track = every_name[number], self._names.setdefault(track, {})
+                    name, of_track = str(every_name[int(number)]), self._names.setdefault(track, {})
                     of_track[name] = of_track.get(name, 0) + count
 
     def mark(
@@ -155,6 +155,11 @@ class Attributes:
             result *= np.where(near, 1.0, np.where(well_seen, _SEEN_ALONE * undecided, undecided))
         if wish.size is not None:
             result *= self._size_factors(tracks, candidates, result, undecided)
+        best = float(result.max(initial=0.0))
+        if (
+            undecided == AT_LAST and 0.0 < best < AT_LAST
+        ):  # the house has the goal: the best that was seen is probably it
+            result *= AT_LAST / best
         return result.astype(np.float32)
 
     def _colour_factor(self, track: int, undecided: float) -> float:
