@@ -316,14 +316,18 @@ def test_rough_peers_stop_nothing_and_no_command_is_lost(robots: Robots, peer: P
 
 
 def test_an_episode_that_was_reset_or_given_up_counts_as_an_error(robots: Robots, peer: Peer) -> None:
+    from rcl_interfaces.srv import GetParameters
     from std_msgs.msg import String, UInt8
     from std_srvs.srv import Trigger
 
-    robot = robots.robot("--stepped", "--config", *SMALL, "--noise", "realsense", episodes=2)
+    robot = robots.robot("--stepped", "--config", *SMALL, "--noise", "realsense", "--ros-args=-p seed:=7", episodes=2)
     peer.hear("/episode", String, latched=True)
     peer.hear("/goal", String, latched=True)
     peer.spin_until(lambda: peer.heard["/episode"] and peer.heard["/goal"])
     assert peer.heard["/goal"][0].data == "sofa"
+    read = peer.call("get_parameters", GetParameters, names=["goal", "noise", "stepped", "seed"]).values
+    assert [read[0].string_value, read[1].string_value, read[2].bool_value] == ["sofa", "realsense", True]
+    assert read[3].integer_value == 7
     peer.call("reset", Trigger)
     peer.spin_until(lambda: json.loads(peer.heard["/episode"][-1].data)["number"] == 2)
     action = peer.node.create_publisher(UInt8, "/action", 10)
