@@ -249,21 +249,21 @@ def test_an_agent_that_takes_the_place_of_a_killed_one_goes_on(robots: Robots, p
 
 
 def test_an_agent_drives_a_robot_in_real_time_by_velocities(robots: Robots) -> None:
-    robot = robots.robot("--wait", "--rate", "25", "--time-limit", "60", "--config", *SMALL)
+    words = ("--noise", "realsense", "--config", *SMALL)
+    robot = robots.robot("--wait", "--rate", "25", "--time-limit", "60", *words, episodes=2)
     agent = robots.start(
         "-m", "sim.app.commands.main", "ros", "agent", "--agent", "tests.helpers.ros_agents:WITNESS", "--once",
         "--config", *SMALL,
     )  # fmt: skip
     assert robots.wait(robot) == 0, robots.said(0)
     assert robots.wait(agent) == 0, robots.said(1)
-    (line,) = robots.lines()
-    assert line["end_reason"] == "stop"
-    assert line["path_length"] == pytest.approx(0.75, abs=0.04)
-    assert line["stop_confidence"] > 0.0
-    assert line["stop_target_xy_m"] == pytest.approx(
-        [-1.5 + 1.25 * math.cos(math.pi / 6) + 0.5 * math.sin(math.pi / 6), 1.0 + 1.25 * 0.5 - 0.5 * 0.8660254],
-        abs=0.03,
-    )
+    x_m, y_m = -1.5 + 1.25 * math.cos(math.pi / 6) + 0.25, 1.0 + 0.625 - 0.5 * math.cos(math.pi / 6)
+    for line in robots.lines():
+        assert line["end_reason"] == "stop"
+        assert 0.65 < line["path_length"] < 1.2  # 0.75 m; a machine that is busy overshoots and comes back
+        assert line["simulated_s"] < 40.0
+        assert line["stop_confidence"] > 0.0
+        assert line["stop_target_xy_m"] == pytest.approx([x_m, y_m], abs=0.1)
 
 
 def test_rough_peers_stop_nothing_and_no_command_is_lost(robots: Robots, peer: Peer) -> None:
@@ -316,14 +316,18 @@ def test_rough_peers_stop_nothing_and_no_command_is_lost(robots: Robots, peer: P
 
 
 def test_an_episode_that_was_reset_or_given_up_counts_as_an_error(robots: Robots, peer: Peer) -> None:
+    from rcl_interfaces.srv import GetParameters
     from std_msgs.msg import String, UInt8
     from std_srvs.srv import Trigger
 
-    robot = robots.robot("--stepped", "--config", *SMALL, "--noise", "realsense", episodes=2)
+    robot = robots.robot("--stepped", "--config", *SMALL, "--noise", "realsense", "--ros-args=-p seed:=7", episodes=2)
     peer.hear("/episode", String, latched=True)
     peer.hear("/goal", String, latched=True)
     peer.spin_until(lambda: peer.heard["/episode"] and peer.heard["/goal"])
     assert peer.heard["/goal"][0].data == "sofa"
+    read = peer.call("get_parameters", GetParameters, names=["goal", "noise", "stepped", "seed"]).values
+    assert [read[0].string_value, read[1].string_value, read[2].bool_value] == ["sofa", "realsense", True]
+    assert read[3].integer_value == 7
     peer.call("reset", Trigger)
     peer.spin_until(lambda: json.loads(peer.heard["/episode"][-1].data)["number"] == 2)
     action = peer.node.create_publisher(UInt8, "/action", 10)

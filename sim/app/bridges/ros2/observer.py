@@ -286,7 +286,8 @@ class Wheels:
         return self._node.announced != self._begun
 
     def _odometry(self) -> tuple[int, Pose, float, float]:
-        while self._node.odometry is None:
+        """Returns the last odometry of this episode, and waits for the first one."""
+        while self._node.odometry is None or self._node.odometry[0] < self._begun.stamp_ns:
             self._node.spin(0.1)
         return self._node.odometry
 

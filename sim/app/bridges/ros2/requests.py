@@ -6,6 +6,7 @@ import math
 import threading
 import time
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from sim.core.interface import Action
@@ -130,23 +131,25 @@ class Pace:
     Args:
         period_s: simulated time of a period.
         speed: simulated seconds in a second; 0: as fast as possible.
+        now: returns the time, seconds.
     """
 
-    def __init__(self, period_s: float, speed: float) -> None:
+    def __init__(self, period_s: float, speed: float, now: Callable[[], float] = time.monotonic) -> None:
         self._wall_s = period_s / speed if speed > 0.0 else 0.0
+        self._now = now
         self.restart()
 
     def restart(self) -> None:
         """Lets the next period begin now."""
-        self._next_s = time.monotonic()
+        self._next_s = self._now()
 
     def remaining_s(self) -> float:
         """Returns the time until the next period, at least 0."""
-        return max(0.0, self._next_s - time.monotonic())
+        return max(0.0, self._next_s - self._now())
 
     def begin(self) -> bool:
         """Begins a period; returns whether it is late by more than a period, so that the pace starts anew."""
-        now_s = time.monotonic()
+        now_s = self._now()
         late = self._wall_s > 0.0 and now_s - self._next_s > self._wall_s
         self._next_s = (now_s if late else self._next_s) + self._wall_s
         return late

@@ -57,7 +57,7 @@ def main(args: Args) -> int:
     if args.out.exists():
         raise ConfigError(f"'{args.out}' exists: remove it, or name another folder with --out.")
     begin = time.monotonic()
-    print(f"{args.out}: rclpy, messages and this project; about a minute and 1.5 GB.", flush=True)
+    print(f"{args.out}: rclpy, messages and this project; a few minutes and 1.9 GB.", flush=True)
     venv.create(args.out, with_pip=True)
     install(args.out, "torch==2.13.0", *this_project(), "mcap-ros2-support>=0.6")
     install(args.out, *WHEELS)

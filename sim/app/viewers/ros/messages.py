@@ -79,7 +79,8 @@ def depth_of(content: bytes | memoryview, encoding: str, camera: CameraModel) ->
     """
     shape = camera.height_px, camera.width_px
     if encoding == "16UC1":
-        return np.frombuffer(content, "<u2").reshape(shape).astype(np.float32) / np.float32(1000.0)
+        read_m = np.frombuffer(content, "<u2").reshape(shape).astype(np.float32) / np.float32(1000.0)
+        return np.minimum(read_m, np.float32(camera.max_depth_m))
     if encoding != "32FC1":
         raise ConfigError(f"Unsupported encoding '{encoding}' of depth; use 16UC1 or 32FC1.")
     read_m = np.frombuffer(content, "<f4").reshape(shape)

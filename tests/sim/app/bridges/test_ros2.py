@@ -86,15 +86,17 @@ def test_a_flag_ends_a_wait_and_is_taken_once() -> None:
 
 
 def test_the_pace_keeps_the_mean_rate_and_starts_anew_after_a_delay() -> None:
-    pace = Pace(0.02, speed=1.0)
+    now = [10.0]
+    pace = Pace(0.02, speed=0.5, now=lambda: now[0])
     assert not pace.begin()
-    assert 0.0 < pace.remaining_s() <= 0.02
-    time.sleep(0.025)  # late by less than a period: the next one is early
+    assert pace.remaining_s() == pytest.approx(0.04)
+    now[0] += 0.05  # late by less than a period: the next one is early
+    assert pace.remaining_s() == 0.0
     assert not pace.begin()
-    assert pace.remaining_s() <= 0.016
-    time.sleep(0.06)
+    assert pace.remaining_s() == pytest.approx(0.03)
+    now[0] += 0.08
     assert pace.begin()
-    assert 0.0 < pace.remaining_s() <= 0.02
+    assert pace.remaining_s() == pytest.approx(0.04)
     assert Pace(0.02, speed=0.0).remaining_s() == 0.0
 
 

@@ -190,6 +190,8 @@ def test_depth_in_metres_is_exact_and_says_what_is_too_near_and_too_far() -> Non
     assert isinstance(rounded, bytes)
     expected_m = np.array([[0.0, 0.5, 1.235], [3.999, 5.0, 0.0]], np.float32)
     np.testing.assert_array_equal(messages.depth_of(rounded, "16UC1", camera), expected_m)
+    far = np.full((2, 3), 7200, "<u2").tobytes()  # of a real camera
+    assert (messages.depth_of(far, "16UC1", camera) == 5.0).all()
     with pytest.raises(ConfigError, match="use 16UC1 or 32FC1"):
         messages.depth_of(content, "8UC1", camera)
 
