@@ -11,8 +11,9 @@ Whether a colour can be seen is measured in pictures: it must be the most freque
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -47,6 +48,32 @@ _LANDMARKS = frozenset(
 )  # fmt: skip
 """Objects that descriptions name as places."""
 _ADJECTIVES = {name: name for name in MATERIALS.values()} | {"wood": "wooden"}
+
+
+_OF_COURSE: Mapping[str, frozenset[str]] = MappingProxyType(
+    {
+        "green": frozenset({"cactus", "potted plant", "potted tree", "bonsai", "flowers"}),
+        "glass": frozenset({"mirror", "standing mirror", "shower"}),
+        "metal": frozenset({"cooker", "hob", "fridge", "washing machine", "dishwasher", "wood stove", "fireplace"}),
+        "fabric": frozenset({"towel rail", "towel stand", "towel ladder", "towel radiator", "towels"}),
+    }
+)  # fmt: skip
+"""Words that nobody would say of these objects: they go without saying, or are true only of what hangs on them."""
+_UNCOLOURED = frozenset({"towel rail", "towel stand", "towel ladder", "towel radiator", "linen shelf", "laundry shelf"})
+"""Objects whose colour is that of what hangs or lies on them."""
+_NAMED_BY_ROOM = frozenset(
+    {
+        "kitchen sink", "kitchen counter", "kitchen island", "kitchen trolley", "bathroom shelf", "vanity cabinet",
+        "laundry shelf", "nightstand",
+    }
+)  # fmt: skip
+"""Objects that have the name of their room: no room is said with them."""
+_SAID_ROOMS = {
+    "laundry": "laundry room",
+    "living_room": "living room",
+    "dining_room": "dining room",
+    "stair_hall": "hallway",
+}
 
 
 @dataclass(frozen=True)
@@ -102,8 +129,8 @@ class Descriptions:
             return not rivals
         if wish.count is not None and len(rivals) + 1 != wish.count:
             return False
-        if not rivals or not all(self._clearly_fits(rest, rival) for rival in rivals):
-            return False  # nothing to compare with, or something that perhaps is to be compared
+        if len(rivals) < 2 or not all(self._clearly_fits(rest, rival) for rival in rivals):
+            return False  # a superlative compares three or more, and nothing that perhaps is to be compared
         sizes = [rival.size_m for rival in rivals]
         if wish.size == "largest":
             return thing.size_m >= _SIZE_RATIO * max(sizes)
@@ -119,17 +146,19 @@ class Descriptions:
     def _conditions(self, thing: Thing, base: Wish) -> list[Wish]:
         """Returns wishes with one condition each that an object satisfies."""
         conditions = []
-        if thing.facts.colour is not None and self.seen_colour(thing) == thing.facts.colour:
-            conditions.append(replace(base, colour=thing.facts.colour))
-        if thing.room_kind:
+        colour, material = thing.facts.colour, thing.facts.material
+        said = colour is not None and thing.name not in _UNCOLOURED and thing.name not in _OF_COURSE.get(colour, ())
+        if said and self.seen_colour(thing) == colour:
+            conditions.append(replace(base, colour=colour))
+        if thing.room_kind and thing.name not in _NAMED_BY_ROOM:
             conditions.append(replace(base, rooms=(thing.room_kind,)))
-        if thing.facts.material in _SAID_MATERIALS:
-            conditions.append(replace(base, material=thing.facts.material))
+        if material in _SAID_MATERIALS and thing.name not in _OF_COURSE.get(material, ()):
+            conditions.append(replace(base, material=material))
         conditions += [replace(base, size=size) for size in ("largest", "smallest")]
         for name in sorted(_LANDMARKS - {thing.name}):
             for place in ("next to", "on", "under"):
                 beside = Beside(place, frozenset((name,)), name)
-                if self._is_clearly_at(thing, beside):
+                if self._is_clearly_at(thing, beside) and not (place == "next to" and thing.name == "place setting"):
                     conditions.append(replace(base, beside=(beside,)))
                     break
         return conditions
@@ -223,7 +252,7 @@ def _joined(base: Wish, chosen: Sequence[Wish]) -> Wish | None:
 
 
 _PLACE_WORDS: dict[Place, tuple[str, ...]] = {
-    "next to": ("next to", "beside", "near"), "on": ("on",), "under": ("under", "below"),
+    "next to": ("next to", "beside", "near"), "on": ("on",), "under": ("under",),
 }  # fmt: skip
 _SIZE_WORDS = {"largest": ("largest", "biggest"), "smallest": ("smallest",)}
 _BEGINNINGS = ("", "", "", "find ", "go to ", "look for ")
@@ -246,5 +275,5 @@ def _text(wish: Wish, rng: np.random.Generator) -> str:
     for beside in wish.beside:
         words += [one(_PLACE_WORDS[beside.place]), "the", beside.words]
     if wish.rooms:
-        words += ["in", "the", wish.rooms[0].replace("_", " ")]
+        words += ["in", "the", _SAID_ROOMS.get(wish.rooms[0], wish.rooms[0])]
     return " ".join(words)

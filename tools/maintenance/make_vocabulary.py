@@ -177,6 +177,11 @@ def words_of(
             if above.get(offset):
                 result[word] = "general", above[offset]
                 break
+    plants = {offset for offset, _ in wordnet.below(wordnet.synset("plant.2"))}
+    for lemma, senses in wordnet.senses.items():  # of the thousands of plants only those that are called one
+        word = normal_form(lemma.replace("_", " "))
+        if word.endswith(" plant") and word not in result and plants.intersection(senses):
+            result[word] = "kind", {"@plant"}
     heads = {word for word in result if " " not in word}
     for lemma in wordnet.senses:
         word = normal_form(lemma.replace("_", " "))

@@ -40,7 +40,7 @@ from sim.task.meaning import Thing
 Kind = Literal["seen", "unseen", "synonyms", "descriptions"]
 _LEAST_SIZE_M = 0.15
 """Smaller objects are not asked for: the camera would not resolve them."""
-_UNASKED = frozenset({"blind", "curtain", "wall cabinet", "cooker hood"})
+_UNASKED = frozenset({"blind", "curtain", "wall cabinet", "cooker hood", "glass of water", "cable", "power strip"})
 """Names that are part of the fittings of a room rather than something to go to."""
 _PER_LEVEL = 4
 
