@@ -95,11 +95,12 @@ class Browser:
         return [entry["message"] for entry in log if entry["level"] in {"SEVERE", "WARNING"}]
 
     def requests(self) -> list[str]:
-        """Returns the addresses that were requested since the last call."""
+        """Returns the addresses that were requested since the last call, without those of the browser's own pages."""
         log = [
             json.loads(entry["message"])["message"] for entry in self._call("POST", "/se/log", {"type": "performance"})
         ]
-        return [entry["params"]["request"]["url"] for entry in log if entry["method"] == "Network.requestWillBeSent"]
+        sent = [entry["params"]["request"]["url"] for entry in log if entry["method"] == "Network.requestWillBeSent"]
+        return [address for address in sent if not address.startswith("chrome")]
 
     def screenshot(self, file: Path) -> None:
         """Writes the content of the window as a PNG file."""

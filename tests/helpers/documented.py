@@ -270,8 +270,23 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --agent cloned --semantics gt --config agent.weights={{tmp}}/cloned/cloned.safetensors {_SMALL} "
         "--episodes 1 --out {tmp}/run",
     ),
+    "stubborn run --agent 'process:python my_agent.py' --config agent.boundary=namespace": Only(
+        "tests/sim/app/bridges/test_process_boundary.py runs agents behind the boundary"
+    ),
+    "stubborn run --agent 'process:python my_agent.py' --split val --episodes 200 --record --out runs/entry"
+    " --config agent.boundary=namespace": Only(
+        "tests/sim/app/bridges/test_process_boundary.py runs agents behind the boundary"
+    ),
+    **dict.fromkeys(
+        (
+            "stubborn serve detectors --source truth",
+            "stubborn serve detectors --source network",
+            "stubborn run --semantics http://localhost:12181",
+        ),
+        Only("tests/sim/app/services runs servers and clients"),
+    ),
     # docs/words.md
-    f"{_WISH} --episodes 3 --video": (f"{_WISH} --episodes 1 --config task.max_steps=5 --out {{tmp}}/run",),
+    f"{_WISH} --episodes 3 --video": (f"{_WISH} --episodes 1 --video --config task.max_steps=5 --out {{tmp}}/run",),
     f"{_RUN} --agent stubborn-plus --semantics gt --split words-seen --episodes 20": (
         f"{_RUN} --agent stubborn-plus --semantics gt --split words-seen --episodes 1 --config task.max_steps=5"
         " --out {tmp}/run",
@@ -374,7 +389,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "stubborn evaluate mistakes {tmp}/looked --out {tmp}/false.png",
     ),
     # docs/leaderboard.md
-    f"{_RUN} --agent 'process:python my_agent.py' --split val --episodes 200 --record --out runs/entry": (_ENTRY,),
     "stubborn submit runs/entry --name 'My agent' --authors 'A. Author' --out my_agent.json.gz": (_ENTRY, _SUBMIT),
     "stubborn verify my_agent.json.gz": (_ENTRY, _SUBMIT, "stubborn verify {tmp}/my_agent.json.gz"),
     "stubborn seal make --out challenge/sealed2027 --secret-file secret.txt --houses 20 --episodes 400": (_SEAL,),

@@ -49,10 +49,10 @@ _PER_LEVEL = 4
 class Args:
     """Write a split of episodes with goals in words, in the houses of another split."""
 
-    kind: Kind
-    """seen, unseen, synonyms or descriptions."""
     out: Path
     """Folder of the new split; its parent is that of the other split."""
+    kind: Kind = "seen"
+    """seen, unseen, synonyms or descriptions."""
     split: str = "val"
     """The split whose houses are used: a shipped one, or a folder."""
     episodes: cli.Count = 150

@@ -23,7 +23,6 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import anyio.to_thread
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 from starlette.applications import Starlette
@@ -45,6 +44,7 @@ from sim.app.services.remote import posteriors_bytes, read_view
 from sim.app.services.words import COCO
 from sim.core.errors import ConfigError
 from sim.core.interface import MAX_SIDE_PX
+from sim.core.pictures import decode_picture
 from sim.core.reading import parse_json, printable
 
 _BYTES = "application/octet-stream"
@@ -166,9 +166,8 @@ def _picture(text: str) -> NDArray[np.uint8]:
         ConfigError: it is no picture, or too large.
     """
     try:
-        data = np.frombuffer(base64.b64decode(text, validate=True), np.uint8)
-        picture = cv2.imdecode(data, cv2.IMREAD_COLOR) if len(data) else None
-    except (binascii.Error, ValueError, cv2.error):
+        picture = decode_picture(base64.b64decode(text, validate=True), where="'image'")
+    except (binascii.Error, ValueError):  # a ConfigError is a ValueError
         picture = None
     if picture is None or max(picture.shape[:2]) > MAX_SIDE_PX:
         raise ConfigError(f"'image' must be base64 of a JPEG or PNG of at most {MAX_SIDE_PX} pixels on each side.")

@@ -49,7 +49,9 @@ def test_equal_objects_have_no_description():
     assert written(chairs(0.3, 0.3))[1] == []
 
 
-@pytest.mark.parametrize(("sizes", "told"), [((0.3, 0.32, 0.34), False), ((0.3, 0.42), False), ((0.2, 0.3, 0.42), True)])
+@pytest.mark.parametrize(
+    ("sizes", "told"), [((0.3, 0.32, 0.34), False), ((0.3, 0.42), False), ((0.2, 0.3, 0.42), True)]
+)
 def test_sizes_must_differ_clearly(sizes, told):
     texts = [one.text for one in written(chairs(*sizes))[1]]
     assert any("largest" in text or "biggest" in text for text in texts) == told
