@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.interface import Action, Observation
+from sim.task.ground_truth import Target
 from sim.task.objectnav import Task
 from sim.world.freespace import CELL_M, FreeSpace
 from sim.world.world import World
@@ -90,10 +91,8 @@ class Oracle:
     def reset(self, goal: str, seed: int) -> None:
         """Starts a new episode."""
         task = self._env.scene.task
-        floor_z_m = task.start.floor_z_m
-        space, target = task.truth.space(floor_z_m), task.truth.target(goal, floor_z_m)
-        places = Destination(space, target.reached, target.distance_m, target.region.succeeds)
-        self._follower = Follower(task.world, task.start.yaw_rad, places)
+        self._goal, self._floor_z_m = goal, task.start.floor_z_m
+        self._head_for(task, task.truth.target(goal, self._floor_z_m))
 
     def act(self, observation: Observation) -> Action:
         """Returns the next action of the route; STOP as soon as it succeeds."""
@@ -102,8 +101,19 @@ class Oracle:
 
     def choose(self) -> Action:
         """Returns the next action from where the robot is now."""
-        action = self._follower.next_action()
+        action, task = self._follower.next_action(), self._env.scene.task
+        pose = task.world.pose
+        if action is Action.STOP and not task.truth.succeeds_now(self._goal, pose.x_m, pose.y_m, self._floor_z_m):
+            self._head_for(
+                task, task.truth.target_now(self._goal, self._floor_z_m)
+            )  # the robot pushed a door or an object
+            action = self._follower.next_action()
         return Action.TURN_LEFT if action is None else action
+
+    def _head_for(self, task: Task, target: Target) -> None:
+        space = task.truth.space(self._floor_z_m)
+        places = Destination(space, target.reached, target.distance_m, target.region.succeeds)
+        self._follower = Follower(task.world, task.start.yaw_rad, places)
 
 
 class Follower:

@@ -122,6 +122,12 @@ class GroundTruth:
             self._targets[goal, floor_z_m] = Target(region, reached, space.geodesic(reached))
         return self._targets[goal, floor_z_m]
 
+    def target_now(self, goal: str, floor_z_m: float = 0.0) -> Target:
+        """Returns the same with objects and door leaves where they are now, in the free space of the start."""
+        space, region = self.space(floor_z_m), self._region_now(goal, floor_z_m)
+        reached = region.mask(space)
+        return Target(region, reached, space.geodesic(reached))
+
     def region(self, goal: str, floor_z_m: float = 0.0) -> GoalRegion:
         """Returns the region of a storey where a STOP for a goal succeeds, with objects where the house file puts them.
 

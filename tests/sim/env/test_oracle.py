@@ -10,6 +10,7 @@ import pytest
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action
 from sim.env.oracle import Oracle
+from sim.gl import mujoco
 from sim.task.objectnav import Task
 from sim.task.result import EpisodeMetrics
 from sim.world.world import World
@@ -98,3 +99,19 @@ def test_the_oracle_leaves_a_gap_too_narrow_for_a_whole_step_on_any_of_its_headi
     result = run_oracle(house, "bed", Pose(-2.4, 0.0, math.radians(15.0)))
     assert result.success == 1.0
     assert result.num_steps < 100
+
+
+def test_the_oracle_goes_on_where_the_goal_was_pushed_away():
+    world = World(with_movable(room(10, 6), "chair_00", xy_m=(2.0, 1.0)))
+    task, start = Task(world), Pose(-3.0, 0.0, 0.0)
+    world.reset(start)
+    task.begin("chair", start)
+    oracle = Oracle(RunningEpisode(world, task))
+    oracle.reset("chair", seed=0)
+    world.data.qpos[:2] += (1.5, -2.5)  # the chair is the first free body
+    mujoco.mj_forward(world.model, world.data)
+    while not task.done:
+        action = oracle.act({})
+        task.observe(action, world.move(action))
+    assert task.metrics().success == 1.0
+    assert world.pose.x_m > 2.0
