@@ -285,6 +285,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         ),
         Only("tests/sim/app/services runs servers and clients"),
     ),
+    # docs/tables/splits.md
+    f"{PYTHON} -m tools.maintenance.split_report --workers 2 --published --out splits.md": (
+        f"{PYTHON} -m tools.maintenance.split_report --splits hazards --episodes 2 --workers 1 --published --out "
+        "{tmp}/splits.md",
+    ),
     # docs/words.md
     f"{_WISH} --episodes 3 --video": (f"{_WISH} --episodes 1 --video --config task.max_steps=5 --out {{tmp}}/run",),
     f"{_RUN} --agent stubborn-plus --semantics gt --split words-seen --episodes 20": (
