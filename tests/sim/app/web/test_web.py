@@ -275,6 +275,7 @@ def test_ten_actions_are_driven_the_agent_is_taken_over_from_and_gets_the_robot_
     wait_for(lambda: browser.run("return document.querySelector('#link').textContent") == "connected")
     with server.connect() as second:
         second.send(json.dumps({"do": "show", "pictures": []}))
+        second.send(json.dumps({"do": "speed", "per_s": 1}))  # other tests let it run as fast as it can
         second.send(json.dumps({"do": "start", **WISH, "agent": "stubborn"}))
         state_of(second, "running")
         wait_for(lambda: browser.run("return document.body.dataset.phase") == "running")
