@@ -183,7 +183,7 @@ Observation = Mapping[str, NDArray]
 | semantic | (h, w) | uint8 | mpcat40 id |
 | gps | (2,) | float32 | metres forward and left of the start pose |
 | compass | (1,) | float32 | yaw against the start heading, in (-pi, pi] |
-| objectgoal | (1,) | int64 | index into `GOAL_CATEGORIES` |
+| objectgoal | (1,) | int64 | index into `GOAL_CATEGORIES`; -1: the goal is in words |
 | scan | (rays,) | float32 | lidar, metres; 0: nearer than its range, the maximum range: no return in it |
 | bumper | (6,) | int8 | 1: contact in the last action; sector 0 is ahead, the others follow counter-clockwise |
 | odometry | (3,) | float32 | pose by wheels and gyro: metres forward and left of the start, yaw in (-pi, pi] |

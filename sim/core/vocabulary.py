@@ -63,18 +63,28 @@ class Vocabulary:
         """
         words = normal_form(phrase).split()
         for first in range(len(words)):
-            for word in _forms(" ".join(words[first:])):
-                known = self.words.get(word)
-                if known is None:
-                    continue
-                relation, names = known
+            word = self.listed(" ".join(words[first:]))
+            if word is not None:
+                relation, names = self.words[word]
                 return None if relation == "other" else Found(names, word, tuple(words[:first]), relation)
         return None
+
+    def listed(self, word: str) -> str | None:
+        """Returns the spelling under which a word in its normal form is listed; None: it is not known."""
+        return next((form for form in _forms(word) if form in self.words), None)
 
     def categories_of(self, names: frozenset[str]) -> tuple[str, ...]:
         """Returns the categories of some names, in the order of `MPCAT40`."""
         wanted = {category for name in names for category in self.categories.get(name, ())}
         return tuple(category for category in MPCAT40 if category in wanted)
+
+    def main_category(self, names: frozenset[str]) -> str:
+        """Returns the category that most of some names have; of a name with several, the first counts most."""
+        weights: dict[str, float] = {}
+        for name in names:
+            for place, category in enumerate(self.categories[name]):
+                weights[category] = weights.get(category, 0.0) + 1.0 / (1 + place)
+        return max(weights, key=lambda category: (weights[category], -MPCAT40.index(category)))
 
 
 def normal_form(phrase: str) -> str:
@@ -113,7 +123,6 @@ def vocabulary() -> Vocabulary:
         elif key not in words:
             names = {name for mean in means if mean for name in _expanded(mean, members)}
             words[key] = relation, frozenset(names)
-    # "Without spaces" is another spelling of most compounds: book case, dish washer, arm chair.
     return Vocabulary(MappingProxyType(categories), MappingProxyType(words))
 
 
@@ -122,7 +131,7 @@ def _expanded(mean: str, members: Mapping[str, set[str]]) -> set[str]:
 
 
 def _forms(word: str) -> list[str]:
-    """Returns the spellings under which a word may be listed: itself, its singular or plural, without spaces."""
+    """Returns the spellings under which a word may be listed: itself, its singulars and plural, each without spaces."""
     forms = [word, *singulars(word), f"{word}s"]
     return forms + [form.replace(" ", "") for form in forms if " " in form]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Literal, get_args
 
@@ -130,14 +130,14 @@ def parse_wish(text: str) -> Wish:
     if not text.strip() or len(text) > 300:
         raise WishError(f"A goal in words has 1 to 300 characters, got {len(text)}.")
     rest = normal_form(_BEGINNINGS.sub("", normal_form(text)))
-    rooms: tuple[str, ...] = ()
-    if match := _IN_ROOM.search(" " + rest):
-        rooms, rest = ROOMS[match[1]], (" " + rest)[: match.start()].strip()
+    room, in_room = "", _IN_ROOM.search(" " + rest)
+    if in_room:
+        room, rest = in_room[1], (" " + rest)[: in_room.start()].strip()
     is_word = rest in vocabulary().words  # "something to sit on" is one
     head, *others = [_first(rest)] if is_word else _split_places(rest)
     beside = tuple(Beside(place, *_other(words)) for place, words in others)
-    wish = _noun_phrase(rest if not rooms else f"{rest} in the {match[1]}", head[1], beside)  # type: ignore[index]
-    return Wish(**{**wish.__dict__, "rooms": rooms}) if rooms else wish
+    wish = _noun_phrase(rest, head[1], beside)
+    return replace(wish, text=f"{wish.text} in the {room}", rooms=ROOMS[room]) if room else wish
 
 
 def _first(phrase: str) -> tuple[Place, str]:

@@ -23,7 +23,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import CameraModel
 from sim.core.wishes import MATERIALS, Beside, Place, Wish, parse_wish
 from sim.renderer.camera import Camera
-from sim.task.meaning import Thing
+from sim.task.meaning import HouseObject
 from sim.task.objectnav import Task
 
 _CONFUSED: Sequence[frozenset[str]] = (
@@ -106,23 +106,23 @@ class Descriptions:
         """Frees the renderer."""
         self._camera.close()
 
-    def of(self, thing: Thing, rng: np.random.Generator) -> Iterator[Description]:
+    def of(self, item: HouseObject, rng: np.random.Generator) -> Iterator[Description]:
         """Yields descriptions of an object, the shortest first, each with random words of several that say the same."""
-        base = Wish(thing.name, frozenset((thing.name,)), thing.name)
-        conditions = self._conditions(thing, base)
+        base = Wish(item.name, frozenset((item.name,)), item.name)
+        conditions = self._conditions(item, base)
         for level in (1, 2, 3):
             for chosen in itertools.combinations(conditions, level):
                 wish = _joined(base, chosen)
-                if wish is not None and self.proves(wish, thing):
+                if wish is not None and self.proves(wish, item):
                     text = _text(wish, rng)
-                    if self._reads_as(text, thing):
-                        yield Description(text, level, thing.instance.name)
+                    if self._reads_as(text, item):
+                        yield Description(text, level, item.instance.name)
 
-    def proves(self, wish: Wish, thing: Thing) -> bool:
+    def proves(self, wish: Wish, item: HouseObject) -> bool:
         """Returns whether an object satisfies a wish clearly, and every other one clearly does not."""
-        others = [other for other in self._meaning.named(wish.names) if other is not thing]
+        others = [other for other in self._meaning.named(wish.names) if other is not item]
         rest = replace(wish, size=None, count=None)
-        if not self._clearly_fits(rest, thing):
+        if not self._clearly_fits(rest, item):
             return False
         rivals = [other for other in others if not self._clearly_fails(rest, other)]
         if wish.size is None:
@@ -133,79 +133,79 @@ class Descriptions:
             return False  # a superlative compares three or more, and nothing that perhaps is to be compared
         sizes = [rival.size_m for rival in rivals]
         if wish.size == "largest":
-            return thing.size_m >= _SIZE_RATIO * max(sizes)
-        return thing.size_m * _SIZE_RATIO <= min(sizes)
+            return item.size_m >= _SIZE_RATIO * max(sizes)
+        return item.size_m * _SIZE_RATIO <= min(sizes)
 
-    def seen_colour(self, thing: Thing) -> ColourName | None:
+    def seen_colour(self, item: HouseObject) -> ColourName | None:
         """Returns the colour of most pixels of an object in pictures from up to three places; None: no clear one."""
-        name = thing.instance.name
+        name = item.instance.name
         if name not in self._seen_colours:
-            self._seen_colours[name] = self._measured_colour(thing)
+            self._seen_colours[name] = self._measured_colour(item)
         return self._seen_colours[name]
 
-    def _conditions(self, thing: Thing, base: Wish) -> list[Wish]:
+    def _conditions(self, item: HouseObject, base: Wish) -> list[Wish]:
         """Returns wishes with one condition each that an object satisfies."""
         conditions = []
-        colour, material = thing.facts.colour, thing.facts.material
-        said = colour is not None and thing.name not in _UNCOLOURED and thing.name not in _OF_COURSE.get(colour, ())
-        if said and self.seen_colour(thing) == colour:
+        colour, material = item.facts.colour, item.facts.material
+        said = colour is not None and item.name not in _UNCOLOURED and item.name not in _OF_COURSE.get(colour, ())
+        if said and self.seen_colour(item) == colour:
             conditions.append(replace(base, colour=colour))
-        if thing.room_kind and thing.name not in _NAMED_BY_ROOM:
-            conditions.append(replace(base, rooms=(thing.room_kind,)))
-        if material in _SAID_MATERIALS and thing.name not in _OF_COURSE.get(material, ()):
+        if item.room_kind and item.name not in _NAMED_BY_ROOM:
+            conditions.append(replace(base, rooms=(item.room_kind,)))
+        if material in _SAID_MATERIALS and item.name not in _OF_COURSE.get(material, ()):
             conditions.append(replace(base, material=material))
         conditions += [replace(base, size=size) for size in ("largest", "smallest")]
-        for name in sorted(_LANDMARKS - {thing.name}):
+        for name in sorted(_LANDMARKS - {item.name}):
             for place in ("next to", "on", "under"):
                 beside = Beside(place, frozenset((name,)), name)
-                if self._is_clearly_at(thing, beside) and not (place == "next to" and thing.name == "place setting"):
+                if self._is_clearly_at(item, beside) and not (place == "next to" and item.name == "place setting"):
                     conditions.append(replace(base, beside=(beside,)))
                     break
         return conditions
 
-    def _clearly_fits(self, wish: Wish, thing: Thing) -> bool:
+    def _clearly_fits(self, wish: Wish, item: HouseObject) -> bool:
         return (
-            (wish.colour is None or (thing.facts.colour == wish.colour == self.seen_colour(thing)))
-            and wish.material in ("", thing.facts.material)
-            and (not wish.rooms or thing.room_kind in wish.rooms)
-            and all(self._is_clearly_at(thing, beside) for beside in wish.beside)
+            (wish.colour is None or (item.facts.colour == wish.colour == self.seen_colour(item)))
+            and wish.material in ("", item.facts.material)
+            and (not wish.rooms or item.room_kind in wish.rooms)
+            and all(self._is_clearly_at(item, beside) for beside in wish.beside)
         )
 
-    def _clearly_fails(self, wish: Wish, thing: Thing) -> bool:
-        if wish.colour is not None and self._has_another_colour(thing, wish.colour):
+    def _clearly_fails(self, wish: Wish, item: HouseObject) -> bool:
+        if wish.colour is not None and self._has_another_colour(item, wish.colour):
             return True
-        if wish.material and thing.facts.material is not None and thing.facts.material != wish.material:
+        if wish.material and item.facts.material is not None and item.facts.material != wish.material:
             return True
-        if wish.rooms and thing.room_kind and thing.room_kind not in wish.rooms:
+        if wish.rooms and item.room_kind and item.room_kind not in wish.rooms:
             return True
-        return any(self._is_clearly_not_at(thing, beside) for beside in wish.beside)
+        return any(self._is_clearly_not_at(item, beside) for beside in wish.beside)
 
-    def _has_another_colour(self, thing: Thing, colour: ColourName) -> bool:
-        own = thing.facts.colour
-        if own is None or own == colour or self.seen_colour(thing) != own:
+    def _has_another_colour(self, item: HouseObject, colour: ColourName) -> bool:
+        own = item.facts.colour
+        if own is None or own == colour or self.seen_colour(item) != own:
             return False
         return not any(own in group and colour in group for group in _CONFUSED)
 
-    def _is_clearly_at(self, thing: Thing, beside: Beside) -> bool:
+    def _is_clearly_at(self, item: HouseObject, beside: Beside) -> bool:
         if beside.place == "next to":
-            return 0.0 < self._meaning.gap_m(thing, beside.names) <= _NEAR_M
-        return self._meaning.is_at(thing, beside)
+            return 0.0 < self._meaning.gap_m(item, beside.names) <= _NEAR_M
+        return self._meaning.is_at(item, beside)
 
-    def _is_clearly_not_at(self, thing: Thing, beside: Beside) -> bool:
-        return self._meaning.gap_m(thing, beside.names) >= (_FAR_M if beside.place == "next to" else _NEAR_M)
+    def _is_clearly_not_at(self, item: HouseObject, beside: Beside) -> bool:
+        return self._meaning.gap_m(item, beside.names) >= (_FAR_M if beside.place == "next to" else _NEAR_M)
 
-    def _reads_as(self, text: str, thing: Thing) -> bool:
+    def _reads_as(self, text: str, item: HouseObject) -> bool:
         """Returns whether the task finds just this object for a text."""
         try:
             found = self._meaning.satisfying(parse_wish(text))
         except (ConfigError, EpisodeError):
             return False
-        return found == (thing.instance,)
+        return found == (item.instance,)
 
-    def _measured_colour(self, thing: Thing) -> ColourName | None:
+    def _measured_colour(self, item: HouseObject) -> ColourName | None:
         world, counts = self._task.world, np.zeros(len(COLOUR_NAMES), np.int64)
-        geoms = np.array(thing.instance.geom_ids)
-        for pose in self._views_of(thing):
+        geoms = np.array(item.instance.geom_ids)
+        for pose in self._views_of(item):
             images = self._camera.render(world.data, pose, ("rgb", "geom"))
             shown = np.isin(images["geom"], geoms)
             if np.count_nonzero(shown) >= _LEAST_PIXELS:
@@ -213,13 +213,13 @@ class Descriptions:
         best = int(np.argmax(counts))
         return COLOUR_NAMES[best] if counts.sum() and counts[best] >= _LEAST_SHARE * counts.sum() else None
 
-    def _views_of(self, thing: Thing) -> list[Pose]:
+    def _views_of(self, item: HouseObject) -> list[Pose]:
         """Returns up to three poses from which an object can be seen, 1.2 to 2.5 m away where there are such."""
-        footprint = thing.footprint
+        footprint = item.footprint
         x0, y0, x1, y1 = footprint.bounds_m
         x_m, y_m = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
         space = self._task.truth.space(footprint.floor_z_m)
-        region = self._task.truth.region(thing.instance.name, footprint.floor_z_m)
+        region = self._task.truth.region(item.instance.name, footprint.floor_z_m)
         cells = np.argwhere(space.largest_part())
         places = space.frame.to_metres(cells)
         away = np.hypot(places[:, 0] - x_m, places[:, 1] - y_m)

@@ -149,7 +149,7 @@ def load_split(name_or_path: str | Path) -> Split:
             f"'{name_or_path}' is a shipped split and a folder here: write ./{name_or_path} for the folder, or run the "
             "command elsewhere."
         )
-    folder = assets_dir() / name_or_path if str(name_or_path) in shipped else folder_given
+    folder = _folder_of(name_or_path)
     if not folder.is_dir():
         there_is = ", ".join(shipped) or "none"
         raise ConfigError(
@@ -167,9 +167,13 @@ def load_split(name_or_path: str | Path) -> Split:
 
 def is_in_words(name_or_path: str | Path) -> bool:
     """Returns whether the goals of a split are in words; False also where there is no such split."""
-    shipped = assets_dir() / name_or_path if str(name_or_path) in shipped_splits() else Path(name_or_path)
-    index = _index_of(shipped.resolve())
+    index = _index_of(_folder_of(name_or_path).resolve())
     return index.is_file() and habitat.read_index(index).in_words
+
+
+def _folder_of(name_or_path: str | Path) -> Path:
+    """Returns the folder of a shipped split by name, or the folder with this path."""
+    return assets_dir() / name_or_path if str(name_or_path) in shipped_splits() else Path(name_or_path)
 
 
 def one_house(path: str | Path, *, labels: str | Path | None = None, root: str | Path | None = None) -> Split:

@@ -31,7 +31,7 @@ MOST_LISTED = 40
 """Largest number of names that a message lists."""
 
 
-class Thing:
+class HouseObject:
     """One object of a house.
 
     Args:
@@ -109,13 +109,13 @@ class Meaning:
         self._gaps: dict[tuple[str, frozenset[str]], float] = {}
 
     @cached_property
-    def things(self) -> tuple[Thing, ...]:
+    def objects(self) -> tuple[HouseObject, ...]:
         """All instances. Their geometry is computed on first use: that of a whole house takes seconds."""
         world, data = self._world, self._data
         facts = read_instance_facts(world.model, world.labels)
         footprints = Footprints(world.model, house_floors(world.model, data, world.labels))
         return tuple(
-            Thing(
+            HouseObject(
                 instance,
                 facts.get(instance.name, InstanceFacts()),
                 lambda instance: footprints.of(data, instance),
@@ -135,67 +135,67 @@ class Meaning:
             raise EpisodeError(f"{self._house} has {len(found)} objects for '{wish.text}', not {wish.count}.")
         if wish.size is not None and found:
             extreme = max if wish.size == "largest" else min
-            best = extreme(thing.size_m for thing in found)
-            found = tuple(thing for thing in found if thing.size_m == best)
+            best = extreme(item.size_m for item in found)
+            found = tuple(item for item in found if item.size_m == best)
         if not found:
             raise EpisodeError(self._nothing_for(wish))
-        return tuple(thing.instance for thing in found)
+        return tuple(item.instance for item in found)
 
-    def candidates(self, wish: Wish) -> tuple[Thing, ...]:
+    def candidates(self, wish: Wish) -> tuple[HouseObject, ...]:
         """Returns the objects that satisfy all conditions of a wish but its size."""
-        return tuple(thing for thing in self.named(wish.names) if self._fits(thing, wish))
+        return tuple(item for item in self.named(wish.names) if self._fits(item, wish))
 
-    def named(self, names: Iterable[str]) -> tuple[Thing, ...]:
+    def named(self, names: Iterable[str]) -> tuple[HouseObject, ...]:
         """Returns the objects with one of some names that a robot can be sent to."""
         wanted = frozenset(names)
-        return tuple(thing for thing in self.things if thing.name in wanted and thing.is_goal)
+        return tuple(item for item in self.objects if item.name in wanted and item.is_goal)
 
-    def gap_m(self, thing: Thing, names: frozenset[str]) -> float:
+    def gap_m(self, item: HouseObject, names: frozenset[str]) -> float:
         """Returns the gap in plan between an object and the nearest other one with one of some names; inf: none.
 
         Objects in different rooms are not near each other, but windows, doors and walls belong to all.
         """
-        key = thing.instance.name, names
+        key = item.instance.name, names
         if key not in self._gaps:
-            gaps = [_gap_m(thing.footprint, other.footprint) for other in self._others(thing, names)]
+            gaps = [_gap_m(item.footprint, other.footprint) for other in self._others(item, names)]
             self._gaps[key] = min(gaps, default=float("inf"))
         return self._gaps[key]
 
-    def is_at(self, thing: Thing, beside: Beside) -> bool:
+    def is_at(self, item: HouseObject, beside: Beside) -> bool:
         """Returns whether an object is at a place relative to another one."""
         if beside.place == "next to":
-            return self.gap_m(thing, beside.names) <= NEXT_TO_M
+            return self.gap_m(item, beside.names) <= NEXT_TO_M
         return any(
-            _gap_m(thing.footprint, other.footprint) == 0.0
-            and (_is_on(thing, other) if beside.place == "on" else _is_under(thing, other))
-            for other in self._others(thing, beside.names)
+            _gap_m(item.footprint, other.footprint) == 0.0
+            and (_is_on(item, other) if beside.place == "on" else _is_under(item, other))
+            for other in self._others(item, beside.names)
         )
 
     def names(self) -> Counter[str]:
         """Returns the names of all objects that can be goals, with how often each occurs."""
-        return Counter(thing.name for thing in self.things if thing.is_goal)
+        return Counter(item.name for item in self.objects if item.is_goal)
 
     @property
     def _house(self) -> str:
         return f"House '{self._world.house.name}'"
 
-    def _fits(self, thing: Thing, wish: Wish) -> bool:
+    def _fits(self, item: HouseObject, wish: Wish) -> bool:
         return (
-            wish.colour in (None, thing.facts.colour)
-            and wish.material in ("", thing.facts.material)
-            and (not wish.rooms or thing.room_kind in wish.rooms)
-            and all(self.is_at(thing, beside) for beside in wish.beside)
+            wish.colour in (None, item.facts.colour)
+            and wish.material in ("", item.facts.material)
+            and (not wish.rooms or item.room_kind in wish.rooms)
+            and all(self.is_at(item, beside) for beside in wish.beside)
         )
 
-    def _others(self, thing: Thing, names: frozenset[str]) -> list[Thing]:
+    def _others(self, item: HouseObject, names: frozenset[str]) -> list[HouseObject]:
         return [
             other
-            for other in self.things
-            if other is not thing
+            for other in self.objects
+            if other is not item
             and other.name in names
             and other.outline is not None
-            and (other.room == thing.room or other.instance.category in NO_OBJECTS)
-            and abs(other.footprint.floor_z_m - thing.footprint.floor_z_m) < 1.0
+            and (other.room == item.room or other.instance.category in NO_OBJECTS)
+            and abs(other.footprint.floor_z_m - item.footprint.floor_z_m) < 1.0
         ]
 
     def _room_of(self, footprint: Footprint) -> tuple[str, str]:
@@ -215,12 +215,12 @@ class Meaning:
         return f"{self._house} has no '{wish.text}'. It has: {_described(same)}."
 
 
-def _described(things: Sequence[Thing]) -> str:
+def _described(objects: Sequence[HouseObject]) -> str:
     """Returns what is known of some objects: "red armchair (bedroom), armchair (office)"."""
     texts = Counter(
-        " ".join(filter(None, (thing.facts.colour, thing.facts.material, thing.name)))
-        + (f" ({thing.room_kind.replace('_', ' ')})" if thing.room_kind else "")
-        for thing in things
+        " ".join(filter(None, (item.facts.colour, item.facts.material, item.name)))
+        + (f" ({item.room_kind.replace('_', ' ')})" if item.room_kind else "")
+        for item in objects
     )
     return ", ".join(text if count == 1 else f"{count} x {text}" for text, count in sorted(texts.items()))
 
@@ -236,12 +236,12 @@ def _gap_m(a: Footprint, b: Footprint) -> float:
     return float(a.boundary_m.query(points_b)[0].min())
 
 
-def _is_on(thing: Thing, other: Thing) -> bool:
-    return abs(thing.footprint.z_m[0] - other.footprint.z_m[1]) <= _ON_M or (
-        other.footprint.z_m[0] < thing.footprint.z_m[0] < other.footprint.z_m[1]
-        and thing.footprint.z_m[0] > thing.footprint.floor_z_m + _ON_M
+def _is_on(item: HouseObject, other: HouseObject) -> bool:
+    return abs(item.footprint.z_m[0] - other.footprint.z_m[1]) <= _ON_M or (
+        other.footprint.z_m[0] < item.footprint.z_m[0] < other.footprint.z_m[1]
+        and item.footprint.z_m[0] > item.footprint.floor_z_m + _ON_M
     )
 
 
-def _is_under(thing: Thing, other: Thing) -> bool:
-    return thing.footprint.z_m[1] < other.footprint.z_m[1] and not _is_on(thing, other)
+def _is_under(item: HouseObject, other: HouseObject) -> bool:
+    return item.footprint.z_m[1] < other.footprint.z_m[1] and not _is_on(item, other)

@@ -82,7 +82,8 @@ class Task:
         self._steps_per_action = steps_per_action
         self.truth = GroundTruth(world, success=self.config.success, camera=camera)
         self._record: _Record | None = None
-        self._goal_geoms: NDArray[np.int32] | None = None
+        self._goal_geoms: NDArray[np.bool_] | None = None
+        """Which geoms are the goal, where it is not a category."""
 
     def begin(self, goal: str, start: Pose) -> None:
         """Starts an episode.
@@ -98,7 +99,10 @@ class Task:
         shortest_path_m = self.distance_from(goal, start)
         self._goal_geoms = None
         if goal not in GOAL_CATEGORIES:
-            self._goal_geoms = np.array([g for i in self.truth.instances(goal) for g in i.geom_ids], np.int32)
+            self._goal_geoms = np.zeros(
+                self.world.model.ngeom + 1, np.bool_
+            )  # the last entry is for pixels without one
+            self._goal_geoms[[geom for instance in self.truth.instances(goal) for geom in instance.geom_ids]] = True
         on_storey = bool(self.truth.target(goal, start.floor_z_m).region.footprints)
         if shortest_path_m is None and on_storey:
             raise self.unreachable_error(goal, start)
@@ -122,7 +126,7 @@ class Task:
         """Returns (h, w) the pixels of the goal in the true images that `images` names."""
         if self._goal_geoms is None:
             return images["semantic"] == MPCAT40_ID[self.goal]
-        return np.isin(images["geom"], self._goal_geoms)
+        return self._goal_geoms[images["geom"]]
 
     def look(self, images: Mapping[str, NDArray]) -> None:
         """Counts one frame from the robot's pose: step 0 is the first one.

@@ -4,8 +4,8 @@ Each condition gives a track a factor in [0, 1] on its probability of the goal. 
 gives `UNDECIDED`, below the limit for a STOP and above the one for a look, so that the robot goes nearer.
 
 Colours and rooms are judged by `attributes.json`, fitted in houses of `train` by `tools.training.fit_attributes`: which
-colours the pixels of an object of each colour have, and which categories rooms of each kind hold. Materials
-are not judged.
+colours the pixels of an object of each colour have, and which categories rooms of each kind hold. Materials are not
+judged.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Annotated
 
 import msgspec
 import numpy as np
-from jaxtyping import Bool, Float32, Float64, Int, Int16, UInt8
+from jaxtyping import Bool, Float32, Int, UInt8
 
 from sim.core.colours import COLOUR_NAMES, colour_numbers
 from sim.core.geometry.grid import GridFrame
@@ -25,7 +25,7 @@ from sim.core.interface import MPCAT40, MPCAT40_ID
 from sim.core.reading import Number, read_json
 from sim.core.vocabulary import vocabulary
 from sim.core.wishes import Beside, Wish
-from stubborn.detection.tracks import Tracks
+from stubborn.detection.tracks import Pixels, Tracks
 
 FILE = Path(__file__).with_name("attributes.json")
 UNDECIDED, AT_LAST = 0.45, 0.7
@@ -40,6 +40,10 @@ LATE_SHARE = 0.6
 _LEAST_PIXELS = 60
 """Pixels of a track, at the resolution of the posteriors, from which its colour is judged."""
 _NEXT_TO_M, _SAME_ROOM_M = 0.75, 4.5
+"""Largest gap in plan of objects next to each other, and largest distance of those that tell the kind of a room."""
+_TOUCHING_M, _TOP_M = 0.15, 0.25
+"""An object lies on another one if their boxes are at most this far apart in plan, and its bottom is at most this far
+below the other one's top: boxes consist of voxels of 10 cm."""
 _CERTAIN = 0.5
 """Probability of a category from which a track counts as an object of it."""
 _STRUCTURES = ("wall", "window", "door")
@@ -90,48 +94,34 @@ class Attributes:
 
     def add(
         self,
-        tracks: Int16[np.ndarray, "h w"],
+        pixels: Pixels,
+        posteriors: Float32[np.ndarray, "classes h w"],
         rgb: UInt8[np.ndarray, "h w 3"] | None,
         objects: tuple[Int[np.ndarray, "h w"], Sequence[str]] | None,
     ) -> None:
         """Enters one frame.
 
         Args:
-            tracks: the track of each pixel, 0: none.
+            pixels: tracks and places of its pixels.
+            posteriors: at the same resolution.
             rgb: the image at the same resolution; None: it is not known.
             objects: the object of each pixel and the names of all, if the segmentation tells objects apart.
         """
-        seen = tracks > 0
-        if not seen.any():
-            return
-        if rgb is not None and self.wish.colour is not None:
-            numbers = colour_numbers(rgb[seen].astype(np.float32) / 255.0)
-            np.add.at(self._colours, (tracks[seen], numbers), 1.0)
+        high = (pixels.row >= 0) & (pixels.height_m > _WALL_LOW_M) & (pixels.height_m < _WALL_HIGH_M)
+        for name, marks in self._marks.items():
+            shown = high & (posteriors[MPCAT40_ID[name] - 1] > _CERTAIN)
+            marks[pixels.row[shown], pixels.col[shown]] = True
+        seen = pixels.track > 0
+        tracks = pixels.track[seen]
+        if rgb is not None and self.wish.colour is not None and tracks.size:
+            np.add.at(self._colours, (tracks, colour_numbers(rgb[seen].astype(np.float32) / 255.0)), 1.0)
         if objects is not None:
             image, every_name = objects
-            pairs, counts = np.unique(np.stack([tracks[seen], image[seen]]), axis=1, return_counts=True)
+            pairs, counts = np.unique(np.stack([tracks, image[seen]]), axis=1, return_counts=True)
             for (track, number), count in zip(pairs.T.tolist(), counts.tolist(), strict=True):
                 if number >= 0:
                     name, of_track = str(every_name[int(number)]), self._names.setdefault(track, {})
                     of_track[name] = of_track.get(name, 0) + count
-
-    def mark(
-        self,
-        posteriors: Float32[np.ndarray, "classes h w"],
-        rows: Int[np.ndarray, "h w"],
-        cols: Int[np.ndarray, "h w"],
-        height_m: Float64[np.ndarray, "h w"],
-    ) -> None:
-        """Enters the cells in which a frame shows a wall, a window or a door.
-
-        Args:
-            posteriors: of the frame.
-            rows: row of each pixel, -1: none; `cols` is its column, and `height_m` its height above the floor.
-        """
-        high = (rows >= 0) & (height_m > _WALL_LOW_M) & (height_m < _WALL_HIGH_M)
-        for name, marks in self._marks.items():
-            shown = high & (posteriors[MPCAT40_ID[name] - 1] > _CERTAIN)
-            marks[rows[shown], cols[shown]] = True
 
     def factors(
         self, tracks: Tracks, candidates: Int[np.ndarray, " n"], left_share: float, well_seen: Bool[np.ndarray, " n"]
@@ -144,6 +134,7 @@ class Attributes:
             left_share: share of the actions that are left.
             well_seen: candidates that were seen from near, so that what is next to them was, too.
         """
+        self._follow_merges(tracks.now())
         undecided = UNDECIDED if left_share > 1.0 - LATE_SHARE else AT_LAST
         wish, result = self.wish, np.ones(len(candidates))
         if wish.colour is not None:
@@ -156,11 +147,18 @@ class Attributes:
         if wish.size is not None:
             result *= self._size_factors(tracks, candidates, result, undecided)
         best = float(result.max(initial=0.0))
-        if (
-            undecided == AT_LAST and 0.0 < best < AT_LAST
-        ):  # the house has the goal: the best that was seen is probably it
-            result *= AT_LAST / best
+        if undecided == AT_LAST and 0.0 < best < AT_LAST:
+            result *= AT_LAST / best  # the house has the goal, and no better object was found
         return result.astype(np.float32)
+
+    def _follow_merges(self, now: Int[np.ndarray, " numbers"]) -> None:
+        """Moves the evidence on tracks that were merged to the track that they are a part of."""
+        for track in np.flatnonzero(now != np.arange(len(now))).tolist():
+            self._colours[now[track]] += self._colours[track]
+            self._colours[track] = 0.0
+            for name, count in self._names.pop(track, {}).items():
+                of_track = self._names.setdefault(int(now[track]), {})
+                of_track[name] = of_track.get(name, 0) + count
 
     def _colour_factor(self, track: int, undecided: float) -> float:
         counts = self._colours[track]
@@ -219,17 +217,16 @@ class Attributes:
             return any(self._is_near_mark(tracks, track, name) for name in structures)
         categories = [MPCAT40_ID[name] - 1 for name in vocabulary().categories_of(beside.names)]
         probability = tracks.evidence.probability[: tracks.count + 1, categories].sum(axis=1)
-        for other in np.flatnonzero(
-            (probability >= _CERTAIN) & (tracks.sizes(np.arange(tracks.count + 1)) > 0)
-        ).tolist():
+        for other in np.flatnonzero(tracks.sizes(np.arange(tracks.count + 1)) > 0).tolist():
             name = self.name_of(other)
-            if other == track or (name and name not in beside.names):
+            is_it = name in beside.names if name else probability[other] >= _CERTAIN
+            if other == track or not is_it:
                 continue
             gap_m, above_m = tracks.gap_m(track, other), tracks.above_m(track, other)
             if beside.place == "next to":
                 at = gap_m <= _NEXT_TO_M
             else:
-                at = gap_m <= 0.15 and (above_m > -0.25 if beside.place == "on" else above_m <= -0.25)
+                at = gap_m <= _TOUCHING_M and (above_m > -_TOP_M) == (beside.place == "on")
             if at and not self._wall_between(*tracks.nearest_points_m(track, other)):
                 return True
         return False

@@ -103,7 +103,7 @@ class TrackSeeker:
         self.step = 0
         self.tracks: Tracks | None = None
         self.attributes: Attributes | None = None
-        """The evidence on a goal in words; None: it is a category, or the first frame was not seen yet."""
+        """The evidence on the conditions of a goal in words; None: it has none, or the first frame was not seen yet."""
         exact = not self.segmenter.spec.needs_verification
         self.verdicts = Verdicts(self.config.look, exact=exact, max_steps=self.max_steps)
         self.probability: Float32[np.ndarray, " numbers"] = np.zeros(1, np.float32)
@@ -141,9 +141,8 @@ class TrackSeeker:
                 self.config.tracks, self.camera, self.robot.camera_forward_m, navmap.frame, self.fusion
             )
             wish = None if self.wished is None else self.wished.wish
-            self.attributes = (
-                None if wish is None else Attributes(wish, self.tracks.plan, self.tracks.config.most_tracks)
-            )
+            if wish is not None and not wish.is_plain:
+                self.attributes = Attributes(wish, self.tracks.plan, self.tracks.config.most_tracks)
         posteriors, depth = self.segmenter.posteriors(observation), observation["depth"]
         objects = None
         if self.attributes is not None and self.wished is not None and "rgb" in observation:  # a level camera
@@ -166,13 +165,11 @@ class TrackSeeker:
         pose: Pose,
     ) -> None:
         """Enters a frame into the evidence on a goal in words, and multiplies the probabilities by its factors."""
-        tracks, depth, columns = self._of_episode(), observation["depth"], posteriors.shape[2]
-        rows, cols, height_m = tracks.places(depth, pose, columns)
-        attributes.mark(posteriors, rows, cols, height_m)
-        rgb = observation.get("rgb")
+        tracks, rgb, columns = self._of_episode(), observation.get("rgb"), posteriors.shape[2]
         if rgb is not None:
             block = rgb.shape[1] // columns
-            attributes.add(tracks.shown(depth, pose, columns), rgb[block // 2 :: block, block // 2 :: block], objects)
+            rgb = rgb[block // 2 :: block, block // 2 :: block]
+        attributes.add(tracks.pixels(observation["depth"], pose, columns), posteriors, rgb, objects)
         candidates = np.flatnonzero(self.probability >= self.config.look.visit)
         if candidates.size:
             well_seen = np.array([bool(tracks.evidence.near_sectors(track).any()) for track in candidates.tolist()])

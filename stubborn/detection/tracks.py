@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int, Int16
@@ -77,6 +78,19 @@ class TrackConfig:
                 f"TrackConfig needs voxel_cells >= 1 and most_tracks in [2, 32768), got {self.voxel_cells} and "
                 f"{self.most_tracks}."
             )
+
+
+class Pixels(NamedTuple):
+    """Tracks and places of the pixels of one frame."""
+
+    track: Int16[np.ndarray, "h w"]
+    """Number of the track; 0: none."""
+    row: Int[np.ndarray, "h w"]
+    """Row on `Tracks.plan`; -1: no voxel."""
+    col: Int[np.ndarray, "h w"]
+    """Column on it."""
+    height_m: Float64[np.ndarray, "h w"]
+    """Height above the floor, where there is a voxel."""
 
 
 class Tracks:
@@ -250,18 +264,19 @@ class Tracks:
         self, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose, columns: int
     ) -> Int16[np.ndarray, "h w"]:
         """Returns the track of each pixel of an entered frame, at a resolution of `columns` columns; 0: no track."""
-        _, voxel = self._voxels(self._rays_for(columns), depth, pose)
-        return np.where(voxel >= 0, self._owner[voxel], np.int16(0))
+        return self.pixels(depth, pose, columns).track
 
-    def places(
-        self, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose, columns: int
-    ) -> tuple[Int[np.ndarray, "h w"], Int[np.ndarray, "h w"], Float64[np.ndarray, "h w"]]:
-        """Returns row and column on `plan`, -1 without a voxel, and the height in metres of the pixels of a frame."""
+    def pixels(self, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose, columns: int) -> Pixels:
+        """Returns track and place of the pixels of an entered frame, at a resolution of `columns` columns."""
         _, voxel = self._voxels(self._rays_for(columns), depth, pose)
-        there, layers = voxel >= 0, self._shape[2]
+        there, (_, cols, layers) = voxel >= 0, self._shape
         plan = voxel // layers
-        height_m = (voxel % layers + 0.5) * self._edge_m
-        return np.where(there, plan // self._shape[1], -1), np.where(there, plan % self._shape[1], -1), height_m
+        return Pixels(
+            track=np.where(there, self._owner[voxel], np.int16(0)),
+            row=np.where(there, plan // cols, -1),
+            col=np.where(there, plan % cols, -1),
+            height_m=(voxel % layers + 0.5) * self._edge_m,
+        )
 
     @property
     def plan(self) -> GridFrame:

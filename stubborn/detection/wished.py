@@ -68,8 +68,8 @@ class WishedSegmenter:
             return self._segmenter.scores(observation, goal)
         posteriors = self.posteriors(observation)
         channel = MPCAT40_ID[self.category] - 1
-        others = np.delete(posteriors, channel, axis=0)
-        return Scores(posteriors[channel], others.max(axis=0))
+        before, after = posteriors[:channel], posteriors[channel + 1 :]
+        return Scores(posteriors[channel], np.maximum(before.max(axis=0, initial=0.0), after.max(axis=0, initial=0.0)))
 
     def posteriors(self, observation: Observation) -> Float32[np.ndarray, "classes h w"]:
         """Returns the probabilities of the categories; objects with another name count as `misc`."""

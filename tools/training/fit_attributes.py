@@ -101,16 +101,16 @@ def _count_rooms(scene: Scene, rooms: Counter[str], held: Counter[tuple[str, str
     for room in scene.world.rooms:
         rooms[room.kind] += 1
     inside: dict[tuple[str, str], set[str]] = defaultdict(set)
-    for thing in scene.task.truth.meaning.things:
-        if thing.is_goal and thing.room:
-            inside[thing.room, thing.room_kind].add(thing.instance.category)
+    for item in scene.task.truth.meaning.objects:
+        if item.is_goal and item.room:
+            inside[item.room, item.room_kind].add(item.instance.category)
     for (_, kind), categories in inside.items():
         held.update((kind, category) for category in categories)
 
 
 def _count_colours(scene: Scene, views: int, rng: np.random.Generator, shares: dict[str, list[np.ndarray]]) -> None:
     """Adds the shares of the colours of each object in some random views."""
-    facts = {thing.instance.name: thing for thing in scene.task.truth.meaning.things}
+    facts = {item.instance.name: item for item in scene.task.truth.meaning.objects}
     labels, goal = scene.world.labels, scene.task.truth.goals()[0]
     for _ in range(views):
         scene.world.reset(draw_start(scene.task, goal, rng))
@@ -120,11 +120,11 @@ def _count_colours(scene: Scene, views: int, rng: np.random.Generator, shares: d
         objects = np.append(labels.geom_instance, np.int32(-1))[geoms]
         numbers = colour_numbers(rgb.astype(np.float32) / 255.0)
         for number, pixels in zip(*np.unique(objects, return_counts=True), strict=True):
-            thing = facts[labels.instances[number].name] if number >= 0 else None
-            if thing is None or pixels < _LEAST_PIXELS or not thing.is_goal:
+            item = facts[labels.instances[number].name] if number >= 0 else None
+            if item is None or pixels < _LEAST_PIXELS or not item.is_goal:
                 continue
             counts = np.bincount(numbers[objects == number], minlength=len(COLOUR_NAMES))
-            shares[thing.facts.colour or ""].append(counts / counts.sum())
+            shares[item.facts.colour or ""].append(counts / counts.sum())
 
 
 if __name__ == "__main__":

@@ -14,7 +14,6 @@ The split lies beside the other one, whose houses it uses. Starts are drawn by t
 from __future__ import annotations
 
 import functools
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,7 +34,7 @@ from sim.episodes.reachable_goals import storeys_of
 from sim.episodes.recipes import EPISODE_RECIPES
 from sim.episodes.splits import load_split, write_split
 from sim.robot.config import RobotConfig
-from sim.task.meaning import Thing
+from sim.task.meaning import HouseObject
 
 Kind = Literal["seen", "unseen", "synonyms", "descriptions"]
 _LEAST_SIZE_M = 0.15
@@ -43,6 +42,7 @@ _LEAST_SIZE_M = 0.15
 _UNASKED = frozenset({"blind", "curtain", "wall cabinet", "cooker hood", "glass of water", "cable", "power strip"})
 """Names that are part of the fittings of a room rather than something to go to."""
 _PER_LEVEL = 4
+"""Descriptions of each level that are written for a house; more of its objects are then not tried."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,10 +75,8 @@ def main(args: Args) -> int:
         raise ConfigError(f"--out '{args.out}' must be another folder in '{home.parent}', beside the houses.")
     per_house = -(-args.episodes // len(split.houses))
     work = [(number, house, per_house) for number, house in enumerate(split.houses)]
-    by_house = []
-    for house, drawn in zip(
-        split.houses, ordered_map(functools.partial(_draw, args), work, workers=args.workers), strict=True
-    ):
+    made, by_house = ordered_map(functools.partial(_draw, args), work, workers=args.workers), []
+    for house, drawn in zip(split.houses, made, strict=True):
         by_house.append(drawn)
         print(f"{house}: {len(drawn)} episodes", flush=True)
     rounds = [drawn[turn] for turn in range(per_house) for drawn in by_house if turn < len(drawn)]
@@ -103,9 +101,9 @@ def _draw(args: Args, work: tuple[int, str, int]) -> list[Episode]:
     scene = Scene(split.load_house(house), robot=RobotConfig(), camera=CameraModel(), profile="fast")
     task, recipe = scene.task, EPISODE_RECIPES["val"]
     scene.world.restore()
-    drawer, episodes, used = StartDrawer(task, recipe, house=number, seed=args.seed), [], Counter[str]()
+    drawer, episodes = StartDrawer(task, recipe, house=number, seed=args.seed), []
     try:
-        for goal in _goals(args, scene, rng):
+        for goal in dict.fromkeys(_goals(args, scene, rng)):
             if len(episodes) == count:
                 break
             for floor_z_m in rng.permutation(storeys_of(task)).tolist():
@@ -116,8 +114,7 @@ def _draw(args: Args, work: tuple[int, str, int]) -> list[Episode]:
                     drawn = drawer.draw(Ask(goal, floor_z_m, reached), len(episodes), rng)
                 except EpisodeError:
                     continue
-                if drawn.meets_rule and not used[goal]:
-                    used[goal] += 1
+                if drawn.meets_rule:
                     episodes.append(Episode(f"{house}_{len(episodes)}", house, goal, drawn.pose, drawn.distance_m))
                     break
     finally:
@@ -128,11 +125,11 @@ def _draw(args: Args, work: tuple[int, str, int]) -> list[Episode]:
 
 def _goals(args: Args, scene: Scene, rng: np.random.Generator) -> list[str]:
     """Returns the goals of a house in random order."""
-    things = [thing for thing in scene.task.truth.meaning.things if _may_be_asked(thing)]
-    rng.shuffle(things)  # type: ignore[arg-type]
+    objects = [item for item in scene.task.truth.meaning.objects if _may_be_asked(item)]
+    rng.shuffle(objects)  # type: ignore[arg-type]
     if args.kind == "descriptions":
-        return _described(scene, things, rng)
-    names = list(dict.fromkeys(thing.name for thing in things))
+        return _described(scene, objects, rng)
+    names = list(dict.fromkeys(item.name for item in objects))
     names = [name for name in names if (name in UNSEEN) == (args.kind == "unseen")]
     if args.kind != "synonyms":
         return names
@@ -140,8 +137,8 @@ def _goals(args: Args, scene: Scene, rng: np.random.Generator) -> list[str]:
     return [words[int(rng.integers(len(words)))] for words in others if words]
 
 
-def _may_be_asked(thing: Thing) -> bool:
-    return thing.is_goal and thing.size_m >= _LEAST_SIZE_M and thing.name not in _UNASKED and bool(thing.facts.name)
+def _may_be_asked(item: HouseObject) -> bool:
+    return item.is_goal and item.size_m >= _LEAST_SIZE_M and item.name not in _UNASKED and bool(item.facts.name)
 
 
 def _synonyms(name: str) -> list[str]:
@@ -153,12 +150,12 @@ def _synonyms(name: str) -> list[str]:
     )
 
 
-def _described(scene: Scene, things: Sequence[Thing], rng: np.random.Generator) -> list[str]:
+def _described(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> list[str]:
     """Returns descriptions of some objects of a house: the levels in turn, each object once."""
     writer, by_level = Descriptions(scene.task, CameraModel()), {level: list[str]() for level in (1, 2, 3)}
     try:
-        for thing in things:
-            found = list(writer.of(thing, rng))
+        for item in objects:
+            found = list(writer.of(item, rng))
             level = min(by_level, key=lambda level: len(by_level[level]))
             fitting = [description for description in found if description.level == level]
             if fitting:

@@ -10,6 +10,7 @@ from sim.app.options import RunOptions
 from sim.core.errors import ConfigError, did_you_mean
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES
+from sim.core.wishes import category_of_label
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates
@@ -93,8 +94,10 @@ def known_goals(setup: Setup) -> tuple[str, ...]:
 
 
 def is_taken_in_words(setup: Setup, goal: str) -> bool:
-    """Returns whether a goal is in words, and the agent of a run takes such goals."""
-    return goal not in GOAL_CATEGORIES and setup.spec.words is not None
+    """Returns whether a goal is in words and the agent of a run takes such goals, or a label and it knows the truth."""
+    if goal in GOAL_CATEGORIES or setup.spec.words is None:
+        return False
+    return category_of_label(goal) is None or setup.spec.uses_ground_truth
 
 
 MAX_REPEATS = 60

@@ -91,7 +91,7 @@ class TrueSegmentation:
         world, geoms = self._env.scene.world, self._env.truth_images["geom"]
         if self._names_of is not world:
             self._names_of, meaning = world, self._env.scene.task.truth.meaning
-            self._names = tuple(thing.name for thing in meaning.things)
+            self._names = tuple(item.name for item in meaning.objects)
         return np.append(world.labels.geom_instance, np.int32(-1))[geoms], self._names
 
 

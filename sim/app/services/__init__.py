@@ -3,7 +3,7 @@
 | module | content |
 |---|---|
 | `frames` | a picture with its truth, as the simulator registers it, and how a picture finds its truth again |
-| `words` | words of agents and of COCO, as categories of this project |
+| `words` | words of requests and replies, as categories of this project |
 | `detectors` | what is in a frame, by truth, with a network's errors, or by the shipped network |
 | `server` | the answers over HTTP |
 | `remote` | a segmenter that asks a server |

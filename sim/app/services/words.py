@@ -1,69 +1,41 @@
-"""Words for objects, as agents and the COCO data set use them, and the categories of this project that they name."""
+"""Words for objects in requests of agents and in replies of detectors, as categories of this project."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from types import MappingProxyType
 
 from sim.core.interface import MPCAT40
+from sim.core.vocabulary import normal_form, vocabulary
 
-OTHER_WORDS: Mapping[str, str] = MappingProxyType(
-    {
-        "armchair": "chair",
-        "couch": "sofa",
-        "dining table": "table",
-        "desk": "table",
-        "coffee table": "table",
-        "side table": "table",
-        "potted plant": "plant",
-        "house plant": "plant",
-        "tv": "tv_monitor",
-        "television": "tv_monitor",
-        "monitor": "tv_monitor",
-        "dresser": "chest_of_drawers",
-        "nightstand": "chest_of_drawers",
-        "painting": "picture",
-        "framed photograph": "picture",
-        "photograph": "picture",
-        "cupboard": "cabinet",
-        "wardrobe": "cabinet",
-        "pillow": "cushion",
-        "countertop": "counter",
-        "lamp": "lighting",
-        "shelf": "shelving",
-        "bookshelf": "shelving",
-        "refrigerator": "appliances",
-        "fridge": "appliances",
-        "oven": "appliances",
-        "clothing": "clothes",
-    }
-)
-"""Words in addition to the names of the categories."""
 COCO: Mapping[str, str] = MappingProxyType(
     {
-        "chair": "chair",
-        "sofa": "couch",
-        "plant": "potted plant",
-        "bed": "bed",
-        "table": "dining table",
-        "toilet": "toilet",
-        "tv_monitor": "tv",
-        "sink": "sink",
+        "chair": "chair", "sofa": "couch", "plant": "potted plant", "bed": "bed", "table": "dining table",
+        "toilet": "toilet", "tv_monitor": "tv", "sink": "sink",
     }
-)
+)  # fmt: skip
 """The categories that COCO has, and their names there."""
-_CATEGORIES: Mapping[str, str] = {name.replace("_", " "): name for name in MPCAT40[1:]} | OTHER_WORDS
-_IN_TEXT = re.compile(rf"\b({'|'.join(sorted(map(re.escape, _CATEGORIES), key=len, reverse=True))})(?:s|es)?\b")
+_LONGEST = 4
+"""Words of the longest phrase that is looked for in a sentence."""
 
 
 def category_of(phrase: str) -> str | None:
-    """Returns the category that a word or two name; None: none does."""
-    words = " ".join(phrase.lower().replace("_", " ").split())
-    singular = (words, words.removesuffix("s"), words.removesuffix("es"))
-    return next((_CATEGORIES[word] for word in singular if word in _CATEGORIES), None)
+    """Returns the category that a word or a phrase names; None: it names none."""
+    category = normal_form(phrase).replace(" ", "_")
+    if category in MPCAT40[1:]:
+        return category
+    found = vocabulary().find(phrase)
+    return None if found is None else vocabulary().main_category(found.names)
 
 
 def categories_in(text: str) -> frozenset[str]:
-    """Returns the categories whose words are in a sentence."""
-    return frozenset(_CATEGORIES[match] for match in _IN_TEXT.findall(text.lower().replace("_", " ")))
+    """Returns the categories whose words are in a sentence, the longest phrases first."""
+    words, result, first = normal_form(text).split(), set[str](), 0
+    while first < len(words):
+        ends = range(min(first + _LONGEST, len(words)), first, -1)
+        end = next((end for end in ends if vocabulary().listed(" ".join(words[first:end]))), None)
+        category = None if end is None else category_of(" ".join(words[first:end]))
+        if category is not None:
+            result.add(category)
+        first = end or first + 1
+    return frozenset(result)

@@ -8,10 +8,10 @@ import pytest
 from sim.core.interface import CameraModel
 from sim.core.wishes import parse_wish
 from sim.episodes.descriptions import Description, Descriptions
+from sim.episodes.splits import load_split
 from sim.task.objectnav import Task
 from sim.world.world import World
-from tests.helpers.worlds import room, with_box
-from tests.sim.task.test_meaning import with_facts
+from tests.helpers.worlds import room, with_box, with_facts
 
 SMALL = CameraModel(width_px=160, height_px=120)
 
@@ -22,9 +22,7 @@ def written(house) -> tuple[Task, list[Description]]:
     descriptions = Descriptions(task, SMALL, "fast")
     try:
         rng = np.random.default_rng(0)
-        return task, [
-            one for thing in task.truth.meaning.things if thing.is_goal for one in descriptions.of(thing, rng)
-        ]
+        return task, [one for item in task.truth.meaning.objects if item.is_goal for one in descriptions.of(item, rng)]
     finally:
         descriptions.close()
 
@@ -75,3 +73,20 @@ def test_a_colour_that_is_not_seen_is_not_said():
     texts = written(type(grey)(grey.name, spec))[1]
     assert parse_wish("red armchair").colour == "red"
     assert not any("red" in one.text.split() for one in texts)
+
+
+@pytest.mark.parametrize("house", ["val_03", "val_17"])
+def test_the_episodes_of_shipped_splits_mean_what_they_meant_when_they_were_made(house):
+    task = Task(World(load_split("val").load_house(house)))
+    of_house = [
+        (name, episode)
+        for name in ("words-seen", "words-synonyms", "words-unseen", "descriptions")
+        for episode in load_split(name).episodes
+        if episode.house == house
+    ]
+    assert len(of_house) == 20
+    for name, episode in of_house:
+        assert task.distance_from(episode.goal, episode.start) == pytest.approx(episode.shortest_path_m, abs=1e-3), (
+            episode
+        )
+        assert name != "descriptions" or len(task.truth.instances(episode.goal)) == 1

@@ -8,38 +8,9 @@ import pytest
 from sim.core.errors import EpisodeError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action
-from sim.houses.house import House
 from sim.task.objectnav import Task
 from sim.world.world import World
-from tests.helpers.worlds import room, with_box
-
-
-def with_facts(house: House, **facts: str) -> House:
-    spec = house.spec.copy()
-    for name, text in facts.items():
-        spec.add_text(name=name, data=text)
-    return House(house.name, spec)
-
-
-def furnished() -> House:
-    """A room of 8 x 8 m with two red chairs, of which one is beside the table, a blue chair, a lamp on the table."""
-    house = room(8, 8)
-    for name, x, y, half in (
-        ("chair_00", 3.0, 3.0, 0.2), ("chair_01", -3.0, 0.0, 0.2), ("chair_02", 3.0, -3.0, 0.3),
-        ("table_00", -2.2, 0.0, 0.4),
-    ):  # fmt: skip
-        house = with_box(house, name, centre_m=(x, y, 0.4), half_m=(half, half, 0.4))
-    house = with_box(house, "lighting_00", centre_m=(-2.2, 0.0, 1.0), half_m=(0.1, 0.1, 0.2))
-    house = with_box(house, "lighting_01", centre_m=(0.0, 0.0, 2.3), half_m=(0.1, 0.1, 0.1))
-    return with_facts(
-        house,
-        chair_00="name: armchair; colour: red; material: fabric",
-        chair_01="name: armchair; colour: red; material: leather",
-        chair_02="name: office chair; colour: blue",
-        table_00="name: desk; material: wood",
-        lighting_00="name: desk lamp",
-        lighting_01="name: pendant lamp",
-    )
+from tests.helpers.worlds import furnished
 
 
 @pytest.fixture(scope="module")

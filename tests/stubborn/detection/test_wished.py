@@ -12,6 +12,7 @@ from sim.core.interface import MPCAT40_ID, Observation, RobotModel
 from sim.core.wishes import WishError, parse_wish
 from stubborn import agents
 from stubborn.detection.attributes import AT_LAST, UNDECIDED, Attributes
+from stubborn.detection.tracks import Pixels
 from stubborn.detection.wished import WishedSegmenter
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.gridworld import SMALL_CAMERA
@@ -81,9 +82,10 @@ def test_an_agent_refuses_words_that_it_does_not_know():
 
 def colour_factor(goal: str, rgb: tuple[int, int, int], pixels: int) -> float:
     attributes = Attributes(parse_wish(goal), GridFrame.around_start(20, 0.1), 8)
-    tracks = np.zeros((20, 20), np.int16)
+    tracks, nowhere = np.zeros((20, 20), np.int16), np.full((20, 20), -1)
     tracks.flat[:pixels] = 1
-    attributes.add(tracks, np.full((20, 20, 3), rgb, np.uint8), None)
+    seen = Pixels(tracks, nowhere, nowhere, np.zeros((20, 20)))
+    attributes.add(seen, np.zeros((40, 20, 20), np.float32), np.full((20, 20, 3), rgb, np.uint8), None)
     return attributes._colour_factor(1, UNDECIDED)
 
 
@@ -93,3 +95,15 @@ def test_colours_are_judged_from_pixels():
     assert colour_factor("the blue chair", (30, 60, 190), 300) > 0.6
     assert colour_factor("the red chair", (190, 30, 30), 20) == UNDECIDED
     assert UNDECIDED < 0.5 < AT_LAST
+
+
+def test_evidence_follows_tracks_that_are_merged():
+    attributes = Attributes(parse_wish("the red chair"), GridFrame.around_start(20, 0.1), 8)
+    nowhere = np.full((20, 20), -1)
+    seen = Pixels(np.full((20, 20), 2, np.int16), nowhere, nowhere, np.zeros((20, 20)))
+    named = np.zeros((20, 20), np.int32), ["armchair"]
+    attributes.add(seen, np.zeros((40, 20, 20), np.float32), np.full((20, 20, 3), (190, 30, 30), np.uint8), named)
+    assert (attributes.name_of(2), attributes.name_of(1)) == ("armchair", "")
+    attributes._follow_merges(np.array([0, 1, 1]))
+    assert (attributes.name_of(2), attributes.name_of(1)) == ("", "armchair")
+    assert attributes._colour_factor(1, UNDECIDED) > 0.6

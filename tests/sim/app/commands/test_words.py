@@ -6,14 +6,14 @@ import pytest
 
 from sim.app import cli
 from sim.app.commands import words
-from sim.app.composition.environments import episodes_of
+from sim.app.composition.environments import episodes_of, is_taken_in_words
 from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
 from sim.episodes.episode import Episode
 from sim.episodes.splits import is_in_words, load_split, write_split
-from tests.sim.task.test_meaning import furnished
+from tests.helpers.worlds import furnished
 
 
 @pytest.fixture(scope="module")
@@ -55,6 +55,8 @@ def test_agents_that_take_no_words_get_none_of_these_episodes(homes):
     setup = resolve(RunOptions(agent="stubborn-plus", **options))
     assert "rgb" in setup.config.sensors
     assert len(episodes_of(setup).episodes) == 1
+    assert not is_taken_in_words(setup, "chair_00")  # only who knows the truth knows which chair that is
+    assert is_taken_in_words(resolve(RunOptions(agent="oracle", **options)), "chair_00")
     assert "rgb" not in resolve(RunOptions(agent="stubborn-plus", semantics="gt")).config.sensors
 
 

@@ -148,7 +148,12 @@ def test_words_name_categories() -> None:
     assert category_of("Potted  plant") == "plant"
     assert category_of("tv") == category_of("tv_monitor") == "tv_monitor"
     assert category_of("chairs") == "chair"
-    assert category_of("dragon") is None
+    assert category_of("dragon") is category_of("void") is None
+    assert category_of("door") == "door"
+    assert [category_of(word) for word in ("dresser", "nightstand", "fridge", "desk", "armchair")] == [
+        "chest_of_drawers", "chest_of_drawers", "appliances", "table", "chair",
+    ]  # fmt: skip
+    assert categories_in("a flower bed by the night stand") == {"chest_of_drawers"}
     assert categories_in("Seems like there is a tv monitor or couches ahead, or a seatingroom.") == {
         "tv_monitor",
         "sofa",
