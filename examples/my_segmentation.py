@@ -17,7 +17,13 @@ class MyNetwork(nn.Sequential):
     """Put your network here: from images (n, 3, h, w) in [0, 1] to logits (n, 40, h / 4, w / 4), without void."""
 
     def __init__(self, width: int = 32) -> None:
-        super().__init__(nn.Conv2d(3, width, 5, 4, 2), nn.ReLU(), nn.Conv2d(width, 40, 3, 1, 1))
+        super().__init__(
+            nn.Conv2d(3, width, 5, 4, 2), nn.ReLU(),
+            nn.Conv2d(width, 2 * width, 3, 2, 1), nn.BatchNorm2d(2 * width), nn.ReLU(),
+            nn.Conv2d(2 * width, 2 * width, 3, 1, 2, 2), nn.BatchNorm2d(2 * width), nn.ReLU(),
+            nn.Conv2d(2 * width, 2 * width, 3, 1, 4, 4), nn.BatchNorm2d(2 * width), nn.ReLU(),
+            nn.Conv2d(2 * width, 40, 3, 1, 1), nn.Upsample(scale_factor=2),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,53 @@
+"""Trains `MyNetwork` of examples/my_segmentation.py on labelled views (docs/tutorials/own_segmentation.md).
+
+python -m examples.train_my_network --views views --minutes 10 --out my_network.pt
+"""
+
+import argparse
+import time
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch.nn.functional import cross_entropy
+from torch.utils.data import DataLoader
+
+from examples.my_segmentation import MyNetwork
+from sim import LabelledView, ViewDataset
+from sim.training.segmentation.dataset import list_shards
+
+
+def batch_of(views: list[LabelledView]) -> tuple[torch.Tensor, torch.Tensor]:
+    """Returns images (n, 3, h, w) in [0, 1], and categories (n, h / 4, w / 4), -1 where they are unknown."""
+    images = torch.from_numpy(np.stack([view.rgb for view in views])).permute(0, 3, 1, 2).float() / 255
+    ids = torch.from_numpy(np.stack([view.semantic for view in views])[:, 2::4, 2::4]).long()
+    return images, ids - 1  # id 0 is void
+
+
+def main() -> None:
+    """Trains for some minutes, and saves the weights."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--views", type=Path, required=True)
+    parser.add_argument("--minutes", type=float, default=10.0)
+    parser.add_argument("--out", type=Path, default=Path("my_network.pt"))
+    args = parser.parse_args()
+    network = MyNetwork().train()
+    optimizer = torch.optim.Adam(network.parameters(), 1e-3)
+    end_s, step, smooth = time.monotonic() + 60.0 * args.minutes, 0, 0.0
+    while step == 0 or time.monotonic() < end_s:
+        for images, ids in DataLoader(ViewDataset(list_shards(args.views)), batch_size=8, collate_fn=batch_of):
+            loss = cross_entropy(network(images), ids, ignore_index=-1)
+            optimizer.zero_grad()
+            loss.backward()
+            optimizer.step()
+            step, smooth = step + 1, 0.98 * smooth + 0.02 * loss.item()
+            if step % 50 == 0:
+                print(f"step {step}: loss {smooth / (1.0 - 0.98**step):.2f}", flush=True)
+            if time.monotonic() > end_s:
+                break
+    torch.save(network.state_dict(), args.out)
+    print(f"{args.out} has the weights after {step} steps")
+
+
+if __name__ == "__main__":
+    main()
