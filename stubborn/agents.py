@@ -142,6 +142,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
             sensors=(),
             uses_segmentation=False,
             words=(),
+            pictures=(),
         ),
     }
 )

@@ -147,6 +147,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._scene: Scene | None = None
         self._episode: Episode | None = None
         self._motion: Motion | None = None
+        self._pictures: list[NDArray[np.uint8] | None] = []  # those of the goals
         self._steps_per_action = 1
         self._closed = False
 
@@ -201,6 +202,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         # A spawned child takes no number from the stream that draws episodes.
         conditions = self._noise.begin(self.np_random.spawn(1)[0], scene.gloss)
         scene.world.reset(episode.start, conditions)
+        self._pictures = [scene.picture_of(goal) for goal in episode.specs]
         scene.task.begin(episode.goal, episode.start)
         self._scene, self._episode = scene, episode
         observation = self._observe()
@@ -305,8 +307,10 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         needed = {name for sensor in self._noise.sensors for name in sensor.images}
         names = sorted({*self.scene.task.images, *needed, *self._truth, *self._noise.images})
         images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, names)
+        goal = self.episode.specs[0]
         fields = {
-            "goal": self.episode.goal,
+            "goal": goal.told,
+            "picture": self._pictures[0],
             "collided": self._motion is not None and self._motion.collided,
             "odometry": world.odometry,
             "pose": world.body_pose,

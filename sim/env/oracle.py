@@ -89,10 +89,11 @@ class Oracle:
         self._env = env
 
     def reset(self, goal: str, seed: int) -> None:
-        """Starts a new episode."""
+        """Starts a new episode; its goal is that of the task, because the text of a picture is ""."""
+        del goal, seed
         task = self._env.scene.task
-        self._goal, self._floor_z_m = goal, task.start.floor_z_m
-        self._head_for(task, task.truth.target(goal, self._floor_z_m))
+        self._goal, self._floor_z_m = task.goal, task.start.floor_z_m
+        self._head_for(task, task.truth.target(self._goal, self._floor_z_m))
 
     def act(self, observation: Observation) -> Action:
         """Returns the next action of the route; STOP as soon as it succeeds."""

@@ -62,7 +62,8 @@ def play_episode(
     name = type(agent).__name__ if name is None else name
     count_steps(0)
     observation, _ = env.reset(seed=seed, options={"episode": episode})
-    ask(f"Agent '{name}', reset", lambda: agent.reset(episode.goal, seed if seed_of_agent is None else seed_of_agent))
+    goal, seed_of_agent = episode.specs[0].told, seed if seed_of_agent is None else seed_of_agent
+    ask(f"Agent '{name}', reset", lambda: agent.reset(goal, seed_of_agent))
     for viewer in viewers:
         viewer.begin(env)
     began_s = time.perf_counter()
