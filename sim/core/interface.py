@@ -26,10 +26,10 @@ from sim.core.geometry.pose import wrap_angle
 
 __all__ = [
     "CLIMB_M", "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS",
-    "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation",
-    "Perceived", "RobotModel", "Scores", "SeesObjects", "SegmentationSpec", "Segmenter", "SegmenterFactory",
-    "SegmenterSpec", "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule", "category_id",
-    "wrap_angle",
+    "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "KeepsMemory",
+    "Observation", "Perceived", "RobotModel", "Scores", "SeesObjects", "SegmentationSpec", "Segmenter",
+    "SegmenterFactory", "SegmenterSpec", "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule",
+    "category_id", "wrap_angle",
 ]  # fmt: skip
 
 
@@ -386,6 +386,18 @@ class Agent(Protocol):
 
     def act(self, observation: Observation) -> Action:
         """Returns the next action. The observation must not be changed."""
+        ...
+
+
+@runtime_checkable
+class KeepsMemory(Protocol):
+    """An agent with a memory that outlasts a goal of a chain; `reset` is called at each goal of another agent."""
+
+    def next_goal(self, goal: str) -> None:
+        """Called after the end of a goal, before the next observation, with the next goal as in `reset`.
+
+        The robot stays where it is, and `gps` and `compass` still refer to the start of the episode.
+        """
         ...
 
 

@@ -146,7 +146,7 @@ def _summary_table(summary: Mapping[str, Any]) -> Table:
     table.add_column("metric")
     table.add_column("mean", justify="right")
     table.add_column("95 % interval", justify="right")
-    for metric in (metric.key for metric in METRICS.values() if metric.in_summary):
+    for metric in (key for key in METRICS if key in summary):
         low, high = summary[metric]["ci95"]
         interval = "-" if low is None else f"[{_number(low, 3)}, {_number(high, 3)}]"
         table.add_row(metric, _number(summary[metric]["mean"], 3), interval)

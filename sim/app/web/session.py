@@ -16,7 +16,7 @@ from sim.app.composition.runner import Parts, build_parts
 from sim.app.composition.setup import Setup, resolve
 from sim.app.evaluation.config_fields import run_differences
 from sim.app.evaluation.results import RunRecord
-from sim.app.evaluation.rollout import play_episode
+from sim.app.evaluation.rollout import give_next_goal, play_episode
 from sim.app.viewers.viewer import Moment
 from sim.app.web.controls import Controls, EpisodeRequest, Interrupted
 from sim.app.web.driven import DrivenRuns
@@ -194,9 +194,14 @@ class SharedAgent:
     def reset(self, goal: str, seed: int) -> None:
         """Starts a new episode."""
         self._inner.reset(goal, seed)
-        self._last = None
+        self._last, self._seed = None, seed
         self._hints = Hints(self._parts.env, goal)
         self.person_steps = self.hint_steps = 0
+
+    def next_goal(self, goal: str) -> None:
+        """Gives the other agent the next goal of a chain."""
+        give_next_goal(self._inner, goal, self._seed, f"Agent '{type(self._inner).__name__}', next goal")
+        self._hints = Hints(self._parts.env, goal)
 
     def act(self, observation: Observation) -> Action:
         """Shows the observation, waits until an action is due and returns it.

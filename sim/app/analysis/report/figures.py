@@ -12,7 +12,7 @@ from sim.app.evaluation.intervals import estimate, paired_difference
 from sim.core.interface import GOAL_CATEGORIES
 from sim.task.explanations import MEANING, outcome
 from sim.task.failures import CAUSES
-from sim.task.result import METRICS, EpisodeResult, Metric
+from sim.task.result import EpisodeResult, Metric, metrics_for
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,8 @@ _OTHER = {"error": "The episode ended with an error.", "failed": "No cause was r
 def means(runs: Runs) -> list[tuple[Metric, list[Cell], list[Cell]]]:
     """Returns for each metric its mean in each run, and the paired differences of the others from the first run."""
     return [
-        (metric, [mean_cell(metric, lines) for lines in runs], differences(metric, runs)) for metric in METRICS.values()
+        (metric, [mean_cell(metric, lines) for lines in runs], differences(metric, runs))
+        for metric in metrics_for([line for lines in runs for line in lines])
     ]
 
 
