@@ -17,6 +17,7 @@ from sim.app.composition.setup import Setup, resolve
 from sim.app.evaluation.config_fields import run_differences
 from sim.app.evaluation.results import RunRecord
 from sim.app.evaluation.rollout import give_next_goal, play_episode
+from sim.app.viewers.overlay import goal_marks
 from sim.app.viewers.viewer import Moment
 from sim.app.web.controls import Controls, EpisodeRequest, Interrupted
 from sim.app.web.driven import DrivenRuns
@@ -233,8 +234,9 @@ class SharedAgent:
 
     def _show(self, observation: Observation, advised: Action | None) -> None:
         env, painter = self._parts.env, self._parts.painter
-        images, metrics = env.truth_images, env.scene.task.metrics()
-        step, action = metrics.num_steps, advised or Action.STOP
+        task = env.scene.task
+        images, metrics = env.truth_images, task.goal_metrics()
+        step, action = task.num_steps, advised or Action.STOP
         moment = Moment(step=step, observation=observation, images=images, action=action)
         names = self._display.wanted()
         if advised is None:  # after the end, the agent's pictures are those of the previous frame
@@ -254,7 +256,8 @@ class SharedAgent:
             "driven_m": metrics.path_length,
             "left_m": metrics.distance_to_goal,
             "shortest_m": metrics.shortest_path,
-            "in_sight": in_sight(images["semantic"], env.episode.goal),
+            "in_sight": in_sight(images["semantic"], task.goal),
+            "goals": [asdict(mark) for mark in goal_marks(task)],
         }
         self._display.show(Frame(facts, self._pictures.draw(names, moment) if names else {}))
 
