@@ -4,6 +4,7 @@
     env = gymnasium.make("stubborn/ObjectNav-v0", split="val")
     env = gymnasium.make("sim.gym:stubborn/ObjectNav-v0", split="val")  # the same, without the import
     env = gymnasium.make("stubborn/ObjectNavVelocity-v0", split="val")  # driven by velocities
+    env = gymnasium.make("stubborn/ObjectNavChain-v0")  # several goals, one after the other
 
 Gymnasium 1.0 has no entry points any more. An id that is not registered raises `NamespaceNotFound: Namespace stubborn
 not found. Have you installed the proper package for stubborn?`, although the package is installed: the module has to be
@@ -28,10 +29,11 @@ import gymnasium
 from sim.env.discrete import DiscreteActions
 from sim.env.progress import ProgressReward
 
-__all__ = ["ENV_ID", "VELOCITY_ENV_ID", "DiscreteActions", "ProgressReward"]
+__all__ = ["CHAIN_ENV_ID", "ENV_ID", "VELOCITY_ENV_ID", "DiscreteActions", "ProgressReward"]
 
 ENV_ID = "stubborn/ObjectNav-v0"
 VELOCITY_ENV_ID = "stubborn/ObjectNavVelocity-v0"
+CHAIN_ENV_ID = "stubborn/ObjectNavChain-v0"
 
 if ENV_ID not in gymnasium.registry:
     gymnasium.register(
@@ -39,3 +41,9 @@ if ENV_ID not in gymnasium.registry:
     )  # no time limit: the task truncates by itself
 if VELOCITY_ENV_ID not in gymnasium.registry:
     gymnasium.register(id=VELOCITY_ENV_ID, entry_point="sim.env.velocity:ObjectNavVelocityEnv")
+if CHAIN_ENV_ID not in gymnasium.registry:
+    gymnasium.register(
+        id=CHAIN_ENV_ID,
+        entry_point="sim.env.objectnav:ObjectNavEnv",
+        kwargs={"split": "chains-val", "sensors": ("rgb", "depth", "goal")},
+    )

@@ -85,6 +85,8 @@ class AgentConfig:
     """Distances and steps of the approach to a candidate."""
     seeker: SeekerConfig = field(default_factory=TargetSeekerConfig)
     """Decides on candidates; the default is the paper's."""
+    memory: bool = True
+    """Whether the next goal of a chain begins with the map and the objects that are known; False: with nothing."""
 
     def __post_init__(self) -> None:
         if not 1 <= self.window_cells <= self.map_cells:
@@ -176,20 +178,14 @@ class StubbornAgent:
         Raises:
             WishError: a word of the goal is not known.
         """
-        self.wished.ask(goal)
-        self.goal = self.wished.category
-        """The category that is looked for."""
-        self.step = 0
+        self._ask(goal)
+        self._seed = seed
         self.navmap = NavMap.empty(GridFrame.around_start(self.config.map_cells, self.config.cell_m))
         self.window: Window | None = None
         self.pose: Pose | None = None
         self.last_action: Action | None = None
         self.gps_noise = GpsNoise()
         self.levelling.reset()
-        self.route: Route | None = None
-        """The route that is followed; None: the agent turns or pushes."""
-        self.approach: Approach | None = None
-        """The candidate that is approached; None: the agent explores."""
         if self.felt is not None:
             self.felt.reset()
         self.planner.own_ground_m = self.config.planning.own_ground_m
@@ -197,6 +193,29 @@ class StubbornAgent:
         self.explorer.reset(seed)
         self.seeker.reset(self.goal)
         self.untrap.reset()
+
+    def next_goal(self, goal: str) -> None:
+        """Starts to look for the next goal of a chain; see `sim.core.interface.KeepsMemory`.
+
+        The explored ground and the objects that the seeker tracks stay known; scores on the map are those of one goal.
+        """
+        if not self.config.memory:
+            self.reset(goal, self._seed)
+            return
+        self._ask(goal)
+        self.navmap.forget_goal()
+        self.standstill.reset()
+        self.seeker.next_goal(self.goal)
+
+    def _ask(self, goal: str) -> None:
+        self.wished.ask(goal)
+        self.goal = self.wished.category
+        """The category that is looked for."""
+        self.step = 0
+        self.route: Route | None = None
+        """The route that is followed; None: the agent turns or pushes."""
+        self.approach: Approach | None = None
+        """The candidate that is approached; None: the agent explores."""
 
     def act(self, observation: Observation) -> Action:
         """Returns the next action."""

@@ -125,7 +125,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
                 config=config,
                 sensors=SENSORS,
                 painter=make_painter,
-                words=("rgb",),
+                words=("rgb", "goal"),
             )
             for name, (description, config) in PRESETS.items()
         },
@@ -142,6 +142,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
             sensors=(),
             uses_segmentation=False,
             words=(),
+            pictures=(),
         ),
     }
 )

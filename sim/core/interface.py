@@ -26,10 +26,10 @@ from sim.core.geometry.pose import wrap_angle
 
 __all__ = [
     "CLIMB_M", "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS",
-    "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation",
-    "Perceived", "RobotModel", "Scores", "SeesObjects", "SegmentationSpec", "Segmenter", "SegmenterFactory",
-    "SegmenterSpec", "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule", "category_id",
-    "wrap_angle",
+    "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "KeepsMemory",
+    "Observation", "Perceived", "RobotModel", "Scores", "SeesObjects", "SegmentationSpec", "Segmenter",
+    "SegmenterFactory", "SegmenterSpec", "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule",
+    "category_id", "wrap_angle",
 ]  # fmt: skip
 
 
@@ -174,7 +174,8 @@ class SuccessRule:
 
 
 Observation = Mapping[str, NDArray]
-"""The observation of one step: those of `SENSORS` and `ROBOT_SENSORS` that were requested, plus `POSE_SENSORS`.
+"""The observation of one step: those of `SENSORS`, `ROBOT_SENSORS` and `GOAL_SENSORS` that were requested, plus
+`POSE_SENSORS`.
 
 | key | shape | dtype | meaning |
 |---|---|---|---|
@@ -188,6 +189,8 @@ Observation = Mapping[str, NDArray]
 | bumper | (6,) | int8 | 1: contact in the last action; sector 0 is ahead, the others follow counter-clockwise |
 | odometry | (3,) | float32 | pose by wheels and gyro: metres forward and left of the start, yaw in (-pi, pi] |
 | imu | (6,) | float32 | accelerations, m/s2, and turn rates, rad/s, in the robot's frame |
+| goal | str | | the goal as text (`sim.core.goals.GoalSpec.told`); "": it is a picture |
+| goal_picture | (512, 512, 3) | uint8 | the picture of a goal of the kind `picture`, else 0 |
 """
 
 SENSORS: tuple[str, ...] = ("rgb", "depth", "semantic")
@@ -196,10 +199,12 @@ SCAN = "scan"
 """The lidar (`sim.sensors.scan`)."""
 ROBOT_SENSORS: tuple[str, ...] = (SCAN, "bumper", "odometry", "imu")
 """The lidar and the sensors of the robot itself (`sim.sensors.measured`), in the observation only when requested."""
+GOAL_SENSORS: tuple[str, ...] = ("goal", "goal_picture")
+"""The goal of the episode, only when requested."""
 POSE_SENSORS: tuple[str, ...] = ("gps", "compass", "objectgoal")
 """Always present."""
 CONTEXT_FIELDS: tuple[str, ...] = (
-    "goal", "collided", "odometry", "pose", "start", "motion", "model", "data", "glass",
+    "goal", "picture", "collided", "odometry", "pose", "start", "motion", "model", "data", "glass",
 )  # fmt: skip
 """Fields of `sim.sensors.sensor.SensorContext` that a user's sensor may declare in `reads`."""
 TRUE_FIELDS = frozenset({"pose", "start", "motion", "model", "data", "glass"})
@@ -218,7 +223,7 @@ def reads_truth(sensor: Any) -> bool:
     """
     if isinstance(sensor, str):
         return sensor == "semantic"
-    if getattr(sensor, "name", "") in (*POSE_SENSORS, *ROBOT_SENSORS) and _is_standard(sensor):
+    if getattr(sensor, "name", "") in (*POSE_SENSORS, *ROBOT_SENSORS, *GOAL_SENSORS) and _is_standard(sensor):
         return False
     declared = {*getattr(sensor, "images", ()), *getattr(sensor, "reads", ())}
     return not declared.isdisjoint(TRUE_IMAGES | TRUE_FIELDS)
@@ -385,6 +390,18 @@ class Agent(Protocol):
 
 
 @runtime_checkable
+class KeepsMemory(Protocol):
+    """An agent with a memory that outlasts a goal of a chain; `reset` is called at each goal of another agent."""
+
+    def next_goal(self, goal: str) -> None:
+        """Called after the end of a goal, before the next observation, with the next goal as in `reset`.
+
+        The robot stays where it is, and `gps` and `compass` still refer to the start of the episode.
+        """
+        ...
+
+
+@runtime_checkable
 class Overridable(Protocol):
     """An agent that accepts that an action other than its own is carried out, such as that of a person."""
 
@@ -464,6 +481,9 @@ class AgentSpec:
     words: tuple[str, ...] | None = None
     """Sensors that it reads in addition where goals are in words (`sim.core.wishes`); None: `reset` takes only
     categories."""
+    pictures: tuple[str, ...] | None = None
+    """Sensors that it reads in addition where goals are pictures, such as `goal_picture`; None: it takes none. `reset`
+    gets "" as the goal then."""
     painter: Callable[[Agent], Any] | None = None
     """Returns a `MapPainter` of viewers, which draws the agent's map; None: viewers draw the true floor plan."""
 

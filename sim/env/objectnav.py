@@ -28,10 +28,12 @@ from sim.robot.config import RobotConfig
 from sim.robot.drive import Motion
 from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise, noise_from_dict
 from sim.sensors.scan import ScanConfig, ScanSensor
-from sim.sensors.sensor import Sensor, SensorContext
+from sim.sensors.sensor import Sensor, SensorContext, declared_fields
 from sim.sensors.standard import STANDARD_SENSORS, resolve_sensors
 from sim.task.config import TaskConfig
 
+_ASKED = frozenset(("goal", "picture"))
+"""The fields of `SensorContext` that change with the goal of a chain."""
 StepResult = tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]
 """Observation, reward, terminated, truncated and info of a step, as Gymnasium declares them."""
 
@@ -62,6 +64,13 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     ## Info
     The metrics of the task so far (`success`, `spl`, `distance_to_goal`, `collisions`, ...), `episode_id`, `house`,
     `goal`, and `collided`: true if a body contact stopped the last move.
+
+    ## Chains
+    In an episode with several goals a STOP, or `max_steps` actions, ends a goal, and the next one begins where the
+    robot is; `gps` and `compass` still refer to the start of the episode. `terminated` and `truncated` come with the
+    end of the last goal, and `terminated` with a fall. Each STOP that succeeds is rewarded by 1. The metrics in `info`
+    are those of the present goal; `goal_number` counts goals from 0. After the action that ended a goal `ended_goal`
+    has its metrics, and at the end `chain` has those of the chain (`sim.task.chain`) with those of all `goals`.
 
     Args:
         split: name of a shipped split, or a folder with the same layout.
@@ -147,6 +156,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._scene: Scene | None = None
         self._episode: Episode | None = None
         self._motion: Motion | None = None
+        self._pictures: list[NDArray[np.uint8] | None] = []  # those of the goals
         self._steps_per_action = 1
         self._closed = False
 
@@ -201,7 +211,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         # A spawned child takes no number from the stream that draws episodes.
         conditions = self._noise.begin(self.np_random.spawn(1)[0], scene.gloss)
         scene.world.reset(episode.start, conditions)
-        scene.task.begin(episode.goal, episode.start)
+        self._pictures = [scene.picture_of(goal) for goal in episode.specs]
+        scene.task.begin(episode.specs, episode.start)
         self._scene, self._episode = scene, episode
         observation = self._observe()
         self._require_in_space(observation)
@@ -217,7 +228,11 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         """Returns what `step` returns after a motion."""
         scene, self._motion = self.scene, motion
         observation = self._observe()
+        number = scene.task.goal_number
         scene.task.observe(motion.action, motion, self.truth_images)
+        if scene.task.goal_number != number:
+            asked = [sensor for sensor in self._noise.sensors if not _ASKED.isdisjoint(declared_fields(sensor))]
+            observation |= self._readings(asked)
         reward = float(scene.task.success)
         return observation, reward, scene.task.terminated, scene.task.truncated, self._info(motion.collided)
 
@@ -305,8 +320,15 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         needed = {name for sensor in self._noise.sensors for name in sensor.images}
         names = sorted({*self.scene.task.images, *needed, *self._truth, *self._noise.images})
         images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, names)
+        return self._noise.apply(self._readings(self._noise.sensors), images)
+
+    def _readings(self, sensors: Sequence[Sensor]) -> dict[str, NDArray]:
+        """Returns the readings of some sensors in the images that were rendered last."""
+        world, task, images = self.scene.world, self.scene.task, self.truth_images
+        number = task.goal_number
         fields = {
-            "goal": self.episode.goal,
+            "goal": task.goals[number].told,
+            "picture": self._pictures[number],
             "collided": self._motion is not None and self._motion.collided,
             "odometry": world.odometry,
             "pose": world.body_pose,
@@ -316,18 +338,24 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             "data": world.data,
             "glass": world.glass,
         }
-        readings = {sensor.name: sensor.read(SensorContext(sensor, images, **fields)) for sensor in self._noise.sensors}
-        return self._noise.apply(readings, images)
+        return {sensor.name: sensor.read(SensorContext(sensor, images, **fields)) for sensor in sensors}
 
     def _info(self, collided: bool) -> dict[str, object]:
-        episode = self.episode
-        return {
+        episode, task = self.episode, self.scene.task
+        info: dict[str, object] = {
             "episode_id": episode.episode_id,
             "house": episode.house,
-            "goal": episode.goal,
+            "goal": task.goal,
             "collided": collided,
-            **self.scene.task.metrics().as_info(),
+            **task.goal_metrics().as_info(),
         }
+        if task.is_chain:
+            info["goal_number"] = task.goal_number
+            if task.ended_goal is not None:
+                info["ended_goal"] = task.ended_goal.as_info()
+            if task.done:
+                info["chain"] = task.metrics().as_info()
+        return info
 
 
 def _with_changes(

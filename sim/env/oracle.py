@@ -89,10 +89,18 @@ class Oracle:
         self._env = env
 
     def reset(self, goal: str, seed: int) -> None:
-        """Starts a new episode."""
+        """Starts a new episode; its goal is that of the task, because the text of a picture is ""."""
+        del goal, seed
         task = self._env.scene.task
-        self._goal, self._floor_z_m = goal, task.start.floor_z_m
-        self._head_for(task, task.truth.target(goal, self._floor_z_m))
+        self._start_yaw_rad, self._floor_z_m = task.start.yaw_rad, task.start.floor_z_m
+        self.next_goal("")
+
+    def next_goal(self, goal: str) -> None:
+        """Heads for the next goal of a chain, which is that of the task too."""
+        del goal
+        task = self._env.scene.task
+        self._goal = task.goal
+        self._head_for(task, task.truth.target(self._goal, self._floor_z_m))
 
     def act(self, observation: Observation) -> Action:
         """Returns the next action of the route; STOP as soon as it succeeds."""
@@ -113,7 +121,7 @@ class Oracle:
     def _head_for(self, task: Task, target: Target) -> None:
         space = task.truth.space(self._floor_z_m)
         places = Destination(space, target.reached, target.distance_m, target.region.succeeds)
-        self._follower = Follower(task.world, task.start.yaw_rad, places)
+        self._follower = Follower(task.world, self._start_yaw_rad, places)
 
 
 class Follower:

@@ -73,9 +73,10 @@ class ProgressReward(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], gymn
     def step(self, action: ActType) -> tuple[ObsType, SupportsFloat, bool, bool, dict[str, Any]]:
         """Carries out one action and returns the dense reward in place of the sparse one."""
         observation, _, terminated, truncated, info = super().step(action)
-        before_m, after_m = self._distance_m, info["distance_to_goal"]
-        self._distance_m = after_m
+        ended = info.get("ended_goal", info)  # of a chain: its next goal has another distance
+        before_m, after_m = self._distance_m, ended["distance_to_goal"]
+        self._distance_m = info["distance_to_goal"]
         progress_m = 0.0 if before_m is None or after_m is None else before_m - after_m
-        reward = self._per_metre * progress_m + self._success * float(info["success"])
+        reward = self._per_metre * progress_m + self._success * float(ended["success"])
         reward -= self._per_step + self._per_collision * float(info["collided"])
         return observation, reward, terminated, truncated, info

@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable
 
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.core.goals import GoalSpec, PictureCamera
 from sim.core.interface import CameraModel, ConfigError
 from sim.env.memory import return_freed_memory
 from sim.houses.house import House
@@ -37,6 +41,22 @@ class Scene:
         self.camera = Camera(self.world.model, self.world.labels, camera=camera, profile=profile)
         self.gloss = geom_gloss(self.world.model, self.world.labels)  # (ngeom,)
         self.task = Task(self.world, config, camera=camera, steps_per_action=steps_per_action)
+        self._profile = profile
+        self._pictures: dict[PictureCamera, NDArray[np.uint8]] = {}
+
+    def picture_of(self, goal: GoalSpec) -> NDArray[np.uint8] | None:
+        """Returns the picture of a goal, uint8 (h, w, 3), of the present state of the world; None: it has none.
+
+        A picture is rendered once, with the rendering profile of the robot's camera; call this after `World.reset`.
+        """
+        if goal.camera is None:
+            return None
+        if goal.camera not in self._pictures:
+            camera = Camera(self.world.model, self.world.labels, camera=goal.camera.model, profile=self._profile)
+            images = camera.render(self.world.data, goal.camera.pose, ("rgb",))
+            camera.close()
+            self._pictures[goal.camera] = images["rgb"]
+        return self._pictures[goal.camera]
 
     def close(self) -> None:
         """Frees the renderer."""

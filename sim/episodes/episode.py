@@ -1,4 +1,4 @@
-"""One episode: a house, a goal and a start pose."""
+"""One episode: a house, a goal or a chain of goals, and a start pose."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from sim.core.errors import EpisodeError
 from sim.core.geometry.pose import Pose
+from sim.core.goals import GoalSpec, require_chain
 from sim.core.wishes import require_goal
 
 FARTHEST_M = 10_000.0
@@ -20,14 +21,29 @@ class Episode:
     house: str
     """Name of the house within its split."""
     goal: str
-    """A goal category, the label of one instance (`chair_03`), or words (`sim.core.wishes`)."""
+    """A goal category, the label of one instance (`chair_03`), or words (`sim.core.wishes`): that of the first goal."""
     start: Pose
     shortest_path_m: float | None = None
     """Recorded geodesic distance from the start to the nearest place where a STOP succeeds; None: unknown."""
+    goals: tuple[GoalSpec, ...] = ()
+    """The goals of a chain in their order, or a single goal that is more than its text; (): `goal` is all."""
 
     def __post_init__(self) -> None:
         require_goal(self.goal)
         require_start(self.start)
+        if self.goals and self.goals[0].text != self.goal:
+            raise EpisodeError(f"The goal is '{self.goal}', and the first one of `goals` is '{self.goals[0].text}'.")
+        require_chain(self.goals)
+
+    @property
+    def specs(self) -> tuple[GoalSpec, ...]:
+        """The goals in their order; one, unless the episode is a chain."""
+        return self.goals or (GoalSpec.of(self.goal),)
+
+    @property
+    def is_chain(self) -> bool:
+        """True: it has several goals."""
+        return len(self.goals) > 1
 
 
 def require_start(start: Pose) -> None:

@@ -21,8 +21,9 @@ from typing import Annotated, TypedDict
 import msgspec
 
 from sim.core.geometry.pose import Pose
+from sim.core.goals import MAX_GOALS, GoalKind, GoalSpec, PictureCamera
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, wrap_angle
-from sim.core.reading import Metres, Name, Number, read_gzip_json
+from sim.core.reading import Count, Metres, Name, Number, read_gzip_json
 
 
 class AgentState(TypedDict):
@@ -78,6 +79,21 @@ def from_rotation(rotation: Sequence[float]) -> float:
     return wrap_angle(2.0 * math.atan2(y, w) + 0.5 * math.pi)
 
 
+def to_tilted_rotation(yaw_rad: float, pitch_rad: float) -> tuple[float, float, float, float]:
+    """Returns a heading and an angle below the horizontal as Habitat's quaternion, xyzw, of a camera without roll."""
+    _, y, _, w = to_rotation(yaw_rad)
+    sin, cos = math.sin(-0.5 * pitch_rad), math.cos(0.5 * pitch_rad)
+    return w * sin, y * cos, -y * sin, w * cos
+
+
+def from_tilted_rotation(rotation: Sequence[float]) -> tuple[float, float]:
+    """Returns the heading in (-pi, pi] and the angle below the horizontal of Habitat's quaternion, xyzw."""
+    x, y, z, w = rotation
+    pitch_rad = -2.0 * math.atan2(math.hypot(x, z), math.hypot(y, w))
+    sign = math.copysign(1.0, x * w - y * z)
+    return wrap_angle(2.0 * math.atan2(y, w) + 0.5 * math.pi), pitch_rad * sign + 0.0
+
+
 def to_agent_state(pose: Pose) -> AgentState:
     """Returns a pose as an `agent_state` of Habitat."""
     return {"position": to_position(pose.x_m, pose.y_m, pose.floor_z_m), "rotation": to_rotation(pose.yaw_rad)}
@@ -102,10 +118,73 @@ def category_tables() -> dict[str, dict[str, int]]:
     }
 
 
+class ImageGoal(msgspec.Struct):
+    """The camera of a picture of a goal, as Habitat's `InstanceImageParameters` have it."""
+
+    position: tuple[Metres, Metres, Metres]
+    rotation: tuple[Number, Number, Number, Number]
+    hfov: Annotated[float, msgspec.Meta(gt=0.0, lt=180.0)]
+    """Degrees."""
+    image_dimensions: tuple[Count, Count]
+    """Height and width, pixels."""
+
+    @classmethod
+    def of(cls, camera: PictureCamera) -> ImageGoal:
+        """Returns a camera in Habitat's form."""
+        return cls(
+            tuple(to_position(camera.x_m, camera.y_m, camera.z_m)),  # type: ignore[arg-type]
+            to_tilted_rotation(camera.yaw_rad, camera.pitch_rad),
+            math.degrees(camera.hfov_rad),
+            (camera.height_px, camera.width_px),
+        )
+
+    @property
+    def camera(self) -> PictureCamera:
+        """The camera in the project's form."""
+        x_m, y_m, z_m = from_position(self.position)
+        yaw_rad, pitch_rad = from_tilted_rotation(self.rotation)
+        height, width = self.image_dimensions
+        return PictureCamera(
+            x_m=x_m, y_m=y_m, z_m=z_m, yaw_rad=yaw_rad, pitch_rad=pitch_rad, hfov_rad=math.radians(self.hfov),
+            width_px=width, height_px=height,
+        )  # fmt: skip
+
+
+class GoalEntry(msgspec.Struct, omit_defaults=True):
+    """Not of Habitat: a goal of a chain, or a picture."""
+
+    text: Name
+    kind: GoalKind
+    repeats: Count | None = None
+    image_goal: ImageGoal | None = None
+
+
 class EpisodeInfo(msgspec.Struct):
-    """The measured part of an episode."""
+    """The measured part of an episode, and its goals where they are more than a text."""
 
     geodesic_distance: Annotated[float, msgspec.Meta(ge=0.0, le=1e6)] | None = None
+    goals: Annotated[list[GoalEntry], msgspec.Meta(max_length=MAX_GOALS)] = msgspec.field(default_factory=list)
+
+
+def goals_info(goals: Sequence[GoalSpec]) -> dict[str, object]:
+    """Returns the entry of `info` with the goals of an episode; {}: its goal is text alone."""
+    entries = [
+        GoalEntry(goal.text, goal.kind, goal.repeats, None if goal.camera is None else ImageGoal.of(goal.camera))
+        for goal in goals
+    ]
+    return {"goals": msgspec.to_builtins(entries)} if entries else {}
+
+
+def goals_of(info: EpisodeInfo) -> tuple[GoalSpec, ...]:
+    """Returns the goals in the `info` of an episode.
+
+    Raises:
+        EpisodeError: a goal is not allowed.
+    """
+    return tuple(
+        GoalSpec(entry.text, entry.kind, None if entry.image_goal is None else entry.image_goal.camera, entry.repeats)
+        for entry in info.goals
+    )
 
 
 class EpisodeEntry(msgspec.Struct):
@@ -134,6 +213,8 @@ class IndexFile(msgspec.Struct):
     """Not of Habitat: the folder beside the split's that holds its houses."""
     in_words: bool = False
     """Not of Habitat: goals are in words."""
+    pictures: bool = False
+    """Not of Habitat: goals are pictures."""
 
 
 def read_episodes(path: Path) -> list[EpisodeEntry]:

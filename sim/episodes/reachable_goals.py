@@ -57,25 +57,58 @@ def find_reachable_goals(
         step_cells: distance of the places that may be view points, in cells of the free space.
         floor_z_m: height of the storey's floor.
     """
-    rooms = [room for room in task.world.rooms if abs(room.floor_z_m - floor_z_m) < task.config.success.same_storey_m]
-    space = task.truth.space(floor_z_m)
-    inside = space.largest_part()
-    coarse_m = space.frame.to_metres(_spread(inside, step_cells))
-    numbers = {instance.name: number for number, instance in enumerate(task.world.labels.instances, start=1)}
+    lister = GoalLister(task, max_view_points=max_view_points, step_cells=step_cells, floor_z_m=floor_z_m)
     listed: dict[str, list[habitat.Goal]] = {}
     unreachable: list[str] = []
     for goal in task.truth.goals():
-        region = task.truth.region(goal, floor_z_m)
+        entries, missed = lister.of(goal)
+        unreachable += missed
+        if entries:
+            listed[goal] = entries
+    return HouseGoals(listed, tuple(unreachable))
+
+
+class GoalLister:
+    """Lists the objects of goals of one storey with their view points.
+
+    Args:
+        task: of the house.
+        max_view_points: most view points of an instance.
+        step_cells: distance of the places that may be view points, in cells of the free space.
+        floor_z_m: height of the storey's floor.
+    """
+
+    def __init__(
+        self,
+        task: Task,
+        *,
+        max_view_points: int = MAX_VIEW_POINTS,
+        step_cells: int = VIEW_STEP_CELLS,
+        floor_z_m: float = 0.0,
+    ) -> None:
+        same_storey_m = task.config.success.same_storey_m
+        self._task, self._most, self._floor_z_m = task, max_view_points, floor_z_m
+        self._rooms = [room for room in task.world.rooms if abs(room.floor_z_m - floor_z_m) < same_storey_m]
+        self._space = task.truth.space(floor_z_m)
+        self._inside = self._space.largest_part()
+        self._coarse_m = self._space.frame.to_metres(_spread(self._inside, step_cells))
+        self._numbers = {instance.name: i for i, instance in enumerate(task.world.labels.instances, start=1)}
+
+    def of(self, goal: str) -> tuple[list[habitat.Goal], list[str]]:
+        """Returns Habitat's goals for the objects that satisfy a goal, and the names of those that are out of reach."""
+        listed: list[habitat.Goal] = []
+        unreachable: list[str] = []
+        region = self._task.truth.region(goal, self._floor_z_m)
         for footprint in region.footprints:
-            views = view_points(region, footprint, coarse_m, at_most=max_view_points)
+            views = view_points(region, footprint, self._coarse_m, at_most=self._most)
             if not len(views):
-                views = view_points(region, footprint, _near(space, inside, region, footprint), at_most=max_view_points)
+                near = _near(self._space, self._inside, region, footprint)
+                views = view_points(region, footprint, near, at_most=self._most)
             if len(views):
-                number = numbers[footprint.instance.name]
-                listed.setdefault(goal, []).append(_to_habitat(footprint, number, views, rooms))
+                listed.append(_to_habitat(footprint, self._numbers[footprint.instance.name], views, self._rooms))
             else:
                 unreachable.append(footprint.instance.name)
-    return HouseGoals(listed, tuple(unreachable))
+        return listed, unreachable
 
 
 def view_points(

@@ -21,7 +21,7 @@ from pathlib import Path
 
 from sim.core.errors import EpisodeError, HouseError, did_you_mean
 from sim.core.files import inside, write_together
-from sim.core.interface import GOAL_CATEGORIES, ConfigError
+from sim.core.interface import ConfigError
 from sim.core.invocation import command
 from sim.core.paths import assets_dir
 from sim.core.reading import Name, first_unprintable, printable, read_bytes, read_json, sha256_of
@@ -165,10 +165,10 @@ def load_split(name_or_path: str | Path) -> Split:
     return _read_split(folder)
 
 
-def is_in_words(name_or_path: str | Path) -> bool:
-    """Returns whether the goals of a split are in words; False also where there is no such split."""
+def read_index(name_or_path: str | Path) -> habitat.IndexFile:
+    """Returns the index of a split, which says of which kinds its goals are; an empty one: there is no such split."""
     index = _index_of(_folder_of(name_or_path).resolve())
-    return index.is_file() and habitat.read_index(index).in_words
+    return habitat.read_index(index) if index.is_file() else habitat.IndexFile()
 
 
 def _folder_of(name_or_path: str | Path) -> Path:
@@ -257,8 +257,11 @@ def write_split(
     index = {"version": version, "order": [episode.episode_id for episode in episodes], "episodes": []}
     if houses_of:
         index["houses_of"] = houses_of
-    if any(episode.goal not in GOAL_CATEGORIES for episode in episodes):
+    kinds = {goal.kind for episode in episodes for goal in episode.specs}
+    if kinds - {"category", "picture"}:
         index["in_words"] = True
+    if "picture" in kinds:
+        index["pictures"] = True
     files: dict[Path, bytes | str] = {}
     for house, goals in goals_by_house.items():
         content = habitat.category_tables() | {
@@ -398,7 +401,7 @@ def _to_habitat(split: str, episode: Episode) -> dict[str, object]:
         "start_position": state["position"],
         "start_rotation": state["rotation"],
         "object_category": episode.goal,
-        "info": {"geodesic_distance": episode.shortest_path_m},
+        "info": {"geodesic_distance": episode.shortest_path_m} | habitat.goals_info(episode.goals),
         "goals": [],
     }
 
@@ -410,4 +413,5 @@ def _from_habitat(entry: habitat.EpisodeEntry) -> Episode:
         goal=entry.object_category,
         start=habitat.from_agent_state(entry.start_position, entry.start_rotation),
         shortest_path_m=entry.info.geodesic_distance,
+        goals=habitat.goals_of(entry.info),
     )

@@ -31,7 +31,8 @@ class SensorContext:
     | field | declared in | meaning |
     |---|---|---|
     | images | `images` | rendered images by name, without noise |
-    | goal | `reads` | category that the episode asks for |
+    | goal | `reads` | the goal as text; "": it is a picture |
+    | picture | `reads` | the picture of the goal, uint8 (h, w, 3); None: the goal is text |
     | collided | `reads` | whether a contact stopped the last action |
     | odometry | `reads` | pose by the robot's own odometry, relative to the start |
     | pose | `reads`, truth | pose of the robot's body in the world, with its lean |
@@ -44,6 +45,7 @@ class SensorContext:
 
     images: Mapping[str, NDArray]
     goal: str
+    picture: NDArray[np.uint8] | None
     collided: bool
     odometry: Pose
     pose: BodyPose

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import string
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
+from sim.core.goals import MAX_TEXT, PICTURE_PX
 from sim.core.interface import CONTEXT_FIELDS, GOAL_CATEGORIES, MPCAT40, POSE_SENSORS, SCAN, SENSORS, CameraModel
 from sim.sensors.measured import BumperSensor, ImuSensor, OdometrySensor
 from sim.sensors.scan import ScanSensor
@@ -125,12 +128,66 @@ class ObjectGoalSensor:
         return np.array([GOAL_CATEGORIES.index(context.goal) if known else -1], np.int64)
 
 
+_CHARACTERS = frozenset(string.ascii_letters + string.digits + string.punctuation + " ")
+
+
+@dataclass(frozen=True, kw_only=True)
+class GoalSensor:
+    """The goal as text."""
+
+    name: str = "goal"
+    images: tuple[str, ...] = ()
+    reads: tuple[str, ...] = ("goal",)
+    noise: NoiseSettings | None = None
+
+    def space(self, camera: CameraModel) -> spaces.Text:
+        """Returns the space of texts of printable ASCII characters."""
+        return spaces.Text(MAX_TEXT, min_length=0, charset=_CHARACTERS)
+
+    def read(self, context: SensorContext) -> Any:  # a text is the only reading that is no array
+        """Returns the text, without characters that are not in the space; "": the goal is a picture."""
+        return "".join(filter(_CHARACTERS.__contains__, context.goal))
+
+
+@dataclass(frozen=True, kw_only=True)
+class GoalPictureSensor:
+    """The picture of a goal."""
+
+    name: str = "goal_picture"
+    images: tuple[str, ...] = ()
+    reads: tuple[str, ...] = ("picture",)
+    noise: NoiseSettings | None = None
+    width_px: int = PICTURE_PX
+    height_px: int = PICTURE_PX
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        """Returns the space of uint8 images (h, w, 3)."""
+        return spaces.Box(0, 255, (self.height_px, self.width_px, 3), np.uint8)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns the picture; 0 everywhere: the goal is text.
+
+        Raises:
+            ConfigError: the picture has another size.
+        """
+        shape = (self.height_px, self.width_px, 3)
+        if context.picture is None:
+            return np.zeros(shape, np.uint8)
+        if context.picture.shape != shape:
+            height, width, _ = context.picture.shape
+            raise ConfigError(
+                f"The picture of the goal has {width} x {height} pixels, and the sensor '{self.name}' "
+                f"{self.width_px} x {self.height_px}; give GoalPictureSensor(width_px={width}, height_px={height})."
+            )
+        return context.picture.copy()
+
+
 STANDARD_SENSORS: Mapping[str, Sensor] = MappingProxyType(
     {
         sensor.name: sensor
         for sensor in (
             RgbSensor(), DepthSensor(), SemanticSensor(), GpsSensor(), CompassSensor(), ObjectGoalSensor(),
-            ScanSensor(), BumperSensor(), OdometrySensor(), ImuSensor(),
+            ScanSensor(), BumperSensor(), OdometrySensor(), ImuSensor(), GoalSensor(), GoalPictureSensor(),
         )
     }
 )  # fmt: skip

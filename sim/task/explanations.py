@@ -6,8 +6,9 @@ Viewers use `explain_end`, which needs only the result and the distance to the g
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +23,7 @@ from sim.task.failures import (
     first_trapped_step,
 )
 from sim.task.metrics import EXPLORED_SHARE, TRAPPED_RADIUS_M, TRAPPED_WINDOW_STEPS
-from sim.task.result import EpisodeResult, RolloutResult
+from sim.task.result import EpisodeResult, GoalResult, RolloutResult
 from sim.task.trajectory import Trajectory
 
 ACTION_WORDS: Mapping[Action, str] = {
@@ -94,12 +95,15 @@ def explain_end(
         detects: whether the agent stops because of a segmentation. A person, or an agent without one, has
             stopped too early where the goal is not; that is not a false detection.
     """
-    success, steps = bool(result.success), f"{result.num_steps} step" + "s" * (result.num_steps != 1)
-    headline = f"{'Found' if success else 'Not found'} after {steps}"
+    success, steps = result.success == 1.0, f"{result.num_steps} step" + "s" * (result.num_steps != 1)
+    found = "Found" if success else "Not found"
+    headline = f"{found if result.goals is None else goals_found(result.goals)} after {steps}"
     if result.error:
         return Outcome(False, headline, result.error)
     if result.end_reason == "fallen":
         return Outcome(False, headline, "The robot drove over an edge and fell.")
+    if result.goals is not None:
+        return Outcome(success, headline, chain_in_words(result.goals))
     if result.end_reason == "stop":
         stop = _success(result, goal, nearest_m) if success else _wrong_stop(result, goal, rule, nearest_m, detects)
         return Outcome(success, headline, stop)
@@ -109,6 +113,18 @@ def explain_end(
     if left_m == 0.0:
         remaining = " The robot is where a STOP counts, and STOP was not called."
     return Outcome(False, headline, f"All {steps} are used up. {cause}{remaining}")
+
+
+def goals_found(goals: Sequence[GoalResult]) -> str:
+    """Returns the number of goals of a chain that were found: "5 of 7 goals found"."""
+    return f"{sum(goal.success == 1.0 for goal in goals)} of {len(goals)} goals found"
+
+
+def chain_in_words(goals: Sequence[GoalResult]) -> str:
+    """Returns the goals of a chain with their outcomes: "1 sofa: found; 2 desk: not found (explore)."."""
+    outcomes = ["found" if goal.success == 1.0 else f"not found ({goal.failure})" for goal in goals]
+    named = (f"{i} {in_words(goal.goal)}: {end}" for i, (goal, end) in enumerate(zip(goals, outcomes, strict=True), 1))
+    return f"{'; '.join(named)}."
 
 
 def _success(result: RolloutResult, goal: str, nearest_m: float | None) -> str:
@@ -149,7 +165,7 @@ def outcome(result: EpisodeResult) -> str:
     """Returns `found`, the cause of the failure, `error`, or `failed` where no cause was recorded."""
     if result.is_error:
         return "error"
-    return "found" if result.success else result.failure or "failed"
+    return "found" if result.success == 1.0 else result.failure or "failed"
 
 
 def explain(result: EpisodeResult, trajectory: Trajectory | None) -> str:
@@ -157,6 +173,8 @@ def explain(result: EpisodeResult, trajectory: Trajectory | None) -> str:
     cause = outcome(result)
     if cause == "error":
         return f"The episode ended with an error: {result.error or 'no reason was recorded'}"
+    if result.goals is not None:
+        return f"{goals_found(result.goals)}. {chain_in_words(result.goals)}"
     if trajectory is None:
         return "Found." if cause == "found" else f"Not found. {MEANING.get(cause, 'No cause was recorded.')}"
     reason = _REASONS.get(cause, _other_reason)
@@ -170,6 +188,12 @@ def explain(result: EpisodeResult, trajectory: Trajectory | None) -> str:
 def marks(result: EpisodeResult, trajectory: Trajectory) -> list[Mark]:
     """Returns the decisive moments in the order of their steps; the end is always among them."""
     goal, last = in_words(result.goal), trajectory.num_steps
+    if result.goals is not None:
+        ends = itertools.accumulate(goal.num_steps for goal in result.goals)
+        return [
+            Mark("end", step, None, f"{in_words(goal.goal)}: {'found' if goal.success else goal.failure}")
+            for goal, step in zip(result.goals, ends, strict=True)
+        ]
     moments: list[Mark] = []
     seen, at_goal = _seen(trajectory), _at_goal(trajectory)
     if len(seen):

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from sim.core.errors import EpisodeError
 from sim.core.geometry.grid import GridFrame
+from sim.core.goals import GoalSpec
 from sim.core.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
 from sim.core.wishes import parse_wish, require_goal
 from sim.gl import mujoco
@@ -64,17 +65,18 @@ class GroundTruth:
         self.meaning = Meaning(world, self._at_rest)
         """The objects that satisfy goals in words."""
 
-    def instances(self, goal: str) -> tuple[Instance, ...]:
+    def instances(self, goal: str | GoalSpec) -> tuple[Instance, ...]:
         """Returns all objects of the house that satisfy a goal.
 
         Args:
             goal: a goal category, whose instances they are; the label of one instance (`chair_03`); or words
-                (`sim.core.wishes`).
+                (`sim.core.wishes`). Those of a picture are the object that it shows.
 
         Raises:
             EpisodeError: the goal has a word that is not known, or no object satisfies it, unless it is a category; the
                 message says what there is.
         """
+        goal = str(goal)
         if goal not in self._instances:
             labels = self.world.labels
             if goal in GOAL_CATEGORIES:

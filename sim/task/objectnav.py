@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import msgspec
@@ -12,15 +12,17 @@ from numpy.typing import NDArray
 
 from sim.core.errors import EpisodeError
 from sim.core.geometry.pose import Pose
+from sim.core.goals import GoalSpec
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, Action, CameraModel
 from sim.robot.drive import Motion
 from sim.task import metrics
+from sim.task.chain import chain_metrics, goal_result, not_begun
 from sim.task.config import TaskConfig
 from sim.task.failures import TARGET_ON_GOAL_M, Cause, cause_of_failure
 from sim.task.ground_truth import GroundTruth
-from sim.task.result import NO_STOP_TARGET, EndReason, EpisodeMetrics, StopTarget
+from sim.task.result import NO_STOP_TARGET, EndReason, EpisodeMetrics, GoalResult, StopTarget
 from sim.task.seen_floor import SeenFloor
-from sim.task.trajectory import Recorder, Trajectory, by_action
+from sim.task.trajectory import Recorder, Trajectory, by_action, joined
 from sim.world.world import World
 
 _EXACT_TEST_M = 0.1
@@ -29,9 +31,9 @@ _EXACT_TEST_M = 0.1
 
 @dataclass
 class _Record:
-    """State of the running episode."""
+    """State of the running episode, or of one goal of a chain."""
 
-    goal: str
+    spec: GoalSpec
     start: Pose
     shortest_path_m: float | None
     """None: there is no path, because the goal is on another storey."""
@@ -55,11 +57,24 @@ class _Record:
     stop: StopTarget = NO_STOP_TARGET
     failure: Cause | None = None
 
+    @property
+    def goal(self) -> str:
+        """The text by which the objects are found."""
+        return self.spec.text
+
+    @property
+    def steps(self) -> int:
+        """Number of actions so far."""
+        return len(self.positions_m) - 1
+
 
 class Task:
     """ObjectNav in one world: it computes the metrics from the motions and the true segmentation.
 
     Call `begin` after `World.reset`, `look` with the first frame, then `observe` after each motion.
+
+    In a chain of goals the end of a goal, by STOP or after `max_steps` actions, is the start of the next one: the robot
+    stays where it is, and the metrics of the next goal begin. A fall ends the chain.
 
     Args:
         world: the compiled house with its robot.
@@ -82,21 +97,34 @@ class Task:
         self._steps_per_action = steps_per_action
         self.truth = GroundTruth(world, success=self.config.success, camera=camera)
         self._record: _Record | None = None
+        self._ended: list[_Record] = []
+        """The goals of a chain before the present one."""
+        self._goals: tuple[GoalSpec, ...] = ()
         self._goal_geoms: NDArray[np.bool_] | None = None
         """Which geoms are the goal, where it is not a category."""
+        self.ended_goal: GoalResult | None = None
+        """The result of the goal that the last action ended; None: it ended none."""
 
-    def begin(self, goal: str, start: Pose) -> None:
-        """Starts an episode.
+    def begin(self, goals: str | GoalSpec | Sequence[GoalSpec], start: Pose) -> None:
+        """Starts an episode with a goal or with a chain of goals.
 
         A goal whose only instances are on another storey is allowed, as in Habitat's splits, but cannot be reached:
         its distances are None, its SPL is 0. A goal on this storey that is walled in is an error.
 
         Raises:
-            EpisodeError: the goal is unknown, is not in the house, or is on the storey of the start without a path to
+            EpisodeError: a goal is unknown, is not in the house, or is on the storey of the start without a path to
                 it.
         """
-        self._record = None
-        shortest_path_m = self.distance_from(goal, start)
+        self._record, self._ended, self.ended_goal = None, [], None
+        self._goals = (GoalSpec.of(goals),) if isinstance(goals, str | GoalSpec) else tuple(goals)
+        for goal in self._goals:
+            target = self.truth.target(goal.text, start.floor_z_m)
+            if target.region.footprints and self.distance_from(goal.text, start) is None:
+                raise self.unreachable_error(goal.text, start)
+        self._begin_goal(self._goals[0], start, self.truth.unseen_floor(start.floor_z_m))
+
+    def _begin_goal(self, spec: GoalSpec, start: Pose, floor: SeenFloor) -> None:
+        goal, shortest_path_m = spec.text, self.distance_from(spec.text, start)
         self._goal_geoms = None
         if goal not in GOAL_CATEGORIES:
             self._goal_geoms = np.zeros(
@@ -104,23 +132,22 @@ class Task:
             )  # the last entry is for pixels without one
             self._goal_geoms[[geom for instance in self.truth.instances(goal) for geom in instance.geom_ids]] = True
         on_storey = bool(self.truth.target(goal, start.floor_z_m).region.footprints)
-        if shortest_path_m is None and on_storey:
-            raise self.unreachable_error(goal, start)
         recorder = Recorder(start, distance_m=shortest_path_m, goal_on_storey=on_storey)
         self._record = _Record(
-            goal,
+            spec,
             start,
             shortest_path_m,
             [(start.x_m, start.y_m)],
             recorder,
-            self.truth.unseen_floor(start.floor_z_m),
+            floor,
             distance_m=shortest_path_m,
         )
 
     @property
     def images(self) -> tuple[str, ...]:
-        """The true images that `look` needs."""
-        return ("semantic",) if self._goal_geoms is None else ("semantic", "geom")
+        """The true images that `look` needs: in a chain those of all goals, as a frame can be the first of the next."""
+        by_category = self._goals[:1] == self._goals and self._goals[0].text in GOAL_CATEGORIES
+        return ("semantic",) if by_category else ("semantic", "geom")
 
     def goal_mask(self, images: Mapping[str, NDArray]) -> NDArray[np.bool_]:
         """Returns (h, w) the pixels of the goal in the true images that `images` names."""
@@ -138,7 +165,7 @@ class Task:
         share = float(np.count_nonzero(self.goal_mask(images)) / semantic.size)
         record.recorder.look(share)
         if record.first_seen_step is None and share >= metrics.EXPLORED_SHARE:
-            record.first_seen_step = self.num_steps
+            record.first_seen_step = record.steps
         record.floor.look(semantic, self.world.camera_pose)
 
     def observe(self, action: Action, motion: Motion, images: Mapping[str, NDArray] | None = None) -> None:
@@ -148,7 +175,7 @@ class Task:
             EpisodeError: the episode has not begun or is over.
         """
         self.require_running()
-        record, pose = self._running, self.world.pose
+        record, pose, self.ended_goal = self._running, self.world.pose, None
         record.positions_m.append((pose.x_m, pose.y_m))
         record.path_length_m += motion.displacement_m
         record.simulated_s += motion.duration_s
@@ -165,8 +192,20 @@ class Task:
             self._end("fallen")
         elif action == Action.STOP:
             self._end("stop")
-        elif self.num_steps >= self.config.max_steps:
+        elif record.steps >= self.config.max_steps:
             self._end("max_steps")
+        if self.is_chain and record.end_reason is not None:
+            self._go_on(record, images)
+
+    def _go_on(self, record: _Record, images: Mapping[str, NDArray] | None) -> None:
+        """Starts the next goal of a chain after one has ended, unless the robot fell."""
+        self.ended_goal = goal_result(record.spec, self.goal_metrics())
+        following = self.goal_number + 1
+        if record.end_reason != "fallen" and following < len(self._goals):
+            self._ended.append(record)
+            self._begin_goal(self._goals[following], self.world.pose, record.floor)
+            if images is not None:
+                self.look(images)
 
     def require_running(self) -> None:
         """Raises EpisodeError if no further action is allowed: the episode has not begun, or is over."""
@@ -193,14 +232,29 @@ class Task:
         return self._running.goal
 
     @property
+    def goals(self) -> tuple[GoalSpec, ...]:
+        """The goals of the episode in their order; one, unless it is a chain."""
+        return self._goals
+
+    @property
+    def goal_number(self) -> int:
+        """Number of the present goal in a chain, from 0 on."""
+        return len(self._ended)
+
+    @property
+    def is_chain(self) -> bool:
+        """True: the episode has several goals."""
+        return len(self._goals) > 1
+
+    @property
     def start(self) -> Pose:
-        """Start pose of the episode."""
+        """Start pose of the episode; in a chain that of the present goal."""
         return self._running.start
 
     @property
     def num_steps(self) -> int:
         """Number of actions so far, STOP included."""
-        return len(self._running.positions_m) - 1
+        return sum(record.steps for record in self._ended) + self._running.steps
 
     @property
     def terminated(self) -> bool:
@@ -219,8 +273,8 @@ class Task:
 
     @property
     def success(self) -> bool:
-        """True: the agent called STOP where it succeeds."""
-        return self._running.success
+        """True: the agent called STOP where it succeeds; in a chain, its last action was such a STOP."""
+        return self._running.success if self.ended_goal is None else bool(self.ended_goal.success)
 
     def distance_from(self, goal: str, pose: Pose) -> float | None:
         """Returns the geodesic distance from a pose to the nearest place where a STOP succeeds; None: no path."""
@@ -244,14 +298,27 @@ class Task:
 
     def metrics(self) -> EpisodeMetrics:
         """Returns the metrics so far; `failure` is None until the episode has failed."""
-        record = self._running
+        return chain_metrics(self.goal_results()) if self.is_chain else self.goal_metrics()
+
+    def goal_metrics(self) -> EpisodeMetrics:
+        """Returns the metrics of the present goal so far: those of the episode, unless it is a chain."""
+        return self._metrics_of(self._running)
+
+    def goal_results(self) -> list[GoalResult]:
+        """Returns the results so far of all goals of a chain."""
+        begun = [*self._ended, self._running]
+        reason = begun[-1].end_reason
+        results = [goal_result(record.spec, self._metrics_of(record)) for record in begun]
+        return results + [not_begun(goal, reason) for goal in self._goals[len(begun) :]]
+
+    def _metrics_of(self, record: _Record) -> EpisodeMetrics:
         distance_m = record.distance_m
         return EpisodeMetrics(
             success=float(record.success),
             spl=metrics.spl(record.success, record.shortest_path_m, record.path_length_m),
             soft_spl=metrics.soft_spl(record.shortest_path_m, distance_m, record.path_length_m),
             distance_to_goal=distance_m,
-            num_steps=self.num_steps,
+            num_steps=record.steps,
             path_length=record.path_length_m,
             shortest_path=record.shortest_path_m,
             collisions=record.collisions,
@@ -270,20 +337,14 @@ class Task:
 
     def trajectory(self) -> Trajectory:
         """Returns the trajectory of the episode so far."""
-        record = self._running
-        return record.recorder.trajectory(
-            success=record.success,
-            end_reason=record.end_reason,
-            nearest_instance_m=record.nearest_instance_m,
-            stop=record.stop,
-        )
+        return joined([_trajectory_of(record) for record in (*self._ended, self._running)])
 
     def _end(self, reason: EndReason) -> None:
         """Ends the episode and computes the cause of a failure."""
         record, pose = self._running, self.world.pose
         record.end_reason = reason
         record.nearest_instance_m = self.truth.nearest_now_m(record.goal, pose.x_m, pose.y_m, pose.floor_z_m)
-        record.failure = cause_of_failure(by_action(self.trajectory(), self._steps_per_action))
+        record.failure = cause_of_failure(by_action(_trajectory_of(record), self._steps_per_action))
 
     @property
     def _running(self) -> _Record:
@@ -298,3 +359,12 @@ class Task:
         if abs(pose.floor_z_m - record.start.floor_z_m) >= self.config.success.same_storey_m:
             return None
         return self.distance_from(record.goal, pose)
+
+
+def _trajectory_of(record: _Record) -> Trajectory:
+    return record.recorder.trajectory(
+        success=record.success,
+        end_reason=record.end_reason,
+        nearest_instance_m=record.nearest_instance_m,
+        stop=record.stop,
+    )

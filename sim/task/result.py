@@ -1,29 +1,32 @@
 """The result of an episode: the one declaration of its fields and metrics.
 
-`EpisodeMetrics` is what the task measures, `RolloutResult` adds what the run of the episode gives, and `EpisodeResult`
-adds the episode and the agent: it is a line of `results.jsonl`. A metric is a field with a `Metric` in its type;
-summaries, comparisons, reports and tables read `METRICS`. To add one, declare its field here with `| None = None`, so
-that earlier runs, recordings and submissions are still read, compute it in `sim.task.objectnav`, and name it in
-docs/task.md. Three places choose among the metrics: the table of episodes (`sim.app.analysis.display`), the comparison
-of replays (`sim.app.submissions.verdicts`) and the leaderboard.
+`GoalMetrics` is what the task measures of one goal and `EpisodeMetrics` of an episode, `RolloutResult` adds what the
+run of the episode gives, and `EpisodeResult` adds the episode and the agent: it is a line of `results.jsonl`. A metric
+is a field with a `Metric` in its type; summaries, comparisons, reports and tables read `METRICS`. To add one, declare
+its field here with `| None = None`, so that earlier runs, recordings and submissions are still read, compute it in
+`sim.task.objectnav`, and name it in docs/task.md. Three places choose among the metrics: the table of episodes
+(`sim.app.analysis.display`), the comparison of replays (`sim.app.submissions.verdicts`) and the leaderboard.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType, NoneType
-from typing import Annotated, Literal, Self, get_args, get_type_hints
+from typing import Annotated, Any, Literal, Self, get_args, get_type_hints
 
 import msgspec
 from msgspec import UNSET, Meta, UnsetType
+from msgspec.structs import replace as replace_fields
 
+from sim.core.goals import GoalKind
 from sim.core.reading import Count, Metres, Name, Number, Seed
 from sim.robot.config import MotionKind
 
 EndReason = Literal["stop", "max_steps", "fallen", "error"]
 Share = Annotated[float, Meta(ge=0.0, le=1.0)]
+GOAT_DISTANCE_M = 0.25
 READ_BY = "0.2.0"
 """The last version that reads results without all of these fields."""
 
@@ -46,6 +49,8 @@ class Metric:
     collisions and metres; only success and SPL are 0 then."""
     complement: bool = False
     """Whether the value is 1 minus that of the field."""
+    chains: bool = False
+    """Whether only chains have the value; summaries and comparisons without chains leave it out."""
     key: str = ""
     """The key in `summary.json`; "": that of the field."""
     field: str = ""
@@ -83,7 +88,7 @@ class StopTarget(msgspec.Struct, frozen=True, kw_only=True):
 NO_STOP_TARGET = StopTarget(stop_target_xy_m=None, stop_target_to_goal_m=None, stop_target_category=None)
 
 
-class EpisodeMetrics(StopTarget, frozen=True, kw_only=True):
+class GoalMetrics(StopTarget, frozen=True, kw_only=True):
     """The measurements of the task (docs/task.md). A field that may be None is None if the episode did not begin."""
 
     success: Annotated[Share, Metric("success", "%", most=1.0, counts_errors=True)]
@@ -115,12 +120,48 @@ class EpisodeMetrics(StopTarget, frozen=True, kw_only=True):
     end_reason: EndReason | None
     """None: the episode still runs."""
 
-    def as_info(self) -> dict[str, float | str | None]:
+    def as_info(self) -> dict[str, Any]:
         """Returns the entries of Gymnasium's `info`: vector environments take no None for the first sight."""
-        entries = {name: getattr(self, name) for name in EpisodeMetrics.__annotations__}
+        entries = {name: getattr(self, name) for name in GoalMetrics.__annotations__}
         if self.first_seen_step is None:
             del entries["first_seen_step"]
         return entries
+
+
+class GoalResult(GoalMetrics, frozen=True, kw_only=True, omit_defaults=True):
+    """The result of one goal of a chain; a failure without steps if the chain ended before it began."""
+
+    goal: Name
+    kind: GoalKind
+    repeats: Count | None = None
+    """Number of the earlier goal with the same objects: this is its second visit; None: the first visit."""
+    goat_success: Share
+    """1: STOP less than `GOAT_DISTANCE_M` from a place where it succeeds, which is GOAT-Bench's rule."""
+    goat_spl: Share
+
+
+class EpisodeMetrics(GoalMetrics, frozen=True, kw_only=True, omit_defaults=True):
+    """The measurements of an episode; those of a chain are composed of its goals' (`sim.task.chain`)."""
+
+    composite_success: Annotated[Share | None, Metric("all goals", "%", most=1.0, counts_errors=True, chains=True)] = (
+        None
+    )
+    """1: all goals of the chain succeeded; this and the next fields are None where the episode is not a chain."""
+    second_visit_success: Annotated[Share | None, Metric("second visits", "%", most=1.0, chains=True)] = None
+    """Mean over the second visits of the chain."""
+    second_visit_spl: Annotated[Share | None, Metric("second visits SPL", digits=3, most=1.0, chains=True)] = None
+    goat_success: Annotated[Share | None, Metric("success by GOAT", "%", most=1.0, chains=True)] = None
+    """Mean over the goals by GOAT-Bench's rule."""
+    goat_spl: Annotated[Share | None, Metric("SPL by GOAT", digits=3, most=1.0, chains=True)] = None
+    goals: tuple[GoalResult, ...] | None = None
+    """The results of the goals in their order."""
+
+    def as_info(self) -> dict[str, Any]:
+        """Returns the entries of Gymnasium's `info`; those of a chain have its own metrics and those of its goals."""
+        if self.goals is None:
+            return super().as_info()
+        own = {name: getattr(self, name) for name in EpisodeMetrics.__annotations__ if name != "goals"}
+        return super().as_info() | own | {"goals": [goal.as_info() for goal in self.goals]}
 
 
 class RolloutResult(EpisodeMetrics, frozen=True, kw_only=True, omit_defaults=True):
@@ -179,7 +220,9 @@ class EpisodeResult(RolloutResult, frozen=True, kw_only=True):
 
 _KEYS = tuple(
     dict.fromkeys(
-        name for part in (EpisodeResult, EpisodeMetrics, StopTarget, RolloutResult) for name in part.__annotations__
+        name
+        for part in (EpisodeResult, GoalMetrics, StopTarget, RolloutResult, EpisodeMetrics)
+        for name in part.__annotations__
     )
 )
 
@@ -197,11 +240,30 @@ METRICS: Mapping[str, Metric] = MappingProxyType({metric.key: metric for metric 
 
 def metrics_without_episode(shortest_path_m: float | None) -> EpisodeMetrics:
     """Returns the metrics of an episode that could not be run: None where the field allows it, else 0."""
-    hints = get_type_hints(EpisodeMetrics)
+    hints = get_type_hints(GoalMetrics)
     values = {name: None if NoneType in get_args(hint) else 0 for name, hint in hints.items()}
     return msgspec.convert(values | {"shortest_path": shortest_path_m}, EpisodeMetrics)
 
 
 def failed_metrics(metrics: EpisodeMetrics) -> EpisodeMetrics:
     """Returns the metrics of an episode that ended with an error: a failure, whatever it had achieved."""
-    return msgspec.structs.replace(metrics, success=0.0, spl=0.0, soft_spl=0.0, failure="misc", end_reason="error")
+    failed = {"success": 0.0, "spl": 0.0, "soft_spl": 0.0, "failure": "misc", "end_reason": "error"}
+    if metrics.goals is not None:
+        goals = (replace_fields(goal, **failed, goat_success=0.0, goat_spl=0.0) for goal in metrics.goals)
+        failed |= {"composite_success": 0.0, "goals": tuple(goals)}
+    return replace_fields(metrics, **failed)
+
+
+def metrics_for(results: Iterable[EpisodeResult], *, summary: bool = False) -> list[Metric]:
+    """Returns the metrics that describe some results: those of chains only where there is one.
+
+    Args:
+        results: of a run.
+        summary: only those of `summary.json`.
+    """
+    has_chains = any(result.goals is not None for result in results)
+    return [
+        metric
+        for metric in METRICS.values()
+        if (has_chains or not metric.chains) and (metric.in_summary or not summary)
+    ]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import urllib.parse
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import get_args
@@ -198,6 +198,22 @@ def by_action(trajectory: Trajectory, steps: int) -> Trajectory:
         touched=np.logical_or.reduceat(trajectory.touched, begins),
         duration_s=np.add.reduceat(trajectory.duration_s, begins),
     )
+
+
+def joined(parts: Sequence[Trajectory]) -> Trajectory:
+    """Returns the trajectories of the goals of a chain as one; the moment between two goals is that of the later one.
+
+    What is known only of the end is that of the last goal.
+    """
+    last, actions = parts[-1], np.cumsum([0, *(part.num_steps for part in parts)])
+    if len(parts) == 1:
+        return last
+    numbered = [part.contacts + np.array([step, 0, 0], np.float32) for step, part in zip(actions, parts, strict=False)]
+    arrays = {
+        name: np.concatenate([*(getattr(part, name)[: part.num_steps] for part in parts[:-1]), getattr(last, name)])
+        for name in _ARRAYS
+    }
+    return replace(last, **arrays, contacts=np.concatenate(numbered).astype(np.float32))
 
 
 def trajectory_file(run: Path, episode_id: str) -> Path:

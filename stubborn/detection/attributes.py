@@ -77,16 +77,14 @@ def _fitted() -> _File:
 
 
 class Attributes:
-    """The evidence on the conditions of one wish, of one episode.
+    """The evidence on names and attributes of all tracks of an episode, whatever its goals are.
 
     Args:
-        wish: the goal.
         frame: the grid of the voxels from above.
         most_tracks: limit of the number of tracks.
     """
 
-    def __init__(self, wish: Wish, frame: GridFrame, most_tracks: int) -> None:
-        self.wish = wish
+    def __init__(self, frame: GridFrame, most_tracks: int) -> None:
         self._frame = frame
         self._colours = np.zeros((most_tracks, len(COLOUR_NAMES)), np.float64)
         self._names: dict[int, dict[str, int]] = {}
@@ -113,7 +111,7 @@ class Attributes:
             marks[pixels.row[shown], pixels.col[shown]] = True
         seen = pixels.track > 0
         tracks = pixels.track[seen]
-        if rgb is not None and self.wish.colour is not None and tracks.size:
+        if rgb is not None and tracks.size:
             np.add.at(self._colours, (tracks, colour_numbers(rgb[seen].astype(np.float32) / 255.0)), 1.0)
         if objects is not None:
             image, every_name = objects
@@ -123,12 +121,32 @@ class Attributes:
                     name, of_track = str(every_name[int(number)]), self._names.setdefault(track, {})
                     of_track[name] = of_track.get(name, 0) + count
 
+    def name_shares(
+        self, tracks: Tracks, candidates: Int[np.ndarray, " n"], names: frozenset[str]
+    ) -> Float32[np.ndarray, " n"]:
+        """Returns the share of the pixels of each candidate that have one of some names.
+
+        It is 1 if the segmentation knows no names, and 0 for a track that was not seen with its name yet.
+        """
+        self._follow_merges(tracks.now())
+        if not self._names:
+            return np.ones(len(candidates), np.float32)
+        counts = [self._names.get(track, {}) for track in candidates.tolist()]
+        right = [sum(of_track.get(name, 0) for name in names) / max(sum(of_track.values()), 1) for of_track in counts]
+        return np.array(right, np.float32)
+
     def factors(
-        self, tracks: Tracks, candidates: Int[np.ndarray, " n"], left_share: float, well_seen: Bool[np.ndarray, " n"]
+        self,
+        wish: Wish,
+        tracks: Tracks,
+        candidates: Int[np.ndarray, " n"],
+        left_share: float,
+        well_seen: Bool[np.ndarray, " n"],
     ) -> Float32[np.ndarray, " n"]:
         """Returns the factor of the conditions for each candidate.
 
         Args:
+            wish: the goal.
             tracks: all objects.
             candidates: numbers of the tracks that are probably of the goal's category.
             left_share: share of the actions that are left.
@@ -136,16 +154,16 @@ class Attributes:
         """
         self._follow_merges(tracks.now())
         undecided = UNDECIDED if left_share > 1.0 - LATE_SHARE else AT_LAST
-        wish, result = self.wish, np.ones(len(candidates))
+        result = np.ones(len(candidates))
         if wish.colour is not None:
-            result *= [self._colour_factor(track, undecided) for track in candidates.tolist()]
+            result *= [self._colour_factor(track, wish.colour, undecided) for track in candidates.tolist()]
         if wish.rooms:
-            result *= [self._room_factor(tracks, track, undecided) for track in candidates.tolist()]
+            result *= [self._room_factor(tracks, track, wish.rooms, undecided) for track in candidates.tolist()]
         for beside in wish.beside:
             near = [self._is_at(tracks, track, beside) for track in candidates.tolist()]
             result *= np.where(near, 1.0, np.where(well_seen, _SEEN_ALONE * undecided, undecided))
         if wish.size is not None:
-            result *= self._size_factors(tracks, candidates, result, undecided)
+            result *= self._size_factors(wish, tracks, candidates, result, undecided)
         best = float(result.max(initial=0.0))
         if undecided == AT_LAST and 0.0 < best < AT_LAST:
             result *= AT_LAST / best  # the house has the goal, and no better object was found
@@ -160,7 +178,7 @@ class Attributes:
                 of_track = self._names.setdefault(int(now[track]), {})
                 of_track[name] = of_track.get(name, 0) + count
 
-    def _colour_factor(self, track: int, undecided: float) -> float:
+    def _colour_factor(self, track: int, colour: str, undecided: float) -> float:
         counts = self._colours[track]
         if counts.sum() < _LEAST_PIXELS:
             return undecided
@@ -168,9 +186,9 @@ class Attributes:
         logits = np.array(fitted.weights) @ np.sqrt(counts / counts.sum()) + np.array(fitted.offsets)
         odds = np.exp(logits - logits.max())
         odds[fitted.names.index("")] *= _NO_COLOUR
-        return float(odds[fitted.names.index(self.wish.colour or "")] / odds.sum())
+        return float(odds[fitted.names.index(colour)] / odds.sum())
 
-    def _room_factor(self, tracks: Tracks, track: int, undecided: float) -> float:
+    def _room_factor(self, tracks: Tracks, track: int, rooms: Sequence[str], undecided: float) -> float:
         """Returns the probability that a track is in a room of the wish, by the categories of the tracks around it."""
         x_m, y_m = tracks.middle_xy_m(track)
         held = {name for name in self._categories_around(tracks, track, x_m, y_m) if name in _room_categories()}
@@ -183,7 +201,7 @@ class Attributes:
             logs[kind] = present + absent
         best = max(logs.values())
         odds = {kind: np.exp(value - best) for kind, value in logs.items()}
-        probability = sum(odds.get(kind, 0.0) for kind in self.wish.rooms) / sum(odds.values())
+        probability = sum(odds.get(kind, 0.0) for kind in rooms) / sum(odds.values())
         return float(probability if abs(probability - 0.5) > 0.2 or len(held) > 3 else undecided)
 
     def _categories_around(self, tracks: Tracks, track: int, x_m: float, y_m: float) -> set[str]:
@@ -245,16 +263,16 @@ class Attributes:
         return bool(around.sum() >= 2)
 
     def _size_factors(
-        self, tracks: Tracks, candidates: Int[np.ndarray, " n"], others: np.ndarray, undecided: float
+        self, wish: Wish, tracks: Tracks, candidates: Int[np.ndarray, " n"], others: np.ndarray, undecided: float
     ) -> np.ndarray:
         """Returns 1 for the extreme of the candidates that satisfy the other conditions, if enough are known."""
         fits = others >= _CERTAIN
         if not fits.any():
             return np.full(len(candidates), undecided)
         sizes = np.where(fits, tracks.extents_m(candidates), np.nan)
-        best = np.nanargmax(sizes) if self.wish.size == "largest" else np.nanargmin(sizes)
+        best = np.nanargmax(sizes) if wish.size == "largest" else np.nanargmin(sizes)
         factors = np.where(fits, 0.1, undecided)
-        enough = self.wish.count is not None and int(fits.sum()) >= self.wish.count
+        enough = wish.count is not None and int(fits.sum()) >= wish.count
         factors[best] = 1.0 if enough or undecided == AT_LAST else undecided
         return factors
 

@@ -37,6 +37,10 @@ class Seeker(Protocol):
         """Forgets the last episode."""
         ...
 
+    def next_goal(self, goal: str) -> None:
+        """Starts with another goal in the same episode; what it knows about objects stays known."""
+        ...
+
     def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
         """Learns from a frame that has been entered into the map."""
         ...
@@ -172,6 +176,10 @@ class TargetSeeker:
         """See `Seeker`: the cell that is verified."""
         self._far = False  # whether the pursued candidate needs more than the local window
         self._pursued: tuple[int, int] | None = None  # map cell of the acceptable candidate that is approached
+
+    def next_goal(self, goal: str) -> None:
+        """See `Seeker`; this seeker knows only the scores of one goal, which are on the map."""
+        self.reset(goal)
 
     def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
         """See `Seeker`; this seeker reads everything from the map."""

@@ -13,6 +13,7 @@ from jaxtyping import Bool, Float32, Float64, Int32
 from sim.core.geometry.grid import Window, cells_near_segment
 from sim.core.geometry.pose import Pose
 from sim.core.interface import FORWARD_M, ConfigError, Observation
+from sim.core.wishes import Wish
 from stubborn.detection.approach import Approach, approach_from_here, approach_on, on_map
 from stubborn.detection.attributes import Attributes
 from stubborn.detection.context import SHIPPED, read_context
@@ -25,6 +26,9 @@ from stubborn.mapping.collision_marks import STAYED_M, pushed_without_moving
 from stubborn.mapping.mapper import Sighting
 from stubborn.mapping.masks import nearest
 from stubborn.mapping.navmap import NavMap
+
+GOAL_TEXT = "goal"
+"""The sensor whose presence says that goals may be in words; names and attributes are then learned from the start."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,7 +107,7 @@ class TrackSeeker:
         self.step = 0
         self.tracks: Tracks | None = None
         self.attributes: Attributes | None = None
-        """The evidence on the conditions of a goal in words; None: it has none, or the first frame was not seen yet."""
+        """The names and attributes of the tracks; None: no goal was in words yet, or the first frame was not seen."""
         exact = not self.segmenter.spec.needs_verification
         self.verdicts = Verdicts(self.config.look, exact=exact, max_steps=self.max_steps)
         self.probability: Float32[np.ndarray, " numbers"] = np.zeros(1, np.float32)
@@ -134,29 +138,34 @@ class TrackSeeker:
         self._drove = False
         self._pushes = 0
 
+    def next_goal(self, goal: str) -> None:
+        """See `Seeker`: tracks and their attributes stay, and the decisions on them are those of another goal."""
+        tracks, attributes = self.tracks, self.attributes
+        self.reset(goal)
+        self.tracks, self.attributes = tracks, attributes
+
     def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
         """See `Seeker`."""
         if self.tracks is None:
             self.tracks = Tracks(
                 self.config.tracks, self.camera, self.robot.camera_forward_m, navmap.frame, self.fusion
             )
-            wish = None if self.wished is None else self.wished.wish
-            if wish is not None and not wish.is_plain:
-                self.attributes = Attributes(wish, self.tracks.plan, self.tracks.config.most_tracks)
+        wish = None if self.wished is None else self.wished.wish
+        if self.attributes is None and (wish is not None or GOAL_TEXT in observation):
+            self.attributes = Attributes(self.tracks.plan, self.tracks.config.most_tracks)
         posteriors, depth = self.segmenter.posteriors(observation), observation["depth"]
         objects = None
         if self.attributes is not None and self.wished is not None and "rgb" in observation:  # a level camera
             objects = self.wished.objects(observation, posteriors.shape[1:])
         self.tracks.add(posteriors, depth, pose, self.goal, None if objects is None else objects[0])
-        least_voxels = 1 if self.verdicts.exact else self.config.tracks.least_voxels
-        self.probability = self.tracks.probabilities(self.goal, least_voxels, self.context, self.config.context_share)
         self.step, self._pose = step, pose
         if self.attributes is not None:
-            self._test_wish(self.attributes, posteriors, observation, objects, pose)
+            self._learn_attributes(self.attributes, posteriors, observation, objects, pose)
+        self.probability = self._probabilities(self.tracks, wish)
         if self._decide(pose):
             navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
 
-    def _test_wish(
+    def _learn_attributes(
         self,
         attributes: Attributes,
         posteriors: Float32[np.ndarray, "classes h w"],
@@ -164,17 +173,37 @@ class TrackSeeker:
         objects: tuple[Int32[np.ndarray, "h w"], Sequence[str]] | None,
         pose: Pose,
     ) -> None:
-        """Enters a frame into the evidence on a goal in words, and multiplies the probabilities by its factors."""
-        tracks, rgb, columns = self._of_episode(), observation.get("rgb"), posteriors.shape[2]
+        """Enters a frame into the evidence on names and attributes."""
+        rgb, columns = observation.get("rgb"), posteriors.shape[2]
         if rgb is not None:
             block = rgb.shape[1] // columns
             rgb = rgb[block // 2 :: block, block // 2 :: block]
-        attributes.add(tracks.pixels(observation["depth"], pose, columns), posteriors, rgb, objects)
-        candidates = np.flatnonzero(self.probability >= self.config.look.visit)
+        pixels = self._of_episode().pixels(observation["depth"], pose, columns)
+        attributes.add(pixels, posteriors, rgb, objects)
+
+    def _probabilities(self, tracks: Tracks, wish: Wish | None) -> Float32[np.ndarray, " numbers"]:
+        """Returns the probability of the goal for each track: of its categories, and of its name and conditions."""
+        least_voxels = 1 if self.verdicts.exact else self.config.tracks.least_voxels
+        categories = (self.goal,) if wish is None else wish.categories
+        probability = np.sum(
+            [
+                tracks.probabilities(category, least_voxels, self.context, self.config.context_share)
+                for category in categories
+            ],
+            axis=0,
+        )
+        attributes = self.attributes
+        if wish is None or attributes is None:
+            return probability
+        probability = np.minimum(probability, np.float32(1.0))
+        candidates = np.flatnonzero(probability >= self.config.look.visit)
+        probability[candidates] *= attributes.name_shares(tracks, candidates, wish.names)
+        candidates = candidates[probability[candidates] >= self.config.look.visit]
         if candidates.size:
-            well_seen = np.array([bool(tracks.evidence.near_sectors(track).any()) for track in candidates.tolist()])
             left_share = 1.0 - self.step / self.max_steps
-            self.probability[candidates] *= attributes.factors(tracks, candidates, left_share, well_seen)
+            well_seen = np.array([bool(tracks.evidence.near_sectors(track).any()) for track in candidates.tolist()])
+            probability[candidates] *= attributes.factors(wish, tracks, candidates, left_share, well_seen)
+        return probability
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
         """See `Seeker`."""

@@ -1,8 +1,9 @@
 """Scores of goals in words: the categories that the words mean, and the objects of them with the right name.
 
 A segmentation knows the 40 categories. A goal in words may mean several of them ("something to sit on"), or only some
-objects of one ("fridge" among the appliances). The posteriors are therefore rearranged: one category stands for the
-goal, and everything behind the segmentation works as with a goal category.
+objects of one ("fridge" among the appliances). Its scores are therefore rearranged: one category stands for the goal,
+and what reads scores works as with a goal category. The posteriors stay those of the categories: tracks of objects
+outlast the goal.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ STANDS_FOR: Mapping[str, str] = MappingProxyType(
 )  # fmt: skip
 """The goal category in place of another one for explorers that know only those: one that is found in the same rooms."""
 _OTHER = MPCAT40_ID["misc"] - 1
-"""Channel of the posteriors that gets what is not the goal although it is of the goal's category."""
+"""Channel that gets what is not the goal although it is of the goal's category."""
 
 
 class WishedSegmenter:
@@ -55,7 +56,6 @@ class WishedSegmenter:
             categories = self.wish.categories
             self.category = next((name for name in categories if name in GOAL_CATEGORIES), categories[0])
             self._channels = np.array([MPCAT40_ID[name] - 1 for name in categories])
-        self._last: tuple[Observation, Float32[np.ndarray, "classes h w"]] | None = None
 
     @property
     def spec(self) -> SegmenterSpec:
@@ -66,24 +66,16 @@ class WishedSegmenter:
         """Returns the scores of the goal; `goal` is the category that stands for it."""
         if self.wish is None:
             return self._segmenter.scores(observation, goal)
-        posteriors = self.posteriors(observation)
-        channel = MPCAT40_ID[self.category] - 1
-        before, after = posteriors[:channel], posteriors[channel + 1 :]
-        return Scores(posteriors[channel], np.maximum(before.max(axis=0, initial=0.0), after.max(axis=0, initial=0.0)))
+        posteriors = np.array(self._segmenter.posteriors(observation))
+        meant = posteriors[self._channels]
+        matching = meant * self._named(observation, posteriors.shape[1:])
+        posteriors[self._channels] = 0.0
+        posteriors[_OTHER] += (meant - matching).sum(axis=0)
+        return Scores(matching.sum(axis=0), posteriors.max(axis=0))
 
     def posteriors(self, observation: Observation) -> Float32[np.ndarray, "classes h w"]:
-        """Returns the probabilities of the categories; objects with another name count as `misc`."""
-        if self.wish is None:
-            return self._segmenter.posteriors(observation)
-        if self._last is None or self._last[0] is not observation:
-            posteriors = np.array(self._segmenter.posteriors(observation))
-            meant = posteriors[self._channels]
-            matching = meant * self._named(observation, posteriors.shape[1:])
-            posteriors[self._channels] = 0.0
-            posteriors[_OTHER] += (meant - matching).sum(axis=0)
-            posteriors[MPCAT40_ID[self.category] - 1] += matching.sum(axis=0)
-            self._last = observation, posteriors
-        return self._last[1]
+        """Returns the probabilities of the categories, whatever the goal is."""
+        return self._segmenter.posteriors(observation)
 
     def objects(
         self, observation: Observation, shape: tuple[int, ...]

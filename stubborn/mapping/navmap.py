@@ -103,6 +103,12 @@ class NavMap:
             first = last
         return cls(frame=frame, **layers)
 
+    def forget_goal(self) -> None:
+        """Clears the layers that depend on the goal: its scores and the candidates; the ground stays known."""
+        of_goal = ("score_sum", "score_max", "other_max", "found_step", "shown_x", "shown_y", "rejected", "set_aside")
+        for name in of_goal if self.known is not None else ():
+            getattr(self, name)[self.known] = 0
+
     def view(self, window: Window) -> NavMap:
         """Returns the part of the map in a window; its layers share memory with this map's."""
         index = window.index

@@ -15,6 +15,7 @@ from rich.text import Text
 from sim.core import invocation
 from sim.core.errors import debug
 from sim.core.reading import printable
+from sim.task.explanations import goals_found
 from sim.task.result import METRICS, EpisodeResult
 
 MAX_EPISODES_SHOWN = 20
@@ -64,10 +65,12 @@ def print_where_to_look(
 
 def describe(result: EpisodeResult) -> str:
     """Returns one sentence about an episode."""
-    if result.success:
-        outcome = "found"
-    elif result.is_error:
+    if result.is_error:
         outcome = "ended with an error"
+    elif result.goals is not None:
+        outcome = f"and so on, {goals_found(result.goals)}"
+    elif result.success:
+        outcome = "found"
     else:
         outcome = f"not found ({result.end_reason}, {result.failure})"
     goal, steps = result.goal.replace("_", " "), counted(result.num_steps, "step")
@@ -91,6 +94,8 @@ def print_results(console: Console, results: Sequence[EpisodeResult], summary: M
     if len(results) <= MAX_EPISODES_SHOWN:
         console.print(_episode_table(results))
     console.print(_summary_table(summary))
+    if "goals" in summary:
+        console.print(_goals_table(summary["goals"]))
     causes = Counter(cause for cause in map(_cause, results) if cause is not None)
     if causes:
         console.print("Failed by " + ", ".join(f"{cause}: {count}" for cause, count in causes.most_common()))
@@ -123,8 +128,8 @@ def _episode_table(results: Sequence[EpisodeResult]) -> Table:
     for result in sorted(results, key=lambda result: result.episode_id):
         table.add_row(
             result.episode_id,
-            result.goal.replace("_", " "),
-            "yes" if result.success else f"no: {_cause(result)}",
+            _goal_cell(result),
+            _success_cell(result),
             _number(result.spl),
             str(result.num_steps),
             _number(result.path_length),
@@ -134,6 +139,17 @@ def _episode_table(results: Sequence[EpisodeResult]) -> Table:
             _number(result.steps_per_s, digits=1),
         )
     return table
+
+
+def _goal_cell(result: EpisodeResult) -> str:
+    more = "" if result.goals is None else f" + {len(result.goals) - 1}"
+    return result.goal.replace("_", " ") + more
+
+
+def _success_cell(result: EpisodeResult) -> str:
+    if result.goals is not None and not result.is_error:
+        return f"{sum(goal.success == 1.0 for goal in result.goals)} of {len(result.goals)}"
+    return "yes" if result.success else f"no: {_cause(result)}"
 
 
 def _summary_table(summary: Mapping[str, Any]) -> Table:
@@ -146,10 +162,27 @@ def _summary_table(summary: Mapping[str, Any]) -> Table:
     table.add_column("metric")
     table.add_column("mean", justify="right")
     table.add_column("95 % interval", justify="right")
-    for metric in (metric.key for metric in METRICS.values() if metric.in_summary):
+    for metric in (key for key in METRICS if key in summary):
         low, high = summary[metric]["ci95"]
         interval = "-" if low is None else f"[{_number(low, 3)}, {_number(high, 3)}]"
         table.add_row(metric, _number(summary[metric]["mean"], 3), interval)
+    return table
+
+
+def _goals_table(goals: Mapping[str, Any]) -> Table:
+    """Returns the means over the goals of chains, by kind and by visit."""
+    table = Table(title="Goals of the chains")
+    table.add_column("goals")
+    for name in ("count", "success", "95 % interval", "SPL", "95 % interval", "success by GOAT", "SPL by GOAT"):
+        table.add_column(name, justify="right")
+    for name, means in goals.items():
+        cells = []
+        for key in ("success", "spl"):
+            low, high = means[key]["ci95"]
+            interval = "-" if low is None else f"[{_number(low, 3)}, {_number(high, 3)}]"
+            cells += [_number(means[key]["mean"], 3), interval]
+        by_goat = [_number(means[key]["mean"], 3) for key in ("goat_success", "goat_spl")]
+        table.add_row(name.replace("_", " "), str(means["goals"]), *cells, *by_goat)
     return table
 
 

@@ -23,7 +23,7 @@ from sim.app.analysis.replicates import difference_note
 from sim.app.analysis.tables import NOT_SIGNIFICANT, ResultTable, to_csv, to_markdown, to_rich
 from sim.app.evaluation.intervals import MIN_PAIRS
 from sim.core.files import write_together
-from sim.task.result import METRICS
+from sim.task.result import metrics_for
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +62,7 @@ def compare(first: Run, second: Run) -> ResultTable:
     common = require_same_episodes(first, second)
     a, b = ([of.results[i] for i in common] for of in (first, second))
     episodes = len(set(episodes_of(a)))
-    against = {metric: difference_cell(metric, a, b) for metric in METRICS.values()}
+    against = {metric: difference_cell(metric, a, b) for metric in metrics_for([*a, *b])}
     rows = [(metric.title, [mean_cell(metric, a), mean_cell(metric, b), cell]) for metric, cell in against.items()]
     changed = [i for i in common if first.results[i].success != second.results[i].success]
     notes = [

@@ -1,12 +1,14 @@
-"""Writes a split of episodes with goals in words, in the houses of another split.
+"""Writes a split of episodes with goals in words or of chains of goals, in the houses of another split.
 
     stubborn words --split val --kind seen --out assets/mjcf_houses/words-seen --episodes 150 --workers 2
     stubborn words --split my_houses --kind descriptions --out my_descriptions
+    stubborn words --split val --kind chains --out assets/mjcf_houses/chains-val --episodes 120
 
 - `seen`: everyday names of objects ("fridge"); `unseen`: those of `sim.core.vocabulary.UNSEEN`; `synonyms`: other words
   for the names of `seen` ("refrigerator"). All objects of the name are the goal.
 - `descriptions`: "the red chair next to the bed in the bedroom". Each provably fits exactly one object
   (`sim.episodes.descriptions`); its level is the number of conditions besides the name.
+- `chains`: several goals of all kinds of `KINDS`, one after the other (`sim.episodes.chains`).
 
 The split lies beside the other one, whose houses it uses. Starts are drawn by the recipe `val`.
 """
@@ -14,9 +16,10 @@ The split lies beside the other one, whose houses it uses. Starts are drawn by t
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
@@ -24,9 +27,11 @@ import numpy as np
 from sim.app import cli
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import ConfigError, EpisodeError
-from sim.core.interface import CameraModel
+from sim.core.goals import GoalSpec
+from sim.core.interface import GOAL_CATEGORIES, CameraModel
 from sim.core.vocabulary import UNSEEN, vocabulary
 from sim.env.scene import Scene
+from sim.episodes.chains import ChainDrawer
 from sim.episodes.descriptions import Descriptions
 from sim.episodes.episode import Episode
 from sim.episodes.house_episodes import Ask, StartDrawer
@@ -36,23 +41,25 @@ from sim.episodes.splits import load_split, write_split
 from sim.robot.config import RobotConfig
 from sim.task.meaning import HouseObject
 
-Kind = Literal["seen", "unseen", "synonyms", "descriptions"]
+Kind = Literal["seen", "unseen", "synonyms", "descriptions", "chains"]
 _LEAST_SIZE_M = 0.15
 """Smaller objects are not asked for: the camera would not resolve them."""
 _UNASKED = frozenset({"blind", "curtain", "wall cabinet", "cooker hood", "glass of water", "cable", "power strip"})
 """Names that are part of the fittings of a room rather than something to go to."""
+_MOST_DRAWS = 12
+"""Attempts to draw a chain, for each that is wanted."""
 _PER_LEVEL = 4
 """Descriptions of each level that are written for a house; more of its objects are then not tried."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Write a split of episodes with goals in words, in the houses of another split."""
+    """Write a split of episodes with goals in words or of chains, in the houses of another split."""
 
     out: Path
     """Folder of the new split; its parent is that of the other split."""
     kind: Kind = "seen"
-    """seen, unseen, synonyms or descriptions."""
+    """seen, unseen, synonyms, descriptions or chains."""
     split: str = "val"
     """The split whose houses are used: a shipped one, or a folder."""
     episodes: cli.Count = 150
@@ -81,16 +88,14 @@ def main(args: Args) -> int:
         print(f"{house}: {len(drawn)} episodes", flush=True)
     rounds = [drawn[turn] for turn in range(per_house) for drawn in by_house if turn < len(drawn)]
     name = args.out.resolve().name
-    episodes = [
-        Episode(f"{name}_{i:04d}", e.house, e.goal, e.start, e.shortest_path_m)
-        for i, e in enumerate(rounds[: args.episodes])
-    ]
+    episodes = [replace(e, episode_id=f"{name}_{i:04d}") for i, e in enumerate(rounds[: args.episodes])]
     if not episodes:
         raise ConfigError(f"No house of '{args.split}' has a goal for --kind {args.kind}.")
     args.out.mkdir(parents=True, exist_ok=True)
     goals = {house: {} for house in split.houses}
     write_split(args.out, episodes, goals, version=split.version, houses_of=home.name)
-    print(f"{len(episodes)} episodes, {len({episode.goal for episode in episodes})} different goals, in {args.out}")
+    different = {goal.text for episode in episodes for goal in episode.specs}
+    print(f"{len(episodes)} episodes, {len(different)} different goals, in {args.out}")
     return 0
 
 
@@ -103,6 +108,8 @@ def _draw(args: Args, work: tuple[int, str, int]) -> list[Episode]:
     scene.world.restore()
     drawer, episodes = StartDrawer(task, recipe, house=number, seed=args.seed), []
     try:
+        if args.kind == "chains":
+            return _chains(scene, drawer, house, count, rng)
         for goal in dict.fromkeys(_goals(args, scene, rng)):
             if len(episodes) == count:
                 break
@@ -121,6 +128,46 @@ def _draw(args: Args, work: tuple[int, str, int]) -> list[Episode]:
         drawer.close()
         scene.close()
     return episodes
+
+
+def _chains(scene: Scene, drawer: StartDrawer, house: str, count: int, rng: np.random.Generator) -> list[Episode]:
+    """Returns chains of goals in one house."""
+    task, episodes = scene.task, list[Episode]()
+    objects = [item for item in task.truth.meaning.objects if _may_be_asked(item)]
+    rng.shuffle(objects)  # type: ignore[arg-type]
+    goals = {kind: [GoalSpec.of(text) for text in texts(scene, objects, rng)] for kind, texts in KINDS.items()}
+    drawers = [ChainDrawer(task, goals, floor_z_m) for floor_z_m in storeys_of(task)]
+    for turn in range(_MOST_DRAWS * count):
+        if len(episodes) == count:
+            break
+        chains = drawers[turn % len(drawers)]
+        chain = chains.draw(rng)
+        if not chain:
+            continue
+        floor_z_m, goal = storeys_of(task)[turn % len(drawers)], chain[0].text
+        reached = len(task.truth.region(goal, floor_z_m).footprints)
+        try:
+            drawn = drawer.draw(Ask(goal, floor_z_m, reached), len(episodes), rng)
+        except EpisodeError:
+            continue
+        if drawn.meets_rule:
+            name = f"{house}_{len(episodes)}"
+            episodes.append(Episode(name, house, goal, drawn.pose, drawn.distance_m, chain))
+    return episodes
+
+
+def _categories(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> list[str]:
+    """Returns the goal categories of a house."""
+    del objects, rng
+    return list(scene.task.truth.goals())
+
+
+def _names(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> list[str]:
+    """Returns everyday names of some objects, and other words for them, that are no goal categories."""
+    del scene
+    names = list(dict.fromkeys(item.name for item in objects))
+    others = [word for name in names for word in rng.permutation(_synonyms(name)).tolist()[:1]]
+    return [word for word in (*names, *others) if word not in GOAL_CATEGORIES]
 
 
 def _goals(args: Args, scene: Scene, rng: np.random.Generator) -> list[str]:
@@ -166,3 +213,8 @@ def _described(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Gene
         writer.close()
     most = max(map(len, by_level.values()))
     return [texts[i] for i in range(most) for texts in by_level.values() if i < len(texts)]
+
+
+Texts = Callable[[Scene, Sequence[HouseObject], np.random.Generator], list[str]]
+KINDS: Mapping[str, Texts] = MappingProxyType({"category": _categories, "words": _names, "description": _described})
+"""For each kind of goals in chains, what lists those of a house: from objects that may be asked for, at random."""

@@ -49,6 +49,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
             uses_segmentation=False,
             uses_ground_truth=True,
             words=(),
+            pictures=(),
         ),
     }
 )

@@ -10,7 +10,6 @@ from sim.app.options import RunOptions
 from sim.core.errors import ConfigError, did_you_mean
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES
-from sim.core.wishes import category_of_label
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.replicates import with_replicates
@@ -72,7 +71,7 @@ def episodes_of(setup: Setup) -> RunEpisodes:
         split = env.split
         if options.house is None:
             known = known_goals(setup)
-            fitting = tuple(e for e in split.episodes if e.goal in known or is_taken_in_words(setup, e.goal))
+            fitting = tuple(episode for episode in split.episodes if takes(setup, episode))
             split_of_agent = replace(split, episodes=fitting)
             if not split_of_agent.episodes:
                 raise ConfigError(
@@ -93,11 +92,16 @@ def known_goals(setup: Setup) -> tuple[str, ...]:
     return GOAL_CATEGORIES if setup.spec.goals is None else setup.spec.goals(setup.config.agent)
 
 
-def is_taken_in_words(setup: Setup, goal: str) -> bool:
-    """Returns whether a goal is in words and the agent of a run takes such goals, or a label and it knows the truth."""
-    if goal in GOAL_CATEGORIES or setup.spec.words is None:
-        return False
-    return category_of_label(goal) is None or setup.spec.uses_ground_truth
+def takes(setup: Setup, episode: Episode) -> bool:
+    """Returns whether the agent of a run takes all goals of an episode; only one that knows the truth takes labels."""
+    spec, known = setup.spec, known_goals(setup)
+    taken = {
+        "words": spec.words is not None,
+        "description": spec.words is not None,
+        "instance": spec.words is not None and spec.uses_ground_truth,
+        "picture": spec.pictures is not None,
+    }
+    return all(taken.get(goal.kind, goal.text in known) for goal in episode.specs)
 
 
 MAX_REPEATS = 60
@@ -119,7 +123,7 @@ def drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
         episode = env.draw_episode(drawing_generator(options.seed, i), episode_id=f"{house}_{len(episodes):04d}")
         key = i if repeats else (episode.goal, episode.start)
         i += 1
-        if (episode.goal in known or is_taken_in_words(setup, episode.goal)) and key not in episodes:
+        if takes(setup, episode) and key not in episodes:
             episodes[key], last = episode, i
     if not episodes:
         raise ConfigError(f"House '{house}' has no episode with a goal that the agent knows: {', '.join(known)}.")

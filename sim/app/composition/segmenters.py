@@ -85,10 +85,15 @@ class TrueSegmentation:
         del observation
         return self._env.truth_images["semantic"]
 
-    def objects(self, observation: Observation) -> tuple[NDArray[np.int32], Sequence[str]]:
-        """Returns the true object of each pixel, int32 (h, w), and the everyday name of each object."""
+    def objects(self, observation: Observation) -> tuple[NDArray[np.int32], Sequence[str]] | None:
+        """Returns the true object of each pixel, int32 (h, w), and the everyday name of each object.
+
+        None: the task renders no objects, because the goal is a category.
+        """
         del observation
-        world, geoms = self._env.scene.world, self._env.truth_images["geom"]
+        world, geoms = self._env.scene.world, self._env.truth_images.get("geom")
+        if geoms is None:
+            return None
         if self._names_of is not world:
             self._names_of, meaning = world, self._env.scene.task.truth.meaning
             self._names = tuple(item.name for item in meaning.objects)

@@ -30,7 +30,8 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES, TRUE_IMAGES, AgentSpec, CameraModel, SegmenterSpec
 from sim.core.invocation import command
 from sim.core.reading import printable
-from sim.episodes.splits import Split, is_in_words
+from sim.episodes.habitat import IndexFile
+from sim.episodes.splits import Split, read_index
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot
@@ -305,7 +306,7 @@ def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKin
         verification=VerificationConfig(method=options.verification, parameters=options.verifier),
         robot=replace(robot, motion=options.motion),
         camera=camera,
-        sensors=_sensor_names(spec, segmentation, in_words=_asks_in_words(options)),
+        sensors=_sensor_names(spec, segmentation, _for_goals(options, spec)),
         scan=ScanConfig(),
         profile=get_profile(options.profile),
         noise=get_noise(options.noise),
@@ -323,17 +324,16 @@ def _agent_config(options: RunOptions, spec: AgentSpec) -> object:
     return replace(spec.config, explorer=explorer)
 
 
-def _asks_in_words(options: RunOptions) -> bool:
-    """Returns whether goals of a run are in words."""
-    if options.goal is not None:
-        return options.goal not in GOAL_CATEGORIES
-    return options.house is None and is_in_words(options.split)
+def _for_goals(options: RunOptions, spec: AgentSpec) -> tuple[str, ...]:
+    """Returns the sensors that an agent reads in addition for the goals of a run: words or pictures."""
+    index = IndexFile() if options.house is not None else read_index(options.split)
+    in_words = index.in_words or options.goal not in (None, *GOAL_CATEGORIES)
+    return (*((spec.words or ()) if in_words else ()), *((spec.pictures or ()) if index.pictures else ()))
 
 
-def _sensor_names(spec: AgentSpec, segmentation: SegmentationKind, *, in_words: bool = False) -> tuple[str, ...]:
-    """Returns the names of the sensors that an agent and its segmentation declare, for goals in words or categories."""
-    for_words = spec.words or () if in_words else ()
-    read = (*spec.sensors, *(("depth", *segmentation.spec.sensors) if spec.uses_segmentation else ()), *for_words)
+def _sensor_names(spec: AgentSpec, segmentation: SegmentationKind, for_goals: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """Returns the names of the sensors that an agent and its segmentation declare, then those for its goals."""
+    read = (*spec.sensors, *(("depth", *segmentation.spec.sensors) if spec.uses_segmentation else ()), *for_goals)
     return tuple(dict.fromkeys(sensor if isinstance(sensor, str) else sensor.name for sensor in read))
 
 

@@ -18,7 +18,7 @@ from sim.app.evaluation.watch import count_steps, is_stop, marked
 from sim.app.viewers.viewer import Moment, Viewer
 from sim.core.errors import AgentError, PhysicsError, debug
 from sim.core.geometry.pose import Pose
-from sim.core.interface import Action, Agent, Observation, StatesConfidence, StatesTarget
+from sim.core.interface import Action, Agent, KeepsMemory, Observation, StatesConfidence, StatesTarget
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.task.result import EpisodeMetrics, RolloutResult, failed_metrics
@@ -62,11 +62,12 @@ def play_episode(
     name = type(agent).__name__ if name is None else name
     count_steps(0)
     observation, _ = env.reset(seed=seed, options={"episode": episode})
-    ask(f"Agent '{name}', reset", lambda: agent.reset(episode.goal, seed if seed_of_agent is None else seed_of_agent))
+    goal, seed_of_agent = episode.specs[0].told, seed if seed_of_agent is None else seed_of_agent
+    ask(f"Agent '{name}', reset", lambda: agent.reset(goal, seed_of_agent))
     for viewer in viewers:
         viewer.begin(env)
     began_s = time.perf_counter()
-    running = _RunningEpisode(env, agent, name, on_step, viewers, observation)
+    running = _RunningEpisode(env, agent, name, on_step, viewers, observation, seed_of_agent)
     while not running.done:
         running.step()
     wall_time_s = time.perf_counter() - began_s
@@ -86,6 +87,8 @@ class _RunningEpisode:
     on_step: OnStep | None
     viewers: Sequence[Viewer]
     observation: Observation
+    seed: int
+    """Seed of the agent."""
     steps: int = 0
     done: bool = False
     error: str | None = None
@@ -116,6 +119,7 @@ class _RunningEpisode:
         return action
 
     def _carry_out(self, action: Action) -> None:
+        goal_number = self.env.scene.task.goal_number
         self.observation, _, terminated, truncated, info = self.env.step(action)
         self.steps += 1
         count_steps(self.steps)
@@ -124,6 +128,10 @@ class _RunningEpisode:
             self.on_step(self.steps, self.agent, info)
         for viewer in self.viewers:
             viewer.moved(info)
+        task = self.env.scene.task
+        if task.goal_number != goal_number:
+            where = f"Agent '{self.name}', step {self.steps}, goal {task.goal_number + 1}"
+            give_next_goal(self.agent, task.goals[task.goal_number].told, self.seed, where)
 
     def result(self, wall_time_s: float) -> RolloutResult:
         """Returns the result of the episode, which took some seconds."""
@@ -169,6 +177,18 @@ def ask(where: str, call: Callable[[], T]) -> T:
             raise AgentError(f"{where}: {text_of(error)}") from error
         reason = f"{type(error).__name__}: {text_of(error)}"
         raise AgentError(f"{where}: {reason}{place_of(error, below=__file__)}") from error
+
+
+def give_next_goal(agent: Agent, goal: str, seed: int, where: str) -> None:
+    """Gives an agent the next goal of a chain: by `next_goal` if it keeps its memory, else by `reset`.
+
+    Raises:
+        AgentError: the call failed; the message begins with `where`.
+    """
+    if isinstance(agent, KeepsMemory):
+        ask(where, lambda: agent.next_goal(goal))
+    else:
+        ask(where, lambda: agent.reset(goal, seed))
 
 
 def next_action(agent: Agent, observation: Observation, where: str) -> Action:
@@ -249,5 +269,5 @@ def record_episode(env: ObjectNavEnv, run: Path, recording: Recording) -> None:
         ConfigError: the folder is not writable.
     """
     result, trajectory = recording.scores, env.scene.task.trajectory()
-    trajectory = replace(trajectory, success=bool(result.success), end_reason=result.end_reason)
+    trajectory = replace(trajectory, success=result.success == 1.0, end_reason=result.end_reason)
     write_trajectory(trajectory_file(run, result.episode_id), trajectory, recording)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
 from sim.app.evaluation.intervals import estimate, replicate_spread
 from sim.episodes.replicates import episode_of, replicate_number
-from sim.task.result import METRICS, EpisodeResult
+from sim.task.result import METRICS, EpisodeResult, metrics_for
 
 OVER_HOUSES, OVER_ONE_HOUSE = "houses", "the episodes of the one house"
 """The units over which the intervals of a summary are taken."""
@@ -21,7 +22,7 @@ def summarise(results: Sequence[EpisodeResult]) -> dict[str, Any]:
     its episodes. `failures` counts the failed episodes by cause (`sim.task.failures`), the most frequent first.
     Episodes whose value is null do not count for that metric. An episode with replicates (`--replicates`) counts once,
     with their mean; `replicates` then has the means of each replicate and their standard deviation
-    (`replicate_spread`).
+    (`replicate_spread`). Chains of goals add `goals`.
     """
     houses = [result.house for result in results]
     episodes = [episode_of(result.episode_id) for result in results]
@@ -32,13 +33,38 @@ def summarise(results: Sequence[EpisodeResult]) -> dict[str, Any]:
         "houses": len(set(houses)),
         "ci95_over": OVER_ONE_HOUSE if len(set(houses)) == 1 else OVER_HOUSES,
     }
-    for metric in METRICS.values():
-        if metric.in_summary:
-            value = estimate(list(map(metric.value, results)), houses, episodes=episodes, most=metric.most)
-            summary[metric.key] = {"mean": value.mean, "ci95": [value.low, value.high]}
+    for metric in metrics_for(results, summary=True):
+        value = estimate(list(map(metric.value, results)), houses, episodes=episodes, most=metric.most)
+        summary[metric.key] = {"mean": value.mean, "ci95": [value.low, value.high]}
+    summary |= _goals(results)
     summary |= _replicates(results, episodes)
     causes = Counter(result.failure for result in results if result.failure is not None)
     return summary | {"failures": dict(causes.most_common())}
+
+
+def _goals(results: Sequence[EpisodeResult]) -> dict[str, Any]:
+    """Returns, under `goals`, means over the goals of chains: of all, of each kind, of first and of second visits.
+
+    The names are those of GOAT-Bench where it has the number. {}: there are no chains.
+    """
+    lines = [(result, goal) for result in results for goal in result.goals or ()]
+    if not lines:
+        return {}
+    groups = {
+        "all": lines,
+        **{kind: [line for line in lines if line[1].kind == kind] for kind in sorted({goal.kind for _, goal in lines})},
+        "first_visit": [line for line in lines if line[1].repeats is None],
+        "second_visit": [line for line in lines if line[1].repeats is not None],
+    }
+    means: dict[str, Any] = {}
+    for name, members in groups.items():
+        means[name] = {"goals": len(members)}
+        for field in ("success", "spl", "goat_success", "goat_spl", "num_steps"):
+            values = [getattr(goal, field) for _, goal in members]
+            most = math.inf if field == "num_steps" else 1.0
+            value = estimate(values, [result.house for result, _ in members], most=most)
+            means[name][field] = {"mean": value.mean, "ci95": [value.low, value.high]}
+    return {"goals": means}
 
 
 def _replicates(results: Sequence[EpisodeResult], episodes: Sequence[str]) -> dict[str, Any]:

@@ -5,6 +5,7 @@ A contradiction is refused by one sentence. What passes is consistent; whether i
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from typing import Literal
 
@@ -20,7 +21,8 @@ from sim.episodes.replicates import find_episode, replicate_number, with_replica
 from sim.episodes.splits import Split
 from sim.robot.config import PHYSICS_VERSION
 from sim.task import metrics
-from sim.task.result import EpisodeResult
+from sim.task.chain import chain_metrics
+from sim.task.result import EpisodeResult, GoalMetrics
 
 Truth = Literal["none", "noisy", "yes"]
 """Whether ground truth reached the agent: `noisy` is the true segmentation with the errors of a simulated detector."""
@@ -178,17 +180,45 @@ def _require_entry(entry: Entry, known: Episode, submission: Submission, setting
         return
     if result.num_steps != len(actions):
         raise ConfigError(f"{where} has {len(actions)} actions, and its result counts {result.num_steps}.")
-    if len(actions) > setting.task.max_steps:
-        raise ConfigError(f"{where} has {len(actions)} actions; the task allows {setting.task.max_steps}.")
-    if STOP in actions[:-1]:
-        raise ConfigError(f"{where} has actions after STOP, which ends an episode.")
-    _require_coherent(result, actions, where)
+    for goal, part, place in _parts(result, actions, known, where):
+        if len(part) > setting.task.max_steps:
+            raise ConfigError(f"{place} has {len(part)} actions; the task allows {setting.task.max_steps}.")
+        if STOP in part[:-1]:
+            raise ConfigError(f"{place} has actions after STOP, which ends an episode.")
+        if part or goal is result:
+            _require_coherent(goal, part, place)
     places = -(-len(actions) // PLACE_EVERY)
     if len(entry.places_m) != places:
         raise ConfigError(f"{where} has {len(entry.places_m)} positions; {len(actions)} actions have {places}.")
 
 
-def _require_coherent(result: EpisodeResult, actions: str, where: str) -> None:
+def _parts(result: EpisodeResult, actions: str, known: Episode, where: str) -> list[tuple[GoalMetrics, str, str]]:
+    """Returns what each STOP is judged by: the result with all actions, or each goal of a chain with its own ones.
+
+    Raises:
+        ConfigError: the goals are not those of the episode, or the result is not composed of theirs.
+    """
+    if not known.is_chain:
+        if result.goals is not None:
+            raise ConfigError(f"{where}: its result has goals of a chain, and the episode has one goal.")
+        return [(result, actions, where)]
+    goals, specs = result.goals or (), [(goal.text, goal.kind, goal.repeats) for goal in known.specs]
+    if [(goal.goal, goal.kind, goal.repeats) for goal in goals] != specs:
+        raise ConfigError(f"{where}: its goals are not those of the episode of the split.")
+    whole = chain_metrics(goals)
+    for name in ("success", "spl", "goat_success", "goat_spl", "num_steps", "path_length", "collisions"):
+        given, expected = getattr(result, name), getattr(whole, name)
+        if given is None or not abs(given - expected) <= ROUNDING:
+            raise ConfigError(f"{where} has {name} {given}; its goals give {expected:.6g}.")
+    ends = list(itertools.accumulate(goal.num_steps for goal in goals))
+    starts = [0, *ends[:-1]]
+    return [
+        (goal, actions[start:end], f"{where}, goal {number}")
+        for number, (goal, start, end) in enumerate(zip(goals, starts, ends, strict=True), start=1)
+    ]
+
+
+def _require_coherent(result: GoalMetrics, actions: str, where: str) -> None:
     """Raises ConfigError where the numbers of a result contradict each other."""
     stopped = actions.endswith(STOP)
     if stopped != (result.end_reason == "stop"):

@@ -125,10 +125,10 @@ def _replay(
     fault, metrics, places, is_oracles = "", None, (), False
     try:
         world.reset(episode.start, conditions)
-        task.begin(episode.goal, episode.start)
+        task.begin(episode.specs, episode.start)
         if look is not None:
             task.look(look())
-        guide = _Guide(task, episode.goal)
+        guide = _Guide(task)
         positions = np.array(list(_positions(world, task, entry, look, guide))).reshape(-1, 2)
         places = places_of(positions)
         metrics, is_oracles = task.metrics(), guide.agrees
@@ -154,13 +154,16 @@ class _Stage:
 class _Guide:
     """Compares actions with those of the oracle, until the first one that differs."""
 
-    def __init__(self, task: Task, goal: str) -> None:
-        self._oracle = Oracle(_Stage(task))
-        self._oracle.reset(goal, 0)
+    def __init__(self, task: Task) -> None:
+        self._oracle, self._task, self._goal_number = Oracle(_Stage(task)), task, task.goal_number
+        self._oracle.reset("", 0)
         self.agrees = True
 
     def compare(self, action: Action) -> None:
         """Notes whether the oracle chooses this action where the robot is now."""
+        if self.agrees and self._task.goal_number != self._goal_number:
+            self._goal_number = self._task.goal_number
+            self._oracle.next_goal("")
         self.agrees = self.agrees and self._oracle.choose() == action
 
 
@@ -169,8 +172,9 @@ def _positions(
 ) -> Iterator[tuple[float, float]]:
     """Carries out the actions and yields the robot's position after each one."""
     for action in map(Action, map(int, entry.actions)):
-        if action is Action.STOP and entry.result.stop_target_xy_m is not None:
-            task.stops_for(*entry.result.stop_target_xy_m)
+        result = entry.result if entry.result.goals is None else entry.result.goals[task.goal_number]
+        if action is Action.STOP and result.stop_target_xy_m is not None:
+            task.stops_for(*result.stop_target_xy_m)
         task.require_running()
         guide.compare(action)
         motion = world.move(action)

@@ -8,7 +8,7 @@ from typing import Literal
 
 from sim.app.submissions.contents import PLACE_EVERY, Entry
 from sim.app.submissions.replay import Replay
-from sim.task.result import EpisodeMetrics
+from sim.task.result import EpisodeMetrics, GoalResult
 
 Judgement = Literal["equal", "within tolerance", "different", "error"]
 TOLERANCE_M = 0.01
@@ -86,6 +86,8 @@ def _differences(
 ) -> tuple[list[str], float, list[str]]:
     """Returns the differences beyond the tolerance, the largest difference in metres, and those within it."""
     differing, near, largest = [], [], 0.0
+    if [_outcome(goal) for goal in entry.result.goals or ()] != [_outcome(goal) for goal in metrics.goals or ()]:
+        differing.append("the goals of the chain have other results in the replay")
     shortest_m = max(metrics.shortest_path or 0.0, MIN_PATH_M)
     allowed = dict.fromkeys(EXACT, 0.0) | dict.fromkeys(LENGTHS, tolerance_m)
     allowed |= dict.fromkeys(SHARES, tolerance_m / shortest_m)
@@ -102,6 +104,11 @@ def _differences(
                 f"{name} {_text(submitted)}, in the replay {_text(replayed)}"
             )
     return differing, largest, near
+
+
+def _outcome(goal: GoalResult) -> tuple[object, ...]:
+    """Returns what must be equal of a goal of a chain; lengths are compared over the chain."""
+    return goal.goal, goal.kind, goal.repeats, *(getattr(goal, name) for name in EXACT)
 
 
 def _meaning(entry: Entry, replay: Replay, tolerance_m: float) -> str:

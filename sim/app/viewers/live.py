@@ -76,7 +76,7 @@ class LiveView:
         """Shows the chosen action as text."""
         if self._is_open:
             names = "Looking for\nStep\nAction\nHouse"
-            goal = in_words(self._env.episode.goal)
+            goal = in_words(self._env.scene.task.goal)
             right = f"{goal}\n{moment.step}\n{ACTION_WORDS[moment.action]}\n{self._env.episode.house}"
             place = mujoco.mjtGridPos.mjGRID_TOPLEFT.value
             self._handle.set_texts((mujoco.mjtFontScale.mjFONTSCALE_100.value, place, names, right))
@@ -101,7 +101,7 @@ class LiveView:
         if self._is_open:
             outcome = "found" if result.success else f"not found ({result.failure or result.end_reason})"
             place = mujoco.mjtGridPos.mjGRID_TOPLEFT.value
-            words = (mujoco.mjtFontScale.mjFONTSCALE_100.value, place, in_words(self._env.episode.goal), outcome)
+            words = (mujoco.mjtFontScale.mjFONTSCALE_100.value, place, in_words(self._env.scene.task.goal), outcome)
             self._handle.set_texts(words)
             self._handle.sync()
             time.sleep(1.0)

@@ -4,7 +4,7 @@
     | Looking for a chair          step 48 / 500   turn left   [collision] |
     +-----------------------------------+---------------------+-----------+
     | camera, 640 x 480                 | the robot in        | depth     |
-    |                                   | third person        | score     |
+    | (goals of a chain)                | third person        | score     |
     |                                   +----------------+----+-----------+
     |                                   | the agent's    | the true       |
     +-----------+-----------+-----------+ map            | plan           |
@@ -18,7 +18,7 @@ A text that is too wide for its place is written smaller.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -31,6 +31,7 @@ from sim.app.viewers.viewer import Colour, Moment
 from sim.core.interface import MPCAT40, MPCAT40_ID, CameraModel, Perceived
 from sim.core.wishes import categories_of
 from sim.task.explanations import ACTION_WORDS, Outcome, in_words, with_article
+from sim.task.objectnav import Task
 
 Picture = NDArray[np.uint8]
 WIDTH_PX, HEIGHT_PX = 1280, 720
@@ -74,6 +75,31 @@ class MapPanel:
     title: str
     words: str = ""
     """Text that says what the agent is doing."""
+
+
+@dataclass(frozen=True)
+class GoalMark:
+    """A goal of a chain and how it ended."""
+
+    words: str
+    found: bool | None
+    """None: it has not ended."""
+    present: bool = False
+    """True: the robot looks for it."""
+
+
+def goal_marks(task: Task) -> list[GoalMark]:
+    """Returns the goals of a chain with their outcomes; none: the episode has one goal."""
+    if not task.is_chain:
+        return []
+    return [
+        GoalMark(
+            in_words(result.goal),
+            None if result.end_reason is None else result.success == 1.0,
+            present=number == task.goal_number,
+        )
+        for number, result in enumerate(task.goal_results())
+    ]
 
 
 class FrameComposer:
@@ -136,13 +162,15 @@ class FrameComposer:
         chase: Picture | None = None,
         perceived: Perceived | None = None,
         goal_mask: NDArray[np.bool_] | None = None,
+        goals: Sequence[GoalMark] = (),
     ) -> Picture:
         """Returns the frame without the outcome of the action, uint8 RGB (720, 1280, 3).
 
-        `goal_mask` (h, w) are the true pixels of the goal; None: those of its category.
+        `goal_mask` (h, w) are the true pixels of the goal; None: those of its category. `goals` are those of a chain.
         """
         frame = self._ground.copy()
         _put(frame, moment.seen("rgb"), _CAMERA)
+        tick_off(frame, goals)
         self._segmentations(frame, moment, perceived, goal_mask)
         _put(frame, colour_depth(_resized(moment.seen("depth"), self._depth), self._camera), self._depth)
         if chase is not None:
@@ -336,3 +364,37 @@ def _legend(frame: Picture, legend: tuple[tuple[str, Colour], ...], left: int, w
 def _swatch(frame: Picture, left: int, top: int, colour: Colour, rim: Colour) -> None:
     cv2.rectangle(frame, (left, top), (left + 11, top + 9), colour, cv2.FILLED)
     cv2.rectangle(frame, (left, top), (left + 11, top + 9), rim, 1)
+
+
+def tick_off(frame: Picture, goals: Sequence[GoalMark], *, opaque: bool = False) -> None:
+    """Writes the goals of a chain over the upper left corner of the camera's picture: found, missed, present, later.
+
+    Args:
+        frame: the picture.
+        goals: of the chain; none: nothing is drawn.
+        opaque: whether to hide what is below.
+    """
+    if not goals:
+        return
+    left, top, row_px, wide = _CAMERA[0] + 8, _CAMERA[1] + 8, 20, 300
+    panel = frame[top : top + row_px * len(goals) + 8, left : left + wide]
+    below = 0 if opaque else panel.astype(np.uint16)
+    panel[:] = (below * 1 // 4 + np.array(HEADER, np.uint16) * (4 if opaque else 3) // 4).astype(np.uint8)
+    for number, goal in enumerate(goals):
+        base = top + row_px * (number + 1)
+        colour = _GOAL_COLOURS[goal.found]
+        middle = left + 14, base - 5
+        if goal.found is None:
+            cv2.circle(frame, middle, 5, WHITE if goal.present else colour, -1 if goal.present else 1, cv2.LINE_AA)
+        elif goal.found:
+            tick = np.array([[-5, 0], [-1, 4], [6, -5]]) + middle
+            cv2.polylines(frame, [tick.astype(np.int32)], False, colour, 2, cv2.LINE_AA)
+        else:
+            for way in (-1, 1):
+                ends = (middle[0] - 4, middle[1] - 4 * way), (middle[0] + 4, middle[1] + 4 * way)
+                cv2.line(frame, *ends, colour, 2, cv2.LINE_AA)
+        ink, weight = (WHITE, BOLD) if goal.present else (colour, NORMAL)
+        write(frame, f"{number + 1}  {goal.words}", (left + 28, base), wide - 36, 14, ink, weight)
+
+
+_GOAL_COLOURS: Mapping[bool | None, Colour] = {True: FOUND, False: MISSED, None: (190, 194, 202)}

@@ -13,6 +13,7 @@ import queue
 import threading
 import urllib.parse
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -158,8 +159,14 @@ class VideoRecorder:
             width, height = overlay.CHASE_PX
             self._scene, self._chase = env.scene, ChaseView(env.scene, width_px=width, height_px=height)
         self._env, self._frame, self._plan = env, None, TopView(env, heading_up=self._painter is not None)
-        self._composer = overlay.FrameComposer(
-            env.episode.goal,
+        self._composer = self._composer_for(env.scene.task.goal)
+        file = video_file(self._run, env.episode.episode_id)
+        self._writer = VideoWriter(file, size_px=(overlay.WIDTH_PX, overlay.HEIGHT_PX))
+
+    def _composer_for(self, goal: str) -> overlay.FrameComposer:
+        env = self._env
+        return overlay.FrameComposer(
+            goal,
             env.camera_model,
             plan_legend=self._plan.legend,
             map_legend=None if self._painter is None else self._painter.legend,
@@ -168,20 +175,24 @@ class VideoRecorder:
             max_steps=env.task_config.max_steps,
             segmentation=self._seen.name if self._seen is not None else "",
         )
-        file = video_file(self._run, env.episode.episode_id)
-        self._writer = VideoWriter(file, size_px=(overlay.WIDTH_PX, overlay.HEIGHT_PX))
 
     def decided(self, moment: Moment) -> None:
         """Draws the frame now, while the agent's map and the world are those of its decision."""
         assert self._chase is not None
-        goal = self._env.episode.goal
+        task = self._env.scene.task
+        goal = task.goal
+        if goal != self._composer.goal:
+            self._composer = self._composer_for(goal)
+        if task.is_chain:
+            moment = replace(moment, step=task.goal_metrics().num_steps + 1)
         self._frame = self._composer.compose(
             moment,
             plan=self._plan.draw(*self._composer.plan_px),
             map_panel=self._agent_map(),
             chase=self._chase.render(),
             perceived=self._seen.perceived(moment.observation, goal) if self._seen is not None else None,
-            goal_mask=self._env.scene.task.goal_mask(moment.images),
+            goal_mask=task.goal_mask(moment.images),
+            goals=overlay.goal_marks(task),
         )
 
     def moved(self, info: Mapping[str, object]) -> None:
@@ -199,6 +210,7 @@ class VideoRecorder:
             writer.discard()
             return
         last = self._frame.copy()
+        overlay.tick_off(last, overlay.goal_marks(self._env.scene.task), opaque=True)
         nearest_m = self._env.scene.task.trajectory().nearest_instance_m
         rule, detects = self._env.success_rule, self._seen is not None
         self._composer.add_end(last, explain_end(result, self._env.episode.goal, rule, nearest_m, detects=detects))

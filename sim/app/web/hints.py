@@ -27,7 +27,7 @@ class Hints:
             return self._given
         # The oracle takes any other action for a blocked step; it is reset unless the person followed its hint.
         followed = self._step is not None and step == self._step + 1 and last == self._given
-        reachable = self._env.scene.task.metrics().distance_to_goal is not None
+        reachable = self._env.scene.task.goal_metrics().distance_to_goal is not None
         if reachable and not followed:
             self._oracle.reset(self._goal, 0)
         self._given = self._oracle.act({}) if reachable else None

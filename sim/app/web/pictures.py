@@ -37,7 +37,7 @@ class Pictures:
 
     def draw(self, names: Collection[str], moment: Moment) -> dict[str, bytes]:
         """Returns the pictures of these names as JPEG; those that the agent does not have are left out."""
-        env, goal, drawn = self._parts.env, self._parts.env.episode.goal, {}
+        env, goal, drawn = self._parts.env, self._parts.env.scene.task.goal, {}
         seen, perceived = self._parts.seen, None
         if seen is not None and {"predicted", "score"} & set(names):
             perceived = seen.perceived(moment.observation, goal)

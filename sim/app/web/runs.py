@@ -20,7 +20,7 @@ from sim.app.viewers.video import video_file
 from sim.core import invocation
 from sim.core.errors import ConfigError
 from sim.core.reading import open_plain, printable
-from sim.task.result import METRICS, EpisodeResult
+from sim.task.result import EpisodeResult, metrics_for
 
 MAX_RUNS = 100
 """Largest number of runs that are listed, the newest ones."""
@@ -134,7 +134,7 @@ class Runs:
         lines = [[run.results[episode_id] for episode_id in common] for run in (a, b)]
         rows = [
             (metric.title, [mean_cell(metric, lines[0]), mean_cell(metric, lines[1]), difference_cell(metric, *lines)])
-            for metric in METRICS.values()
+            for metric in metrics_for([*lines[0], *lines[1]])
         ]
         title = f"B - A, paired over {len(set(episodes_of(lines[0])))} episodes of both"
         means = ResultTable("comparison", title, ("metric", f"A: {first}", f"B: {second}", "B - A"), rows)

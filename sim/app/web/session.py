@@ -16,7 +16,8 @@ from sim.app.composition.runner import Parts, build_parts
 from sim.app.composition.setup import Setup, resolve
 from sim.app.evaluation.config_fields import run_differences
 from sim.app.evaluation.results import RunRecord
-from sim.app.evaluation.rollout import play_episode
+from sim.app.evaluation.rollout import give_next_goal, play_episode
+from sim.app.viewers.overlay import goal_marks
 from sim.app.viewers.viewer import Moment
 from sim.app.web.controls import Controls, EpisodeRequest, Interrupted
 from sim.app.web.driven import DrivenRuns
@@ -194,9 +195,14 @@ class SharedAgent:
     def reset(self, goal: str, seed: int) -> None:
         """Starts a new episode."""
         self._inner.reset(goal, seed)
-        self._last = None
+        self._last, self._seed = None, seed
         self._hints = Hints(self._parts.env, goal)
         self.person_steps = self.hint_steps = 0
+
+    def next_goal(self, goal: str) -> None:
+        """Gives the other agent the next goal of a chain."""
+        give_next_goal(self._inner, goal, self._seed, f"Agent '{type(self._inner).__name__}', next goal")
+        self._hints = Hints(self._parts.env, goal)
 
     def act(self, observation: Observation) -> Action:
         """Shows the observation, waits until an action is due and returns it.
@@ -228,8 +234,9 @@ class SharedAgent:
 
     def _show(self, observation: Observation, advised: Action | None) -> None:
         env, painter = self._parts.env, self._parts.painter
-        images, metrics = env.truth_images, env.scene.task.metrics()
-        step, action = metrics.num_steps, advised or Action.STOP
+        task = env.scene.task
+        images, metrics = env.truth_images, task.goal_metrics()
+        step, action = task.num_steps, advised or Action.STOP
         moment = Moment(step=step, observation=observation, images=images, action=action)
         names = self._display.wanted()
         if advised is None:  # after the end, the agent's pictures are those of the previous frame
@@ -249,7 +256,8 @@ class SharedAgent:
             "driven_m": metrics.path_length,
             "left_m": metrics.distance_to_goal,
             "shortest_m": metrics.shortest_path,
-            "in_sight": in_sight(images["semantic"], env.episode.goal),
+            "in_sight": in_sight(images["semantic"], task.goal),
+            "goals": [asdict(mark) for mark in goal_marks(task)],
         }
         self._display.show(Frame(facts, self._pictures.draw(names, moment) if names else {}))
 

@@ -6,6 +6,7 @@ import math
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import gymnasium
@@ -15,6 +16,7 @@ from gymnasium.utils.env_checker import check_env
 
 from sim.core.errors import EpisodeError, HouseError
 from sim.core.geometry.pose import Pose
+from sim.core.goals import GoalSpec, PictureCamera
 from sim.core.interface import Action, CameraModel, ConfigError, RobotModel, SuccessRule
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
@@ -39,6 +41,38 @@ def test_gymnasiums_checker_accepts_the_environment(house: Path) -> None:
     env = gymnasium.make("sim.gym:stubborn/ObjectNav-v0", house=house, camera=SMALL, render_mode="rgb_array")
     check_env(env.unwrapped)
     env.close()
+
+
+@pytest.mark.filterwarnings("error")
+def test_gymnasiums_checker_accepts_goals_in_the_observation(house: Path) -> None:
+    options = {"house": house, "camera": SMALL, "sensors": ("goal", "goal_picture"), "render_mode": "rgb_array"}
+    env = gymnasium.make("sim.gym:stubborn/ObjectNav-v0", **options)
+    check_env(env.unwrapped)
+    env.close()
+
+
+def test_a_goal_in_words_is_observed_as_text_and_one_by_a_picture_as_pixels(house: Path) -> None:
+    env = ObjectNavEnv(house=house, camera=SMALL, sensors=("rgb", "goal", "goal_picture"))
+    start = Pose(-1.0, 0.5, 0.0)
+    try:
+        words, _ = env.reset(options={"episode": Episode("a", "sofa_room", "the largest sofa", start)})
+        assert words["goal"] == "the largest sofa"
+        assert not words["goal_picture"].any()
+        at_start = PictureCamera(x_m=-1.0, y_m=0.5, z_m=0.88, yaw_rad=0.0, hfov_rad=SMALL.hfov_rad)
+        goals = (GoalSpec("sofa_00", "picture", at_start),)
+        seen, _ = env.reset(options={"episode": Episode("b", "sofa_room", "sofa_00", start, goals=goals)})
+        assert seen["goal"] == ""
+        assert seen["objectgoal"] == [-1]
+        picture = seen["goal_picture"]
+        assert env.observation_space.contains(seen)
+        # The robot's camera at the same place: its picture is the middle rows of the square one.
+        rows = picture[64:448].reshape(48, 8, 64, 8, 3).mean(axis=(1, 3))
+        assert np.abs(rows - seen["rgb"]).mean() < 6.0
+        down = (GoalSpec("sofa_00", "picture", replace(at_start, pitch_rad=0.5)),)
+        lower, _ = env.reset(options={"episode": Episode("c", "sofa_room", "sofa_00", start, goals=down)})
+        assert np.abs(lower["goal_picture"].astype(float) - picture).mean() > 6.0
+    finally:
+        env.close()
 
 
 def test_make_needs_no_import_of_ours(house: Path) -> None:

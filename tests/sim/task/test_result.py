@@ -12,6 +12,7 @@ from sim.task.result import (
     METRICS,
     EpisodeMetrics,
     EpisodeResult,
+    GoalMetrics,
     StopTarget,
     failed_metrics,
     metrics_without_episode,
@@ -59,7 +60,7 @@ def test_an_episode_that_broke_keeps_its_counts_and_loses_its_scores() -> None:
 
 def test_info_has_the_metrics_and_no_first_sight_before_there_is_one() -> None:
     before = metrics_without_episode(2.0)
-    own = set(EpisodeMetrics.__struct_fields__) - set(StopTarget.__struct_fields__)
+    own = set(GoalMetrics.__struct_fields__) - set(StopTarget.__struct_fields__)
     assert set(before.as_info()) == own - {"first_seen_step"}
     assert set(msgspec.structs.replace(before, first_seen_step=4).as_info()) == own
 

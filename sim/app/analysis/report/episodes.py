@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections import Counter
 from collections.abc import Sequence
@@ -43,6 +44,7 @@ class Row:
         return [name for cell in self.cells for _, name in cell]
 
 
+_MARKS = {True: "\N{CHECK MARK}", False: "\N{BALLOT X}"}
 _NUMBERS = (("SPL", "spl", 2), ("steps", "num_steps", 0), ("path m", "path_length", 1))
 _ALONE = (*_NUMBERS, ("left m", "distance_to_goal", 1), ("collisions", "collisions", 0))
 _IN_PAIRS = (("SPL", "spl", 2), ("steps", "num_steps", 0), ("collisions", "collisions", 0))
@@ -68,12 +70,21 @@ def row_of(episode_id: str, lines: Sequence[EpisodeResult]) -> Row:
     cells = [[text] for text in named] if len(lines) <= 2 else [named]
     collisions = sum(result.collisions for result in lines)
     tokens = _tokens([name for _, name in named])
-    return Row(episode_id, lines[0].goal, lines[0].house, cells, tokens, _numbers(lines), collisions)
+    return Row(episode_id, _goal(lines), lines[0].house, cells, tokens, _numbers(lines), collisions)
+
+
+def _goal(lines: Sequence[EpisodeResult]) -> str:
+    """Returns the goal; the goals of a chain have a mark for each run that says whether it found them."""
+    if (goals := lines[0].goals) is None:
+        return lines[0].goal
+    found = [[_MARKS[goal.success == 1.0] for goal in line.goals or ()] for line in lines]
+    ticked = itertools.zip_longest(*found, fillvalue=_MARKS[False])
+    return ", ".join(f"{''.join(marks)} {goal.goal}" for goal, marks in zip(goals, ticked, strict=True))
 
 
 def _numbers(lines: Sequence[EpisodeResult]) -> list[tuple[str, float | None]]:
     if len(lines) > 2:
-        successes = sum(bool(result.success) for result in lines)
+        successes = sum(result.success == 1.0 for result in lines)
         mean = sum(result.spl for result in lines) / len(lines)
         return [(f"{successes} of {len(lines)}", float(successes)), _shown(mean, 2)]
     numbers: list[tuple[str, float | None]] = []

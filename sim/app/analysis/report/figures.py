@@ -6,13 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+import msgspec
+
 from sim.app.analysis.metrics import SUCCESS, difference_cell, episodes_of, houses_of, mean_cell
 from sim.app.analysis.tables import Cell
 from sim.app.evaluation.intervals import estimate, paired_difference
 from sim.core.interface import GOAL_CATEGORIES
 from sim.task.explanations import MEANING, outcome
 from sim.task.failures import CAUSES
-from sim.task.result import METRICS, EpisodeResult, Metric
+from sim.task.result import EpisodeResult, Metric, metrics_for
 
 
 @dataclass(frozen=True)
@@ -62,10 +64,31 @@ Runs = Sequence[Sequence[EpisodeResult]]
 
 
 def groups(runs: Runs, key: Literal["goal", "house"]) -> list[Group]:
-    """Returns the success by goal category (in the order of the contract) or by house (by name)."""
+    """Returns the success by goal category (in the order of the contract) or by house (by name).
+
+    Chains are split into their goals, which are grouped by kind and by visit in place of the category.
+    """
+    if key == "goal" and any(line.goals is not None for line in runs[0]):
+        runs = _by_goals(runs)
     names = [getattr(result, key) for result in runs[0]]
     order = [goal for goal in GOAL_CATEGORIES if goal in names]
     return grouped(runs, names, [*order, *sorted(set(names).difference(order))])
+
+
+def _by_goals(runs: Runs) -> Runs:
+    """Returns a line for each goal of the chains, with its kind and visit as its goal."""
+    result: list[list[EpisodeResult]] = [[] for _ in runs]
+    for lines in zip(*runs, strict=True):
+        goals = next((line.goals for line in lines if line.goals is not None), ())
+        for number, goal in enumerate(goals):
+            kind = f"{goal.kind}, {'first' if goal.repeats is None else 'second'} visit"
+            for of_run, line in zip(result, lines, strict=True):
+                success = 0.0 if line.goals is None else line.goals[number].success
+                episode_id = f"{line.episode_id}, goal {number + 1}"  # goals are no replicates of one episode
+                of_run.append(
+                    msgspec.structs.replace(line, episode_id=episode_id, goal=kind, success=success, goals=None)
+                )
+    return result
 
 
 def grouped(runs: Runs, names: Sequence[str], order: Sequence[str]) -> list[Group]:
@@ -79,7 +102,7 @@ def grouped(runs: Runs, names: Sequence[str], order: Sequence[str]) -> list[Grou
     rows = []
     for name in (name for name in order if name in names):
         some = [[line for line, of in zip(lines, names, strict=True) if of == name] for lines in runs]
-        shares = [proportion_of([bool(result.success) for result in lines], lines) for lines in some]
+        shares = [proportion_of([result.success == 1.0 for result in lines], lines) for lines in some]
         rows.append(Group(name, shares, differences(SUCCESS, some)))
     return rows
 
@@ -105,7 +128,8 @@ _OTHER = {"error": "The episode ended with an error.", "failed": "No cause was r
 def means(runs: Runs) -> list[tuple[Metric, list[Cell], list[Cell]]]:
     """Returns for each metric its mean in each run, and the paired differences of the others from the first run."""
     return [
-        (metric, [mean_cell(metric, lines) for lines in runs], differences(metric, runs)) for metric in METRICS.values()
+        (metric, [mean_cell(metric, lines) for lines in runs], differences(metric, runs))
+        for metric in metrics_for([line for lines in runs for line in lines])
     ]
 
 

@@ -1,6 +1,8 @@
-"""Writes a split as Habitat's ObjectNav files, with view points as dense as those of HM3D.
+"""Writes a split as Habitat's ObjectNav files, or as those of HM3D-OVON or GOAT-Bench, with dense view points.
 
     stubborn habitat dataset --split val --out data/datasets/objectnav/stubborn/v1/val
+    stubborn habitat dataset --split words-seen --format ovon --out data/datasets/ovon/stubborn/v1/val_seen
+    stubborn habitat dataset --split chains-val --format goat --out data/datasets/goat_bench/stubborn/v1/val_seen
 
 habitat-lab's own class of data sets reads them (`habitat.dataset.data_path=.../{split}/{split}.json.gz`). The view
 points of a goal are the places on a grid of 0.1 m where a STOP succeeds for it, so that Habitat's rule, at most 0.1 m
@@ -18,9 +20,11 @@ from sim.app.bridges.habitat.conversions import CATEGORIES
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.files import write_together
 from sim.core.interface import MPCAT40_ID
+from sim.core.paths import assets_dir
 from sim.episodes import habitat
+from sim.episodes.goat import goat_house, ovon_house
 from sim.episodes.reachable_goals import find_reachable_goals
-from sim.episodes.splits import load_split, shipped_splits
+from sim.episodes.splits import Split, load_split, shipped_splits
 from sim.task.objectnav import Task
 from sim.world.world import World
 
@@ -37,8 +41,8 @@ class Args:
     """Folder for the files; its name is that of the split for Habitat."""
     split: str = "val"
     """A shipped split, or a folder laid out like one."""
-    format: Literal["v1", "v2"] = "v1"
-    """v1: goals of MP3D (21 categories); v2: those of HM3D (6)."""
+    format: Literal["v1", "v2", "ovon", "goat"] = "v1"
+    """v1: goals of MP3D (21 categories); v2: those of HM3D (6); ovon: goals in words; goat: chains of goals."""
     workers: cli.Count = 1
     """Number of processes."""
 
@@ -46,6 +50,8 @@ class Args:
 def main(args: Args) -> int:
     """Writes the files; returns the exit status."""
     split = load_split(args.split)
+    if args.format in ("ovon", "goat"):
+        return _write_words(args, split)
     goals = CATEGORIES["mp3d" if args.format == "v1" else "hm3d"]
     tables = {
         "category_to_task_category_id": {goal: number for number, goal in enumerate(goals)},
@@ -83,6 +89,40 @@ def main(args: Args) -> int:
     size = sum(file.stat().st_size for file in files) / 1e6
     print(f"{args.out}: {len(houses)} houses, {count} episodes, {points} view points, {size:.1f} MB.")
     return 0
+
+
+def _write_words(args: Args, split: Split) -> int:
+    """Writes files of HM3D-OVON or GOAT-Bench; returns the exit status."""
+    houses = [house for house in split.houses if any(episode.house == house for episode in split.episodes)]
+    jobs = [(args.split, house, args.format) for house in houses]
+    index = {"goals": {}} if args.format == "goat" else {}
+    files: dict[Path, bytes | str] = {
+        args.out / f"{args.out.name}.json.gz": habitat.zipped_json(index | {"episodes": []})
+    }
+    for house, content in zip(houses, ordered_map(_of_words, jobs, workers=args.workers), strict=True):
+        files[args.out / "content" / f"{house}.json.gz"] = habitat.zipped_json(content)
+    write_together(files)
+    size = sum(file.stat().st_size for file in files) / 1e6
+    print(f"{args.out}: {len(houses)} houses, {len(split.episodes)} episodes, {size:.1f} MB.")
+    return 0
+
+
+def _of_words(job: tuple[str, str, str]) -> dict[str, Any]:
+    """Returns the content of the file of a house."""
+    name, house, kind = job
+    split = load_split(name)
+    task = Task(World(split.load_house(house)))
+    episodes = [episode for episode in split.episodes if episode.house == house]
+    write = goat_house if kind == "goat" else ovon_house
+    scene = _scene_of(name, split, house)
+    return write(task, episodes, scene, step_cells=STEP_CELLS, most=MAX_VIEW_POINTS)
+
+
+def _scene_of(name: str, split: Split, house: str) -> str:
+    """Returns the scene of a house: with the split that holds its file, or its path if that does not ship."""
+    file = split.house_paths[house].resolve()
+    is_shipped = name in shipped_splits() and file.parent.parent == assets_dir().resolve()
+    return f"stubborn/{file.parent.name}/{house}.xml" if is_shipped else str(file)
 
 
 def _start(start: Any) -> dict[str, list[float]]:

@@ -173,7 +173,17 @@ function facts(frame) {
   const advice = state.driver === "person" && frame.advice ? `The agent would: ${frame.advice}. ` : "";
   const shortest = frame.hint ? `Shortest path: ${frame.hint.words}. ` : "";
   $("doing").textContent = shortest + advice + (frame.doing ? `Agent: ${frame.doing}.` : "");
+  fill($("goals"), frame.goals.map(goalItem));
   fill($("sight"), frame.in_sight.map((item) => legendItem(item.name, item.colour, item.goal)));
+}
+
+// A goal of a chain: found, missed, the present one, or a later one.
+function goalItem(goal) {
+  const item = document.createElement("li");
+  item.textContent = goal.words;
+  if (goal.present) item.setAttribute("aria-current", "step");
+  item.className = goal.found === null ? (goal.present ? "present" : "") : goal.found ? "found" : "missed";
+  return item;
 }
 
 function hint(shown) {
