@@ -18,6 +18,7 @@ from stubborn.detection.attributes import Attributes
 from stubborn.detection.context import SHIPPED, read_context
 from stubborn.detection.fusion import fusion_for
 from stubborn.detection.look import LookConfig, Verdicts, look_at
+from stubborn.detection.pictured import PictureEvidence
 from stubborn.detection.seeker import SeekerParts
 from stubborn.detection.tracks import TrackConfig, Tracks
 from stubborn.detection.viewpoints import LastResort, ViewpointFinder
@@ -102,8 +103,8 @@ class TrackSeeker:
         self.goal = goal
         self.step = 0
         self.tracks: Tracks | None = None
-        self.attributes: Attributes | None = None
-        """The evidence on the conditions of a goal in words; None: it has none, or the first frame was not seen yet."""
+        self.attributes: Attributes | PictureEvidence | None = None
+        """The evidence on a goal in words or on its picture; None: only its category counts, or there was no frame."""
         exact = not self.segmenter.spec.needs_verification
         self.verdicts = Verdicts(self.config.look, exact=exact, max_steps=self.max_steps)
         self.probability: Float32[np.ndarray, " numbers"] = np.zeros(1, np.float32)
@@ -141,8 +142,11 @@ class TrackSeeker:
                 self.config.tracks, self.camera, self.robot.camera_forward_m, navmap.frame, self.fusion
             )
             wish = None if self.wished is None else self.wished.wish
+            most_tracks = self.tracks.config.most_tracks
             if wish is not None and not wish.is_plain:
-                self.attributes = Attributes(wish, self.tracks.plan, self.tracks.config.most_tracks)
+                self.attributes = Attributes(wish, self.tracks.plan, most_tracks)
+            elif self.wished is not None and self.wished.picture is not None:
+                self.attributes = PictureEvidence(self.wished.picture, most_tracks)
         posteriors, depth = self.segmenter.posteriors(observation), observation["depth"]
         objects = None
         if self.attributes is not None and self.wished is not None and "rgb" in observation:  # a level camera
@@ -158,7 +162,7 @@ class TrackSeeker:
 
     def _test_wish(
         self,
-        attributes: Attributes,
+        attributes: Attributes | PictureEvidence,
         posteriors: Float32[np.ndarray, "classes h w"],
         observation: Observation,
         objects: tuple[Int32[np.ndarray, "h w"], Sequence[str]] | None,

@@ -1,4 +1,4 @@
-"""Writes a split of episodes with goals in words, in the houses of another split.
+"""Writes a split of episodes with goals in words or pictures, in the houses of another split.
 
     stubborn words --split val --kind seen --out assets/mjcf_houses/words-seen --episodes 150 --workers 2
     stubborn words --split my_houses --kind descriptions --out my_descriptions
@@ -7,6 +7,7 @@
   for the names of `seen` ("refrigerator"). All objects of the name are the goal.
 - `descriptions`: "the red chair next to the bed in the bedroom". Each provably fits exactly one object
   (`sim.episodes.descriptions`); its level is the number of conditions besides the name.
+- `pictures`: a picture of one object by another camera than the robot's (`sim.episodes.goal_pictures`).
 
 The split lies beside the other one, whose houses it uses. Starts are drawn by the recipe `val`.
 """
@@ -14,8 +15,9 @@ The split lies beside the other one, whose houses it uses. Starts are drawn by t
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
-from dataclasses import dataclass
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -24,11 +26,13 @@ import numpy as np
 from sim.app import cli
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import ConfigError, EpisodeError
-from sim.core.interface import CameraModel
+from sim.core.goals import GoalSpec
+from sim.core.interface import GOAL_CATEGORIES, CameraModel
 from sim.core.vocabulary import UNSEEN, vocabulary
 from sim.env.scene import Scene
 from sim.episodes.descriptions import Descriptions
 from sim.episodes.episode import Episode
+from sim.episodes.goal_pictures import GoalPictures
 from sim.episodes.house_episodes import Ask, StartDrawer
 from sim.episodes.reachable_goals import storeys_of
 from sim.episodes.recipes import EPISODE_RECIPES
@@ -36,9 +40,11 @@ from sim.episodes.splits import load_split, write_split
 from sim.robot.config import RobotConfig
 from sim.task.meaning import HouseObject
 
-Kind = Literal["seen", "unseen", "synonyms", "descriptions"]
+Kind = Literal["seen", "unseen", "synonyms", "descriptions", "pictures"]
 _LEAST_SIZE_M = 0.15
 """Smaller objects are not asked for: the camera would not resolve them."""
+_LEAST_PICTURED_M = 0.25
+"""Smaller objects are not asked for by a picture."""
 _UNASKED = frozenset({"blind", "curtain", "wall cabinet", "cooker hood", "glass of water", "cable", "power strip"})
 """Names that are part of the fittings of a room rather than something to go to."""
 _PER_LEVEL = 4
@@ -47,12 +53,12 @@ _PER_LEVEL = 4
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Write a split of episodes with goals in words, in the houses of another split."""
+    """Write a split of episodes with goals in words or pictures, in the houses of another split."""
 
     out: Path
     """Folder of the new split; its parent is that of the other split."""
     kind: Kind = "seen"
-    """seen, unseen, synonyms or descriptions."""
+    """seen, unseen, synonyms, descriptions or pictures."""
     split: str = "val"
     """The split whose houses are used: a shipped one, or a folder."""
     episodes: cli.Count = 150
@@ -81,16 +87,13 @@ def main(args: Args) -> int:
         print(f"{house}: {len(drawn)} episodes", flush=True)
     rounds = [drawn[turn] for turn in range(per_house) for drawn in by_house if turn < len(drawn)]
     name = args.out.resolve().name
-    episodes = [
-        Episode(f"{name}_{i:04d}", e.house, e.goal, e.start, e.shortest_path_m)
-        for i, e in enumerate(rounds[: args.episodes])
-    ]
+    episodes = [replace(episode, episode_id=f"{name}_{i:04d}") for i, episode in enumerate(rounds[: args.episodes])]
     if not episodes:
         raise ConfigError(f"No house of '{args.split}' has a goal for --kind {args.kind}.")
     args.out.mkdir(parents=True, exist_ok=True)
     goals = {house: {} for house in split.houses}
     write_split(args.out, episodes, goals, version=split.version, houses_of=home.name)
-    print(f"{len(episodes)} episodes, {len({episode.goal for episode in episodes})} different goals, in {args.out}")
+    print(f"{len(episodes)} episodes, {len({episode.specs for episode in episodes})} different goals, in {args.out}")
     return 0
 
 
@@ -103,19 +106,21 @@ def _draw(args: Args, work: tuple[int, str, int]) -> list[Episode]:
     scene.world.restore()
     drawer, episodes = StartDrawer(task, recipe, house=number, seed=args.seed), []
     try:
-        for goal in dict.fromkeys(_goals(args, scene, rng)):
+        for goal in _goals(args, scene, rng):
             if len(episodes) == count:
                 break
             for floor_z_m in rng.permutation(storeys_of(task)).tolist():
-                reached = len(task.truth.region(goal, floor_z_m).footprints)
+                reached = len(task.truth.region(goal.text, floor_z_m).footprints)
                 if not reached:
                     continue
                 try:
-                    drawn = drawer.draw(Ask(goal, floor_z_m, reached), len(episodes), rng)
+                    drawn = drawer.draw(Ask(goal.text, floor_z_m, reached), len(episodes), rng)
                 except EpisodeError:
                     continue
                 if drawn.meets_rule:
-                    episodes.append(Episode(f"{house}_{len(episodes)}", house, goal, drawn.pose, drawn.distance_m))
+                    goals = (goal,) if goal.camera is not None else ()
+                    episode_id = f"{house}_{len(episodes)}"
+                    episodes.append(Episode(episode_id, house, goal.text, drawn.pose, drawn.distance_m, goals))
                     break
     finally:
         drawer.close()
@@ -123,10 +128,33 @@ def _draw(args: Args, work: tuple[int, str, int]) -> list[Episode]:
     return episodes
 
 
-def _goals(args: Args, scene: Scene, rng: np.random.Generator) -> list[str]:
-    """Returns the goals of a house in random order."""
+def _goals(args: Args, scene: Scene, rng: np.random.Generator) -> Iterator[GoalSpec]:
+    """Yields the goals of a house in random order."""
     objects = [item for item in scene.task.truth.meaning.objects if _may_be_asked(item)]
     rng.shuffle(objects)  # type: ignore[arg-type]
+    if args.kind == "pictures":
+        yield from _pictures(scene, objects, rng)
+    else:
+        yield from map(GoalSpec.of, dict.fromkeys(_texts(args, scene, objects, rng)))
+
+
+def _pictures(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> Iterator[GoalSpec]:
+    """Yields pictures of objects of the goal categories, one of each category in turn."""
+    pictures, by_category = GoalPictures(scene.task), dict[str, list[HouseObject]]()
+    for item in objects:
+        if item.instance.category in GOAL_CATEGORIES and item.size_m >= _LEAST_PICTURED_M:
+            by_category.setdefault(item.instance.category, []).append(item)
+    try:
+        for item in (item for turn in itertools.zip_longest(*by_category.values()) for item in turn if item):
+            camera = pictures.of(item, rng)
+            if camera is not None:
+                yield GoalSpec(item.instance.name, "picture", camera)
+    finally:
+        pictures.close()
+
+
+def _texts(args: Args, scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> list[str]:
+    """Returns names, other words for them, or descriptions, in random order."""
     if args.kind == "descriptions":
         return _described(scene, objects, rng)
     names = list(dict.fromkeys(item.name for item in objects))

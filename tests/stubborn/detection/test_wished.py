@@ -43,20 +43,20 @@ def target(segmenter: WishedSegmenter) -> list[float]:
 
 
 def test_only_objects_with_the_right_name_score_where_they_are_told_apart():
-    segmenter = WishedSegmenter(Named())
+    segmenter = WishedSegmenter(Named(), SMALL_CAMERA)
     segmenter.ask("the fridge")
     assert segmenter.category == "appliances"
     assert target(segmenter) == [1.0, 0.0, 0.0, 0.0]
 
 
 def test_all_objects_of_the_categories_score_where_they_are_not():
-    segmenter = WishedSegmenter(GroundTruthSegmenter())
+    segmenter = WishedSegmenter(GroundTruthSegmenter(), SMALL_CAMERA)
     segmenter.ask("the fridge")
     assert target(segmenter) == [1.0, 1.0, 0.0, 0.0]
 
 
 def test_posteriors_still_sum_to_one():
-    segmenter = WishedSegmenter(Named())
+    segmenter = WishedSegmenter(Named(), SMALL_CAMERA)
     segmenter.ask("something to sit on")
     assert segmenter.category == "chair"
     np.testing.assert_allclose(segmenter.posteriors(observation()).sum(axis=0), 1.0)
@@ -64,7 +64,7 @@ def test_posteriors_still_sum_to_one():
 
 def test_a_category_is_passed_on_unchanged():
     inner = GroundTruthSegmenter()
-    segmenter = WishedSegmenter(inner)
+    segmenter = WishedSegmenter(inner, SMALL_CAMERA)
     segmenter.ask("chair")
     seen = observation()
     assert segmenter.posteriors(seen) is inner.posteriors(seen)
