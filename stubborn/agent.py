@@ -141,7 +141,7 @@ class StubbornAgent:
         self.config = config = config.for_robot(robot)
         self.robot = robot
         self.levelling = Levelling(camera, robot.camera_forward_m, config.levelling)
-        self.wished = WishedSegmenter(segmenter)
+        self.wished = WishedSegmenter(segmenter, camera)
         self.segmenter = segmenter = LevelledSegmenter(self.wished, self.levelling)
         self.policies = collision_policies(config.avoidance, config.untrap)
         self.mapper = Mapper(camera, robot, config.mapping, config.layers.make(config.mapping.candidate_score))
@@ -172,7 +172,8 @@ class StubbornAgent:
         """Starts a new episode.
 
         Args:
-            goal: a goal category, or words (`sim.core.wishes`).
+            goal: a goal category, words (`sim.core.wishes`), or "": the first observation has the picture of the goal,
+                `goal_picture`.
             seed: for explorers that choose at random.
 
         Raises:
@@ -218,7 +219,13 @@ class StubbornAgent:
         """The candidate that is approached; None: the agent explores."""
 
     def act(self, observation: Observation) -> Action:
-        """Returns the next action."""
+        """Returns the next action.
+
+        Raises:
+            ConfigError: the goal is a picture, and the observation has none.
+        """
+        if self.wished.awaits_picture:
+            self._look_at_picture(observation)
         pose, observation = read_pose(observation), self.levelling.level(observation)
         self._learn_from_last_action(self.pose or pose, pose, observation)
         sighting = self._map(observation, pose)
@@ -226,6 +233,18 @@ class StubbornAgent:
         self.last_action = self._kept_from_drops(self._decide(pose, sighting), pose)
         self.step += 1
         return self.last_action
+
+    def _look_at_picture(self, observation: Observation) -> None:
+        """Sets the goal to what its picture shows.
+
+        Raises:
+            ConfigError: the observation has no picture.
+        """
+        if "goal_picture" not in observation:
+            raise ConfigError("The goal is a picture (reset got ''), but the observation has no 'goal_picture'.")
+        self.wished.show(observation["goal_picture"])
+        self.goal = self.wished.category
+        self.seeker.next_goal(self.goal)
 
     def overridden(self, action: Action) -> None:
         """Records that another action than the agent's own is carried out; see `sim.core.interface.Overridable`."""

@@ -126,6 +126,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
                 sensors=SENSORS,
                 painter=make_painter,
                 words=("rgb", "goal"),
+                pictures=("rgb", "goal_picture"),
             )
             for name, (description, config) in PRESETS.items()
         },

@@ -315,6 +315,15 @@ class NamesCategories(Protocol):
 
 
 @runtime_checkable
+class SegmentsPictures(Protocol):
+    """A segmenter that knows what the picture of a goal shows; others get the picture as if the robot saw it."""
+
+    def picture_categories(self) -> NDArray[np.uint8] | None:
+        """Returns the mpcat40 id of each pixel of the present goal's picture, (h, w); None: unknown."""
+        ...
+
+
+@runtime_checkable
 class SeesObjects(Protocol):
     """A segmenter that tells objects apart and knows their everyday names; agents ask it where goals are in words."""
 

@@ -88,6 +88,7 @@ class RunningEpisode(Protocol):
     def scene(self) -> Scene: ...  # noqa: D102
     @property
     def np_random_seed(self) -> int: ...  # noqa: D102
+    def picture_categories(self) -> NDArray[np.uint8] | None: ...  # noqa: D102
     @property
     def truth_images(self) -> dict[str, NDArray]: ...  # noqa: D102
 
@@ -139,6 +140,10 @@ class NoisySegmenter:
         category = category_id(goal)
         shown, classified, rng = self._classified()
         return self._score(shown, classified, category, rng)
+
+    def picture_categories(self) -> NDArray[np.uint8] | None:
+        """Returns the true categories of the goal's picture (h, w), which is close enough to be seen without errors."""
+        return self._env.picture_categories()
 
     def posteriors(self, observation: Observation) -> NDArray[np.float32]:
         """Returns the probabilities of the categories in the frame that the environment rendered last, (40, h, w).

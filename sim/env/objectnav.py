@@ -254,6 +254,10 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         """Returns sentences about what was changed in a house when it was loaded, see `House.notes`."""
         return self._scenes.get(house).notes
 
+    def picture_categories(self) -> NDArray[np.uint8] | None:
+        """Returns the true category of each pixel of the goal's picture, mpcat40 ids (h, w); None: it is no picture."""
+        return self.scene.picture_of(self.episode.specs[self.scene.task.goal_number], "semantic")
+
     def render(self) -> NDArray[np.uint8] | None:
         """Returns the colour image of the robot's camera, uint8 (h, w, 3), in render mode `rgb_array`."""
         if self.render_mode is None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,10 +43,10 @@ class Scene:
         self.gloss = geom_gloss(self.world.model, self.world.labels)  # (ngeom,)
         self.task = Task(self.world, config, camera=camera, steps_per_action=steps_per_action)
         self._profile = profile
-        self._pictures: dict[PictureCamera, NDArray[np.uint8]] = {}
+        self._pictures: dict[PictureCamera, Mapping[str, NDArray]] = {}
 
-    def picture_of(self, goal: GoalSpec) -> NDArray[np.uint8] | None:
-        """Returns the picture of a goal, uint8 (h, w, 3), of the present state of the world; None: it has none.
+    def picture_of(self, goal: GoalSpec, image: Literal["rgb", "semantic"] = "rgb") -> NDArray[np.uint8] | None:
+        """Returns the picture of a goal, uint8 (h, w, 3), or its true categories (h, w); None: it has no picture.
 
         A picture is rendered once, with the rendering profile of the robot's camera; call this after `World.reset`.
         """
@@ -53,10 +54,9 @@ class Scene:
             return None
         if goal.camera not in self._pictures:
             camera = Camera(self.world.model, self.world.labels, camera=goal.camera.model, profile=self._profile)
-            images = camera.render(self.world.data, goal.camera.pose, ("rgb",))
+            self._pictures[goal.camera] = camera.render(self.world.data, goal.camera.pose, ("rgb", "semantic"))
             camera.close()
-            self._pictures[goal.camera] = images["rgb"]
-        return self._pictures[goal.camera]
+        return self._pictures[goal.camera][image]
 
     def close(self) -> None:
         """Frees the renderer."""

@@ -25,6 +25,7 @@ from sim.core.interface import MPCAT40, MPCAT40_ID
 from sim.core.reading import Number, read_json
 from sim.core.vocabulary import vocabulary
 from sim.core.wishes import Beside, Wish
+from stubborn.detection.classifiers import logistic
 from stubborn.detection.tracks import Pixels, Tracks
 
 FILE = Path(__file__).with_name("attributes.json")
@@ -63,16 +64,30 @@ class _Colours(msgspec.Struct):
     offsets: list[Number]
 
 
+class Logistic(msgspec.Struct):
+    """A logistic regression from some numbers to a probability."""
+
+    weights: list[Number]
+    offset: Number
+
+    def probability(self, values: Sequence[float]) -> float:
+        """Returns the probability, in (0, 1)."""
+        return logistic(self.offset + sum(w * v for w, v in zip(self.weights, values, strict=True)))
+
+
 class _File(msgspec.Struct):
     """The fitted numbers."""
 
+    picture: Logistic
+    """From the two similarities of `stubborn.detection.pictured` to the probability of the same object."""
     colours: _Colours
     rooms: dict[str, dict[str, Share]]
     """For each kind of room, the share of the rooms that hold an object of each category."""
 
 
 @functools.cache
-def _fitted() -> _File:
+def fitted() -> _File:
+    """Returns the numbers of `attributes.json`."""
     return read_json(FILE, _File, what="Fitted attributes")
 
 
@@ -171,22 +186,21 @@ class Attributes:
 
     def _follow_merges(self, now: Int[np.ndarray, " numbers"]) -> None:
         """Moves the evidence on tracks that were merged to the track that they are a part of."""
-        for track in np.flatnonzero(now != np.arange(len(now))).tolist():
-            self._colours[now[track]] += self._colours[track]
-            self._colours[track] = 0.0
-            for name, count in self._names.pop(track, {}).items():
-                of_track = self._names.setdefault(int(now[track]), {})
+        follow_merges(now, self._colours)
+        for track in [track for track in self._names if now[track] != track]:
+            of_track = self._names.setdefault(int(now[track]), {})
+            for name, count in self._names.pop(track).items():
                 of_track[name] = of_track.get(name, 0) + count
 
     def _colour_factor(self, track: int, colour: str, undecided: float) -> float:
         counts = self._colours[track]
         if counts.sum() < _LEAST_PIXELS:
             return undecided
-        fitted = _fitted().colours
-        logits = np.array(fitted.weights) @ np.sqrt(counts / counts.sum()) + np.array(fitted.offsets)
+        colours = fitted().colours
+        logits = np.array(colours.weights) @ np.sqrt(counts / counts.sum()) + np.array(colours.offsets)
         odds = np.exp(logits - logits.max())
-        odds[fitted.names.index("")] *= _NO_COLOUR
-        return float(odds[fitted.names.index(colour)] / odds.sum())
+        odds[colours.names.index("")] *= _NO_COLOUR
+        return float(odds[colours.names.index(colour)] / odds.sum())
 
     def _room_factor(self, tracks: Tracks, track: int, rooms: Sequence[str], undecided: float) -> float:
         """Returns the probability that a track is in a room of the wish, by the categories of the tracks around it."""
@@ -195,7 +209,7 @@ class Attributes:
         if not held:
             return undecided
         logs = {}
-        for kind, shares in _fitted().rooms.items():
+        for kind, shares in fitted().rooms.items():
             present = sum(np.log(max(shares.get(name, 0.0), 0.02)) for name in held)
             absent = sum(np.log(max(1.0 - share, 0.3)) for name, share in shares.items() if name not in held)
             logs[kind] = present + absent
@@ -277,6 +291,14 @@ class Attributes:
         return factors
 
 
+def follow_merges(now: Int[np.ndarray, " numbers"], *counts: np.ndarray) -> None:
+    """Moves counts by track, (numbers, ...), to the tracks that others are a part of now (`Tracks.now`)."""
+    for track in np.flatnonzero(now != np.arange(len(now))).tolist():
+        for count in counts:
+            count[now[track]] += count[track]
+            count[track] = 0.0
+
+
 @functools.cache
 def _room_categories() -> frozenset[str]:
-    return frozenset(name for shares in _fitted().rooms.values() for name in shares)
+    return frozenset(name for shares in fitted().rooms.values() for name in shares)

@@ -56,9 +56,9 @@ class NaiveBayes:
         """Returns the probability that the candidate is true, in [0, 1]."""
         offset = np.asarray(features, np.float64) - self.mean
         score = self.log_prior - 0.5 * (np.log(self.variance) + offset * offset / self.variance).sum(axis=1)
-        return _logistic(float(score[1] - score[0]))
+        return logistic(float(score[1] - score[0]))
 
 
-def _logistic(x: float) -> float:
+def logistic(x: float) -> float:
     """Returns 1 / (1 + exp(-x)), without overflow."""
     return 0.5 * (1.0 + math.tanh(0.5 * x))

@@ -19,6 +19,7 @@ from stubborn.detection.attributes import Attributes
 from stubborn.detection.context import SHIPPED, read_context
 from stubborn.detection.fusion import fusion_for
 from stubborn.detection.look import LookConfig, Verdicts, look_at
+from stubborn.detection.pictured import PictureEvidence
 from stubborn.detection.seeker import SeekerParts
 from stubborn.detection.tracks import TrackConfig, Tracks
 from stubborn.detection.viewpoints import LastResort, ViewpointFinder
@@ -27,8 +28,9 @@ from stubborn.mapping.mapper import Sighting
 from stubborn.mapping.masks import nearest
 from stubborn.mapping.navmap import NavMap
 
-GOAL_TEXT = "goal"
-"""The sensor whose presence says that goals may be in words; names and attributes are then learned from the start."""
+GOAL_TEXT, GOAL_PICTURE = "goal", "goal_picture"
+"""The sensors whose presence says that goals may be in words or pictures: what these ask for is then learned from the
+start."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,6 +110,8 @@ class TrackSeeker:
         self.tracks: Tracks | None = None
         self.attributes: Attributes | None = None
         """The names and attributes of the tracks; None: no goal was in words yet, or the first frame was not seen."""
+        self.pictured: PictureEvidence | None = None
+        """The colours of the tracks; None: no goal was a picture yet, or the first frame was not seen."""
         exact = not self.segmenter.spec.needs_verification
         self.verdicts = Verdicts(self.config.look, exact=exact, max_steps=self.max_steps)
         self.probability: Float32[np.ndarray, " numbers"] = np.zeros(1, np.float32)
@@ -140,9 +144,9 @@ class TrackSeeker:
 
     def next_goal(self, goal: str) -> None:
         """See `Seeker`: tracks and their attributes stay, and the decisions on them are those of another goal."""
-        tracks, attributes = self.tracks, self.attributes
+        tracks, attributes, pictured = self.tracks, self.attributes, self.pictured
         self.reset(goal)
-        self.tracks, self.attributes = tracks, attributes
+        self.tracks, self.attributes, self.pictured = tracks, attributes, pictured
 
     def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
         """See `Seeker`."""
@@ -153,33 +157,38 @@ class TrackSeeker:
         wish = None if self.wished is None else self.wished.wish
         if self.attributes is None and (wish is not None or GOAL_TEXT in observation):
             self.attributes = Attributes(self.tracks.plan, self.tracks.config.most_tracks)
+        if self.pictured is None and GOAL_PICTURE in observation:
+            self.pictured = PictureEvidence(self.tracks.config.most_tracks)
         posteriors, depth = self.segmenter.posteriors(observation), observation["depth"]
         objects = None
-        if self.attributes is not None and self.wished is not None and "rgb" in observation:  # a level camera
+        learns = self.attributes is not None or self.pictured is not None
+        if learns and self.wished is not None and "rgb" in observation:  # a level camera
             objects = self.wished.objects(observation, posteriors.shape[1:])
         self.tracks.add(posteriors, depth, pose, self.goal, None if objects is None else objects[0])
         self.step, self._pose = step, pose
-        if self.attributes is not None:
-            self._learn_attributes(self.attributes, posteriors, observation, objects, pose)
+        if learns:
+            self._learn_attributes(posteriors, observation, objects, pose)
         self.probability = self._probabilities(self.tracks, wish)
         if self._decide(pose):
             navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
 
     def _learn_attributes(
         self,
-        attributes: Attributes,
         posteriors: Float32[np.ndarray, "classes h w"],
         observation: Observation,
         objects: tuple[Int32[np.ndarray, "h w"], Sequence[str]] | None,
         pose: Pose,
     ) -> None:
-        """Enters a frame into the evidence on names and attributes."""
+        """Enters a frame into the evidence on names, attributes and colours."""
         rgb, columns = observation.get("rgb"), posteriors.shape[2]
         if rgb is not None:
             block = rgb.shape[1] // columns
             rgb = rgb[block // 2 :: block, block // 2 :: block]
         pixels = self._of_episode().pixels(observation["depth"], pose, columns)
-        attributes.add(pixels, posteriors, rgb, objects)
+        if self.attributes is not None:
+            self.attributes.add(pixels, posteriors, rgb, objects)
+        if self.pictured is not None and rgb is not None:
+            self.pictured.add(pixels, rgb)
 
     def _probabilities(self, tracks: Tracks, wish: Wish | None) -> Float32[np.ndarray, " numbers"]:
         """Returns the probability of the goal for each track: of its categories, and of its name and conditions."""
@@ -192,7 +201,11 @@ class TrackSeeker:
             ],
             axis=0,
         )
-        attributes = self.attributes
+        attributes, picture = self.attributes, None if self.wished is None else self.wished.picture
+        if picture is not None and self.pictured is not None:
+            candidates = np.flatnonzero(probability >= self.config.look.visit)
+            left_share = 1.0 - self.step / self.max_steps
+            probability[candidates] *= self.pictured.factors(picture, tracks, candidates, left_share)
         if wish is None or attributes is None:
             return probability
         probability = np.minimum(probability, np.float32(1.0))

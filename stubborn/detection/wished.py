@@ -1,4 +1,4 @@
-"""Scores of goals in words: the categories that the words mean, and the objects of them with the right name.
+"""Scores of goals in words and pictures: the categories that they mean, and the objects with the right name.
 
 A segmentation knows the 40 categories. A goal in words may mean several of them ("something to sit on"), or only some
 objects of one ("fridge" among the appliances). Its scores are therefore rearranged: one category stands for the goal,
@@ -11,19 +11,23 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
+import cv2
 import numpy as np
-from jaxtyping import Float32, Int32
+from jaxtyping import Float32, Int32, UInt8
 
 from sim.core.interface import (
     GOAL_CATEGORIES,
     MPCAT40_ID,
+    CameraModel,
     Observation,
     Scores,
     SeesObjects,
     Segmenter,
     SegmenterSpec,
+    SegmentsPictures,
 )
 from sim.core.wishes import Wish, parse_wish
+from stubborn.detection.pictured import PictureGoal, one_hot
 
 STANDS_FOR: Mapping[str, str] = MappingProxyType(
     {
@@ -32,30 +36,46 @@ STANDS_FOR: Mapping[str, str] = MappingProxyType(
     }
 )  # fmt: skip
 """The goal category in place of another one for explorers that know only those: one that is found in the same rooms."""
+_PICTURE_DEPTH_M = 2.5
+"""Depth that a segmenter gets for each pixel of a picture, which has none."""
 _OTHER = MPCAT40_ID["misc"] - 1
 """Channel that gets what is not the goal although it is of the goal's category."""
 
 
 class WishedSegmenter:
-    """A segmenter for goals in words; for a category it returns what the other one does."""
+    """A segmenter for goals in words and pictures; for a category it returns what the other one does.
 
-    def __init__(self, segmenter: Segmenter) -> None:
-        self._segmenter = segmenter
+    Args:
+        segmenter: the other one.
+        camera: the robot's camera.
+    """
+
+    def __init__(self, segmenter: Segmenter, camera: CameraModel) -> None:
+        self._segmenter, self._camera = segmenter, camera
         self.ask("chair")
 
     def ask(self, goal: str) -> None:
-        """Sets the goal: a category, or words.
+        """Sets the goal: a category, words, or "" for a picture, which `show` must get next.
 
         Raises:
             WishError: a word is not known.
         """
-        self.wish: Wish | None = None if goal in GOAL_CATEGORIES else parse_wish(goal)
-        self.category = goal
+        self.picture: PictureGoal | None = None
+        """What the picture of the goal shows; None: the goal is text, or the picture was not shown yet."""
+        self.awaits_picture = not goal
+        self.wish: Wish | None = None if goal in ("", *GOAL_CATEGORIES) else parse_wish(goal)
+        self.category = goal or GOAL_CATEGORIES[0]
         """The category that stands for the goal."""
         if self.wish is not None:
             categories = self.wish.categories
             self.category = next((name for name in categories if name in GOAL_CATEGORIES), categories[0])
             self._channels = np.array([MPCAT40_ID[name] - 1 for name in categories])
+
+    def show(self, picture: UInt8[np.ndarray, "h w 3"]) -> None:
+        """Sets the goal to the object in the middle of a picture."""
+        ids = self._segmenter.picture_categories() if isinstance(self._segmenter, SegmentsPictures) else None
+        self.picture = PictureGoal.of(picture, self._seen_by_robot(picture) if ids is None else one_hot(ids))
+        self.category, self.awaits_picture = self.picture.category, False
 
     @property
     def spec(self) -> SegmenterSpec:
@@ -83,6 +103,22 @@ class WishedSegmenter:
         """Returns the object of each pixel of the posteriors, -1: none, and the names; None: they look alike."""
         seen = self._segmenter.objects(observation) if isinstance(self._segmenter, SeesObjects) else None
         return None if seen is None else (_reduced(seen[0], shape), seen[1])
+
+    def _seen_by_robot(self, picture: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "classes rows cols"]:
+        """Returns the posteriors of a picture that is shown to the segmenter as an image of the robot's camera."""
+        height, width = self._camera.height_px, self._camera.width_px
+        scale = min(height / picture.shape[0], width / picture.shape[1])
+        rows, cols = round(scale * picture.shape[0]), round(scale * picture.shape[1])
+        top, left = (height - rows) // 2, (width - cols) // 2
+        image = cv2.copyMakeBorder(
+            cv2.resize(picture, (cols, rows), interpolation=cv2.INTER_AREA),
+            top, height - rows - top, left, width - cols - left, cv2.BORDER_REPLICATE,
+        )  # fmt: skip
+        depth = np.full((height, width), _PICTURE_DEPTH_M, np.float32)
+        posteriors = self._segmenter.posteriors({"rgb": image, "depth": depth})
+        block = height // posteriors.shape[1]
+        inside = slice(top // block, (top + rows) // block), slice(left // block, (left + cols) // block)
+        return np.array(posteriors[:, *inside])
 
     def _named(self, observation: Observation, shape: tuple[int, ...]) -> Float32[np.ndarray, "h w"] | np.float32:
         """Returns the probability that the object at a pixel has the right name if its category is right."""

@@ -1,4 +1,4 @@
-"""Writes a split of episodes with goals in words or of chains of goals, in the houses of another split.
+"""Writes a split of episodes with goals in words or pictures, or of chains of goals, in the houses of another split.
 
     stubborn words --split val --kind seen --out assets/mjcf_houses/words-seen --episodes 150 --workers 2
     stubborn words --split my_houses --kind descriptions --out my_descriptions
@@ -9,6 +9,7 @@
 - `descriptions`: "the red chair next to the bed in the bedroom". Each provably fits exactly one object
   (`sim.episodes.descriptions`); its level is the number of conditions besides the name.
 - `chains`: several goals of all kinds of `KINDS`, one after the other (`sim.episodes.chains`).
+- `pictures`: a picture of one object by another camera than the robot's (`sim.episodes.goal_pictures`).
 
 The split lies beside the other one, whose houses it uses. Starts are drawn by the recipe `val`.
 """
@@ -16,7 +17,8 @@ The split lies beside the other one, whose houses it uses. Starts are drawn by t
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping, Sequence
+import itertools
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -34,6 +36,7 @@ from sim.env.scene import Scene
 from sim.episodes.chains import ChainDrawer
 from sim.episodes.descriptions import Descriptions
 from sim.episodes.episode import Episode
+from sim.episodes.goal_pictures import GoalPictures
 from sim.episodes.house_episodes import Ask, StartDrawer
 from sim.episodes.reachable_goals import storeys_of
 from sim.episodes.recipes import EPISODE_RECIPES
@@ -41,25 +44,29 @@ from sim.episodes.splits import load_split, write_split
 from sim.robot.config import RobotConfig
 from sim.task.meaning import HouseObject
 
-Kind = Literal["seen", "unseen", "synonyms", "descriptions", "chains"]
+Kind = Literal["seen", "unseen", "synonyms", "descriptions", "pictures", "chains"]
 _LEAST_SIZE_M = 0.15
 """Smaller objects are not asked for: the camera would not resolve them."""
+_LEAST_PICTURED_M = 0.25
+"""Smaller objects are not asked for by a picture."""
 _UNASKED = frozenset({"blind", "curtain", "wall cabinet", "cooker hood", "glass of water", "cable", "power strip"})
 """Names that are part of the fittings of a room rather than something to go to."""
 _MOST_DRAWS = 12
 """Attempts to draw a chain, for each that is wanted."""
+_MOST_PICTURES = 8
+"""Pictures that are drawn for the chains of a house."""
 _PER_LEVEL = 4
 """Descriptions of each level that are written for a house; more of its objects are then not tried."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Write a split of episodes with goals in words or of chains, in the houses of another split."""
+    """Write a split of episodes with goals in words or pictures, or of chains, in the houses of another split."""
 
     out: Path
     """Folder of the new split; its parent is that of the other split."""
     kind: Kind = "seen"
-    """seen, unseen, synonyms, descriptions or chains."""
+    """seen, unseen, synonyms, descriptions, pictures or chains."""
     split: str = "val"
     """The split whose houses are used: a shipped one, or a folder."""
     episodes: cli.Count = 150
@@ -88,13 +95,13 @@ def main(args: Args) -> int:
         print(f"{house}: {len(drawn)} episodes", flush=True)
     rounds = [drawn[turn] for turn in range(per_house) for drawn in by_house if turn < len(drawn)]
     name = args.out.resolve().name
-    episodes = [replace(e, episode_id=f"{name}_{i:04d}") for i, e in enumerate(rounds[: args.episodes])]
+    episodes = [replace(episode, episode_id=f"{name}_{i:04d}") for i, episode in enumerate(rounds[: args.episodes])]
     if not episodes:
         raise ConfigError(f"No house of '{args.split}' has a goal for --kind {args.kind}.")
     args.out.mkdir(parents=True, exist_ok=True)
     goals = {house: {} for house in split.houses}
     write_split(args.out, episodes, goals, version=split.version, houses_of=home.name)
-    different = {goal.text for episode in episodes for goal in episode.specs}
+    different = {goal for episode in episodes for goal in episode.specs}
     print(f"{len(episodes)} episodes, {len(different)} different goals, in {args.out}")
     return 0
 
@@ -110,19 +117,21 @@ def _draw(args: Args, work: tuple[int, str, int]) -> list[Episode]:
     try:
         if args.kind == "chains":
             return _chains(scene, drawer, house, count, rng)
-        for goal in dict.fromkeys(_goals(args, scene, rng)):
+        for goal in _goals(args, scene, rng):
             if len(episodes) == count:
                 break
             for floor_z_m in rng.permutation(storeys_of(task)).tolist():
-                reached = len(task.truth.region(goal, floor_z_m).footprints)
+                reached = len(task.truth.region(goal.text, floor_z_m).footprints)
                 if not reached:
                     continue
                 try:
-                    drawn = drawer.draw(Ask(goal, floor_z_m, reached), len(episodes), rng)
+                    drawn = drawer.draw(Ask(goal.text, floor_z_m, reached), len(episodes), rng)
                 except EpisodeError:
                     continue
                 if drawn.meets_rule:
-                    episodes.append(Episode(f"{house}_{len(episodes)}", house, goal, drawn.pose, drawn.distance_m))
+                    goals = (goal,) if goal.camera is not None else ()
+                    episode_id = f"{house}_{len(episodes)}"
+                    episodes.append(Episode(episode_id, house, goal.text, drawn.pose, drawn.distance_m, goals))
                     break
     finally:
         drawer.close()
@@ -135,7 +144,7 @@ def _chains(scene: Scene, drawer: StartDrawer, house: str, count: int, rng: np.r
     task, episodes = scene.task, list[Episode]()
     objects = [item for item in task.truth.meaning.objects if _may_be_asked(item)]
     rng.shuffle(objects)  # type: ignore[arg-type]
-    goals = {kind: [GoalSpec.of(text) for text in texts(scene, objects, rng)] for kind, texts in KINDS.items()}
+    goals = {kind: list(listed(scene, objects, rng)) for kind, listed in KINDS.items()}
     drawers = [ChainDrawer(task, goals, floor_z_m) for floor_z_m in storeys_of(task)]
     for turn in range(_MOST_DRAWS * count):
         if len(episodes) == count:
@@ -156,24 +165,57 @@ def _chains(scene: Scene, drawer: StartDrawer, house: str, count: int, rng: np.r
     return episodes
 
 
-def _categories(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> list[str]:
+def _categories(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> Iterable[GoalSpec]:
     """Returns the goal categories of a house."""
     del objects, rng
-    return list(scene.task.truth.goals())
+    return map(GoalSpec.of, scene.task.truth.goals())
 
 
-def _names(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> list[str]:
+def _names(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> Iterable[GoalSpec]:
     """Returns everyday names of some objects, and other words for them, that are no goal categories."""
     del scene
     names = list(dict.fromkeys(item.name for item in objects))
     others = [word for name in names for word in rng.permutation(_synonyms(name)).tolist()[:1]]
-    return [word for word in (*names, *others) if word not in GOAL_CATEGORIES]
+    return [GoalSpec.of(word) for word in (*names, *others) if word not in GOAL_CATEGORIES]
 
 
-def _goals(args: Args, scene: Scene, rng: np.random.Generator) -> list[str]:
-    """Returns the goals of a house in random order."""
+def _descriptions(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> Iterable[GoalSpec]:
+    """Returns descriptions of some objects of a house."""
+    return map(GoalSpec.of, _described(scene, objects, rng))
+
+
+def _some_pictures(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> Iterable[GoalSpec]:
+    """Returns pictures of some objects of a house."""
+    return itertools.islice(_pictures(scene, objects, rng), _MOST_PICTURES)
+
+
+def _goals(args: Args, scene: Scene, rng: np.random.Generator) -> Iterator[GoalSpec]:
+    """Yields the goals of a house in random order."""
     objects = [item for item in scene.task.truth.meaning.objects if _may_be_asked(item)]
     rng.shuffle(objects)  # type: ignore[arg-type]
+    if args.kind == "pictures":
+        yield from _pictures(scene, objects, rng)
+    else:
+        yield from map(GoalSpec.of, dict.fromkeys(_texts(args, scene, objects, rng)))
+
+
+def _pictures(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> Iterator[GoalSpec]:
+    """Yields pictures of objects of the goal categories, one of each category in turn."""
+    pictures, by_category = GoalPictures(scene.task), dict[str, list[HouseObject]]()
+    for item in objects:
+        if item.instance.category in GOAL_CATEGORIES and item.size_m >= _LEAST_PICTURED_M:
+            by_category.setdefault(item.instance.category, []).append(item)
+    try:
+        for item in (item for turn in itertools.zip_longest(*by_category.values()) for item in turn if item):
+            camera = pictures.of(item, rng)
+            if camera is not None:
+                yield GoalSpec(item.instance.name, "picture", camera)
+    finally:
+        pictures.close()
+
+
+def _texts(args: Args, scene: Scene, objects: Sequence[HouseObject], rng: np.random.Generator) -> list[str]:
+    """Returns names, other words for them, or descriptions, in random order."""
     if args.kind == "descriptions":
         return _described(scene, objects, rng)
     names = list(dict.fromkeys(item.name for item in objects))
@@ -215,6 +257,8 @@ def _described(scene: Scene, objects: Sequence[HouseObject], rng: np.random.Gene
     return [texts[i] for i in range(most) for texts in by_level.values() if i < len(texts)]
 
 
-Texts = Callable[[Scene, Sequence[HouseObject], np.random.Generator], list[str]]
-KINDS: Mapping[str, Texts] = MappingProxyType({"category": _categories, "words": _names, "description": _described})
+Goals = Callable[[Scene, Sequence[HouseObject], np.random.Generator], Iterable[GoalSpec]]
+KINDS: Mapping[str, Goals] = MappingProxyType(
+    {"category": _categories, "words": _names, "description": _descriptions, "picture": _some_pictures}
+)
 """For each kind of goals in chains, what lists those of a house: from objects that may be asked for, at random."""

@@ -21,6 +21,7 @@ from sim.core.interface import (
     SeesObjects,
     Segmenter,
     SegmenterSpec,
+    SegmentsPictures,
     StatesSegmentation,
 )
 
@@ -61,6 +62,10 @@ class AskedSegmenter:
     def objects(self, observation: Observation) -> tuple[NDArray[np.int32], Sequence[str]] | None:
         """Returns the segmenter's objects; None if it does not tell objects apart."""
         return self._inner.objects(observation) if isinstance(self._inner, SeesObjects) else None
+
+    def picture_categories(self) -> NDArray[np.uint8] | None:
+        """Returns what the picture of the goal shows; None: the segmenter does not know it."""
+        return self._inner.picture_categories() if isinstance(self._inner, SegmentsPictures) else None
 
     def perceived(self, observation: Observation, goal: str) -> Perceived | None:
         """Returns scores and categories of a frame; None if the agent did not call the segmenter for it."""

@@ -85,6 +85,10 @@ class TrueSegmentation:
         del observation
         return self._env.truth_images["semantic"]
 
+    def picture_categories(self) -> NDArray[np.uint8] | None:
+        """Returns the true category of each pixel of the goal's picture, uint8 (h, w); None: the goal is no picture."""
+        return self._env.picture_categories()
+
     def objects(self, observation: Observation) -> tuple[NDArray[np.int32], Sequence[str]] | None:
         """Returns the true object of each pixel, int32 (h, w), and the everyday name of each object.
 

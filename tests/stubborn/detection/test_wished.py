@@ -43,21 +43,21 @@ def target(segmenter: WishedSegmenter) -> list[float]:
 
 
 def test_only_objects_with_the_right_name_score_where_they_are_told_apart():
-    segmenter = WishedSegmenter(Named())
+    segmenter = WishedSegmenter(Named(), SMALL_CAMERA)
     segmenter.ask("the fridge")
     assert segmenter.category == "appliances"
     assert target(segmenter) == [1.0, 0.0, 0.0, 0.0]
 
 
 def test_all_objects_of_the_categories_score_where_they_are_not():
-    segmenter = WishedSegmenter(GroundTruthSegmenter())
+    segmenter = WishedSegmenter(GroundTruthSegmenter(), SMALL_CAMERA)
     segmenter.ask("the fridge")
     assert target(segmenter) == [1.0, 1.0, 0.0, 0.0]
 
 
 def test_the_posteriors_are_those_of_the_categories_whatever_the_goal_is():
     inner = Named()
-    segmenter, seen = WishedSegmenter(inner), observation()
+    segmenter, seen = WishedSegmenter(inner, SMALL_CAMERA), observation()
     segmenter.ask("something to sit on")
     assert segmenter.category == "chair"
     assert segmenter.posteriors(seen) is inner.posteriors(seen)
@@ -65,7 +65,7 @@ def test_the_posteriors_are_those_of_the_categories_whatever_the_goal_is():
 
 def test_a_category_is_passed_on_unchanged():
     inner = GroundTruthSegmenter()
-    segmenter = WishedSegmenter(inner)
+    segmenter = WishedSegmenter(inner, SMALL_CAMERA)
     segmenter.ask("chair")
     seen = observation()
     assert segmenter.posteriors(seen) is inner.posteriors(seen)

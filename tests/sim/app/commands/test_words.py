@@ -6,13 +6,13 @@ import pytest
 
 from sim.app import cli
 from sim.app.commands import words
-from sim.app.composition.environments import episodes_of, is_taken_in_words
+from sim.app.composition.environments import episodes_of, takes
 from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
 from sim.episodes.episode import Episode
-from sim.episodes.splits import is_in_words, load_split, write_split
+from sim.episodes.splits import load_split, read_index, write_split
 from tests.helpers.worlds import furnished
 
 
@@ -42,8 +42,8 @@ def test_a_split_of_goals_in_words_uses_the_houses_beside_it(homes, kind, goals)
     asked = {episode.goal for episode in split.episodes}
     assert asked
     assert asked <= goals if goals else all("chair" in goal or "lamp" in goal or "desk" in goal for goal in asked)
-    assert is_in_words(homes.parent / kind)
-    assert not is_in_words(homes)
+    assert read_index(homes.parent / kind).in_words
+    assert not read_index(homes).in_words
     assert all((episode.shortest_path_m or 0.0) >= 4.0 for episode in split.episodes)
 
 
@@ -55,8 +55,9 @@ def test_agents_that_take_no_words_get_none_of_these_episodes(homes):
     setup = resolve(RunOptions(agent="stubborn-plus", **options))
     assert "rgb" in setup.config.sensors
     assert len(episodes_of(setup).episodes) == 1
-    assert not is_taken_in_words(setup, "chair_00")  # only who knows the truth knows which chair that is
-    assert is_taken_in_words(resolve(RunOptions(agent="oracle", **options)), "chair_00")
+    labelled = Episode("labelled", "home", "chair_00", Pose(0.0, 0.0, 0.0))
+    assert not takes(setup, labelled)  # only an agent that knows the truth knows which chair that is
+    assert takes(resolve(RunOptions(agent="oracle", **options)), labelled)
     assert "rgb" not in resolve(RunOptions(agent="stubborn-plus", semantics="gt")).config.sensors
 
 
@@ -66,3 +67,14 @@ def test_the_split_must_lie_beside_the_houses(homes, tmp_path):
     with pytest.raises(ConfigError, match="No house of"):
         words.main(words.Args(kind="unseen", split=str(homes), out=homes.parent / "none"))
     assert cli.parse(words.Args, ["--kind", "seen", "--out", "x"]).split == "val"
+
+
+def test_pictures_are_episodes_of_agents_that_take_them(homes):
+    split = made(homes, "pictures", "pictured")
+    assert all(episode.specs[0].kind == "picture" for episode in split.episodes)
+    options = {"split": str(homes.parent / "pictured"), "semantics": "gt", "episodes": 1}
+    setup = resolve(RunOptions(agent="stubborn-plus", **options))
+    assert {"rgb", "goal_picture"} <= set(setup.config.sensors)
+    assert len(episodes_of(setup).episodes) == 1
+    with pytest.raises(ConfigError, match="no episode with a goal that the agent knows"):
+        episodes_of(resolve(RunOptions(agent="cloned", **options)))
