@@ -23,6 +23,7 @@ from sim.env.scene import Scene, SceneCache
 from sim.episodes.drawing import sample_episode
 from sim.episodes.episode import Episode, require_start
 from sim.episodes.splits import Split
+from sim.renderer.opengl import SharedContext
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
 from sim.robot.drive import Motion
@@ -85,8 +86,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         camera: intrinsics and mount height.
         scan: the lidar of the sensor `scan`.
         robot: body and drive.
-        cached_houses: number of houses that stay loaded, those that were used last. To load a house takes most of a
-            second; a loaded house takes 40 to 90 MB.
+        cached_houses: number of houses that stay loaded, those that were used last. To load a house for the first time
+            takes most of a second, later a fifth of it (`sim.core.store`); a loaded house takes 40 to 90 MB.
 
     Raises:
         ConfigError: an unknown split, goal, sensor, profile, noise, or field of a configuration.
@@ -144,6 +145,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         if self.split.episodes and not self._episodes:
             raise ConfigError(f"Split '{self.split.name}' has no episode with goal '{goal}'.")
         self._scenes = SceneCache(self._make_scene, size=cached_houses)
+        self._shared: SharedContext | None = None
         self._scene: Scene | None = None
         self._episode: Episode | None = None
         self._motion: Motion | None = None
@@ -251,6 +253,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._closed = True
         self._scene = None
         self._scenes.close()
+        if self._shared is not None:
+            self._shared.close()
 
     def _choose(self, options: Mapping[str, Any]) -> Episode:
         unknown = sorted(set(options) - {"episode", "episode_id"})
@@ -269,6 +273,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         return self.draw_episode(self.np_random)
 
     def _make_scene(self, house: str) -> Scene:
+        if self._shared is None:
+            self._shared = SharedContext(self.camera_model)
         return Scene(
             self.split.load_house(house),
             robot=self._robot,
@@ -276,6 +282,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             profile=self._profile,
             task=self.task_config,
             steps_per_action=self._steps_per_action,
+            shared=self._shared,
         )
 
     def _make_noise(self, config: NoiseConfig) -> SensorNoise:

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -31,7 +30,7 @@ from sim.episodes.house_list import HouseList, has_house_list, read_house_list
 from sim.episodes.replicates import find_episode
 from sim.houses.house import House
 from sim.houses.load import load_house
-from sim.houses.references import files_of
+from sim.houses.references import add_files
 from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, sidecar_path
 
 UNREACHABLE_FILE = "unreachable.json"
@@ -228,10 +227,7 @@ def house_sum(path: Path, *, with_also: bytes = b"", root: Path | None = None) -
     """
     digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=_MAX_BYTES) + _sidecar_bytes(path))
     digest.update(with_also)
-    for file in files_of(path, root):  # a house in a single file keeps the checksum of version 0.1
-        name = os.path.relpath(file, path.resolve().parent)
-        digest.update(name.encode(errors="replace"))
-        digest.update(bytes.fromhex(sha256_of(file, what="File of a house", error=HouseError)))
+    add_files(digest, path, root)  # a house in a single file keeps the checksum of version 0.1
     return digest.hexdigest()
 
 

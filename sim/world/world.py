@@ -21,7 +21,7 @@ from sim.robot.contacts import ContactLog
 from sim.robot.drive import Driver, Motion
 from sim.robot.odometry import Odometry
 from sim.robot.velocity import Velocity, VelocityDrive
-from sim.world.compile import compile_world
+from sim.world.compile import compile_world, world_key
 from sim.world.freespace import FreeSpace
 from sim.world.kinematic import Glide, performed
 from sim.world.storeys import floor_geoms, floor_levels
@@ -53,7 +53,9 @@ class World:
         self.config = robot or RobotConfig()
         self.robot = self.config.model
         self.rule = rule or SuccessRule()
-        self.model, self.labels, self.rooms = compile_world(house, self.config)
+        self.key = world_key(house, self.config)
+        """Names the house and the robot in the user's cache (`sim.core.store`); None: they are not files."""
+        self.model, self.labels, self.rooms = compile_world(house, self.config, key=self.key)
         self.data = mujoco.MjData(self.model)
         self.glass = picture_panes(self.model, self.labels) | clear_panes(self.model, self.labels)
         """(ngeom,) True for panes of windows."""

@@ -24,7 +24,9 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from sim.app.commands.bench import PlainRenderer, free_poses, make_agent, make_env
 from sim.core.interface import Action, CameraModel
+from sim.core.paths import CACHE_VARIABLE
 from sim.core.reading import read_text
+from sim.core.store import SIZE_VARIABLE
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.scene import Scene
 from sim.episodes.house_list import copy_textures
@@ -85,6 +87,22 @@ def test_first_step_in_a_new_house(benchmark: BenchmarkFixture) -> None:
         env.step(Action.TURN_LEFT)
 
     benchmark.pedantic(start, rounds=9, warmup_rounds=1)
+
+
+@pytest.mark.parametrize("state", ["first", "prepared"])
+def test_reset_to_another_house(
+    benchmark: BenchmarkFixture, state: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The reset to a house that is not loaded: computed, and from the cache of houses seen before."""
+    benchmark.group = "reset"
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    monkeypatch.setenv(SIZE_VARIABLE, "1000")
+    env = ObjectNavEnv(split="val", sensors=("depth",), camera=SMALL)
+    firsts = list({episode.house: episode for episode in env.split.episodes}.values())[:8]
+    for episode in firsts if state == "prepared" else ():
+        env.reset(options={"episode": episode})
+    episodes = iter(firsts)
+    benchmark.pedantic(lambda: env.reset(options={"episode": next(episodes)}), rounds=7, warmup_rounds=1)
 
 
 @pytest.mark.parametrize("profile", ["fast", "good"])
