@@ -16,17 +16,28 @@ from numpy.typing import NDArray
 from sim.core.configuration import as_settings
 from sim.core.errors import HouseError
 from sim.core.geometry.pose import Pose
-from sim.core.interface import SENSORS, Action, CameraModel, ConfigError, RobotModel, SuccessRule
+from sim.core.interface import (
+    MOVES,
+    SENSORS,
+    Action,
+    CameraModel,
+    ConfigError,
+    RobotModel,
+    SuccessRule,
+    as_action,
+)
 from sim.core.wishes import require_goal
 from sim.env.chosen_split import chosen_split
 from sim.env.scene import Scene, SceneCache
 from sim.episodes.drawing import sample_episode
 from sim.episodes.episode import Episode, require_start
 from sim.episodes.splits import Split
+from sim.renderer.mounted import CameraConfig
 from sim.renderer.opengl import SharedContext
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
 from sim.robot.drive import Motion
+from sim.sensors.cameras import camera_sensors, cameras_of
 from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise, noise_from_dict
 from sim.sensors.scan import ScanConfig, ScanSensor
 from sim.sensors.sensor import Sensor, SensorContext
@@ -84,6 +95,10 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         success: replaces `task.success`.
         max_steps: replaces `task.max_steps`.
         camera: intrinsics and mount height.
+        cameras: further cameras by name (`sim.renderer.mounted`): `cameras={"left": {"yaw_deg": 60}}` adds the keys
+            `left_rgb` and `left_depth` to the observation.
+        look: also allows the actions 4 LOOK_UP and 5 LOOK_DOWN, which tilt the first camera by 30 degrees, at most by
+            60; they count as steps, and the sensor `tilt` reads the tilt.
         scan: the lidar of the sensor `scan`.
         robot: body and drive.
         cached_houses: number of houses that stay loaded, those that were used last. To load a house for the first time
@@ -116,6 +131,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         success: SuccessRule | Mapping[str, object] | None = None,
         max_steps: int | None = None,
         camera: CameraModel | Mapping[str, object] | None = None,
+        cameras: Mapping[str, CameraConfig | Mapping[str, object]] | None = None,
+        look: bool = False,
         scan: ScanConfig | Mapping[str, object] | None = None,
         robot: RobotConfig | Mapping[str, object] | None = None,
         cached_houses: int = 1,
@@ -128,7 +145,17 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             raise ConfigError("start needs house: the episodes of a split have their own.")
         self.goal, self.start = goal, start
         self.scan_config = as_settings(scan, ScanConfig(), name="scan")
-        self.sensors = _with_scan(resolve_sensors(sensors), self.scan_config)
+        mounted = camera_sensors(cameras or {})
+        keys = [sensor.name for sensor in mounted]
+        others = (
+            sensors
+            if isinstance(sensors, str)
+            else [sensor for sensor in sensors if not (isinstance(sensor, str) and sensor in keys)]
+        )
+        self.sensors = _with_scan(
+            resolve_sensors(others if isinstance(others, str) else [*others, *mounted]), self.scan_config
+        )
+        self._cameras = cameras_of(self.sensors)
         self.truth_images: dict[str, NDArray] = {}
         """Images that were rendered last, without noise: at least those of `truth`."""
         self._truth = tuple(truth)
@@ -140,7 +167,9 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._default_noise = self._make_noise(noise if isinstance(noise, NoiseConfig) else get_noise(noise))
         self._noise = self._default_noise
         self.observation_space = spaces.Dict({sensor.name: sensor.space(self.camera_model) for sensor in self.sensors})
-        self.action_space = spaces.Discrete(len(Action))
+        self.actions = tuple(Action) if look else MOVES
+        """The actions that are allowed."""
+        self.action_space = spaces.Discrete(len(self.actions))
         self._episodes = [episode for episode in self.split.episodes if goal in (None, episode.goal)]
         if self.split.episodes and not self._episodes:
             raise ConfigError(f"Split '{self.split.name}' has no episode with goal '{goal}'.")
@@ -213,7 +242,11 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     def step(self, action: int) -> StepResult:
         """Carries out one action; see the class."""
         self.scene.task.require_running()
-        return self._outcome(self.scene.world.move(Action(action)))
+        chosen = as_action(action)
+        if chosen is None or chosen not in self.actions:
+            names = ", ".join(f"{int(allowed)} {allowed.name}" for allowed in self.actions)
+            raise ConfigError(f"An action is one of {names}; got {reprlib.repr(action)}. look=True allows to tilt.")
+        return self._outcome(self.scene.world.move(chosen))
 
     def _outcome(self, motion: Motion) -> StepResult:
         """Returns what `step` returns after a motion."""
@@ -311,7 +344,12 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         world = self.scene.world
         needed = {name for sensor in self._noise.sensors for name in sensor.images}
         names = sorted({*self.scene.task.images, *needed, *self._truth, *self._noise.images})
-        images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, names)
+        first = [name for name in names if ":" not in name]
+        images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, first)
+        for camera, config in self._cameras.items():
+            asked = [name.partition(":")[2] for name in names if name.startswith(f"{camera}:")]
+            views = self.scene.mounted.render(world.data, world.body_pose, config, asked)
+            images |= {f"{camera}:{image}": view for image, view in views.items()}
         fields = {
             "goal": self.episode.goal,
             "collided": self._motion is not None and self._motion.collided,
@@ -322,6 +360,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             "model": world.model,
             "data": world.data,
             "glass": world.glass,
+            "labels": world.labels,
+            "tilt": world.tilt_rad,
         }
         readings = {sensor.name: sensor.read(SensorContext(sensor, images, **fields)) for sensor in self._noise.sensors}
         return self._noise.apply(readings, images)

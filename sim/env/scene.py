@@ -10,6 +10,7 @@ from sim.env.memory import return_freed_memory
 from sim.houses.house import House
 from sim.renderer.camera import Camera
 from sim.renderer.gloss import geom_gloss
+from sim.renderer.mounted import MountedCameras
 from sim.renderer.opengl import SharedContext
 from sim.renderer.profiles import RenderProfile
 from sim.robot.config import RobotConfig
@@ -37,13 +38,17 @@ class Scene:
         self.notes = house.notes
         """See `House.notes`."""
         self.world = World(house, robot=robot, rule=config.success)
+        self.world.camera_height_m = camera.height_m
         self.camera = Camera(self.world.model, self.world.labels, camera=camera, profile=profile, shared=shared)
+        self.mounted = MountedCameras(self.world.model, self.world.labels, profile=profile, shared=shared)
+        """Renders further cameras."""
         self.gloss = geom_gloss(self.world.model, self.world.labels)  # (ngeom,)
         self.task = Task(self.world, config, camera=camera, steps_per_action=steps_per_action)
 
     def close(self) -> None:
-        """Frees the renderer."""
+        """Frees the renderers."""
         self.camera.close()
+        self.mounted.close()
 
 
 class SceneCache:

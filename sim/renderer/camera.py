@@ -111,6 +111,20 @@ class Camera:
             ConfigError: an unknown sensor.
             RenderError: this process was forked from the one that made this camera.
         """
+        body = as_body_pose(pose)
+        return self.render_from(data, body.point(0.0, 0.0, self.camera.height_m), body.axes, sensors)
+
+    def render_from(
+        self, data: mujoco.MjData, eye_m: NDArray, axes: NDArray, sensors: Sequence[str]
+    ) -> dict[str, NDArray]:
+        """Returns the same, seen from any place in any direction.
+
+        Args:
+            data: state of the model; kinematics must be computed.
+            eye_m: (3,) optical centre in the world.
+            axes: (3, 3) the camera's forward, left and up as rows.
+            sensors: as of `render`.
+        """
         unknown = [name for name in sensors if name not in (*SENSORS, "geom")]
         if unknown:
             raise ConfigError(f"Unknown sensor '{unknown[0]}'. The sensors are: {', '.join(SENSORS)}, geom.")
@@ -118,13 +132,11 @@ class Camera:
             return {}
         begin_rendering()
         with self._gl.as_current():
-            return self._render(data, pose, sensors)
+            return self._render(data, eye_m, axes, sensors)
 
-    def _render(self, data: mujoco.MjData, pose: Pose, sensors: Sequence[str]) -> dict[str, NDArray]:
+    def _render(self, data: mujoco.MjData, eye_m: NDArray, axes: NDArray, sensors: Sequence[str]) -> dict[str, NDArray]:
         """Returns the images of some sensors; the OpenGL context is current."""
         images: dict[str, NDArray] = {}
-        body = as_body_pose(pose)
-        eye_m, axes = body.point(0.0, 0.0, self.camera.height_m), body.axes
         visible = self._visibility.visible(data, eye_m, axes) if self.cull else self._visual_ids
         lamps = self._lamps.choose(data, eye_m, axes[0]) if "rgb" in sensors else []
         first = lamps[0] if lamps and self.profile.shadows > 0.0 and self._lamps.casts_shadows(lamps[0]) else None

@@ -13,6 +13,7 @@ Next to `carrier.xml` there is a sidecar `carrier.json`; those of Menagerie's ro
 | `radius_m`, `height_m` | size of the upright cylinder around the body; default: measured |
 | `camera_height_m`, `camera_forward_m` | position of the level camera above the floor and ahead of the axle (0.88, 0) |
 | `camera_hfov_deg` | horizontal field of view of the camera (79) |
+| `cameras` | further cameras by name, each with fields of `sim.renderer.mounted.CameraConfig`; default: none |
 | `speed_m_s`, `acceleration_m_s2` | largest speed and acceleration of a forward (0.5, 1) |
 
 A geom without a name is called `<body>.<number>`, with its number in the body, from 0.
@@ -31,7 +32,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TypedDict, TypeGuard, cast
+from typing import Any, TypedDict, TypeGuard, cast
 
 from sim.core.interface import CLIMB_M, CameraModel, ConfigError
 from sim.core.reading import read_bytes, read_json, sha256_of
@@ -44,7 +45,7 @@ KEYS = (
     "wheel_joints", "wheel_radius_m", "track_m", "casters", "joints", "heading_deg", "radius_m", "height_m",
     "speed_m_s", "acceleration_m_s2",
 )  # fmt: skip
-CAMERA_KEYS = ("camera_height_m", "camera_forward_m", "camera_hfov_deg")
+CAMERA_KEYS = ("camera_height_m", "camera_forward_m", "camera_hfov_deg", "cameras")
 LARGEST_M = 1000.0
 """Largest number of a sidecar, also of degrees."""
 SKIN_M = 0.005
@@ -75,6 +76,19 @@ def load_robot(robot: Path | str) -> tuple[RobotConfig, CameraModel]:
         return _robot_config(path, sidecar), _camera(sidecar)
     except ConfigError as error:
         raise ConfigError(f"Robot '{path}': {error}") from None
+
+
+def robot_cameras(robot: Path | str) -> dict[str, Any]:
+    """Returns the further cameras that a robot's sidecar declares: fields by the name of the camera.
+
+    Raises:
+        ConfigError: the sidecar breaks a rule of this module.
+    """
+    path, sidecar_file = _files_of(robot)
+    cameras = cast(dict[str, Any], _read_sidecar(sidecar_file).get("cameras", {}))
+    if not (isinstance(cameras, dict) and all(isinstance(fields, dict) for fields in cameras.values())):
+        raise ConfigError(f"Robot '{path}': \"cameras\" in its sidecar must be an object of cameras by name.")
+    return cameras
 
 
 def robot_sha256(robot: Path | str) -> str:

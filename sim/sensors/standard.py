@@ -11,9 +11,19 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
-from sim.core.interface import CONTEXT_FIELDS, GOAL_CATEGORIES, MPCAT40, POSE_SENSORS, SCAN, SENSORS, CameraModel
+from sim.core.interface import (
+    CONTEXT_FIELDS,
+    GOAL_CATEGORIES,
+    MAX_TILT_RAD,
+    MPCAT40,
+    POSE_SENSORS,
+    SCAN,
+    SENSORS,
+    CameraModel,
+)
 from sim.sensors.measured import BumperSensor, ImuSensor, OdometrySensor
 from sim.sensors.scan import ScanSensor
+from sim.sensors.semantic_map import SemanticMapSensor
 from sim.sensors.sensor import NoiseSettings, Sensor, SensorContext, declared_fields
 
 
@@ -125,12 +135,30 @@ class ObjectGoalSensor:
         return np.array([GOAL_CATEGORIES.index(context.goal) if known else -1], np.int64)
 
 
+@dataclass(frozen=True, kw_only=True)
+class TiltSensor:
+    """Tilt of the camera, which LOOK_UP and LOOK_DOWN change."""
+
+    name: str = "tilt"
+    images: tuple[str, ...] = ()
+    reads: tuple[str, ...] = ("tilt",)
+    noise: NoiseSettings | None = None
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        """Returns the space of float32 angles (1,)."""
+        return spaces.Box(-np.float32(MAX_TILT_RAD), np.float32(MAX_TILT_RAD), (1,), np.float32)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns the tilt in radians, positive: up."""
+        return np.array([context.tilt], np.float32)
+
+
 STANDARD_SENSORS: Mapping[str, Sensor] = MappingProxyType(
     {
         sensor.name: sensor
         for sensor in (
             RgbSensor(), DepthSensor(), SemanticSensor(), GpsSensor(), CompassSensor(), ObjectGoalSensor(),
-            ScanSensor(), BumperSensor(), OdometrySensor(), ImuSensor(),
+            ScanSensor(), BumperSensor(), OdometrySensor(), ImuSensor(), SemanticMapSensor(), TiltSensor(),
         )
     }
 )  # fmt: skip

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from sim.core.geometry.convex import ConvexPolygon, PolygonTable, polygon_from_above
 from sim.core.interface import MPCAT40_ID
 from sim.gl import mujoco
-from sim.houses.geoms import PLANE_DEPTH_M, geom_polytope, mesh_is_convex, mesh_triangles
+from sim.houses.geoms import PLANE_DEPTH_M, geom_polytope, is_hollow, mesh_triangles
 from sim.houses.labels import Instance, Labels, collidable_geoms, rendered_geoms
 
 if TYPE_CHECKING:
@@ -185,11 +185,6 @@ def _upright_polygon(points_m: NDArray[np.float64]) -> ConvexPolygon:
     polygon = ConvexPolygon.of_corners(middle + corners @ np.stack([ahead, (-ahead[1], ahead[0])]))
     assert polygon is not None
     return polygon
-
-
-def is_hollow(model: mujoco.MjModel, geom: int) -> bool:
-    """Returns whether a geom is a mesh that is not convex."""
-    return model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH and not mesh_is_convex(model, geom)
 
 
 def _boundary_points(

@@ -18,9 +18,9 @@ from sim.core.geometry.convex import ConvexPolygon, PolygonTable, lines_blocked,
 from sim.core.interface import MPCAT40_ID, SuccessRule
 from sim.core.store import kept, key_of
 from sim.gl import mujoco
-from sim.houses.geoms import geom_polytope, geoms_between, mesh_triangles
+from sim.houses.geoms import geom_polytope, geoms_between, is_hollow, mesh_triangles
 from sim.houses.labels import Instance, Labels, rendered_geoms
-from sim.task.footprints import Floor, Footprint, Footprints, house_floors, is_hollow
+from sim.task.footprints import Floor, Footprint, Footprints, house_floors
 from sim.world.freespace import FreeSpace
 
 SIGHT_BLOCKERS = ("wall", "door", "window")

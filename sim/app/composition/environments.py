@@ -45,6 +45,8 @@ def env_options(setup: Setup) -> dict[str, Any]:
         "noise": config.noise,
         "robot": config.robot,
         "camera": config.camera,
+        "cameras": config.cameras,
+        "look": setup.spec.looks,
         "scan": config.scan,
         "task": config.task,
     }

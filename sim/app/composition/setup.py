@@ -27,13 +27,15 @@ from sim.app.viewers import selection
 from sim.core.configuration import parse_assignments, read_settings, with_absolute_paths, with_fields
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
-from sim.core.interface import GOAL_CATEGORIES, TRUE_IMAGES, AgentSpec, CameraModel, SegmenterSpec
+from sim.core.interface import GOAL_CATEGORIES, TRUE_IMAGES, AgentSpec, CameraModel, SegmenterSpec, reads_truth
 from sim.core.invocation import command
 from sim.core.reading import printable
 from sim.episodes.splits import Split, is_in_words
+from sim.renderer.mounted import CameraConfig
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
-from sim.robot.foreign import load_robot
+from sim.robot.foreign import load_robot, robot_cameras
+from sim.sensors.cameras import camera_sensors, cameras_by_name
 from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.scan import ScanConfig
 from sim.sensors.sensor import Sensor
@@ -81,6 +83,8 @@ class RunConfig:
     camera: Annotated[CameraModel, WORLD]
     sensors: tuple[str, ...]
     """Sensors in the agent's observation, by name: those that agent and segmentation declare."""
+    cameras: Annotated[Mapping[str, CameraConfig], WORLD]
+    """Further cameras by name, `cameras.left.yaw_deg=60`; their images are `left_rgb`, `left_depth`, ..."""
     scan: Annotated[ScanConfig, WORLD]
     """The lidar of the sensor `scan`."""
     profile: Annotated[RenderProfile, WORLD]
@@ -146,7 +150,7 @@ class Setup:
         if not isinstance(self.agent.config, BridgeConfig):
             return self.agent
         sensors = self.config.sensors
-        return replace(self.agent, sensors=sensors, uses_ground_truth="semantic" in sensors)
+        return replace(self.agent, sensors=sensors, uses_ground_truth=any(map(reads_truth, sensors)))
 
     @property
     def sensors(self) -> tuple[str | Sensor, ...]:
@@ -221,7 +225,9 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
     settings |= parse_assignments(options.config)
     config = with_fields(_presets(options, spec, segmentation), settings)
     verification, verifier = _verified(segmentation.spec, config.verification)
-    config = replace(config, verification=verification)
+    keys = (sensor.name for sensor in camera_sensors(config.cameras))
+    sensors = tuple(dict.fromkeys((*config.sensors, *keys)))
+    config = replace(config, verification=verification, sensors=sensors)
     setup = Setup(
         options=options,
         agent=spec,
@@ -306,6 +312,7 @@ def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKin
         robot=replace(robot, motion=options.motion),
         camera=camera,
         sensors=_sensor_names(spec, segmentation, in_words=_asks_in_words(options)),
+        cameras={} if options.robot is None else cameras_by_name(robot_cameras(options.robot)),
         scan=ScanConfig(),
         profile=get_profile(options.profile),
         noise=get_noise(options.noise),
@@ -366,9 +373,10 @@ def _check_sensors(setup: Setup) -> None:
             f"--semantics '{options.semantics}': the sensor 'semantic' is ground truth; declare truth=('semantic',), "
             "and read it in the environment that the factory gets as `truth`."
         )
-    if "semantic" in sensors and not spec.uses_ground_truth:
+    true = [name for name in sensors if reads_truth(name)]
+    if true and not spec.uses_ground_truth:
         raise ConfigError(
-            f"sensors: 'semantic' is ground truth, and agent '{options.agent}' does not declare uses_ground_truth."
+            f"sensors: '{true[0]}' is ground truth, and agent '{options.agent}' does not declare uses_ground_truth."
         )
 
 
