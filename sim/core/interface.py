@@ -214,7 +214,7 @@ SEMANTIC_MAP = "semantic_map"
 """The map of categories around the robot (`sim.sensors.semantic_map`), ground truth."""
 SCAN = "scan"
 """The lidar (`sim.sensors.scan`)."""
-ROBOT_SENSORS: tuple[str, ...] = (SCAN, "bumper", "odometry", "imu")
+ROBOT_SENSORS: tuple[str, ...] = (SCAN, "bumper", "odometry", "imu", "tilt")
 """The lidar and the sensors of the robot itself (`sim.sensors.measured`), in the observation only when requested."""
 POSE_SENSORS: tuple[str, ...] = ("gps", "compass", "objectgoal")
 """Always present."""

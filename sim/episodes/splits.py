@@ -187,14 +187,14 @@ def split_of_files(
 
     Args:
         paths: the files; each name is that of one house.
-        labels: label rules of all houses.
+        labels: label rules of all houses; None: those of `labels.json` beside the houses, as imports write it.
         root: another folder whose files they may use, in addition to their own folders.
 
     Raises:
         ConfigError: two files have one name.
         HouseError: there is no such file.
     """
-    labels_path = None if labels is None else Path(labels)
+    labels_path = _common_labels(list(map(Path, paths))) if labels is None else Path(labels)
     allowed = None if root is None else Path(root)
     files, sums = dict[str, Path](), dict[str, str]()
     for path in map(Path, paths):
@@ -212,6 +212,12 @@ def split_of_files(
     ((name, path),) = files.items()
     digest = house_sum(path, with_also=rules, root=allowed) if rules else sums[name]
     return Split(name, "one-house", digest, files, (), labels_path, allowed, house_sums=sums)
+
+
+def _common_labels(houses: list[Path]) -> Path | None:
+    """Returns the label rules beside some houses; None if there are none, or if they lie in different folders."""
+    found = {labels_of(house.parent) for house in houses}
+    return found.pop() if len(found) == 1 else None
 
 
 def house_sum(path: Path, *, with_also: bytes = b"", root: Path | None = None) -> str:

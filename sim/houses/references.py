@@ -107,7 +107,7 @@ class Allowed:
     def _remedy(self, target: Path) -> str:
         """Returns a sentence on how the user can allow the file if it is near the house file, else the rule."""
         if not issubclass(self.error, HouseError):
-            return "Copy all files of a robot into one folder."
+            return "Copy all files of a robot into one folder, or allow the folder of both with --root."
         common = Path(os.path.commonpath((target, self.file)))
         levels = len(self.file.parent.relative_to(common).parts)
         if levels <= MAX_LEVELS_UP and len(common.parts) > 1:

@@ -158,7 +158,7 @@ STANDARD_SENSORS: Mapping[str, Sensor] = MappingProxyType(
         sensor.name: sensor
         for sensor in (
             RgbSensor(), DepthSensor(), SemanticSensor(), GpsSensor(), CompassSensor(), ObjectGoalSensor(),
-            ScanSensor(), BumperSensor(), OdometrySensor(), ImuSensor(), SemanticMapSensor(), TiltSensor(),
+            ScanSensor(), BumperSensor(), OdometrySensor(), ImuSensor(), TiltSensor(), SemanticMapSensor(),
         )
     }
 )  # fmt: skip

@@ -47,7 +47,7 @@ def world_key(house: House, config: RobotConfig) -> str | None:
     digest = hashlib.sha256()
     if config.file is not None:
         digest.update(read_bytes(config.file.path, what="Robot", error=HouseError))
-        add_files(digest, config.file.path)
+        add_files(digest, config.file.path, config.file.root)
     return key_of("world", house.checksum, config, digest.hexdigest())
 
 

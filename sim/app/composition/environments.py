@@ -38,7 +38,7 @@ def env_options(setup: Setup) -> dict[str, Any]:
         "split": options.split,
         "house": options.house,
         "labels": options.labels,
-        "root": options.root,
+        "root": options.root if options.house is not None else None,
         "goal": options.goal if options.house is not None else None,
         "start": setup.start,
         "profile": config.profile,

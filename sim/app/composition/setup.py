@@ -31,6 +31,7 @@ from sim.core.interface import GOAL_CATEGORIES, TRUE_IMAGES, AgentSpec, CameraMo
 from sim.core.invocation import command
 from sim.core.reading import printable
 from sim.episodes.splits import Split, is_in_words
+from sim.houses.references import require_root
 from sim.renderer.mounted import CameraConfig
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
@@ -262,8 +263,11 @@ def _received(content: bytes) -> Setup:
 
 def _check(options: RunOptions) -> None:
     """Raises ConfigError if options contradict each other or are out of range."""
-    if options.house is None and any(value is not None for value in (options.labels, options.root, options.start_deg)):
-        raise ConfigError("--labels, --root and --start-deg need --house.")
+    if options.house is None and any(value is not None for value in (options.labels, options.start_deg)):
+        raise ConfigError("--labels and --start-deg need --house.")
+    if options.root is not None and options.house is None and options.robot is None:
+        raise ConfigError("--root needs --house or --robot: a file that may use this folder, too.")
+    require_root(options.root)
     if options.only and options.house is not None:
         raise ConfigError("--only names episodes of a split; with --house, episodes are sampled.")
     if options.retry_errors and options.out is None:
@@ -304,7 +308,9 @@ def _start_pose(start_deg: str | None) -> Pose | None:
 
 def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind) -> RunConfig:
     """Returns the configuration tree before the user's settings."""
-    robot, camera = (RobotConfig(), CameraModel()) if options.robot is None else load_robot(options.robot)
+    robot, camera = (
+        (RobotConfig(), CameraModel()) if options.robot is None else load_robot(options.robot, root=options.root)
+    )
     return RunConfig(
         agent=_agent_config(options, spec),
         detector=detector_config(segmentation, options.weights),

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from sim.app.evaluation.intervals import estimate, replicate_spread
+from sim.app.evaluation.intervals import MIN_EPISODES, estimate, replicate_spread
 from sim.episodes.replicates import episode_of, replicate_number
 from sim.task.result import METRICS, EpisodeResult
 
@@ -39,6 +39,13 @@ def summarise(results: Sequence[EpisodeResult]) -> dict[str, Any]:
     summary |= _replicates(results, episodes)
     causes = Counter(result.failure for result in results if result.failure is not None)
     return summary | {"failures": dict(causes.most_common())}
+
+
+def few_episodes(count: int) -> str:
+    """Returns the warning of a summary of too few episodes; "" for enough."""
+    if not 0 < count < MIN_EPISODES:
+        return ""
+    return f"Warning: {count} episode{'s' * (count > 1)}; with fewer than {MIN_EPISODES}, intervals are rough."
 
 
 def _replicates(results: Sequence[EpisodeResult], episodes: Sequence[str]) -> dict[str, Any]:

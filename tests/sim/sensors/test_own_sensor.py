@@ -14,7 +14,16 @@ from gymnasium.utils.env_checker import check_env
 from numpy.typing import NDArray
 
 from sim.core.geometry.pose import Pose
-from sim.core.interface import POSE_SENSORS, ROBOT_SENSORS, SENSORS, Action, CameraModel, ConfigError, reads_truth
+from sim.core.interface import (
+    POSE_SENSORS,
+    ROBOT_SENSORS,
+    SEMANTIC_MAP,
+    SENSORS,
+    Action,
+    CameraModel,
+    ConfigError,
+    reads_truth,
+)
 from sim.env.objectnav import ObjectNavEnv
 from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.sensor import NoiseSettings, SensorContext
@@ -129,7 +138,7 @@ def observations(house: Path, actions: list[Action], **options) -> list[dict[str
 
 
 def test_the_standard_sensors_are_those_of_the_interface() -> None:
-    assert tuple(STANDARD_SENSORS) == (*SENSORS, *POSE_SENSORS, *ROBOT_SENSORS)
+    assert tuple(STANDARD_SENSORS) == (*SENSORS, *POSE_SENSORS, *ROBOT_SENSORS, SEMANTIC_MAP)
 
 
 @pytest.mark.filterwarnings("error")
