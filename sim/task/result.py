@@ -21,6 +21,7 @@ from msgspec import UNSET, Meta, UnsetType
 from msgspec.structs import replace as replace_fields
 
 from sim.core.goals import GoalKind
+from sim.core.interface import MAX_STEPS
 from sim.core.reading import Count, Metres, Name, Number, Seed
 from sim.robot.config import MotionKind
 
@@ -109,7 +110,7 @@ class GoalMetrics(StopTarget, frozen=True, kw_only=True):
     ]
     first_seen_step: Count | None
     """None: no frame showed the goal."""
-    steps_to_first_sight: Annotated[Count | None, Metric("steps to first sight", digits=0)]
+    steps_to_first_sight: Annotated[Count | None, Metric("steps to first sight", digits=0, most=float(MAX_STEPS))]
     """The step limit where no frame showed the goal: the mean is the restricted mean time to first sight."""
     area_seen_m2: Annotated[Number | None, Metric("area seen", "m2")]
     area_per_metre: Annotated[Number | None, Metric("area per metre", "m2/m", digits=2)]

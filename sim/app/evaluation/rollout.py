@@ -18,7 +18,16 @@ from sim.app.evaluation.watch import count_steps, is_stop, marked
 from sim.app.viewers.viewer import Moment, Viewer
 from sim.core.errors import AgentError, PhysicsError, debug
 from sim.core.geometry.pose import Pose
-from sim.core.interface import Action, Agent, KeepsMemory, Observation, StatesConfidence, StatesTarget
+from sim.core.interface import (
+    MOVES,
+    Action,
+    Agent,
+    KeepsMemory,
+    Observation,
+    StatesConfidence,
+    StatesTarget,
+    as_action,
+)
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.task.result import EpisodeMetrics, RolloutResult, failed_metrics
@@ -108,7 +117,7 @@ class _RunningEpisode:
 
     def _decide(self) -> Action:
         where = f"Agent '{self.name}', step {self.steps + 1}"
-        action = next_action(self.agent, self.observation, where)
+        action = next_action(self.agent, self.observation, where, self.env.actions)
         if action is Action.STOP:
             self.confidence = confidence_of(self.agent, where)
             record_target(self.env, self.observation, target_of(self.agent, where))
@@ -191,18 +200,19 @@ def give_next_goal(agent: Agent, goal: str, seed: int, where: str) -> None:
         ask(where, lambda: agent.reset(goal, seed))
 
 
-def next_action(agent: Agent, observation: Observation, where: str) -> Action:
+def next_action(agent: Agent, observation: Observation, where: str, actions: Sequence[Action] = MOVES) -> Action:
     """Returns the agent's next action.
 
     Raises:
         AgentError: `act` failed, or returned something else; the message begins with `where`.
     """
     chosen = ask(where, lambda: agent.act(observation))
-    try:
-        return Action(chosen)
-    except (ValueError, TypeError):
-        actions = ", ".join(f"{action.value} {action.name}" for action in Action)
-        raise AgentError(f"{where}: act() returned {reprlib.repr(chosen)}; an action is one of {actions}.") from None
+    action = as_action(chosen)
+    if action is not None and action in actions:
+        return action
+    hint = "" if action is None else " `AgentSpec(looks=True)` allows to tilt the camera."
+    names = ", ".join(f"{action.value} {action.name}" for action in actions)
+    raise AgentError(f"{where}: act() returned {reprlib.repr(chosen)}; an action is one of {names}.{hint}")
 
 
 def confidence_of(agent: Agent, where: str) -> float | None:
