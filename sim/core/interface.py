@@ -28,8 +28,8 @@ __all__ = [
     "CLIMB_M", "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS",
     "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation",
     "Perceived", "RobotModel", "Scores", "SeesObjects", "SegmentationSpec", "Segmenter", "SegmenterFactory",
-    "SegmenterSpec", "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule", "category_id",
-    "wrap_angle",
+    "SegmenterSpec", "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule", "TakesWords",
+    "category_id", "wrap_angle",
 ]  # fmt: skip
 
 
@@ -317,6 +317,20 @@ class SeesObjects(Protocol):
         """Returns the number of the object at each pixel (h, w), -1: none, and the name of each object.
 
         None: it does not tell them apart after all.
+        """
+        ...
+
+
+@runtime_checkable
+class TakesWords(Protocol):
+    """A segmenter with an open vocabulary: it looks for what it is asked for."""
+
+    def ask(self, word: str, names: frozenset[str]) -> None:
+        """Called at the start of an episode, before its first frame.
+
+        Args:
+            word: the word for the goal, such as "rocking chair"; "": the goal is a category.
+            names: the everyday names that it means; with `objects`, detections are given such a name.
         """
         ...
 

@@ -21,6 +21,7 @@ from sim.core.interface import (
     SeesObjects,
     Segmenter,
     SegmenterSpec,
+    TakesWords,
 )
 from sim.core.wishes import Wish, parse_wish
 
@@ -55,6 +56,9 @@ class WishedSegmenter:
             categories = self.wish.categories
             self.category = next((name for name in categories if name in GOAL_CATEGORIES), categories[0])
             self._channels = np.array([MPCAT40_ID[name] - 1 for name in categories])
+        if isinstance(self._segmenter, TakesWords):
+            wish = self.wish
+            self._segmenter.ask(*(("", frozenset()) if wish is None else (wish.noun, wish.names)))
         self._last: tuple[Observation, Float32[np.ndarray, "classes h w"]] | None = None
 
     @property

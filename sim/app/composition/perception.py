@@ -22,6 +22,7 @@ from sim.core.interface import (
     Segmenter,
     SegmenterSpec,
     StatesSegmentation,
+    TakesWords,
 )
 
 
@@ -61,6 +62,11 @@ class AskedSegmenter:
     def objects(self, observation: Observation) -> tuple[NDArray[np.int32], Sequence[str]] | None:
         """Returns the segmenter's objects; None if it does not tell objects apart."""
         return self._inner.objects(observation) if isinstance(self._inner, SeesObjects) else None
+
+    def ask(self, word: str, names: frozenset[str]) -> None:
+        """Forwards the words of the goal to a segmenter that takes them."""
+        if isinstance(self._inner, TakesWords):
+            self._inner.ask(word, names)
 
     def perceived(self, observation: Observation, goal: str) -> Perceived | None:
         """Returns scores and categories of a frame; None if the agent did not call the segmenter for it."""

@@ -1,4 +1,7 @@
-"""Evaluates a user's segmentation on labelled views: intersection over union, objects found, time per frame."""
+"""Evaluates a user's segmentation or a server of detectors on labelled views, and fits the calibration of a server.
+
+Results are intersection over union, objects found, and time per frame.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +11,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import torch
 from jaxtyping import Float32, Int64
 
 from sim.app.commands.evaluate.network_card import distances_and_sizes
 from sim.app.composition.own_segmentation import OwnSegmenter, built, load_specification
+from sim.app.services.client import is_address
+from sim.app.services.remote import HttpConfig, HttpSegmenter, logits_of
 from sim.core.configuration import parse_assignments, with_fields
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError, Observation
 from sim.training.segmentation.breakdown import Breakdown
 from sim.training.segmentation.dataset import LabelledView, list_shards, read_shard, spread_views, stored_block_px
-from sim.training.segmentation.evaluation import Iou, confusion
+from sim.training.segmentation.evaluation import Iou, Reliability, confusion
+from stubborn.segmentation.calibration import Calibration, fit_calibration
 from stubborn.segmentation.preprocess import shrink
 from stubborn.segmentation.rednet import CLASSES
 
@@ -47,13 +54,17 @@ class OwnMeasured:
     """mIoU over the goal categories of each folder of views."""
     frames_ms: list[float] = field(default_factory=list)
     """Time of each frame, milliseconds."""
+    samples: dict[str, list[tuple[Float32[np.ndarray, "k classes"], Int64[np.ndarray, " k"]]]] = field(
+        default_factory=dict
+    )
+    """Of a server: logarithms of its probabilities, and true class channels, of some pixels, by house."""
 
 
 def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Sequence[str]) -> OwnMeasured:
     """Returns the results of a user's segmentation on the views of some folders.
 
     Args:
-        name: `package.module:NAME`, as in `--semantics` of a run.
+        name: `package.module:NAME` or the address of a server, as in `--semantics` of a run.
         folders: folders with shards of views.
         count: number of views of each folder; 0: all.
         config: `detector.FIELD=VALUE` for its configuration.
@@ -61,7 +72,7 @@ def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Seque
     Raises:
         ConfigError: the segmentation reads sensors that views do not have or cannot be built, or there are no such
             views or fields.
-        AgentError: the user's code failed on a view, or returned another type, shape or range.
+        AgentError: the user's code or the server failed on a view, or returned another type, shape or range.
     """
     measured, segmenter = OwnMeasured(name), None
     shape: tuple[int, ...] = ()
@@ -76,6 +87,8 @@ def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Seque
                 camera = CameraModel(width_px=shape[1], height_px=shape[0])
                 segmenter = segmenter_for(name, camera, parse_assignments(config))
             _add_view(measured, segmenter, view, block_px)
+            if is_address(name):
+                _add_samples(measured, segmenter, view)
         measured.by_folder[folder.name] = Iou.of(measured.matrix - before).goals
     return measured
 
@@ -84,13 +97,17 @@ def segmenter_for(name: str, camera: CameraModel, settings: Mapping[str, object]
     """Returns a user's segmenter for images without an environment.
 
     Args:
-        name: `package.module:NAME`.
+        name: `package.module:NAME`, or the address of a server.
         camera: of the images.
         settings: values of `detector.FIELD`.
 
     Raises:
         ConfigError: it reads other sensors than rgb and depth, cannot be built, or has no such field.
     """
+    if is_address(name):
+        config = with_fields(_Settings(HttpConfig(url=name)), settings).detector
+        assert isinstance(config, HttpConfig)
+        return OwnSegmenter(name, HttpSegmenter(camera, config), HttpSegmenter.spec, camera)
     own = load_specification(name)
     sensors = [sensor if isinstance(sensor, str) else sensor.name for sensor in own.spec.sensors]
     missing = [*own.spec.truth, *(sensor for sensor in sensors if sensor not in ("rgb", "depth"))]
@@ -109,6 +126,40 @@ def _add_view(measured: OwnMeasured, segmenter: OwnSegmenter, view: LabelledView
     predicted, truth, depth_m = (shrink(image, coarser) for image in (whole, view.semantic, view.depth_m))
     measured.matrix += confusion(predicted.astype(np.int64), truth.astype(np.int64) - 1)
     measured.breakdown.add(predicted.astype(np.int64), truth, depth_m, block_px * coarser)
+
+
+def _add_samples(measured: OwnMeasured, segmenter: OwnSegmenter, view: LabelledView) -> None:
+    posteriors = segmenter.posteriors({"rgb": view.rgb, "depth": view.depth_m})
+    truth = shrink(view.semantic, view.semantic.shape[0] // posteriors.shape[1]).astype(np.int64) - 1
+    some, kept = logits_of(posteriors)[:, 2::8, 2::8].reshape(CLASSES, -1).T, truth[2::8, 2::8].reshape(-1)
+    measured.samples.setdefault(view.record["house"], []).append((some[kept >= 0], kept[kept >= 0]))
+
+
+def fitted_calibration(measured: OwnMeasured) -> tuple[Calibration, Reliability, Reliability]:
+    """Returns the calibration of a server by every second house, and its reliability on the others before and after.
+
+    Raises:
+        ConfigError: the views are of fewer than two houses.
+    """
+    houses = sorted(measured.samples)
+    if len(houses) < 2:
+        raise ConfigError("--views are of one house only; calibration needs houses to fit and others to evaluate.")
+    logits, truth = _joined(measured, houses[::2])
+    calibration = fit_calibration(torch.from_numpy(logits), torch.from_numpy(truth))
+    logits, truth = _joined(measured, houses[1::2])
+    before, after = Reliability.empty(), Reliability.empty()
+    before.add(np.exp(logits).T, truth)
+    scores = torch.from_numpy(logits) * calibration.scale + calibration.offset
+    after.add(scores.softmax(dim=1).T.numpy(), truth)
+    return calibration, before, after
+
+
+def _joined(
+    measured: OwnMeasured, houses: Sequence[str]
+) -> tuple[Float32[np.ndarray, "k classes"], Int64[np.ndarray, " k"]]:
+    """Returns the samples of some houses."""
+    parts = [sample for house in houses for sample in measured.samples[house]]
+    return np.concatenate([logits for logits, _ in parts]), np.concatenate([truth for _, truth in parts])
 
 
 def _channels(segmenter: OwnSegmenter, observation: Observation) -> Int64[np.ndarray, "h w"]:
