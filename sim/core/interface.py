@@ -28,8 +28,8 @@ __all__ = [
     "CLIMB_M", "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS",
     "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation",
     "Perceived", "RobotModel", "Scores", "SeesObjects", "SegmentationSpec", "Segmenter", "SegmenterFactory",
-    "SegmenterSpec", "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule", "TakesWords",
-    "category_id", "wrap_angle",
+    "SegmenterSpec", "StatesConfidence", "StatesModelUse", "StatesSegmentation", "StatesTarget", "SuccessRule",
+    "TakesWords", "category_id", "wrap_angle",
 ]  # fmt: skip
 
 
@@ -434,6 +434,15 @@ class StatesTarget(Protocol):
 
         x forward and y left of the start pose, as in `gps`. Called after `act` has returned STOP.
         """
+        ...
+
+
+@runtime_checkable
+class StatesModelUse(Protocol):
+    """An agent that asks a model over HTTP, and states what an episode took of it; the result line has it."""
+
+    def model_use(self) -> Mapping[str, object]:
+        """Returns the fields of `sim.task.result.ModelUse`. Called at the end of an episode."""
         ...
 
 

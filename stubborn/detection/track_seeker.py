@@ -114,6 +114,8 @@ class TrackSeeker:
         """See `Seeker`: the probability of the track."""
         self.accepted_cell: tuple[int, int] | None = None
         """See `Seeker`."""
+        self._judged = 0  # the track that `judge` accepted last
+        self._refused: set[int] = set()  # tracks that another judge took for something else
         self._drawn_rejected: set[int] = set()  # rejected tracks that the map shows
         self._accepted: list[int] = []  # accepted tracks that are not set aside
         self._targets: list[int] = []  # those that are approached
@@ -150,6 +152,9 @@ class TrackSeeker:
         self.tracks.add(posteriors, depth, pose, self.goal, None if objects is None else objects[0])
         least_voxels = 1 if self.verdicts.exact else self.config.tracks.least_voxels
         self.probability = self.tracks.probabilities(self.goal, least_voxels, self.context, self.config.context_share)
+        if self._refused:
+            self._refused = set(self.tracks.now()[list(self._refused)].tolist())
+            self.probability[list(self._refused)] = 0.0
         self.step, self._pose = step, pose
         if self.attributes is not None:
             self._test_wish(self.attributes, posteriors, observation, objects, pose)
@@ -249,7 +254,7 @@ class TrackSeeker:
                 self.verdicts.give_up(track)
                 self._accepted.remove(track)
                 return False
-            self.confidence = float(self.probability[track])
+            self.confidence, self._judged = float(self.probability[track]), track
             self.accepted_cell = self._best_cell(navmap, track)
             return True
         if self.pursued is not None:
@@ -257,6 +262,17 @@ class TrackSeeker:
             self._note_hidden(self.pursued)
             self.pursued = None
         return False
+
+    def refuse(self, navmap: NavMap) -> None:
+        """See `Seeker`: the track, and those that may be parts of it, count no longer in this episode."""
+        if self.accepted_cell is None:
+            return
+        for track in self._with_parts([self._judged]):
+            self._refused.add(track)
+            self.probability[track] = 0.0
+            self.verdicts.give_up(track)
+        self._accepted = [track for track in self._accepted if track not in self._refused]
+        self.confidence = self.accepted_cell = None
 
     def one_more_forward(self, navmap: NavMap, approach: Approach, pose: Pose) -> bool:
         """See `Seeker`: True at most once, if the candidate is not near enough and the path is free."""

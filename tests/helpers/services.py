@@ -13,7 +13,7 @@ Handler = Callable[[http.server.BaseHTTPRequestHandler, bytes], None]
 class Server:
     """A server whose answer each test states."""
 
-    def __init__(self, answer: Handler) -> None:
+    def __init__(self, answer: Handler, port: int = 0) -> None:
         self.requests: list[tuple[str, bytes]] = []
         owner = self
 
@@ -26,7 +26,7 @@ class Server:
             def log_message(self, format: str, *args: object) -> None:
                 pass
 
-        self._server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), OneHandler)
+        self._server = http.server.ThreadingHTTPServer(("127.0.0.1", port), OneHandler)
         self._server.daemon_threads = True
         threading.Thread(target=self._server.serve_forever, daemon=True).start()
         self.url = f"http://127.0.0.1:{self._server.server_port}"

@@ -94,7 +94,7 @@ class OwnSegmenter:
 
     def __init__(self, name: str, segmenter: Any, spec: SegmenterSpec, camera: CameraModel) -> None:
         self.spec = spec
-        self._name, self._inner = name, segmenter
+        self._name, self.inner = name, segmenter
         self._methods = {name for name in _METHODS if callable(getattr(segmenter, name, None))}
         self._shape = camera.height_px, camera.width_px
         names = [sensor if isinstance(sensor, str) else sensor.name for sensor in spec.sensors]
@@ -146,7 +146,7 @@ class OwnSegmenter:
     def _scores(self, observation: Observation, seen: Observation, goal: str) -> Scores:
         if "scores" not in self._methods:
             return scores_of(self.posteriors(observation), goal)
-        scores = self._ask("scores", lambda: tuple(np.asarray(score) for score in self._inner.scores(seen, goal)))
+        scores = self._ask("scores", lambda: tuple(np.asarray(score) for score in self.inner.scores(seen, goal)))
         if len(scores) != 2 or scores[0].shape != scores[1].shape:
             shapes = ", ".join(str(score.shape) for score in scores)
             self._refuse("scores", f"arrays of shapes {shapes}; it returns Scores(target, best_other), both (h, w)")
@@ -158,7 +158,7 @@ class OwnSegmenter:
             raise AgentError(
                 f"Segmentation '{self._name}' has no method posteriors, which this agent reads in addition to scores."
             )
-        posteriors = self._ask("posteriors", lambda: np.asarray(self._inner.posteriors(seen)))
+        posteriors = self._ask("posteriors", lambda: np.asarray(self.inner.posteriors(seen)))
         return self._checked("posteriors", posteriors, (len(MPCAT40) - 1,))
 
     def _categories(self, observation: Observation, seen: Observation) -> NDArray[np.uint8] | None:
@@ -168,7 +168,7 @@ class OwnSegmenter:
             posteriors = self.posteriors(observation)
             named = (posteriors.argmax(axis=0) + 1).astype(np.uint8)
             return np.where(posteriors.max(axis=0) > 0.0, named, np.uint8(0))
-        categories = self._ask("categories", lambda: np.asarray(self._inner.categories(seen)))
+        categories = self._ask("categories", lambda: np.asarray(self.inner.categories(seen)))
         self._require_shape("categories", categories, ())
         if categories.dtype.kind not in "iu" or not 0 <= categories.min() <= categories.max() < len(MPCAT40):
             self._refuse("categories", f"an array of {categories.dtype}; it holds mpcat40 ids, integers from 0 to 40")

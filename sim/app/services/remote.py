@@ -50,6 +50,7 @@ T = TypeVar("T")
 STRIDE_PX = 4
 """Edge of the image block of one posterior in the forms `vlfm` and `coco`."""
 _MIDDLE = slice(STRIDE_PX // 2, None, STRIDE_PX)
+_IS_STUFF = np.array([name in ("wall", "floor", "ceiling") for name in MPCAT40[1:]])
 VLFM_PORTS = {"gdino": 0, "mobile_sam": 2}
 """Ports of VLFM's servers after that of the first."""
 
@@ -96,9 +97,9 @@ class LogitFactors(msgspec.Struct, frozen=True):
         return factors
 
     def applied(self, posteriors: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Returns the calibrated probabilities, (40, h, w)."""
-        scale, offset = (np.array(values, np.float32)[:, None, None] for values in (self.scale, self.offset))
-        logits = logits_of(posteriors) * scale + offset
+        """Returns the calibrated probabilities of (40, ...)."""
+        scale, offset = (np.array(values, np.float32) for values in (self.scale, self.offset))
+        logits = (logits_of(posteriors).T * scale + offset).T
         odds = np.exp(logits - logits.max(axis=0))
         return odds / odds.sum(axis=0)
 
@@ -114,7 +115,8 @@ class _Seen(NamedTuple):
     posteriors: NDArray[np.float32]
     """(40, h, w)."""
     objects: tuple[NDArray[np.int32], Sequence[str]] | None = None
-    """The detection of each pixel, -1: none, and the name of each; None: the form has no names."""
+    """The detection of each pixel, -1: none, and the name of each; None: the form has no detections."""
+    segments: Sequence[Segment] = ()
 
 
 class HttpSegmenter:
@@ -182,7 +184,7 @@ class HttpSegmenter:
     def _seen(self, observation: Observation) -> _Seen:
         if self._last is None or self._last[0] is not observation["rgb"]:
             seen = self._look(observation["rgb"], observation["depth"])
-            if self._calibration is not None:
+            if self._calibration is not None and seen.objects is None:
                 seen = seen._replace(posteriors=self._calibration.applied(seen.posteriors))
             self._last = observation["rgb"], seen
         return self._last[1]
@@ -217,11 +219,38 @@ class HttpSegmenter:
     def _painted(self, segments: Sequence[Segment], shape: tuple[int, int]) -> _Seen:
         """Returns the detections with a high enough score as posteriors and objects."""
         shown = sorted((one for one in segments if one.score >= self._config.box_threshold), key=lambda one: one.score)
-        posteriors = painted(shown, shape)
+        posteriors = painted(shown, shape, self._calibration)
         numbers = np.full(posteriors.shape[1:], -1, np.int32)
         for number, segment in enumerate(shown):
             numbers[segment.mask[_MIDDLE, _MIDDLE]] = number
-        return _Seen(posteriors, (numbers, [self._name(segment.phrase) for segment in shown]))
+        return _Seen(posteriors, (numbers, [self._name(segment.phrase) for segment in shown]), shown)
+
+    def samples(
+        self, observation: Observation, channels: NDArray[np.int64]
+    ) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+        """Returns what a calibration is fitted to: logarithms of probabilities (k, 40), and true channels (k,).
+
+        A sample is a detection, whose truth is the object category in the middle half of its box that covers a quarter
+        of it, or else what covers most. In the form `posteriors` a sample is a pixel.
+
+        Args:
+            observation: of a view.
+            channels: true channel of each pixel, (h, w); -1: void.
+
+        Raises:
+            AgentError: the server gave no valid reply.
+        """
+        seen = self._seen(observation)
+        if seen.objects is None:
+            block = channels.shape[0] // seen.posteriors.shape[1]
+            logits = logits_of(seen.posteriors)[:, 2::8, 2::8].reshape(len(seen.posteriors), -1).T
+            truth = channels[block // 2 :: block, block // 2 :: block][2::8, 2::8].reshape(-1)
+        else:
+            logits = np.array([logits_of(vector_of(segment)) for segment in seen.segments]).reshape(
+                -1, len(MPCAT40) - 1
+            )
+            truth = np.array([_shown_in(segment, channels) for segment in seen.segments], np.int64)
+        return logits[truth >= 0], truth[truth >= 0]
 
     def _name(self, phrase: str) -> str:
         """Returns a name that the goal means if the goal means all that a phrase does; else the phrase."""
@@ -298,23 +327,50 @@ def read_posteriors(data: bytes, *, shape: tuple[int, int]) -> NDArray[np.float3
     return posteriors
 
 
-def painted(segments: Sequence[Segment], shape: tuple[int, int]) -> NDArray[np.float32]:
+def painted(
+    segments: Sequence[Segment], shape: tuple[int, int], calibration: LogitFactors | None = None
+) -> NDArray[np.float32]:
     """Returns the posteriors of detections, float32 (40, h / 4, w / 4).
 
-    A pixel has the score of the most probable detection that covers it, and the other categories share the rest. Where
-    there is no detection, all categories are equally probable.
+    A pixel has the probabilities of the last detection that covers it. Where there is no detection, all categories are
+    equally probable.
 
     Args:
-        segments: what a detector reports.
+        segments: what a detector reports, the most probable last.
         shape: rows and columns of the picture.
+        calibration: of the probabilities of the detections.
     """
     count = len(MPCAT40) - 1
     posteriors = np.full((count, *np.empty(shape, np.bool_)[_MIDDLE, _MIDDLE].shape), 1.0 / count, np.float32)
-    for segment in sorted(segments, key=lambda segment: segment.score):  # the most probable is painted last
-        mask = segment.mask[_MIDDLE, _MIDDLE]
-        posteriors[:, mask] = (1.0 - segment.score) / (count - 1)
-        posteriors[MPCAT40_ID[segment.category] - 1, mask] = segment.score
+    for segment in segments:
+        vector = vector_of(segment) if calibration is None else calibration.applied(vector_of(segment))
+        posteriors[:, segment.mask[_MIDDLE, _MIDDLE]] = vector[:, None]
     return posteriors
+
+
+def vector_of(segment: Segment) -> NDArray[np.float32]:
+    """Returns the probabilities (40,) of a detection: its score, and equal shares of the rest for other categories."""
+    count = len(MPCAT40) - 1
+    vector = np.full(count, (1.0 - segment.score) / (count - 1), np.float32)
+    vector[MPCAT40_ID[segment.category] - 1] = segment.score
+    return vector
+
+
+def _shown_in(segment: Segment, channels: NDArray[np.int64]) -> int:
+    """Returns the channel of what a detection shows, see `HttpSegmenter.samples`; -1: nothing that is labelled."""
+    if not segment.mask.any():
+        return -1
+    left, top, right, bottom = segment.box
+    edges = ((low + (high - low) * share) for low, high in ((top, bottom), (left, right)) for share in (0.25, 0.75))
+    row, last_row, column, last_column = (
+        int(edge * size) for edge, size in zip(edges, np.repeat(channels.shape, 2).tolist(), strict=True)
+    )
+    middle = channels[row : max(last_row, row + 1), column : max(last_column, column + 1)]
+    counts = np.bincount(middle[middle >= 0], minlength=len(MPCAT40) - 1)
+    objects = np.where(_IS_STUFF, 0, counts)
+    if objects.max() >= 0.25 * middle.size:
+        return int(objects.argmax())
+    return int(counts.argmax()) if counts.any() else -1
 
 
 def read_annotations(data: bytes, *, shape: tuple[int, int]) -> list[Segment]:

@@ -13,16 +13,17 @@ from pathlib import Path
 import numpy as np
 import torch
 from jaxtyping import Float32, Int64
+from torch import Tensor
 
 from sim.app.commands.evaluate.network_card import distances_and_sizes
 from sim.app.composition.own_segmentation import OwnSegmenter, built, load_specification
 from sim.app.services.client import is_address
-from sim.app.services.remote import HttpConfig, HttpSegmenter, logits_of
+from sim.app.services.remote import HttpConfig, HttpSegmenter
 from sim.core.configuration import parse_assignments, with_fields
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError, Observation
 from sim.training.segmentation.breakdown import Breakdown
 from sim.training.segmentation.dataset import LabelledView, list_shards, read_shard, spread_views, stored_block_px
-from sim.training.segmentation.evaluation import Iou, Reliability, confusion
+from sim.training.segmentation.evaluation import Iou, confusion
 from stubborn.segmentation.calibration import Calibration, fit_calibration
 from stubborn.segmentation.preprocess import shrink
 from stubborn.segmentation.rednet import CLASSES
@@ -57,7 +58,7 @@ class OwnMeasured:
     samples: dict[str, list[tuple[Float32[np.ndarray, "k classes"], Int64[np.ndarray, " k"]]]] = field(
         default_factory=dict
     )
-    """Of a server: logarithms of its probabilities, and true class channels, of some pixels, by house."""
+    """Of a server: what a calibration is fitted to, by house; see `HttpSegmenter.samples`."""
 
 
 def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Sequence[str]) -> OwnMeasured:
@@ -87,8 +88,10 @@ def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Seque
                 camera = CameraModel(width_px=shape[1], height_px=shape[0])
                 segmenter = segmenter_for(name, camera, parse_assignments(config))
             _add_view(measured, segmenter, view, block_px)
-            if is_address(name):
-                _add_samples(measured, segmenter, view)
+            if isinstance(segmenter.inner, HttpSegmenter):
+                observation, channels = {"rgb": view.rgb, "depth": view.depth_m}, view.semantic.astype(np.int64) - 1
+                sample = segmenter.inner.samples(observation, channels)
+                measured.samples.setdefault(view.record["house"], []).append(sample)
         measured.by_folder[folder.name] = Iou.of(measured.matrix - before).goals
     return measured
 
@@ -128,38 +131,30 @@ def _add_view(measured: OwnMeasured, segmenter: OwnSegmenter, view: LabelledView
     measured.breakdown.add(predicted.astype(np.int64), truth, depth_m, block_px * coarser)
 
 
-def _add_samples(measured: OwnMeasured, segmenter: OwnSegmenter, view: LabelledView) -> None:
-    posteriors = segmenter.posteriors({"rgb": view.rgb, "depth": view.depth_m})
-    truth = shrink(view.semantic, view.semantic.shape[0] // posteriors.shape[1]).astype(np.int64) - 1
-    some, kept = logits_of(posteriors)[:, 2::8, 2::8].reshape(CLASSES, -1).T, truth[2::8, 2::8].reshape(-1)
-    measured.samples.setdefault(view.record["house"], []).append((some[kept >= 0], kept[kept >= 0]))
-
-
-def fitted_calibration(measured: OwnMeasured) -> tuple[Calibration, Reliability, Reliability]:
-    """Returns the calibration of a server by every second house, and its reliability on the others before and after.
+def fitted_calibration(measured: OwnMeasured) -> tuple[Calibration, float, float]:
+    """Returns the calibration of a server by every second house, and the log loss on the others without and with it.
 
     Raises:
-        ConfigError: the views are of fewer than two houses.
+        ConfigError: fewer than two houses have samples.
     """
-    houses = sorted(measured.samples)
+    houses = sorted(house for house, parts in measured.samples.items() if any(len(truth) for _, truth in parts))
     if len(houses) < 2:
-        raise ConfigError("--views are of one house only; calibration needs houses to fit and others to evaluate.")
-    logits, truth = _joined(measured, houses[::2])
-    calibration = fit_calibration(torch.from_numpy(logits), torch.from_numpy(truth))
+        raise ConfigError("A calibration needs views of two houses in which the server reports something.")
+    calibration = fit_calibration(*_joined(measured, houses[::2]))
     logits, truth = _joined(measured, houses[1::2])
-    before, after = Reliability.empty(), Reliability.empty()
-    before.add(np.exp(logits).T, truth)
-    scores = torch.from_numpy(logits) * calibration.scale + calibration.offset
-    after.add(scores.softmax(dim=1).T.numpy(), truth)
+    losses = (
+        torch.nn.functional.cross_entropy(scores, truth)
+        for scores in (logits, logits * calibration.scale + calibration.offset)
+    )
+    before, after = (float(loss) for loss in losses)
     return calibration, before, after
 
 
-def _joined(
-    measured: OwnMeasured, houses: Sequence[str]
-) -> tuple[Float32[np.ndarray, "k classes"], Int64[np.ndarray, " k"]]:
+def _joined(measured: OwnMeasured, houses: Sequence[str]) -> tuple[Tensor, Tensor]:
     """Returns the samples of some houses."""
     parts = [sample for house in houses for sample in measured.samples[house]]
-    return np.concatenate([logits for logits, _ in parts]), np.concatenate([truth for _, truth in parts])
+    logits, truth = (np.concatenate([part[i] for part in parts]) for i in range(2))
+    return torch.from_numpy(logits), torch.from_numpy(truth)
 
 
 def _channels(segmenter: OwnSegmenter, observation: Observation) -> Int64[np.ndarray, "h w"]:

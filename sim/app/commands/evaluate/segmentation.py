@@ -157,7 +157,7 @@ def _evaluate_own(args: Args, semantics: str) -> int:
     if args.calibration is not None:
         calibration, before, after = fitted_calibration(measured)
         write_atomically(args.calibration, json.dumps(calibration.to_metadata()) + "\n")
-        text += f"\n\nCalibration error on every second house: {before.error:.3f}, calibrated {after.error:.3f}."
+        text += f"\n\nLog loss on every second house: {before:.3f}, calibrated {after:.3f}."
     print(text)
     if args.card is not None:
         write_atomically(args.card, text + "\n")

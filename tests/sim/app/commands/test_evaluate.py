@@ -222,7 +222,7 @@ def test_a_server_is_evaluated_and_calibrated_on_other_houses(
     args = Args(views=(tmp_path / "views",), semantics=server.url, calibration=file)
     assert evaluate_rednet.main(args) == 0
     line = capsys.readouterr().out.splitlines()[-1]
-    before, after = (float(number) for number in re.findall(r"0\.\d+", line))
+    before, after = (float(number) for number in re.findall(r"\d+\.\d+", line))
     assert after < 0.5 * before, line
     assert len(json.loads(file.read_text())["scale"]) == 40
     with pytest.raises(ConfigError, match="--calibration fits raw scores"):

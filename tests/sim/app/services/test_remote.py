@@ -315,3 +315,28 @@ def test_a_calibration_changes_the_probabilities_as_the_one_of_a_network_does(st
     file.write_text(json.dumps({"scale": [1.0], "offset": [0.0]}))
     with pytest.raises(ConfigError, match="40 factors and offsets"):
         asking(server.url, calibration=file)
+
+
+def test_the_samples_of_a_calibration_are_detections_with_what_they_show(start: Start) -> None:
+    annotations = [
+        {"category": "chair", "score": 0.8, "bbox": [8, 8, 16, 16]},
+        {"category": "bed", "score": 0.6, "bbox": [40, 0, 20, 20]},
+        {"category": "bed", "score": 0.2, "bbox": [0, 0, 9, 9]},  # below the threshold
+        {"category": "sofa", "score": 0.7, "bbox": [0, 40, 4, 4]},
+    ]
+    channels = np.full((48, 64), MPCAT40_ID["wall"] - 1, np.int64)
+    channels[14:18, 14:19] = MPCAT40_ID["stool"] - 1  # a quarter of the middle half of the first box
+    channels[40:] = -1
+    segmenter = asking(start(as_json(annotations=annotations)).url, form="coco")
+    logits, truth = segmenter.samples(view(), channels)
+    assert truth.tolist() == [MPCAT40_ID["wall"] - 1, MPCAT40_ID["stool"] - 1]  # by score; the third has no truth
+    np.testing.assert_allclose(np.exp(logits).sum(axis=1), 1.0, atol=1e-5)
+    assert np.exp(logits[0, MPCAT40_ID["bed"] - 1]) == pytest.approx(0.6)
+
+
+def test_a_calibration_changes_detections_and_leaves_the_rest_unknown(start: Start, tmp_path: Path) -> None:
+    server = start(as_json(annotations=[{"category": "bed", "score": 0.4, "bbox": [0, 0, 32, 48]}]))
+    (file := tmp_path / "calibration.json").write_text(json.dumps({"scale": [3.0] * 40, "offset": [0.0] * 40}))
+    posteriors = asking(server.url, form="coco", calibration=file).posteriors(view())
+    assert (posteriors[MPCAT40_ID["bed"] - 1, :, :8] > 0.95).all()
+    np.testing.assert_allclose(posteriors[:, :, 8:], 1 / 40)
