@@ -43,7 +43,7 @@ class Args:
     """Port on this machine; 0: a free one."""
 
 
-def annotations(detector: Detector, body: bytes) -> list[Mapping[str, Any]]:
+def found_in(detector: Detector, body: bytes) -> list[Mapping[str, Any]]:
     """Returns the annotations of a request's picture.
 
     Raises:
@@ -71,7 +71,7 @@ def make_server(detector: Detector, port: int) -> http.server.HTTPServer:
             try:
                 if not length.isdecimal() or int(length) > MAX_BYTES:
                     raise ConfigError(f"The request needs a Content-Length of at most {MAX_BYTES} bytes.")
-                status, text = 200, json.dumps(annotations(detector, self.rfile.read(int(length))))
+                status, text = 200, json.dumps(found_in(detector, self.rfile.read(int(length))))
             except ConfigError as error:
                 status, text = 400, str(error)
             data = text.encode()

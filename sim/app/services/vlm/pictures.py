@@ -139,7 +139,7 @@ def directions(places_xy_m: NDArray[np.float64], pose: Pose, views: Sequence[int
     for number, (x_m, y_m) in enumerate(places_xy_m.tolist(), start=1):
         place = Pose(x_m, y_m, 0.0).relative_to(pose)
         degrees = round(math.degrees(math.atan2(place.y_m, place.x_m)))
-        side = "ahead" if abs(degrees) < 10 else f"{abs(degrees)} degrees to the {'left' if degrees > 0 else 'right'}"
+        side = "ahead" if abs(degrees) < 3 else f"{abs(degrees)} degrees to the {'left' if degrees > 0 else 'right'}"
         shown = ""
         if views is not None:
             shown = ", in no view" if views[number - 1] < 0 else f", in view {views[number - 1] + 1}"

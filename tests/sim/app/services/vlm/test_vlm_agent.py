@@ -121,13 +121,13 @@ def test_the_robot_heads_for_the_place_that_the_model_chooses(start: Start) -> N
         if len(server.requests) == before:
             continue
         places = places_of(json.loads(server.requests[-1][1]))
-        distance_m, degrees = max(places)
+        distance_m, degrees = places[int(np.argmax([distance for distance, _ in places]))]
         assert agent.pose is not None
         chosen = Pose(agent.pose.x_m, agent.pose.y_m, agent.pose.yaw_rad + math.radians(degrees)).ahead(distance_m)
         assert agent.route is not None
-        x_m, y_m = agent.route.goal.free.frame.mesh()
+        x_m, y_m = np.broadcast_arrays(*agent.route.goal.free.frame.mesh())
         cells = agent.route.goal.cells
-        assert np.hypot(x_m[cells] - chosen[0], y_m[cells] - chosen[1]).min() < 0.1
+        assert np.hypot(x_m[cells] - chosen[0], y_m[cells] - chosen[1]).min() < 0.3  # the text is rounded
         other_than_nearest += distance_m > min(places)[0] + 0.5
     assert other_than_nearest >= 2
 
