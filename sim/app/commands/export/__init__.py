@@ -1,0 +1,1 @@
+"""The commands `stubborn export ...`."""
