@@ -12,6 +12,7 @@ read is answered with status 400 and a sentence.
 from __future__ import annotations
 
 import base64
+import contextlib
 import http.server
 import json
 import sys
@@ -79,7 +80,8 @@ def make_server(detector: Detector, port: int) -> http.server.HTTPServer:
             self.send_header("Content-Type", "application/json" if status == 200 else "text/plain")
             self.send_header("Content-Length", str(len(data)))
             self.end_headers()
-            self.wfile.write(data)
+            with contextlib.suppress(ConnectionError):  # the client has gone
+                self.wfile.write(data)
 
         def log_message(self, format: str, *args: object) -> None:
             pass

@@ -21,7 +21,7 @@ from typing import TypeVar
 
 from sim.core.errors import AgentError, ConfigError
 from sim.core.files import write_together
-from sim.core.reading import printable
+from sim.core.reading import printable, read_bytes
 
 T = TypeVar("T")
 MAX_BYTES = 1 << 28
@@ -87,8 +87,8 @@ class Client:
         kept = self._kept(url, body)
         if kept is not None and kept.is_file():
             try:
-                return read(kept.read_bytes())
-            except (ConfigError, OSError) as error:
+                return read(read_bytes(kept, what="Cached reply", most=MAX_BYTES))
+            except ConfigError as error:
                 raise AgentError(f"The cached reply '{kept}' cannot be used: {error}") from None
         problem, headers = "", {**self._headers, "Content-Type": kind}
         for attempt in range(self._config.retries + 1):

@@ -283,8 +283,9 @@ def read_view(data: bytes) -> tuple[NDArray[np.uint8], NDArray[np.float32], Came
     Raises:
         ConfigError: it is not one of `view_bytes`.
     """
+    stream = io.BytesIO(data)
     try:
-        with np.load(io.BytesIO(data), allow_pickle=False) as file:
+        with np.load(stream, allow_pickle=False) as file:
             rgb, depth = file["rgb"], file["depth"]
             camera = CameraModel(**json.loads(file["camera"].tobytes()))
     except (ValueError, KeyError, TypeError, OSError, EOFError, zipfile.BadZipFile) as error:
@@ -312,8 +313,9 @@ def read_posteriors(data: bytes, *, shape: tuple[int, int]) -> NDArray[np.float3
     Raises:
         ConfigError: they have another type, no whole fraction of the picture's size, or values outside of [0, 1].
     """
+    stream = io.BytesIO(data)
     try:
-        posteriors = np.load(io.BytesIO(data), allow_pickle=False)
+        posteriors = np.load(stream, allow_pickle=False)
     except (ValueError, OSError, EOFError) as error:
         raise ConfigError(f"its reply cannot be read as an NPY file: {printable(str(error))[:120]}.") from None
     if not isinstance(posteriors, np.ndarray) or posteriors.dtype != np.float32 or posteriors.ndim != 3:

@@ -27,7 +27,7 @@ from sim.env.objectnav import ObjectNavEnv
 Observation = dict[str, NDArray]
 
 
-class LeRobotEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
+class LeRobotEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arrays, which `spaces.Dict` does not type
     """`ObjectNavEnv` with observations and actions as `features` has them.
 
     `pixels`, `agent_pos` and `environment_state` become `observation.image`, `observation.state` and

@@ -1,1 +1,1 @@
-"""The commands `stubborn export ...`."""
+"""Commands that write recorded runs in the formats of other projects."""

@@ -109,8 +109,6 @@ def _require_same(args: Args, ids: list[str]) -> None:
         if before.episodes != ids[: len(before.episodes)]:
             changed.append("the order of its episodes")
         if changed:
-            raise ConfigError(
-                f"--out '{args.out}' is another export; {', '.join(changed)} differs. Give another folder."
-            )
+            raise ConfigError(f"--out '{args.out}' is another export ({', '.join(changed)}). Give another folder.")
     args.out.mkdir(parents=True, exist_ok=True)
     write_atomically(file, msgspec.json.encode(about) + b"\n")
