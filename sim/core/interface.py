@@ -29,7 +29,7 @@ __all__ = [
     "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation",
     "Perceived", "RobotModel", "Scores", "SeesObjects", "SegmentationSpec", "Segmenter", "SegmenterFactory",
     "SegmenterSpec", "StatesConfidence", "StatesModelUse", "StatesSegmentation", "StatesTarget", "SuccessRule",
-    "TakesWords", "category_id", "wrap_angle",
+    "TakesWords", "category_id", "scores_of", "wrap_angle",
 ]  # fmt: skip
 
 
@@ -239,6 +239,19 @@ class Scores(NamedTuple):
     """Probability of the goal category."""
     best_other: NDArray[np.float32]
     """Highest probability of any other category."""
+
+
+def scores_of(posteriors: NDArray[np.float32], goal: str) -> Scores:
+    """Returns the scores of a goal category, (h, w) each, from posteriors (40, h, w).
+
+    Raises:
+        ConfigError: the goal is not a category of mpcat40.
+    """
+    channel = category_id(goal) - 1
+    before, after = posteriors[:channel], posteriors[channel + 1 :]
+    return Scores(
+        posteriors[channel].copy(), np.maximum(before.max(axis=0, initial=0.0), after.max(axis=0, initial=0.0))
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -22,6 +22,7 @@ from sim.core.interface import (
     Segmenter,
     SegmenterSpec,
     TakesWords,
+    scores_of,
 )
 from sim.core.wishes import Wish, parse_wish
 
@@ -70,10 +71,7 @@ class WishedSegmenter:
         """Returns the scores of the goal; `goal` is the category that stands for it."""
         if self.wish is None:
             return self._segmenter.scores(observation, goal)
-        posteriors = self.posteriors(observation)
-        channel = MPCAT40_ID[self.category] - 1
-        before, after = posteriors[:channel], posteriors[channel + 1 :]
-        return Scores(posteriors[channel], np.maximum(before.max(axis=0, initial=0.0), after.max(axis=0, initial=0.0)))
+        return scores_of(self.posteriors(observation), self.category)
 
     def posteriors(self, observation: Observation) -> Float32[np.ndarray, "classes h w"]:
         """Returns the probabilities of the categories; objects with another name count as `misc`."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import numpy as np
@@ -16,13 +16,13 @@ from sim.app.evaluation.watch import is_stop
 from sim.core.errors import AgentError, ConfigError, ObjectNavError
 from sim.core.interface import (
     MPCAT40,
-    MPCAT40_ID,
     POSE_SENSORS,
     CameraModel,
     Observation,
     Scores,
     SegmentationSpec,
     SegmenterSpec,
+    scores_of,
 )
 
 if TYPE_CHECKING:
@@ -133,6 +133,26 @@ class OwnSegmenter:
         """
         return self._once(observation, "categories", lambda seen: self._categories(observation, seen))
 
+    def objects(self, observation: Observation) -> tuple[NDArray[np.int32], Sequence[str]] | None:
+        """Returns the objects that the user's segmenter tells apart; None: it has no such method, or sees none.
+
+        Raises:
+            AgentError: the user's code failed, or returned other types or numbers.
+        """
+        if not callable(getattr(self.inner, "objects", None)):
+            return None
+        return self._once(observation, "objects", self._objects)
+
+    def ask(self, word: str, names: frozenset[str]) -> None:
+        """Gives the words of the goal to a segmenter that takes them; see `sim.core.interface.TakesWords`.
+
+        Raises:
+            AgentError: the user's code failed.
+        """
+        if callable(getattr(self.inner, "ask", None)):
+            self._arrays = ()  # the same frame may look different now
+            self._ask("ask", lambda: self.inner.ask(word, names))
+
     def _once(self, observation: Observation, key: str, compute: Callable[[Observation], T]) -> T:
         """Returns a result of a frame; it is computed at the first request, from the sensors that are declared."""
         arrays = tuple(observation.values())
@@ -174,6 +194,16 @@ class OwnSegmenter:
             self._refuse("categories", f"an array of {categories.dtype}; it holds mpcat40 ids, integers from 0 to 40")
         return categories.astype(np.uint8)
 
+    def _objects(self, seen: Observation) -> tuple[NDArray[np.int32], Sequence[str]] | None:
+        found = self._ask("objects", lambda: self.inner.objects(seen))
+        if found is None:
+            return None
+        image, names = self._ask("objects", lambda: (np.asarray(found[0]), [str(name) for name in found[1]]))
+        self._require_shape("objects", image, ())
+        if image.dtype.kind not in "iu" or not -1 <= int(image.min()) <= int(image.max()) < len(names):
+            self._refuse("objects", f"an array of {image.dtype}; it holds numbers of the {len(names)} names, -1: none")
+        return image.astype(np.int32), names
+
     def _checked(self, method: str, array: NDArray, before: tuple[int, ...]) -> NDArray[np.float32]:
         """Returns an array (*before, h, w) as float32 after a check of shape and range."""
         self._require_shape(method, array, before)
@@ -208,12 +238,3 @@ class OwnSegmenter:
 
     def _refuse(self, method: str, what: str) -> NoReturn:
         raise AgentError(f"Segmentation '{self._name}': {method} returned {what}.")
-
-
-def scores_of(posteriors: NDArray[np.float32], goal: str) -> Scores:
-    """Returns the scores of a goal category, (h, w) each, from posteriors (40, h, w)."""
-    channel = MPCAT40_ID[goal] - 1
-    others = np.maximum(
-        posteriors[:channel].max(axis=0, initial=0.0), posteriors[channel + 1 :].max(axis=0, initial=0.0)
-    )
-    return Scores(posteriors[channel].copy(), others)

@@ -40,7 +40,7 @@ from sim.core.interface import (
     Observation,
     Scores,
     SegmenterSpec,
-    category_id,
+    scores_of,
 )
 from sim.core.reading import Number, parse_json, printable, read_json
 from sim.core.vocabulary import vocabulary
@@ -152,11 +152,7 @@ class HttpSegmenter:
             ConfigError: the goal is not a category of mpcat40.
             AgentError: the server gave no valid reply.
         """
-        channel, posteriors = category_id(goal) - 1, self.posteriors(observation)
-        others = np.maximum(
-            posteriors[:channel].max(axis=0, initial=0.0), posteriors[channel + 1 :].max(axis=0, initial=0.0)
-        )
-        return Scores(posteriors[channel].copy(), others)
+        return scores_of(self.posteriors(observation), goal)
 
     def posteriors(self, observation: Observation) -> NDArray[np.float32]:
         """Returns the probability of each category except void, float32 (40, h, w), at the server's resolution.

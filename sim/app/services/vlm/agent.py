@@ -214,7 +214,7 @@ class VlmAgent(StubbornAgent):
 
 SPEC = AgentSpec(
     make=VlmAgent,
-    description="stubborn-plus in which a vision-language model over HTTP chooses places and checks each STOP",
+    description="stubborn-plus; a language model over HTTP chooses places and checks each STOP",
     config=VlmConfig(),
     sensors=(*SENSORS, "rgb"),
     painter=make_painter,
