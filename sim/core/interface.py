@@ -29,8 +29,8 @@ __all__ = [
     "CLIMB_M", "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS",
     "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "KeepsMemory",
     "Observation", "Perceived", "RobotModel", "Scores", "SeesObjects", "SegmentationSpec", "Segmenter",
-    "SegmenterFactory", "SegmenterSpec", "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule",
-    "category_id", "wrap_angle",
+    "SegmenterFactory", "SegmenterSpec", "StatesConfidence", "StatesModelUse", "StatesSegmentation", "StatesTarget",
+    "SuccessRule", "TakesWords", "category_id", "scores_of", "wrap_angle",
 ]  # fmt: skip
 
 
@@ -267,6 +267,19 @@ class Scores(NamedTuple):
     """Highest probability of any other category."""
 
 
+def scores_of(posteriors: NDArray[np.float32], goal: str) -> Scores:
+    """Returns the scores of a goal category, (h, w) each, from posteriors (40, h, w).
+
+    Raises:
+        ConfigError: the goal is not a category of mpcat40.
+    """
+    channel = category_id(goal) - 1
+    before, after = posteriors[:channel], posteriors[channel + 1 :]
+    return Scores(
+        posteriors[channel].copy(), np.maximum(before.max(axis=0, initial=0.0), after.max(axis=0, initial=0.0))
+    )
+
+
 @dataclass(frozen=True, kw_only=True)
 class SegmenterSpec:
     """The declaration of a segmenter: its inputs and how exact it is."""
@@ -352,6 +365,20 @@ class SeesObjects(Protocol):
         """Returns the number of the object at each pixel (h, w), -1: none, and the name of each object.
 
         None: it does not tell them apart after all.
+        """
+        ...
+
+
+@runtime_checkable
+class TakesWords(Protocol):
+    """A segmenter with an open vocabulary: it looks for what it is asked for."""
+
+    def ask(self, word: str, names: frozenset[str]) -> None:
+        """Called at the start of an episode, before its first frame.
+
+        Args:
+            word: the word for the goal, such as "rocking chair"; "": the goal is a category.
+            names: the everyday names that it means; with `objects`, detections are given such a name.
         """
         ...
 
@@ -467,6 +494,15 @@ class StatesTarget(Protocol):
 
         x forward and y left of the start pose, as in `gps`. Called after `act` has returned STOP.
         """
+        ...
+
+
+@runtime_checkable
+class StatesModelUse(Protocol):
+    """An agent that asks a model over HTTP, and states what an episode took of it; the result line has it."""
+
+    def model_use(self) -> Mapping[str, object]:
+        """Returns the fields of `sim.task.result.ModelUse`. Called at the end of an episode."""
         ...
 
 

@@ -50,6 +50,7 @@ COMMANDS: Mapping[str, Command] = {
     "serve detectors": Command(
         "sim.app.commands.serve.detectors", "Serve detectors in the forms of VLFM's model servers"
     ),
+    "export lerobot": Command("sim.app.commands.export.lerobot", "Write a recorded run as a LeRobot dataset"),
     "gallery": Command("sim.app.commands.gallery", "Render pictures of houses and sheets of furniture"),
     "houses generate": Command("sim.app.commands.houses.generate", "Generate houses"),
     "houses check": Command("sim.app.commands.houses.check", "Check houses for faults"),

@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 
 import msgspec
 import numpy as np
+from msgspec import UNSET, UnsetType
 
 from sim.app.evaluation.own_code import MAX_CHARACTERS, one_line, place_of, text_of
 from sim.app.evaluation.watch import count_steps, is_stop, marked
@@ -25,12 +26,14 @@ from sim.core.interface import (
     KeepsMemory,
     Observation,
     StatesConfidence,
+    StatesModelUse,
     StatesTarget,
     as_action,
 )
+from sim.core.reading import convert
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
-from sim.task.result import EpisodeMetrics, RolloutResult, failed_metrics
+from sim.task.result import EpisodeMetrics, ModelUse, RolloutResult, failed_metrics
 from sim.task.trajectory import FARTHEST_M, Recording, trajectory_file, write_trajectory
 
 T = TypeVar("T")
@@ -145,9 +148,10 @@ class _RunningEpisode:
     def result(self, wall_time_s: float) -> RolloutResult:
         """Returns the result of the episode, which took some seconds."""
         rate = self.steps / wall_time_s if self.steps else 0.0
-        return rollout_result(
+        ended = rollout_result(
             self.env.scene.task.metrics(), self.error, self.confidence, round(wall_time_s, 3), round(rate, 2)
         )
+        return msgspec.structs.replace(ended, model_use=model_use_of(self.agent, self.name))
 
 
 def rollout_result(
@@ -231,6 +235,14 @@ def confidence_of(agent: Agent, where: str) -> float | None:
             f"{where}: stop_confidence() returned {reprlib.repr(confidence)}; it is a number in [0, 1], or None."
         )
     return round(float(confidence), 6)
+
+
+def model_use_of(agent: Agent, name: str) -> ModelUse | UnsetType:
+    """Returns what an agent asked of a model; UNSET if it does not state it, or states something else."""
+    if not isinstance(agent, StatesModelUse):
+        return UNSET
+    where = f"Agent '{name}', model_use"
+    return convert(ask(where, agent.model_use), ModelUse, where=where, error=AgentError)
 
 
 def target_of(agent: Agent, where: str) -> tuple[float, float] | None:
