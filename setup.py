@@ -10,6 +10,7 @@ setup(
         "sim.assets": ["mjcf_houses/**/*"],
         "sim.app.analysis.report": ["page/*"],
         "sim.app.bridges.ros2": ["files/**/*"],
+        "sim.app.services.vlm": ["*.toml"],
         "sim.app.web": ["page/*"],
         "sim.core": ["words/*"],
         "sim.houses": ["*.csv"],

@@ -158,8 +158,22 @@ if (
 ):  # Mesa maps the files of its cache; a full disk would end the process by SIGBUS
     os.environ.setdefault("MESA_SHADER_CACHE_DISABLE", "true")
 
+_MUJOCO_WAS_THERE = "mujoco" in sys.modules
 import mujoco  # noqa: E402
 
+
+def _use_backend() -> None:
+    """Makes `mujoco.Renderer` use the chosen backend, also if MuJoCo was imported before this module."""
+    try:
+        from mujoco.rendering.classic import gl_context
+
+        gl_context.GLContext = importlib.import_module(f"mujoco.{_BACKENDS[sys.platform][BACKEND]}").GLContext
+    except (ImportError, AttributeError):
+        pass  # another version of MuJoCo, which the user has set up
+
+
+if _IS_USABLE and _MUJOCO_WAS_THERE:
+    _use_backend()
 if not _IS_USABLE:
     os.environ["MUJOCO_GL"] = BACKEND  # so that spawned workers refuse the same name
 

@@ -11,6 +11,7 @@ import pytest
 from tests.helpers import sampling, typechecking
 
 os.environ.setdefault("STUBBORN_CACHE_DIR", str(Path(tempfile.gettempdir()) / "stubborn-test-houses"))  # not the user's
+os.environ.setdefault("STUBBORN_CACHE_MB", "0")  # tests see the code, not what it prepared before
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # PyTorch's threads and the workers of xdist would fight for the cores
 typechecking.install()
 

@@ -61,6 +61,7 @@ FURNITURE_LAWS = [
 """Those that every style must keep."""
 NEED_MORE = {
     "stubborn_habitat": "habitat-lab, in an environment of its own",
+    "lerobot.datasets": "lerobot, in an environment of its own",
     "rednet_semmap_mp3d_40.pth": "the published checkpoint",
     "runs/plans": "plans that `stubborn houses plans` writes",
     "views_val": "views that `stubborn views` writes",

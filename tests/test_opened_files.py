@@ -65,6 +65,7 @@ EXCEPTIONS = {
     ("tools/maintenance/make_vocabulary.py", "(folder / 'index.noun').read_text"): "files of WordNet of a maintainer",
     ("tools/maintenance/mujoco_stubs.py", "file.read_text"): "stubs that were generated just before",
     ("sim/app/web/server.py", "hub.open"): "no file",
+    ("sim/app/services/client.py", "urllib.request.build_opener(urllib.request.ProxyHandler({})).open"): "an address",
     ("stubborn/segmentation/processor.py", "_PROCESSOR.read_text"): "a fixed file of the system, /proc/cpuinfo",
     ("stubborn/segmentation/lite0.py", "torch.load"): "weights of an installed package",
     ("sim/app/composition/segmenters.py", "safe_open"): "as in stubborn/network_files.py",

@@ -56,6 +56,7 @@ def test_the_wheel_holds_the_shipped_houses(tmp_path: Path) -> None:
         assert f"sim/app/analysis/report/page/{file.name}" in packed
     for file in (ROOT / "sim/robot/sidecars").iterdir():
         assert f"sim/robot/sidecars/{file.name}" in packed
+    assert "sim/app/services/vlm/prompts.toml" in packed
     for file in (ROOT / "sim/app/web/page").iterdir():
         assert f"sim/app/web/page/{file.name}" in packed
 

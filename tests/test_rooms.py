@@ -28,7 +28,7 @@ LAYERS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "training": (("sim.training",), ("core", "agent", "simulator", "homes")),
     "app": (("sim.app",), ("core", "agent", "simulator", "homes", "training")),
     "doors": (
-        ("sim.gym", "sim.run", "sim.report", "sim.web", "sim.teleop"),
+        ("sim.gym", "sim.run", "sim.report", "sim.web", "sim.teleop", "sim.cli"),
         ("core", "agent", "simulator", "homes", "training", "app"),
     ),
     "old names": (("sim.interface", "sim.errors", "sim.configuration", "sim.housegen", "sim.bridges"), ("core",)),

@@ -53,7 +53,7 @@ class RunOptions:
     labels: Annotated[Path | None, _FOLDER] = None
     """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
     root: Annotated[Path | None, _FOLDER] = None
-    """With --house: another folder whose files the house may use, in addition to its own folder."""
+    """Another folder whose files the file of --house or --robot may use, in addition to its own folder."""
     robot: Annotated[str | None, Option(of_world=True, file_field="robot.file.path")] = None
     """Replaces the default robot: an MJCF file with its sidecar next to it, or menagerie:NAME (docs/worlds.md)."""
     goal: Annotated[str | None, Option(of_world=True, of_episodes=True, plain=True)] = None

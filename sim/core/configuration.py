@@ -176,6 +176,8 @@ def _replaced(node: DataclassInstance, values: Mapping[str, object], path: str) 
         current = getattr(node, name)
         if isinstance(value, Mapping) and _is_node(current):
             changed[name] = _replaced(current, value, here)
+        elif isinstance(value, Mapping) and isinstance(current, Mapping):
+            changed[name] = _with_entries(current, value, typing.get_args(hints[name])[1], here)
         else:
             changed[name] = _converted(value, hints[name], current, here)
     try:
@@ -183,6 +185,20 @@ def _replaced(node: DataclassInstance, values: Mapping[str, object], path: str) 
     except ValueError as error:  # ConfigError is one
         prefix = f"{path}." if path else ""
         raise ConfigError(f"{', '.join(prefix + name for name in changed)}: {error}") from None
+
+
+def _with_entries(current: Mapping[str, Any], values: Mapping[str, object], kind: Any, path: str) -> dict[str, Any]:
+    """Returns a mapping of names to nodes of one kind, with new or changed entries."""
+    entries = dict(current)
+    for name, fields in values.items():
+        node, here = entries.get(name) or kind(), f"{path}.{name}"
+        if isinstance(fields, kind):
+            entries[name] = fields
+        elif isinstance(fields, Mapping):
+            entries[name] = _replaced(node, fields, here)
+        else:
+            _converted(fields, kind, node, here)  # refuses it
+    return entries
 
 
 def _converted(value: object, hint: object, current: object, path: str) -> object:

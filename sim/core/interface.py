@@ -11,6 +11,7 @@ from __future__ import annotations
 import enum
 import inspect
 import math
+import operator
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, is_dataclass
@@ -28,19 +29,36 @@ __all__ = [
     "CLIMB_M", "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS",
     "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "KeepsMemory",
     "Observation", "Perceived", "RobotModel", "Scores", "SeesObjects", "SegmentationSpec", "Segmenter",
-    "SegmenterFactory", "SegmenterSpec", "StatesConfidence", "StatesSegmentation", "StatesTarget", "SuccessRule",
-    "category_id", "wrap_angle",
+    "SegmenterFactory", "SegmenterSpec", "StatesConfidence", "StatesModelUse", "StatesSegmentation", "StatesTarget",
+    "SuccessRule", "TakesWords", "category_id", "scores_of", "wrap_angle",
 ]  # fmt: skip
 
 
 class Action(enum.IntEnum):
-    """The four discrete actions of the Habitat ObjectNav challenge 2021."""
+    """The discrete actions of Habitat; `MOVES` are those of the ObjectNav challenge 2021, others an agent declares."""
 
     STOP = 0
     MOVE_FORWARD = 1
     TURN_LEFT = 2
     TURN_RIGHT = 3
+    LOOK_UP = 4
+    LOOK_DOWN = 5
 
+
+def as_action(value: object) -> Action | None:
+    """Returns the action of an integer of any library, such as a tensor of PyTorch; None: it is no action."""
+    try:
+        return Action(operator.index(value))  # type: ignore[arg-type]
+    except (TypeError, ValueError, RuntimeError):
+        return None
+
+
+MOVES: tuple[Action, ...] = (Action.STOP, Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_RIGHT)
+"""The actions that every agent has."""
+LOOK_RAD = math.radians(30.0)
+"""Angle by which LOOK_UP and LOOK_DOWN tilt the camera (`AgentSpec.looks`)."""
+MAX_TILT_RAD = math.radians(60.0)
+"""Largest tilt of the camera, up and down."""
 
 FORWARD_M = 0.25
 """Commanded displacement of MOVE_FORWARD."""
@@ -195,19 +213,21 @@ Observation = Mapping[str, NDArray]
 
 SENSORS: tuple[str, ...] = ("rgb", "depth", "semantic")
 """Image sensors, which are rendered only when requested."""
+SEMANTIC_MAP = "semantic_map"
+"""The map of categories around the robot (`sim.sensors.semantic_map`), ground truth."""
 SCAN = "scan"
 """The lidar (`sim.sensors.scan`)."""
-ROBOT_SENSORS: tuple[str, ...] = (SCAN, "bumper", "odometry", "imu")
+ROBOT_SENSORS: tuple[str, ...] = (SCAN, "bumper", "odometry", "imu", "tilt")
 """The lidar and the sensors of the robot itself (`sim.sensors.measured`), in the observation only when requested."""
 GOAL_SENSORS: tuple[str, ...] = ("goal", "goal_picture")
 """The goal of the episode, only when requested."""
 POSE_SENSORS: tuple[str, ...] = ("gps", "compass", "objectgoal")
 """Always present."""
 CONTEXT_FIELDS: tuple[str, ...] = (
-    "goal", "picture", "collided", "odometry", "pose", "start", "motion", "model", "data", "glass",
+    "goal", "picture", "collided", "odometry", "pose", "start", "motion", "model", "data", "glass", "labels", "tilt",
 )  # fmt: skip
 """Fields of `sim.sensors.sensor.SensorContext` that a user's sensor may declare in `reads`."""
-TRUE_FIELDS = frozenset({"pose", "start", "motion", "model", "data", "glass"})
+TRUE_FIELDS = frozenset({"pose", "start", "motion", "model", "data", "glass", "labels"})
 """The fields that hold ground truth, which a robot cannot measure."""
 TRUE_IMAGES = frozenset({"semantic", "geom"})
 """Rendered images that hold ground truth."""
@@ -222,10 +242,11 @@ def reads_truth(sensor: Any) -> bool:
             although they are computed from the true state.
     """
     if isinstance(sensor, str):
-        return sensor == "semantic"
+        return sensor in ("semantic", SEMANTIC_MAP) or sensor.endswith("_semantic")
     if getattr(sensor, "name", "") in (*POSE_SENSORS, *ROBOT_SENSORS, *GOAL_SENSORS) and _is_standard(sensor):
         return False
-    declared = {*getattr(sensor, "images", ()), *getattr(sensor, "reads", ())}
+    images = {name.rpartition(":")[2] for name in getattr(sensor, "images", ())}  # `left:semantic` of a camera `left`
+    declared = {*images, *getattr(sensor, "reads", ())}
     return not declared.isdisjoint(TRUE_IMAGES | TRUE_FIELDS)
 
 
@@ -244,6 +265,19 @@ class Scores(NamedTuple):
     """Probability of the goal category."""
     best_other: NDArray[np.float32]
     """Highest probability of any other category."""
+
+
+def scores_of(posteriors: NDArray[np.float32], goal: str) -> Scores:
+    """Returns the scores of a goal category, (h, w) each, from posteriors (40, h, w).
+
+    Raises:
+        ConfigError: the goal is not a category of mpcat40.
+    """
+    channel = category_id(goal) - 1
+    before, after = posteriors[:channel], posteriors[channel + 1 :]
+    return Scores(
+        posteriors[channel].copy(), np.maximum(before.max(axis=0, initial=0.0), after.max(axis=0, initial=0.0))
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -331,6 +365,20 @@ class SeesObjects(Protocol):
         """Returns the number of the object at each pixel (h, w), -1: none, and the name of each object.
 
         None: it does not tell them apart after all.
+        """
+        ...
+
+
+@runtime_checkable
+class TakesWords(Protocol):
+    """A segmenter with an open vocabulary: it looks for what it is asked for."""
+
+    def ask(self, word: str, names: frozenset[str]) -> None:
+        """Called at the start of an episode, before its first frame.
+
+        Args:
+            word: the word for the goal, such as "rocking chair"; "": the goal is a category.
+            names: the everyday names that it means; with `objects`, detections are given such a name.
         """
         ...
 
@@ -449,6 +497,15 @@ class StatesTarget(Protocol):
         ...
 
 
+@runtime_checkable
+class StatesModelUse(Protocol):
+    """An agent that asks a model over HTTP, and states what an episode took of it; the result line has it."""
+
+    def model_use(self) -> Mapping[str, object]:
+        """Returns the fields of `sim.task.result.ModelUse`. Called at the end of an episode."""
+        ...
+
+
 AgentFactory = Callable[..., Agent]
 """Builds an agent from keyword arguments:
 
@@ -493,6 +550,9 @@ class AgentSpec:
     pictures: tuple[str, ...] | None = None
     """Sensors that it reads in addition where goals are pictures, such as `goal_picture`; None: it takes none. `reset`
     gets "" as the goal then."""
+    looks: bool = False
+    """True: it may also return LOOK_UP and LOOK_DOWN, which tilt the camera by 30 degrees; the sensor `tilt` reads the
+    tilt."""
     painter: Callable[[Agent], Any] | None = None
     """Returns a `MapPainter` of viewers, which draws the agent's map; None: viewers draw the true floor plan."""
 

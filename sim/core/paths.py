@@ -1,15 +1,30 @@
-"""The folder of shipped houses, in the repository or in the wheel, the hash of the code, and the processor's name."""
+"""The folders of shipped houses and of the user's cache, the hash of the code, and the processor's name."""
 
 from __future__ import annotations
 
 import functools
 import hashlib
+import os
 import platform
 from pathlib import Path
 
 from sim.core.errors import HouseError
 
+CACHE_VARIABLE = "STUBBORN_CACHE_DIR"
 _PACKAGE = Path(__file__).resolve().parents[1]
+
+
+def cache_dir() -> Path:
+    """Returns the folder of the cache of this user; it may be deleted at any time.
+
+    It is `$STUBBORN_CACHE_DIR`, else `stubborn-objectnav` in `$XDG_CACHE_HOME`, else in `~/.cache` (XDG Base Directory
+    Specification 0.8).
+    """
+    chosen = os.environ.get(CACHE_VARIABLE)
+    if chosen:
+        return Path(chosen).expanduser()
+    base = os.environ.get("XDG_CACHE_HOME", "")
+    return (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "stubborn-objectnav"
 
 
 def assets_dir() -> Path:

@@ -67,6 +67,10 @@ Name = Annotated[str, Meta(min_length=1, max_length=1000, pattern=r"^[^\x00-\x1f
 """An id or a name: text without control characters, which a terminal would interpret."""
 
 
+_LFS_POINTER = b"version https://git-lfs.github.com/spec/v"
+"""What Git writes in place of a large file that was not downloaded begins with this."""
+
+
 class Lines(NamedTuple, Generic[T]):
     """The lines of a file that grows while it is written."""
 
@@ -103,7 +107,11 @@ def _open_plain(file: Path) -> BinaryIO:
     if not stat.S_ISREG(os.fstat(handle).st_mode):
         os.close(handle)
         raise OSError("it is not a plain file")
-    return os.fdopen(handle, "rb")
+    file_read = os.fdopen(handle, "rb")
+    if file_read.peek(len(_LFS_POINTER)).startswith(_LFS_POINTER):
+        file_read.close()
+        raise OSError("it is a Git LFS pointer and not the file itself; run `git lfs pull` in its repository")
+    return file_read
 
 
 def read_bytes(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError, most: int = MAX_BYTES) -> bytes:

@@ -143,7 +143,7 @@ class NoisySegmenter:
 
     def picture_categories(self) -> NDArray[np.uint8] | None:
         """Returns the true categories of the goal's picture (h, w), which is close enough to be seen without errors."""
-        return self._env.picture_categories()
+        return self._episode.picture_categories()
 
     def posteriors(self, observation: Observation) -> NDArray[np.float32]:
         """Returns the probabilities of the categories in the frame that the environment rendered last, (40, h, w).

@@ -16,16 +16,28 @@ from numpy.typing import NDArray
 from sim.core.configuration import as_settings
 from sim.core.errors import HouseError
 from sim.core.geometry.pose import Pose
-from sim.core.interface import SENSORS, Action, CameraModel, ConfigError, RobotModel, SuccessRule
+from sim.core.interface import (
+    MOVES,
+    SENSORS,
+    Action,
+    CameraModel,
+    ConfigError,
+    RobotModel,
+    SuccessRule,
+    as_action,
+)
 from sim.core.wishes import require_goal
 from sim.env.chosen_split import chosen_split
 from sim.env.scene import Scene, SceneCache
 from sim.episodes.drawing import sample_episode
 from sim.episodes.episode import Episode, require_start
 from sim.episodes.splits import Split
+from sim.renderer.mounted import CameraConfig
+from sim.renderer.opengl import SharedContext
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
 from sim.robot.drive import Motion
+from sim.sensors.cameras import camera_sensors, cameras_of
 from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise, noise_from_dict
 from sim.sensors.scan import ScanConfig, ScanSensor
 from sim.sensors.sensor import Sensor, SensorContext, declared_fields
@@ -92,10 +104,14 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         success: replaces `task.success`.
         max_steps: replaces `task.max_steps`.
         camera: intrinsics and mount height.
+        cameras: further cameras by name (`sim.renderer.mounted`): `cameras={"left": {"yaw_deg": 60}}` adds the keys
+            `left_rgb` and `left_depth` to the observation.
+        look: also allows the actions 4 LOOK_UP and 5 LOOK_DOWN, which tilt the first camera by 30 degrees, at most by
+            60; they count as steps, and the sensor `tilt` reads the tilt.
         scan: the lidar of the sensor `scan`.
         robot: body and drive.
-        cached_houses: number of houses that stay loaded, those that were used last. To load a house takes most of a
-            second; a loaded house takes 40 to 90 MB.
+        cached_houses: number of houses that stay loaded, those that were used last. To load a house for the first time
+            takes most of a second, later a fifth of it (`sim.core.store`); a loaded house takes 40 to 90 MB.
 
     Raises:
         ConfigError: an unknown split, goal, sensor, profile, noise, or field of a configuration.
@@ -124,6 +140,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         success: SuccessRule | Mapping[str, object] | None = None,
         max_steps: int | None = None,
         camera: CameraModel | Mapping[str, object] | None = None,
+        cameras: Mapping[str, CameraConfig | Mapping[str, object]] | None = None,
+        look: bool = False,
         scan: ScanConfig | Mapping[str, object] | None = None,
         robot: RobotConfig | Mapping[str, object] | None = None,
         cached_houses: int = 1,
@@ -136,7 +154,17 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             raise ConfigError("start needs house: the episodes of a split have their own.")
         self.goal, self.start = goal, start
         self.scan_config = as_settings(scan, ScanConfig(), name="scan")
-        self.sensors = _with_scan(resolve_sensors(sensors), self.scan_config)
+        mounted = camera_sensors(cameras or {})
+        keys = [sensor.name for sensor in mounted]
+        others = (
+            sensors
+            if isinstance(sensors, str)
+            else [sensor for sensor in sensors if not (isinstance(sensor, str) and sensor in keys)]
+        )
+        self.sensors = _with_scan(
+            resolve_sensors(others if isinstance(others, str) else [*others, *mounted]), self.scan_config
+        )
+        self._cameras = cameras_of(self.sensors)
         self.truth_images: dict[str, NDArray] = {}
         """Images that were rendered last, without noise: at least those of `truth`."""
         self._truth = tuple(truth)
@@ -148,11 +176,14 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._default_noise = self._make_noise(noise if isinstance(noise, NoiseConfig) else get_noise(noise))
         self._noise = self._default_noise
         self.observation_space = spaces.Dict({sensor.name: sensor.space(self.camera_model) for sensor in self.sensors})
-        self.action_space = spaces.Discrete(len(Action))
+        self.actions = tuple(Action) if look else MOVES
+        """The actions that are allowed."""
+        self.action_space = spaces.Discrete(len(self.actions))
         self._episodes = [episode for episode in self.split.episodes if goal in (None, episode.goal)]
         if self.split.episodes and not self._episodes:
             raise ConfigError(f"Split '{self.split.name}' has no episode with goal '{goal}'.")
         self._scenes = SceneCache(self._make_scene, size=cached_houses)
+        self._shared: SharedContext | None = None
         self._scene: Scene | None = None
         self._episode: Episode | None = None
         self._motion: Motion | None = None
@@ -222,7 +253,11 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     def step(self, action: int) -> StepResult:
         """Carries out one action; see the class."""
         self.scene.task.require_running()
-        return self._outcome(self.scene.world.move(Action(action)))
+        chosen = as_action(action)
+        if chosen is None or chosen not in self.actions:
+            names = ", ".join(f"{int(allowed)} {allowed.name}" for allowed in self.actions)
+            raise ConfigError(f"An action is one of {names}; got {reprlib.repr(action)}. look=True allows to tilt.")
+        return self._outcome(self.scene.world.move(chosen))
 
     def _outcome(self, motion: Motion) -> StepResult:
         """Returns what `step` returns after a motion."""
@@ -270,6 +305,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._closed = True
         self._scene = None
         self._scenes.close()
+        if self._shared is not None:
+            self._shared.close()
 
     def _choose(self, options: Mapping[str, Any]) -> Episode:
         unknown = sorted(set(options) - {"episode", "episode_id"})
@@ -288,6 +325,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         return self.draw_episode(self.np_random)
 
     def _make_scene(self, house: str) -> Scene:
+        if self._shared is None:
+            self._shared = SharedContext(self.camera_model)
         return Scene(
             self.split.load_house(house),
             robot=self._robot,
@@ -295,6 +334,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             profile=self._profile,
             task=self.task_config,
             steps_per_action=self._steps_per_action,
+            shared=self._shared,
         )
 
     def _make_noise(self, config: NoiseConfig) -> SensorNoise:
@@ -323,7 +363,12 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         world = self.scene.world
         needed = {name for sensor in self._noise.sensors for name in sensor.images}
         names = sorted({*self.scene.task.images, *needed, *self._truth, *self._noise.images})
-        images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, names)
+        first = [name for name in names if ":" not in name]
+        images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, first)
+        for camera, config in self._cameras.items():
+            asked = [name.partition(":")[2] for name in names if name.startswith(f"{camera}:")]
+            views = self.scene.mounted.render(world.data, world.body_pose, config, asked)
+            images |= {f"{camera}:{image}": view for image, view in views.items()}
         return self._noise.apply(self._readings(self._noise.sensors), images)
 
     def _readings(self, sensors: Sequence[Sensor]) -> dict[str, NDArray]:
@@ -341,6 +386,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             "model": world.model,
             "data": world.data,
             "glass": world.glass,
+            "labels": world.labels,
+            "tilt": world.tilt_rad,
         }
         return {sensor.name: sensor.read(SensorContext(sensor, images, **fields)) for sensor in sensors}
 

@@ -15,6 +15,8 @@ from sim.env.memory import return_freed_memory
 from sim.houses.house import House
 from sim.renderer.camera import Camera
 from sim.renderer.gloss import geom_gloss
+from sim.renderer.mounted import MountedCameras
+from sim.renderer.opengl import SharedContext
 from sim.renderer.profiles import RenderProfile
 from sim.robot.config import RobotConfig
 from sim.task.config import TaskConfig
@@ -34,12 +36,17 @@ class Scene:
         profile: str | RenderProfile,
         task: TaskConfig | None = None,
         steps_per_action: int = 1,
+        shared: SharedContext | None = None,
     ) -> None:
+        """`shared` is the OpenGL context of several scenes; each of them has one of its own by default."""
         config = task or TaskConfig()
         self.notes = house.notes
         """See `House.notes`."""
         self.world = World(house, robot=robot, rule=config.success)
-        self.camera = Camera(self.world.model, self.world.labels, camera=camera, profile=profile)
+        self.world.camera_height_m = camera.height_m
+        self.camera = Camera(self.world.model, self.world.labels, camera=camera, profile=profile, shared=shared)
+        self.mounted = MountedCameras(self.world.model, self.world.labels, profile=profile, shared=shared)
+        """Renders further cameras."""
         self.gloss = geom_gloss(self.world.model, self.world.labels)  # (ngeom,)
         self.task = Task(self.world, config, camera=camera, steps_per_action=steps_per_action)
         self._profile = profile
@@ -59,12 +66,13 @@ class Scene:
         return self._pictures[goal.camera][image]
 
     def close(self) -> None:
-        """Frees the renderer."""
+        """Frees the renderers."""
         self.camera.close()
+        self.mounted.close()
 
 
 class SceneCache:
-    """A cache of the scenes used last: to compile a house and compute its free space takes most of a second.
+    """A cache of the scenes used last; another scene takes 0.1 s, or most of a second if its house was never seen.
 
     It holds one scene by default, because a run goes house by house and a scene takes 40 to 90 MB.
 

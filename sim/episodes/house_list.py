@@ -3,9 +3,7 @@
 The list has the recipe and the checksum of each house. The simulator does not know how a house is made: a `HouseMaker`
 does, which the entry point `stubborn.houses` of an installed package names. A house is made on first use, compared
 with its checksum and kept as `<cache>/<version>/<split>/<house>.xml`, with the textures in
-`<cache>/<version>/textures`: the same bytes in the same layout as a house that is shipped as a file. The cache is
-`$STUBBORN_CACHE_DIR`, else `stubborn-objectnav` in `$XDG_CACHE_HOME`, else in `~/.cache` (XDG Base Directory
-Specification 0.8). It may be deleted at any time.
+`<cache>/<version>/textures`: the same bytes in the same layout as a house that is shipped as a file.
 """
 
 from __future__ import annotations
@@ -14,7 +12,6 @@ import functools
 import hashlib
 import importlib.metadata
 import json
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,13 +21,12 @@ import msgspec
 
 from sim.core.errors import ConfigError, HouseError
 from sim.core.files import inside, write_atomically
-from sim.core.paths import assets_dir
+from sim.core.paths import CACHE_VARIABLE, assets_dir, cache_dir
 from sim.core.reading import Name, convert, read_bytes, read_json, sha256_of
 
 LIST_FILE = "houses.json"
 MAKER_GROUP = "stubborn.houses"
 """Group of the entry point whose object is a `HouseMaker`."""
-CACHE_VARIABLE = "STUBBORN_CACHE_DIR"
 
 
 class Recipe(Protocol):
@@ -144,15 +140,6 @@ class HouseList:
             f"The generated house '{name}' of split '{self.split}' {self.version} differs from the list: "
             f"sha256 {made_sum} here, {self.sha256[name]} in the list. Likely reason: {reason}."
         )
-
-
-def cache_dir() -> Path:
-    """Returns the folder that keeps the houses generated on this machine."""
-    chosen = os.environ.get(CACHE_VARIABLE)
-    if chosen:
-        return Path(chosen).expanduser()
-    base = os.environ.get("XDG_CACHE_HOME", "")
-    return (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "stubborn-objectnav"
 
 
 @functools.cache

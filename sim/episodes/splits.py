@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -31,7 +30,7 @@ from sim.episodes.house_list import HouseList, has_house_list, read_house_list
 from sim.episodes.replicates import find_episode
 from sim.houses.house import House
 from sim.houses.load import load_house
-from sim.houses.references import files_of
+from sim.houses.references import add_files
 from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, sidecar_path
 
 UNREACHABLE_FILE = "unreachable.json"
@@ -188,14 +187,14 @@ def split_of_files(
 
     Args:
         paths: the files; each name is that of one house.
-        labels: label rules of all houses.
+        labels: label rules of all houses; None: those of `labels.json` beside the houses, as imports write it.
         root: another folder whose files they may use, in addition to their own folders.
 
     Raises:
         ConfigError: two files have one name.
         HouseError: there is no such file.
     """
-    labels_path = None if labels is None else Path(labels)
+    labels_path = _common_labels(list(map(Path, paths))) if labels is None else Path(labels)
     allowed = None if root is None else Path(root)
     files, sums = dict[str, Path](), dict[str, str]()
     for path in map(Path, paths):
@@ -215,6 +214,12 @@ def split_of_files(
     return Split(name, "one-house", digest, files, (), labels_path, allowed, house_sums=sums)
 
 
+def _common_labels(houses: list[Path]) -> Path | None:
+    """Returns the label rules beside some houses; None if there are none, or if they lie in different folders."""
+    found = {labels_of(house.parent) for house in houses}
+    return found.pop() if len(found) == 1 else None
+
+
 def house_sum(path: Path, *, with_also: bytes = b"", root: Path | None = None) -> str:
     """Returns the checksum of a house file with its sidecar and the files that it uses (SHA-256, hexadecimal).
 
@@ -228,10 +233,7 @@ def house_sum(path: Path, *, with_also: bytes = b"", root: Path | None = None) -
     """
     digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=_MAX_BYTES) + _sidecar_bytes(path))
     digest.update(with_also)
-    for file in files_of(path, root):  # a house in a single file keeps the checksum of version 0.1
-        name = os.path.relpath(file, path.resolve().parent)
-        digest.update(name.encode(errors="replace"))
-        digest.update(bytes.fromhex(sha256_of(file, what="File of a house", error=HouseError)))
+    add_files(digest, path, root)  # a house in a single file keeps the checksum of version 0.1
     return digest.hexdigest()
 
 

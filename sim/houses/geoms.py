@@ -97,6 +97,11 @@ def mesh_triangles(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> NDA
     return (_mesh_vertices(model, mesh) @ rotation.T + data.geom_xpos[geom])[faces]
 
 
+def is_hollow(model: mujoco.MjModel, geom: int) -> bool:
+    """Returns whether a geom is a mesh that is not convex."""
+    return model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH and not mesh_is_convex(model, geom)
+
+
 def mesh_is_convex(model: mujoco.MjModel, geom: int) -> bool:
     """Returns whether a mesh geom is convex: its volume is that of its convex hull."""
     mesh = int(model.geom_dataid[geom])

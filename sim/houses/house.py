@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,13 +24,20 @@ class House:
     """A house in the house format, without a robot."""
 
     name: str
-    spec: mujoco.MjSpec
-    """It is never changed; a caller that needs another one takes `spec.copy()`."""
+    source: mujoco.MjSpec | Callable[[], mujoco.MjSpec]
+    """The specification, or a function that reads it when it is first used."""
     rules: Mapping[str, str] | None = None
     """Label rules of a third-party scene, in the form that `read_labels` takes; None for a native house."""
     path: Path | None = None
     notes: tuple[str, ...] = ()
     """Sentences on the elements that were removed from a third-party scene (`sim.houses.foreign`)."""
+    checksum: str | None = None
+    """Hash of the file and of all other files that it uses; None for a house that was made in memory."""
+
+    @functools.cached_property
+    def spec(self) -> mujoco.MjSpec:
+        """The specification. It is never changed; a caller that needs another one takes `spec.copy()`."""
+        return self.source() if callable(self.source) else self.source
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,14 +12,15 @@ import numpy as np
 from sim.core.errors import HouseError
 from sim.core.interface import MPCAT40_ID
 from sim.core.invocation import command
-from sim.core.reading import read_json, reason_of
+from sim.core.reading import MAX_BYTES, read_bytes, read_json, reason_of
+from sim.core.store import kept, key_of
 from sim.gl import mujoco
 from sim.houses.foreign import make_walls_solid, remove_unsupported, void_notes
 from sim.houses.house import House
 from sim.houses.labels import ROBOT_PREFIX, Labels, collidable_geoms, describe_geom, read_labels
 from sim.houses.light import add_light
 from sim.houses.mjcf import read_spec, require_few_contacts, require_sizes
-from sim.houses.references import require_root
+from sim.houses.references import add_files, require_root, shipped_textures_sum
 
 FLOOR_TOLERANCE_M = 0.01
 """Largest distance of the top of the ground floor from z = 0."""
@@ -37,6 +40,8 @@ def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None
             that a house may not contain are then removed and reported in the house's `notes`.
         root: a folder that the house may use in addition to its own (`sim.houses.references`).
 
+    A file that was checked before, and all files that it uses, are read again only when its specification is used.
+
     Raises:
         HouseError: the file is missing, is not MJCF, or breaks a rule of the house format; the message names file, geom
             and rule.
@@ -46,6 +51,32 @@ def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None
     if not path.is_file():
         raise HouseError(f"House '{path}': there is no such file.")
     require_root(root)
+    made: list[House] = []
+
+    def load() -> tuple[str, ...]:
+        made.append(_read(path, rules, root))
+        return made[0].notes
+
+    checksum = _checksum(path, rules, root)
+    notes = kept(checksum and key_of("house", checksum), tuple[str, ...], load)
+    if made:
+        return replace(made[0], checksum=checksum)
+    return House(path.stem, lambda: _read(path, rules, root).spec, rules, path, notes, checksum)
+
+
+def _checksum(path: Path, rules: Mapping[str, str] | None, root: Path | None) -> str | None:
+    """Returns the checksum of a house file, of all files that it uses and of its label rules; None: not readable."""
+    try:
+        digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=MAX_BYTES))
+        add_files(digest, path, root)
+    except HouseError:
+        return None  # `read_spec` says what is wrong
+    digest.update(repr((shipped_textures_sum(), rules if rules is None else tuple(rules.items()))).encode())
+    return digest.hexdigest()
+
+
+def _read(path: Path, rules: dict[str, str] | None, root: Path | None) -> House:
+    """Returns the house of a file after checking it; see `load_house`."""
     try:
         spec = read_spec(path, root=root)
         notes = () if rules is None else remove_unsupported(spec)

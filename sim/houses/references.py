@@ -8,6 +8,8 @@ The user allows one more folder with `--root FOLDER`, for packages that consist 
 
 from __future__ import annotations
 
+import functools
+import hashlib
 import html
 import os
 import re
@@ -15,12 +17,16 @@ import stat
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from sim.core.errors import HouseError, ObjectNavError
 from sim.core.paths import assets_dir
-from sim.core.reading import printable, read_bytes
+from sim.core.reading import printable, read_bytes, sha256_of
 from sim.gl import mujoco
 from sim.houses.mjcf_text import as_utf8
+
+if TYPE_CHECKING:
+    from hashlib import _Hash as Hash
 
 SHARED_TEXTURES = "textures"
 """Name of the folder, next to a split's folder, that all its houses may use."""
@@ -29,8 +35,10 @@ MAX_FILES = 10_000
 _MAX_FOLDERS = 20
 _MAX_BYTES = 64 << 20
 _VALUE = rb"""\s*=\s*(?P<value>"[^"]*"|'[^']*')"""
-_FILE = re.compile(rb"\bfile\w*" + _VALUE)
-_FOLDER = re.compile(rb"\b(?:mesh|texture|asset)dir" + _VALUE)
+_FILE = re.compile(rb"file\w*" + _VALUE)
+_FOLDER = re.compile(rb"dir" + _VALUE)
+_FOLDER_STEMS = (b"mesh", b"texture", b"asset")
+_WORD = re.compile(rb"\w")
 _ASSETS = frozenset((".png", ".jpg", ".jpeg", ".obj", ".stl", ".msh", ".ktx", ".bin", ".skn"))
 """Suffixes of files that name no other files."""
 _ELSEWHERE = re.compile(r":[/\\]|^\\|\.(?:zip|mjz)(?:[/\\]|$)", re.IGNORECASE)
@@ -99,7 +107,7 @@ class Allowed:
     def _remedy(self, target: Path) -> str:
         """Returns a sentence on how the user can allow the file if it is near the house file, else the rule."""
         if not issubclass(self.error, HouseError):
-            return "Copy all files of a robot into one folder."
+            return "Copy all files of a robot into one folder, or allow the folder of both with --root."
         common = Path(os.path.commonpath((target, self.file)))
         levels = len(self.file.parent.relative_to(common).parts)
         if levels <= MAX_LEVELS_UP and len(common.parts) > 1:
@@ -167,8 +175,8 @@ def files_of(house_file: Path, root: Path | None = None) -> list[Path]:
             read.add(file)
             bases[file.parent] = None
             text = _content(file)
-            names.update(dict.fromkeys(_values(_FILE, text)))
-            folders.update(dict.fromkeys(_values(_FOLDER, text)))
+            names.update(dict.fromkeys(_values(_FILE, text, (b"",))))
+            folders.update(dict.fromkeys(_values(_FOLDER, text, _FOLDER_STEMS)))
         for base in list(bases)[:_MAX_FOLDERS]:  # in the folder of the house file, or of the file that names it
             for folder in list(folders)[:_MAX_FOLDERS]:
                 for name in list(names)[:MAX_FILES]:
@@ -177,6 +185,22 @@ def files_of(house_file: Path, root: Path | None = None) -> list[Path]:
                         if _is_plain(path) and not path.is_relative_to(shipped) and _is_below(path, allowed):
                             files.add(path)
     return sorted(files - {house_file})
+
+
+def add_files(digest: Hash, house_file: Path, root: Path | None = None) -> None:
+    """Adds the names and the contents of the files that an MJCF file uses to a checksum."""
+    for file in files_of(house_file, root):
+        digest.update(os.path.relpath(file, house_file.resolve().parent).encode(errors="replace"))
+        digest.update(bytes.fromhex(sha256_of(file, what="File of a house", error=HouseError)))
+
+
+@functools.cache
+def shipped_textures_sum() -> str:
+    """Returns a checksum of the shipped textures, which do not count as files of a house."""
+    digest = hashlib.sha256()
+    for file in sorted((assets_dir() / SHARED_TEXTURES).iterdir()):
+        digest.update(file.name.encode() + file.read_bytes())
+    return digest.hexdigest()
 
 
 def _is_below(path: Path, folders: list[Path]) -> bool:
@@ -191,8 +215,22 @@ def _content(file: Path) -> bytes:
         return b""  # `read_spec` reports the fault
 
 
-def _values(attribute: re.Pattern[bytes], text: bytes) -> list[str]:
-    return [html.unescape(match["value"][1:-1].decode(errors="replace")) for match in attribute.finditer(text)]
+def _values(attribute: re.Pattern[bytes], text: bytes, stems: tuple[bytes, ...]) -> list[str]:
+    """Returns the values of the attributes that begin with one of some stems, followed by a pattern.
+
+    The pattern itself begins with letters, so that it is found several times as fast as one that begins with a stem.
+    """
+    return [
+        html.unescape(match["value"][1:-1].decode(errors="replace"))
+        for match in attribute.finditer(text)
+        if any(_begins(text, match.start(), stem) for stem in stems)
+    ]
+
+
+def _begins(text: bytes, end: int, stem: bytes) -> bool:
+    """Returns whether a word of a text begins with a stem that ends at this index."""
+    start = end - len(stem)
+    return text[max(start, 0) : end] == stem and not _WORD.match(text, max(start - 1, 0), start)
 
 
 def _is_plain(path: Path) -> bool:

@@ -25,7 +25,14 @@ from sim.houses.labels import Labels, rendered_geoms
 from sim.renderer.lamp_maps import MAP_PX, LampMaps
 from sim.renderer.lamps import Lamps
 from sim.renderer.occlusion import Visibility
-from sim.renderer.opengl import Z_NEAR_M, free_contexts, look_up, make_frame_buffer, make_gl_context, metric_depth
+from sim.renderer.opengl import (
+    Z_NEAR_M,
+    SharedContext,
+    free_frame_buffers,
+    look_up,
+    make_frame_buffer,
+    metric_depth,
+)
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.renderer.scene import GeomScene
 from sim.renderer.shading import make_shading
@@ -42,6 +49,7 @@ class Camera:
         camera: intrinsics, mount height and depth range.
         profile: a rendering profile, or the name of one.
         cull: leave out geoms that cannot be visible; False is for tests that compare the two.
+        shared: an OpenGL context that other cameras use, too; the caller closes it. None: one of its own.
 
     Raises:
         RenderError: there is no OpenGL context, or OpenGL does not support an image of this size.
@@ -55,6 +63,7 @@ class Camera:
         camera: CameraModel | None = None,
         profile: str | RenderProfile = "fast",
         cull: bool = True,
+        shared: SharedContext | None = None,
     ) -> None:
         self.camera = camera or CameraModel()
         self.profile = profile if isinstance(profile, RenderProfile) else get_profile(profile)
@@ -70,14 +79,15 @@ class Camera:
         self._depth_buffer = np.zeros(shape, np.float32)
         self._returned: NDArray[np.bool_] | None = None  # (h, w) pixels that panes return; made when one is visible
         self._through_clear = np.zeros(shape, np.bool_)
-        self._gl = make_gl_context(self.camera)
+        context = shared or SharedContext(self.camera)
+        self._gl = context.gl
         # Id colours must not be blended at edges and need no vertices inside a flat face: they get their own buffer.
         id_profile = replace(self.profile, samples=0, quads=1)
         with self._gl.as_current():  # it is released after each use, so that any thread can render next
             self._id_context = make_frame_buffer(model, self.camera, id_profile)
         self._color_context: mujoco.MjrContext | None = None  # made with the first colour image: it takes 10 to 30 MB
         self._contexts = {self._id_context}
-        self._finalizer = weakref.finalize(self, free_contexts, self._gl, self._contexts)
+        self._finalizer = weakref.finalize(self, free_frame_buffers, context, self._contexts, is_own=shared is None)
         self._finalizer.atexit = False  # OpenGL may be unloaded before the process ends
         self._reflects = self.profile.reflections and bool((model.mat_reflectance > 0.0).any())
         self._scene = GeomScene(model)
@@ -101,6 +111,20 @@ class Camera:
             ConfigError: an unknown sensor.
             RenderError: this process was forked from the one that made this camera.
         """
+        body = as_body_pose(pose)
+        return self.render_from(data, body.point(0.0, 0.0, self.camera.height_m), body.axes, sensors)
+
+    def render_from(
+        self, data: mujoco.MjData, eye_m: NDArray, axes: NDArray, sensors: Sequence[str]
+    ) -> dict[str, NDArray]:
+        """Returns the same, seen from any place in any direction.
+
+        Args:
+            data: state of the model; kinematics must be computed.
+            eye_m: (3,) optical centre in the world.
+            axes: (3, 3) the camera's forward, left and up as rows.
+            sensors: as of `render`.
+        """
         unknown = [name for name in sensors if name not in (*SENSORS, "geom")]
         if unknown:
             raise ConfigError(f"Unknown sensor '{unknown[0]}'. The sensors are: {', '.join(SENSORS)}, geom.")
@@ -108,13 +132,11 @@ class Camera:
             return {}
         begin_rendering()
         with self._gl.as_current():
-            return self._render(data, pose, sensors)
+            return self._render(data, eye_m, axes, sensors)
 
-    def _render(self, data: mujoco.MjData, pose: Pose, sensors: Sequence[str]) -> dict[str, NDArray]:
+    def _render(self, data: mujoco.MjData, eye_m: NDArray, axes: NDArray, sensors: Sequence[str]) -> dict[str, NDArray]:
         """Returns the images of some sensors; the OpenGL context is current."""
         images: dict[str, NDArray] = {}
-        body = as_body_pose(pose)
-        eye_m, axes = body.point(0.0, 0.0, self.camera.height_m), body.axes
         visible = self._visibility.visible(data, eye_m, axes) if self.cull else self._visual_ids
         lamps = self._lamps.choose(data, eye_m, axes[0]) if "rgb" in sensors else []
         first = lamps[0] if lamps and self.profile.shadows > 0.0 and self._lamps.casts_shadows(lamps[0]) else None

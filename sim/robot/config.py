@@ -215,8 +215,8 @@ class RobotFile:
 
     path: Path
     """The MJCF file."""
-    wheel_joints: tuple[str, str]
-    """Names of the hinges of the left and the right wheel."""
+    wheel_joints: tuple[str, ...]
+    """Names of the hinges of the left wheels, then those of as many right ones."""
     casters: tuple[str, ...] = ()
     """Names of geoms or bodies that slide on the floor."""
     heading_rad: float = 0.0
@@ -225,6 +225,22 @@ class RobotFile:
     """Distance between the middles of the tyres; None: that of the wheels' joints."""
     pose: tuple[tuple[str, float], ...] = ()
     """Names of other joints and their positions, rad or m, in which they are fixed; those not named stay at zero."""
+    cylinder_m: tuple[float, float] | None = None
+    """Radius and height of the upright cylinder around the robot, if the sidecar has both: the body of a robot without
+    collision geoms."""
+    root: Path | None = None
+    """Another folder whose files the robot may use; None: only its own."""
+
+    @property
+    def sides(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """The wheel joints of the left and of the right side."""
+        half = len(self.wheel_joints) // 2
+        return self.wheel_joints[:half], self.wheel_joints[half:]
+
+    @property
+    def skids(self) -> bool:
+        """Whether it has several wheels a side (skid steering)."""
+        return len(self.wheel_joints) > 2
 
 
 @dataclass(frozen=True, kw_only=True)

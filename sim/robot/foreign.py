@@ -4,15 +4,17 @@ Next to `carrier.xml` there is a sidecar `carrier.json`; those of Menagerie's ro
 
 | key | meaning |
 |---|---|
-| `wheel_joints` | names of the hinges of the left and the right wheel |
+| `wheel_joints` | names of the hinges of the left and the right wheel; of four or more: the left ones, then the right |
 | `wheel_radius_m` | metres |
 | `track_m` | distance between the middles of the tyres; default: that of the wheels' joints |
 | `casters` | names of geoms or bodies that only slide on the floor; default: none |
 | `joints` | names of other joints and their positions, rad or m, in which they are fixed; default: 0 |
 | `heading_deg` | direction that is ahead in the file, counter-clockwise from +x; default: 0 |
-| `radius_m`, `height_m` | size of the upright cylinder around the body; default: measured |
+| `radius_m`, `height_m` | size of the upright cylinder around the body; default: measured. A robot without collision
+geoms needs both: the cylinder is then its body |
 | `camera_height_m`, `camera_forward_m` | position of the level camera above the floor and ahead of the axle (0.88, 0) |
 | `camera_hfov_deg` | horizontal field of view of the camera (79) |
+| `cameras` | further cameras by name, each with fields of `sim.renderer.mounted.CameraConfig`; default: none |
 | `speed_m_s`, `acceleration_m_s2` | largest speed and acceleration of a forward (0.5, 1) |
 
 A geom without a name is called `<body>.<number>`, with its number in the body, from 0.
@@ -31,24 +33,25 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TypedDict, TypeGuard, cast
+from typing import Any, TypedDict, TypeGuard, cast
 
 from sim.core.interface import CLIMB_M, CameraModel, ConfigError
 from sim.core.reading import read_bytes, read_json, sha256_of
 from sim.houses.references import files_of
 from sim.robot.config import BodyConfig, DriveConfig, RobotConfig, RobotFile, WheelConfig
-from sim.robot.measurement import RobotMeasurements, measure
+from sim.robot.measurement import CYLINDER_SKIN_M, RobotMeasurements, measure
 from sim.robot.menagerie import is_menagerie, menagerie_files
 
 KEYS = (
     "wheel_joints", "wheel_radius_m", "track_m", "casters", "joints", "heading_deg", "radius_m", "height_m",
     "speed_m_s", "acceleration_m_s2",
 )  # fmt: skip
-CAMERA_KEYS = ("camera_height_m", "camera_forward_m", "camera_hfov_deg")
+CAMERA_KEYS = ("camera_height_m", "camera_forward_m", "camera_hfov_deg", "cameras")
 LARGEST_M = 1000.0
 """Largest number of a sidecar, also of degrees."""
-SKIN_M = 0.005
+SKIN_M = CYLINDER_SKIN_M
 """`BodyConfig.skin_m` of third-party bodies, which may have shapes of any kind."""
+MAX_WHEELS = 12
 MIN_CLEARANCE_M = 0.005
 """Least distance between the body's skin and the floor, so that the body does not rub on the floor."""
 WHEEL_MASS_SHARE = 0.01
@@ -59,8 +62,12 @@ CASTER_OFFSET_SHARE = 0.8
 """Declared distance of the casters from the centre, relative to the body's radius."""
 
 
-def load_robot(robot: Path | str) -> tuple[RobotConfig, CameraModel]:
+def load_robot(robot: Path | str, *, root: Path | None = None) -> tuple[RobotConfig, CameraModel]:
     """Returns the robot of an MJCF file with its sidecar, or of `menagerie:NAME`, and its camera.
+
+    Args:
+        robot: the file, or the name.
+        root: another folder whose files the robot may use, such as `../meshes` (`--root`).
 
     Raises:
         ConfigError: a file is missing or breaks a rule of this module, or Menagerie has no such robot; the message
@@ -72,17 +79,30 @@ def load_robot(robot: Path | str) -> tuple[RobotConfig, CameraModel]:
             raise ConfigError(f"--robot: the {what} '{file}' does not exist.")
     try:
         sidecar = _read_sidecar(sidecar_file)
-        return _robot_config(path, sidecar), _camera(sidecar)
+        return _robot_config(path, sidecar, root), _camera(sidecar)
     except ConfigError as error:
         raise ConfigError(f"Robot '{path}': {error}") from None
 
 
-def robot_sha256(robot: Path | str) -> str:
+def robot_cameras(robot: Path | str) -> dict[str, Any]:
+    """Returns the further cameras that a robot's sidecar declares: fields by the name of the camera.
+
+    Raises:
+        ConfigError: the sidecar breaks a rule of this module.
+    """
+    path, sidecar_file = _files_of(robot)
+    cameras = cast(dict[str, Any], _read_sidecar(sidecar_file).get("cameras", {}))
+    if not (isinstance(cameras, dict) and all(isinstance(fields, dict) for fields in cameras.values())):
+        raise ConfigError(f"Robot '{path}': \"cameras\" in its sidecar must be an object of cameras by name.")
+    return cameras
+
+
+def robot_sha256(robot: Path | str, *, root: Path | None = None) -> str:
     """Returns the checksum of a robot's file, its sidecar and the files that it uses; it identifies it in results."""
     path, sidecar = _files_of(robot)
     digest = hashlib.sha256(read_bytes(path, what="--robot: the robot"))
     digest.update(read_bytes(sidecar, what="--robot: the sidecar of the robot"))
-    for file in files_of(path):  # a robot in a single file keeps its checksum
+    for file in files_of(path, root):  # a robot in a single file keeps its checksum
         digest.update(bytes.fromhex(sha256_of(file, what="--robot: a file of the robot")))
     return digest.hexdigest()
 
@@ -108,16 +128,18 @@ class _Sidecar(TypedDict, total=False):
     joints: dict[str, float]
 
 
-def _robot_config(path: Path, sidecar: _Sidecar) -> RobotConfig:
+def _robot_config(path: Path, sidecar: _Sidecar, root: Path | None) -> RobotConfig:
     joints, casters = sidecar.get("wheel_joints", []), sidecar.get("casters", [])
     wheel_radius_m = _positive(sidecar, "wheel_radius_m")
     file = RobotFile(
         path,
-        (joints[0], joints[1]),
+        tuple(joints),
         tuple(casters),
         heading_rad=math.radians(_number(sidecar, "heading_deg", "degrees")),
         track_m=_positive(sidecar, "track_m") if "track_m" in sidecar else None,
         pose=tuple(sorted((name, float(position)) for name, position in sidecar.get("joints", {}).items())),
+        cylinder_m=_cylinder_m(sidecar),
+        root=root,
     )
     measured = measure(file, wheel_radius_m)
     body = _body(sidecar, measured)
@@ -131,6 +153,13 @@ def _robot_config(path: Path, sidecar: _Sidecar) -> RobotConfig:
         file=file,
         camera_forward_m=_number(sidecar, "camera_forward_m", "metres"),
     )
+
+
+def _cylinder_m(sidecar: Mapping[str, object]) -> tuple[float, float] | None:
+    """Returns radius and height of the cylinder, if the sidecar has both."""
+    if not {"radius_m", "height_m"} <= sidecar.keys():
+        return None
+    return _positive(sidecar, "radius_m"), _positive(sidecar, "height_m")
 
 
 def _wheels(measured: RobotMeasurements, radius_m: float, body: BodyConfig) -> WheelConfig:
@@ -216,8 +245,17 @@ def _read_sidecar(file: Path) -> _Sidecar:
         keys = ", ".join((*KEYS, *CAMERA_KEYS))
         raise ConfigError(f"its sidecar has the unknown key '{unknown[0]}'. The keys are: {keys}.")
     joints, casters = content.get("wheel_joints"), content.get("casters", [])
-    if not (isinstance(joints, list) and len(joints) == 2 and _are_names(joints) and joints[0] != joints[1]):
-        raise ConfigError('its sidecar needs "wheel_joints": ["<left>", "<right>"], the names of two joints.')
+    if not (
+        isinstance(joints, list)
+        and len(joints) % 2 == 0
+        and 2 <= len(joints) <= MAX_WHEELS
+        and _are_names(joints)
+        and len(set(joints)) == len(joints)
+    ):
+        raise ConfigError(
+            'its sidecar needs "wheel_joints": ["<left>", "<right>"], the names of two joints, or of '
+            f"as many left ones and then right ones, at most {MAX_WHEELS}."
+        )
     if not (isinstance(casters, list) and _are_names(casters)):
         raise ConfigError('"casters" in its sidecar must be a list of names.')
     pose = content.get("joints", {})

@@ -18,6 +18,12 @@ from sim.robot.posing import pose_joints
 
 MIN_AXLE_COSINE = 0.999
 """Smallest cosine of the angle between a wheel's axle and the robot's y axis."""
+RADIUS_TOLERANCE = 0.25
+"""Largest difference of a wheel's declared radius from that of its geoms, as a share of the latter."""
+CYLINDER_SKIN_M = 0.005
+"""The cylinder of a robot without collision geoms is smaller by this, the skin of third-party bodies."""
+CYLINDER_CLEARANCE_SHARE = 0.3
+"""Height of the lower side of that cylinder above the floor, relative to the radius of the wheels."""
 LEVEL_M = 0.002
 """Largest offset of the two wheels from each other along x and z."""
 
@@ -39,7 +45,9 @@ class RobotMeasurements:
     """Measurements of a robot in the pose of its file; heights are above the floor below its wheels."""
 
     wheels: tuple[Wheel, Wheel]
-    """Left and right."""
+    """Left and right; of several wheels a side, their middle."""
+    sides: tuple[tuple[Wheel, ...], tuple[Wheel, ...]]
+    """All wheels, left and right."""
     mass_kg: float
     com_height_m: float
     reach_m: float
@@ -76,7 +84,7 @@ def read_body(file: RobotFile) -> tuple[mujoco.MjSpec, mujoco.MjsBody]:
     Raises:
         ConfigError: MuJoCo cannot read the file, it does not have the wheel joints, or a joint cannot be posed.
     """
-    spec = read_spec(file.path, error=ConfigError)
+    spec = read_spec(file.path, root=file.root, error=ConfigError)
     for number, body in enumerate(spec.bodies):
         body.name = body.name or f"body_{number}"  # the code below identifies bodies by name
         for index, geom in enumerate(body.geoms):
@@ -100,7 +108,7 @@ def collision_geoms(root: mujoco.MjsBody, file: RobotFile) -> CollisionGeoms:
     """Returns the collision geoms below the top body of a robot.
 
     Raises:
-        ConfigError: a caster is not in the file, or no geom is left for the hull.
+        ConfigError: a caster is not in the file, or no geom is left for the hull and there is no cylinder.
     """
     wheels, casters, hull = [], [], []
     bodies = [root, *root.find_all("body")]
@@ -117,8 +125,11 @@ def collision_geoms(root: mujoco.MjsBody, file: RobotFile) -> CollisionGeoms:
     missing = [name for name in file.casters if name not in names]
     if missing:
         raise ConfigError(f"it has no geom and no body '{missing[0]}', which the sidecar names in casters.")
-    if not hull:
-        raise ConfigError("it has no collision geom other than wheels and casters: its body needs one.")
+    if not hull and file.cylinder_m is None:
+        raise ConfigError(
+            "it has no collision geom other than wheels and casters: its body needs one, or radius_m and height_m in "
+            "the sidecar, the size of a cylinder that is its body."
+        )
     return CollisionGeoms(tuple(wheels), tuple(casters), tuple(hull))
 
 
@@ -138,16 +149,28 @@ def measure(file: RobotFile, wheel_radius_m: float) -> RobotMeasurements:
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     turn = turn_to_x(file)
-    left, right = _wheels(model, data, file, turn)
+    on_left, on_right = (tuple(_wheel(model, data, name, turn) for name in side) for side in file.sides)
+    sides = on_left, on_right
+    for wheel in (*sides[0], *sides[1]):
+        _require_radius(model, data, wheel, turn, wheel_radius_m)
+    left, right = _wheels(file, sides)
     middle = 0.5 * (left.centre_m + right.centre_m)
     ground_m = float(middle[2]) - wheel_radius_m
+    body = model.body(root.name).id
+    com_height_m = float(data.subtree_com[body][2]) - ground_m
+    if not hull and file.cylinder_m is not None:
+        reach_m, top_m = (size_m - CYLINDER_SKIN_M for size_m in file.cylinder_m)
+        bottom_m = min(CYLINDER_CLEARANCE_SHARE * wheel_radius_m, 0.4 * top_m)
+        return RobotMeasurements(
+            (left, right), sides, float(model.body_subtreemass[body]), com_height_m, reach_m, bottom_m, "", top_m
+        )
     parts = [geom_polytope(model, data, model.geom(geom.name).id).vertices_m @ turn.T for geom in hull]
     vertices = np.concatenate(parts)
-    body = model.body(root.name).id
     return RobotMeasurements(
         wheels=(left, right),
+        sides=sides,
         mass_kg=float(model.body_subtreemass[body]),
-        com_height_m=float(data.subtree_com[body][2]) - ground_m,
+        com_height_m=com_height_m,
         reach_m=float(np.hypot(*(vertices[:, :2] - middle[:2]).T).max()),
         bottom_m=float(vertices[:, 2].min()) - ground_m,
         lowest=hull[int(np.argmin([part[:, 2].min() for part in parts]))].name,
@@ -210,15 +233,18 @@ def _delete_other_joints(spec: mujoco.MjSpec, file: RobotFile) -> None:
             spec.delete(joint)
 
 
-def _wheels(
-    model: mujoco.MjModel, data: mujoco.MjData, file: RobotFile, turn: NDArray[np.float64]
-) -> tuple[Wheel, Wheel]:
-    left, right = (_wheel(model, data, name, turn) for name in file.wheel_joints)
+def _wheels(file: RobotFile, sides: tuple[tuple[Wheel, ...], ...]) -> tuple[Wheel, Wheel]:
+    """Returns the left and the right wheel, or the middles of the wheels of each side."""
+    left, right = (
+        side[0] if len(side) == 1 else Wheel("", np.mean([wheel.centre_m for wheel in side], axis=0), 1.0)
+        for side in sides
+    )
     across = left.centre_m - right.centre_m
     if across[1] <= 0.0 or np.hypot(across[0], across[2]) > LEVEL_M:
         raise ConfigError(
             "its wheels must be next to each other with the first of wheel_joints on the left (+y), but they are at "
             f"{_format(left.centre_m)} and {_format(right.centre_m)} m{_turned(file)}."
+            + (" Of several wheels a side, wheel_joints names the left ones first." if file.skids else "")
         )
     if file.track_m is None:
         return left, right
@@ -233,6 +259,11 @@ def _shifted(wheel: Wheel, left_m: float) -> Wheel:
 
 def _wheel(model: mujoco.MjModel, data: mujoco.MjData, name: str, turn: NDArray[np.float64]) -> Wheel:
     joint = model.joint(name).id
+    if model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE:
+        raise ConfigError(
+            f"its wheel joint '{name}' is a slide, and wheels turn on hinges. A base that slides along x and y without "
+            "wheels is not driven here; name the hinges of its wheels, if it has some."
+        )
     if model.jnt_type[joint] != mujoco.mjtJoint.mjJNT_HINGE:
         raise ConfigError(f"its wheel joint '{name}' is not a hinge.")
     axis = turn @ data.xaxis[joint]
@@ -242,6 +273,32 @@ def _wheel(model: mujoco.MjModel, data: mujoco.MjData, name: str, turn: NDArray[
             "show the robot with +x ahead, or heading_deg in the sidecar has to give its direction."
         )
     return Wheel(name, turn @ data.xanchor[joint], math.copysign(1.0, float(axis[1])))
+
+
+def _require_radius(
+    model: mujoco.MjModel, data: mujoco.MjData, wheel: Wheel, turn: NDArray[np.float64], declared_m: float
+) -> None:
+    """Raises ConfigError if a wheel's geoms reach much farther, or less far, from the axle than its declared radius."""
+    top = int(model.joint(wheel.joint).bodyid[0])
+    bodies = [body for body in range(model.nbody) if _is_below(model, body, top)]
+    geoms = np.flatnonzero(np.isin(model.geom_bodyid, bodies))
+    solid = geoms[(model.geom_contype[geoms] != 0) | (model.geom_conaffinity[geoms] != 0)]
+    geoms = solid if solid.size else geoms
+    if not geoms.size:
+        return
+    vertices = np.concatenate([geom_polytope(model, data, int(geom)).vertices_m for geom in geoms]) @ turn.T
+    radius_m = float(np.hypot(*(vertices - wheel.centre_m)[:, [0, 2]].T).max())
+    if not (1.0 - RADIUS_TOLERANCE) * radius_m <= declared_m <= (1.0 + RADIUS_TOLERANCE) * radius_m:
+        raise ConfigError(
+            f"wheel_radius_m in the sidecar is {declared_m:g} m, but the wheel of '{wheel.joint}' has a radius of "
+            f"about {radius_m:.2g} m in the file."
+        )
+
+
+def _is_below(model: mujoco.MjModel, body: int, top: int) -> bool:
+    while body not in (0, top):
+        body = int(model.body_parentid[body])
+    return body == top
 
 
 def _root_of(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> mujoco.MjsBody:

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from sim.core.geometry.pose import BodyPose, Pose
 from sim.core.interface import CONTEXT_FIELDS, CameraModel, ConfigError
 from sim.gl import mujoco
+from sim.houses.labels import Labels
 from sim.robot.drive import Motion
 
 
@@ -35,12 +36,14 @@ class SensorContext:
     | picture | `reads` | the picture of the goal, uint8 (h, w, 3); None: the goal is text |
     | collided | `reads` | whether a contact stopped the last action |
     | odometry | `reads` | pose by the robot's own odometry, relative to the start |
+    | tilt | `reads` | tilt of the camera, rad; positive: up |
     | pose | `reads`, truth | pose of the robot's body in the world, with its lean |
     | start | `reads`, truth | pose of the robot in the world when the episode started |
     | motion | `reads`, truth | the last action as it was carried out, with its contacts; None before the first one |
     | model | `reads`, truth | the compiled world; read only |
     | data | `reads`, truth | state of the world; read only |
     | glass | `reads`, truth | (ngeom,) True for panes of windows; read only |
+    | labels | `reads`, truth | category and instance of each geom (`sim.houses.labels`) |
     """
 
     images: Mapping[str, NDArray]
@@ -54,6 +57,8 @@ class SensorContext:
     model: mujoco.MjModel
     data: mujoco.MjData
     glass: NDArray[np.bool_]
+    labels: Labels
+    tilt: float
 
     def __init__(self, sensor: Sensor, images: Mapping[str, NDArray], **fields: Any) -> None:
         """Keeps the declared part of the state.

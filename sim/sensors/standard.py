@@ -14,9 +14,19 @@ from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
 from sim.core.goals import MAX_TEXT, PICTURE_PX
-from sim.core.interface import CONTEXT_FIELDS, GOAL_CATEGORIES, MPCAT40, POSE_SENSORS, SCAN, SENSORS, CameraModel
+from sim.core.interface import (
+    CONTEXT_FIELDS,
+    GOAL_CATEGORIES,
+    MAX_TILT_RAD,
+    MPCAT40,
+    POSE_SENSORS,
+    SCAN,
+    SENSORS,
+    CameraModel,
+)
 from sim.sensors.measured import BumperSensor, ImuSensor, OdometrySensor
 from sim.sensors.scan import ScanSensor
+from sim.sensors.semantic_map import SemanticMapSensor
 from sim.sensors.sensor import NoiseSettings, Sensor, SensorContext, declared_fields
 
 
@@ -182,12 +192,31 @@ class GoalPictureSensor:
         return context.picture.copy()
 
 
+@dataclass(frozen=True, kw_only=True)
+class TiltSensor:
+    """Tilt of the camera, which LOOK_UP and LOOK_DOWN change."""
+
+    name: str = "tilt"
+    images: tuple[str, ...] = ()
+    reads: tuple[str, ...] = ("tilt",)
+    noise: NoiseSettings | None = None
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        """Returns the space of float32 angles (1,)."""
+        return spaces.Box(-np.float32(MAX_TILT_RAD), np.float32(MAX_TILT_RAD), (1,), np.float32)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns the tilt in radians, positive: up."""
+        return np.array([context.tilt], np.float32)
+
+
 STANDARD_SENSORS: Mapping[str, Sensor] = MappingProxyType(
     {
         sensor.name: sensor
         for sensor in (
             RgbSensor(), DepthSensor(), SemanticSensor(), GpsSensor(), CompassSensor(), ObjectGoalSensor(),
-            ScanSensor(), BumperSensor(), OdometrySensor(), ImuSensor(), GoalSensor(), GoalPictureSensor(),
+            ScanSensor(), BumperSensor(), OdometrySensor(), ImuSensor(), TiltSensor(), GoalSensor(),
+            GoalPictureSensor(), SemanticMapSensor(),
         )
     }
 )  # fmt: skip

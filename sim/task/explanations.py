@@ -31,6 +31,8 @@ ACTION_WORDS: Mapping[Action, str] = {
     Action.MOVE_FORWARD: "forward",
     Action.TURN_LEFT: "turn left",
     Action.TURN_RIGHT: "turn right",
+    Action.LOOK_UP: "look up",
+    Action.LOOK_DOWN: "look down",
 }
 TRAPPED = f"{TRAPPED_WINDOW_STEPS} steps within {TRAPPED_RADIUS_M:g} m of one position"
 """The meaning of `trapped` (`sim.task.failures`), as videos and reports word it."""

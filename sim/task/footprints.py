@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.core.geometry.convex import ConvexPolygon, polygon_from_above
+from sim.core.geometry.convex import ConvexPolygon, PolygonTable, polygon_from_above
 from sim.core.interface import MPCAT40_ID
 from sim.gl import mujoco
-from sim.houses.geoms import PLANE_DEPTH_M, geom_polytope, mesh_is_convex, mesh_triangles
+from sim.houses.geoms import PLANE_DEPTH_M, geom_polytope, is_hollow, mesh_triangles
 from sim.houses.labels import Instance, Labels, collidable_geoms, rendered_geoms
 
 if TYPE_CHECKING:
@@ -46,15 +47,26 @@ class Footprint:
     """The union of the plan projections of an instance's rendered geoms."""
 
     instance: Instance
-    parts: tuple[ConvexPolygon, ...]
+    table: PolygonTable
     """Convex polygons; the footprint is their union."""
-    boundary_m: KDTree
-    """Points (n, 2) on its boundary, `SAMPLE_M` apart or nearer."""
+    boundary_points_m: NDArray[np.float64]  # (n, 2) on its boundary, `SAMPLE_M` apart or nearer
     bounds_m: tuple[float, float, float, float]
     z_m: tuple[float, float]
     """Heights of the lowest and the highest point."""
     floor_z_m: float
     """Height of the floor below the instance."""
+
+    @property
+    def parts(self) -> tuple[ConvexPolygon, ...]:
+        """The convex polygons."""
+        return self.table.polygons
+
+    @cached_property
+    def boundary_m(self) -> KDTree:
+        """A tree of the points on its boundary."""
+        from scipy.spatial import KDTree  # on demand: a quarter of a second at every start
+
+        return KDTree(self.boundary_points_m)
 
     def near(self, xy_m: NDArray[np.float64], margin_m: float) -> NDArray[np.bool_]:
         """Returns (n,) whether each of the places (n, 2) is in the bounding box grown by a margin."""
@@ -92,8 +104,7 @@ class Footprints:
             data: state of the world, with kinematics computed.
             instance: the instance.
         """
-        geoms = instance.geom_ids
-        place = data.geom_xpos[list(geoms)].tobytes() + data.geom_xmat[list(geoms)].tobytes()
+        geoms, place = instance.geom_ids, _place(data, instance)
         for known in (self._at_first, self._at_last):
             if geoms in known and known[geoms].place == place:
                 return known[geoms].footprint
@@ -102,13 +113,21 @@ class Footprints:
         self._at_last[geoms] = placed
         return placed.footprint
 
+    def remember(self, data: mujoco.MjData, instance: Instance, footprint: Footprint | None) -> None:
+        """Stores the footprint of an instance in the first state, which was computed before."""
+        self._at_first.setdefault(instance.geom_ids, _Placed(_place(data, instance), footprint))
+
+
+def _place(data: mujoco.MjData, instance: Instance) -> bytes:
+    """Returns the positions and rotations of an instance's geoms, as bytes."""
+    geoms = list(instance.geom_ids)
+    return data.geom_xpos[geoms].tobytes() + data.geom_xmat[geoms].tobytes()
+
 
 def footprint_of(
     model: mujoco.MjModel, data: mujoco.MjData, instance: Instance, floors: Sequence[Floor] = ()
 ) -> Footprint | None:
     """Returns the footprint of an instance; None if nothing of it is rendered."""
-    from scipy.spatial import KDTree  # on demand: a quarter of a second at every start
-
     rendered = rendered_geoms(model)
     geoms = [geom for geom in instance.geom_ids if rendered[geom]]
     parts = tuple(part for geom in geoms for part in _rendered_parts(model, data, geom))
@@ -119,8 +138,8 @@ def footprint_of(
     z = np.concatenate([geom_polytope(model, data, geom, rendered=True).vertices_m[:, 2] for geom in geoms])
     z_m = (float(z.min()), float(z.max()))
     floor_z_m = _floor_under(floors, 0.5 * (low + high), z_m[0])
-    boundary = KDTree(_boundary_points(parts, low, high))
-    return Footprint(instance, parts, boundary, (*low.tolist(), *high.tolist()), z_m, floor_z_m)
+    boundary = _boundary_points(parts, low, high)
+    return Footprint(instance, PolygonTable.of(parts), boundary, (*low.tolist(), *high.tolist()), z_m, floor_z_m)
 
 
 def house_floors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> tuple[Floor, ...]:
@@ -168,16 +187,11 @@ def _upright_polygon(points_m: NDArray[np.float64]) -> ConvexPolygon:
     return polygon
 
 
-def is_hollow(model: mujoco.MjModel, geom: int) -> bool:
-    """Returns whether a geom is a mesh that is not convex."""
-    return model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH and not mesh_is_convex(model, geom)
-
-
 def _boundary_points(
     parts: Sequence[ConvexPolygon], low: NDArray[np.float64], high: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Returns (n, 2) corners and points `SAMPLE_M` apart on the edges of the parts, without those inside the union."""
-    points = np.concatenate([_edge_points(part) for part in parts])
+    points = _edge_points(parts)
     if len(parts) == 1:
         return points
     pixels = np.round((points - low) / _PIXEL_M).astype(np.int64) + _BORDER_PX
@@ -186,14 +200,15 @@ def _boundary_points(
     return points[np.unique(np.round(points / 0.001).astype(np.int64), axis=0, return_index=True)[1]]
 
 
-def _edge_points(part: ConvexPolygon) -> NDArray[np.float64]:
-    """Returns (n, 2) the corners of a polygon and points on its edges."""
-    ahead = np.roll(part.vertices_m, -1, axis=0)
-    points = []
-    for start, end in zip(part.vertices_m, ahead, strict=True):
-        count = max(1, int(np.ceil(np.hypot(*(end - start)) / SAMPLE_M)))
-        points.append(start + (np.arange(count) / count)[:, None] * (end - start))
-    return np.concatenate(points)
+def _edge_points(parts: Sequence[ConvexPolygon]) -> NDArray[np.float64]:
+    """Returns (n, 2) the corners of polygons and points on their edges."""
+    start = np.concatenate([part.vertices_m for part in parts])
+    edge = np.concatenate([np.roll(part.vertices_m, -1, axis=0) for part in parts]) - start
+    count = np.maximum(1, np.ceil(np.hypot(*edge.T) / SAMPLE_M)).astype(np.int64)
+    number = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    return np.repeat(start, count, axis=0) + (number / np.repeat(count, count))[:, None] * np.repeat(
+        edge, count, axis=0
+    )
 
 
 def _raster(

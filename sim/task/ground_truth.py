@@ -16,15 +16,16 @@ from sim.core.errors import EpisodeError
 from sim.core.geometry.grid import GridFrame
 from sim.core.goals import GoalSpec
 from sim.core.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
+from sim.core.store import kept, key_of
 from sim.core.wishes import parse_wish, require_goal
 from sim.gl import mujoco
 from sim.houses.labels import Instance, rendered_geoms
+from sim.task.footprints import Footprint
 from sim.task.meaning import Meaning
 from sim.task.seen_floor import SeenFloor, floor_cells
 from sim.task.success import SIGHT_BLOCKERS, GoalRegion, Surroundings, sight_blockers
 from sim.world.freespace import FreeSpace
 from sim.world.leaves import hinged_leaves, moved
-from sim.world.plan import floor_polygons
 from sim.world.world import World
 
 _NO_OBJECTS = frozenset({"void", "floor", "ceiling"})
@@ -37,6 +38,16 @@ class Target:
     region: GoalRegion
     reached: NDArray[np.bool_]  # (rows, cols) free cells at which a STOP succeeds
     distance_m: NDArray[np.float32]  # (rows, cols) geodesic distance to the nearest of them; inf: no path
+
+
+@dataclass(frozen=True)
+class _Reached:
+    """What is kept of a target."""
+
+    footprints: tuple[Footprint | None, ...]
+    """Of all instances of the goal."""
+    reached: NDArray[np.bool_]  # (free cells,)
+    distance_m: NDArray[np.float32]  # (free cells,)
 
 
 class GroundTruth:
@@ -99,15 +110,15 @@ class GroundTruth:
                 robot=world.robot,
                 rule=self.success,
                 floor_z_m=floor_z_m,
+                key=world.key,
             )
         return self._spaces[floor_z_m]
 
     def unseen_floor(self, floor_z_m: float = 0.0) -> SeenFloor:
         """Returns the floor of a storey before the camera has seen any of it."""
         if floor_z_m not in self._floors:
-            world = self.world
-            outlines = floor_polygons(world.model, self._at_rest, world.labels, floor_z_m)
-            self._floors[floor_z_m] = floor_cells(self.space(floor_z_m).frame, outlines)
+            space = self.space(floor_z_m)
+            self._floors[floor_z_m] = floor_cells(space.frame, space.floors)
         return SeenFloor(*self._floors[floor_z_m], floor_z_m, self.camera)
 
     def target(self, goal: str, floor_z_m: float = 0.0) -> Target:
@@ -119,9 +130,23 @@ class GroundTruth:
             EpisodeError: the goal is unknown, or the house has no instance of it.
         """
         if (goal, floor_z_m) not in self._targets:
-            space, region = self.space(floor_z_m), self._existing(self.region(goal, floor_z_m))
-            reached = region.mask(space)
-            self._targets[goal, floor_z_m] = Target(region, reached, space.geodesic(reached))
+            space, instances, at_rest = self.space(floor_z_m), self.instances(goal), self._at_rest
+            footprints = self._surroundings_of(floor_z_m).footprints
+
+            def make() -> _Reached:
+                region = self._existing(self.region(goal, floor_z_m))
+                reached = region.mask(space)
+                outlines = tuple(footprints.of(at_rest, instance) for instance in instances)
+                return _Reached(outlines, reached[space.free], space.geodesic(reached)[space.free])
+
+            key = self._key_of("target", tuple(instance.name for instance in instances), floor_z_m)
+            known = kept(key, _Reached, make)
+            for instance, outline in zip(instances, known.footprints, strict=True):
+                footprints.remember(at_rest, instance, outline)
+            region = self._existing(self.region(goal, floor_z_m))
+            reached, distance_m = np.zeros_like(space.free), np.full(space.free.shape, np.inf, np.float32)
+            reached[space.free], distance_m[space.free] = known.reached, known.distance_m
+            self._targets[goal, floor_z_m] = Target(region, reached, distance_m)
         return self._targets[goal, floor_z_m]
 
     def target_now(self, goal: str, floor_z_m: float = 0.0) -> Target:
@@ -227,9 +252,19 @@ class GroundTruth:
         world = self.world
         if floor_z_m not in self._surroundings:
             self._surroundings[floor_z_m] = Surroundings.of(
-                world.model, self._at_rest, world.labels, sight_height_m=self._sight_height_m, floor_z_m=floor_z_m
+                world.model,
+                self._at_rest,
+                world.labels,
+                sight_height_m=self._sight_height_m,
+                floor_z_m=floor_z_m,
+                key=world.key,
             )
         return self._surroundings[floor_z_m]
+
+    def _key_of(self, *parts: object) -> str | None:
+        """Returns the key under which a result for the state of the house file is kept."""
+        world = self.world
+        return world.key and key_of(world.key, self.success, self._sight_height_m, *parts)
 
     def _existing(self, region: GoalRegion) -> GoalRegion:
         """Returns the region; raises EpisodeError if no storey of the house has an instance."""

@@ -21,6 +21,7 @@ from msgspec import UNSET, Meta, UnsetType
 from msgspec.structs import replace as replace_fields
 
 from sim.core.goals import GoalKind
+from sim.core.interface import MAX_STEPS
 from sim.core.reading import Count, Metres, Name, Number, Seed
 from sim.robot.config import MotionKind
 
@@ -109,7 +110,7 @@ class GoalMetrics(StopTarget, frozen=True, kw_only=True):
     ]
     first_seen_step: Count | None
     """None: no frame showed the goal."""
-    steps_to_first_sight: Annotated[Count | None, Metric("steps to first sight", digits=0)]
+    steps_to_first_sight: Annotated[Count | None, Metric("steps to first sight", digits=0, most=float(MAX_STEPS))]
     """The step limit where no frame showed the goal: the mean is the restricted mean time to first sight."""
     area_seen_m2: Annotated[Number | None, Metric("area seen", "m2")]
     area_per_metre: Annotated[Number | None, Metric("area per metre", "m2/m", digits=2)]
@@ -164,6 +165,24 @@ class EpisodeMetrics(GoalMetrics, frozen=True, kw_only=True, omit_defaults=True)
         return super().as_info() | own | {"goals": [goal.as_info() for goal in self.goals]}
 
 
+class ModelUse(msgspec.Struct, frozen=True, kw_only=True):
+    """What an agent asked of a model over HTTP in an episode."""
+
+    model: Name
+    questions: Count
+    """Questions with a valid reply."""
+    failed_questions: Count
+    """Questions without one; the agent decided itself."""
+    prompt_tokens: Count
+    completion_tokens: Count
+    cost: Number | None
+    """In the currency of the prices that the run states; None: it states none."""
+    wait_s: Number | None
+    """Time of the questions; None in the scores of a recorded trajectory."""
+    fell_back_step: Count | None
+    """Step from which the agent decided alone after too many failures; None: it asked until the end."""
+
+
 class RolloutResult(EpisodeMetrics, frozen=True, kw_only=True, omit_defaults=True):
     """The metrics at the end of an episode, and what its run adds."""
 
@@ -175,6 +194,8 @@ class RolloutResult(EpisodeMetrics, frozen=True, kw_only=True, omit_defaults=Tru
     steps_per_s: Number | None = None
     error: str | None = None
     """Reason why the episode ended with an error."""
+    model_use: ModelUse | UnsetType = UNSET
+    """Set if the agent asks a model."""
 
     @property
     def is_error(self) -> bool:
@@ -183,7 +204,9 @@ class RolloutResult(EpisodeMetrics, frozen=True, kw_only=True, omit_defaults=Tru
 
     def without_times(self) -> Self:
         """Returns the part that is equal in two runs of the same episode."""
-        return msgspec.structs.replace(self, wall_time_s=None, steps_per_s=None)
+        use = self.model_use
+        use = use if use is UNSET else msgspec.structs.replace(use, wait_s=None)
+        return msgspec.structs.replace(self, wall_time_s=None, steps_per_s=None, model_use=use)
 
 
 Isolation = bool | Literal["namespace"]

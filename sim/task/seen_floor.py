@@ -9,6 +9,7 @@ cell. A lower floor that is visible through a stairwell shows no cell, because t
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,7 +94,7 @@ class SeenFloor:
         return np.minimum(rows, height - 1), np.minimum(cols, width - 1)
 
 
-def floor_cells(frame: GridFrame, floors: list[ConvexPolygon] | None) -> tuple[GridFrame, NDArray[np.bool_]]:
+def floor_cells(frame: GridFrame, floors: Sequence[ConvexPolygon] | None) -> tuple[GridFrame, NDArray[np.bool_]]:
     """Returns a grid of `CELL_M` that covers another grid, and the mask (rows, cols) of its cells that are floor.
 
     Args:

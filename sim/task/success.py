@@ -14,12 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.core.geometry.convex import ConvexPolygon, lines_blocked, polygon_from_above
+from sim.core.geometry.convex import ConvexPolygon, PolygonTable, lines_blocked, polygon_from_above
 from sim.core.interface import MPCAT40_ID, SuccessRule
+from sim.core.store import kept, key_of
 from sim.gl import mujoco
-from sim.houses.geoms import geom_polytope, geoms_between, mesh_triangles
+from sim.houses.geoms import geom_polytope, geoms_between, is_hollow, mesh_triangles
 from sim.houses.labels import Instance, Labels, rendered_geoms
-from sim.task.footprints import Footprint, Footprints, house_floors, is_hollow
+from sim.task.footprints import Floor, Footprint, Footprints, house_floors
 from sim.world.freespace import FreeSpace
 
 SIGHT_BLOCKERS = ("wall", "door", "window")
@@ -42,6 +43,7 @@ class Surroundings:
         *,
         sight_height_m: float,
         floor_z_m: float = 0.0,
+        key: str | None = None,
     ) -> Surroundings:
         """Returns the surroundings of one storey; kinematics of `data` must be computed.
 
@@ -51,9 +53,16 @@ class Surroundings:
             labels: category and instance of each geom.
             sight_height_m: height of the line of sight above the floor.
             floor_z_m: height of the storey's floor.
+            key: names the world and its state; the result is then kept in the user's cache (`sim.core.store`).
         """
-        blockers = sight_blockers(model, data, labels, floor_z_m + sight_height_m)
-        return cls(Footprints(model, house_floors(model, data, labels)), blockers)
+
+        def make() -> tuple[tuple[Floor, ...], PolygonTable]:
+            blockers = sight_blockers(model, data, labels, floor_z_m + sight_height_m)
+            return house_floors(model, data, labels), PolygonTable.of(blockers)
+
+        parts = None if key is None else key_of("surroundings", key, sight_height_m, floor_z_m)
+        floors, blockers = kept(parts, tuple[tuple[Floor, ...], PolygonTable], make)
+        return cls(Footprints(model, floors), blockers.polygons)
 
 
 class GoalRegion:

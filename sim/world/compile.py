@@ -7,15 +7,20 @@ is compiled again. Geoms keep their names; an unnamed geom is named after its in
 
 from __future__ import annotations
 
-from dataclasses import replace
+import hashlib
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.core.errors import HouseError
 from sim.core.interface import MPCAT40_ID
+from sim.core.reading import read_bytes
+from sim.core.store import kept, key_of
 from sim.gl import mujoco
 from sim.houses.house import House, Room, read_rooms
 from sim.houses.labels import COVER_MASK, Instance, Labels, read_labels
+from sim.houses.references import add_files
 from sim.robot.body import FLOOR_MASK, MOVABLE_MASK, PREFIX, STATIC_MASK
 from sim.robot.config import RobotConfig
 from sim.robot.mounting import robot_spec
@@ -23,12 +28,57 @@ from sim.robot.mounting import robot_spec
 _FLOOR = MPCAT40_ID["floor"]
 
 
-def compile_world(house: House, config: RobotConfig) -> tuple[mujoco.MjModel, Labels, tuple[Room, ...]]:
+_MODEL_FILE = "world.mjb"
+
+
+@dataclass(frozen=True)
+class _Compiled:
+    """The compiled model of a house with a robot in MuJoCo's binary form, its labels and its rooms."""
+
+    model: NDArray[np.uint8]  # (bytes,)
+    labels: Labels
+    rooms: tuple[Room, ...]
+
+
+def world_key(house: House, config: RobotConfig) -> str | None:
+    """Returns the key under which all that depends on a house with a robot alone is kept; None: it is not kept."""
+    if house.checksum is None:
+        return None
+    digest = hashlib.sha256()
+    if config.file is not None:
+        digest.update(read_bytes(config.file.path, what="Robot", error=HouseError))
+        add_files(digest, config.file.path, config.file.root)
+    return key_of("world", house.checksum, config, digest.hexdigest())
+
+
+def compile_world(
+    house: House, config: RobotConfig, *, key: str | None = None
+) -> tuple[mujoco.MjModel, Labels, tuple[Room, ...]]:
     """Returns the compiled model of a house with a robot, its labels and its rooms. `house.spec` is not changed.
+
+    Args:
+        house: the house.
+        config: the robot.
+        key: `world_key` of both; the result is then kept in the user's cache (`sim.core.store`).
 
     Raises:
         HouseError: a visible geom has no label, or the house cannot be compiled, alone or with a robot.
     """
+    made: list[mujoco.MjModel] = []
+
+    def make() -> _Compiled:
+        model, labels, rooms = _compiled_world(house, config)
+        made.append(model)
+        content = np.empty(mujoco.mj_sizeModel(model), np.uint8)
+        mujoco.mj_saveModel(model, None, content)
+        return _Compiled(content, labels, rooms)
+
+    world = kept(key, _Compiled, make)
+    model = made[0] if made else mujoco.MjModel.from_binary_path(_MODEL_FILE, {_MODEL_FILE: world.model.tobytes()})
+    return model, world.labels, world.rooms
+
+
+def _compiled_world(house: House, config: RobotConfig) -> tuple[mujoco.MjModel, Labels, tuple[Room, ...]]:
     spec = house.spec.copy()
     spec.compiler.discardvisual = False  # visual geoms belong to the house
     spec.compiler.settotalmass = -1.0  # would scale the robot as well

@@ -10,17 +10,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.errors import HouseError
-from sim.core.geometry.convex import ConvexPolygon
+from sim.core.geometry.convex import ConvexPolygon, PolygonTable
 from sim.core.geometry.convex_kernels import clear_near, mark_inside
 from sim.core.geometry.fast_marching import distances
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import RobotModel, SuccessRule
+from sim.core.store import kept, key_of
 from sim.gl import mujoco
 from sim.houses.house import Room
 from sim.houses.labels import Labels
@@ -40,6 +42,21 @@ _RIM_POINTS = 32
 """Points on the rim of the disc that the exact test looks for a floor at."""
 
 
+@dataclass(frozen=True)
+class Storey:
+    """The geometry of one storey in plan."""
+
+    obstacles: PolygonTable
+    unpushed: PolygonTable
+    """Door leaves that the robot must push, as they are."""
+    floors: PolygonTable | None
+    """None: an infinite plane."""
+    extent: PolygonTable
+    """Covers the storey."""
+    frame: GridFrame
+    free: NDArray[np.bool_]  # (rows, cols) on `frame`
+
+
 class FreeSpace:
     """The free space of one storey of one world, for the state in which it was made.
 
@@ -56,6 +73,7 @@ class FreeSpace:
         robot: RobotModel | None = None,
         rule: SuccessRule | None = None,
         floor_z_m: float = 0.0,
+        key: str | None = None,
     ) -> None:
         """Computes the free space of the storey with its floor at `floor_z_m`.
 
@@ -67,44 +85,59 @@ class FreeSpace:
             robot: its radius, height and clearance count; the default robot when None.
             rule: says how far apart storeys are; the default rule when None.
             floor_z_m: height of the storey's floor.
+            key: names the world and its state; the result is then kept in the user's cache (`sim.core.store`).
         """
         robot, rule = robot or RobotModel(), rule or SuccessRule()
         self.radius_m = robot.radius_m
         self.floor_z_m = floor_z_m
-        opened, leaves = pushed_open(model, data, labels, robot.radius_m)
-        self._obstacles = obstacle_polygons(model, opened, labels, robot, floor_z_m)
-        heights_m = (floor_z_m + robot.climb_m, floor_z_m + robot.height_m)
-        self._unpushed = polygons_between(model, data, np.array(leaves, np.int64), heights_m) if leaves else []
-        self._floors = floor_polygons(model, data, labels, floor_z_m)
-        rooms = tuple(room for room in rooms if abs(room.floor_z_m - floor_z_m) < rule.same_storey_m)
-        self._extent = house_extent(model, data, labels, rooms, self._floors, self._obstacles)
-        self.frame = _frame_around(self._extent)
-        self.free: NDArray[np.bool_] = self._free_cells(rooms)  # (rows, cols)
+
+        def make() -> Storey:
+            opened, leaves = pushed_open(model, data, labels, robot.radius_m)
+            obstacles = obstacle_polygons(model, opened, labels, robot, floor_z_m)
+            heights_m = (floor_z_m + robot.climb_m, floor_z_m + robot.height_m)
+            unpushed = polygons_between(model, data, np.array(leaves, np.int64), heights_m) if leaves else []
+            floors = floor_polygons(model, data, labels, floor_z_m)
+            near = tuple(room for room in rooms if abs(room.floor_z_m - floor_z_m) < rule.same_storey_m)
+            extent = house_extent(model, data, labels, near, floors, obstacles)
+            frame = _frame_around(extent)
+            free = _free_cells(frame, extent, floors, obstacles, near, robot.radius_m)
+            table = PolygonTable.of
+            on = None if floors is None else table(floors)
+            return Storey(table(obstacles), table(unpushed), on, table(extent), frame, free)
+
+        parts = None if key is None else key_of("storey", key, robot, rule, floor_z_m)
+        self._storey = kept(parts, Storey, make)
+        self.frame, self.free = self._storey.frame, self._storey.free
 
     @property
     def obstacles(self) -> tuple[ConvexPolygon, ...]:
         """Plan projections of the geoms that are obstacles for the robot."""
-        return tuple(self._obstacles)
+        return self._storey.obstacles.polygons
+
+    @property
+    def floors(self) -> tuple[ConvexPolygon, ...] | None:
+        """Plan projections of the floors; None: an infinite plane."""
+        return None if self._storey.floors is None else self._storey.floors.polygons
 
     def is_free(self, x_m: float, y_m: float) -> bool:
         """Returns whether the disc fits at exactly this position."""
         here = np.array([[x_m, y_m]], dtype=np.float64)
-        if not _covers(self._extent, here) or not self._stands_on_floor(x_m, y_m):
+        if not _covers(self._storey.extent.polygons, here) or not self._stands_on_floor(x_m, y_m):
             return False
         return self.clearance(x_m, y_m, at_most_m=self.radius_m) >= self.radius_m
 
     def _stands_on_floor(self, x_m: float, y_m: float) -> bool:
         """Returns whether the floors carry the whole disc at exactly this position; seams are ignored."""
-        if self._floors is None:
+        if self.floors is None:
             return True
         angles = np.linspace(0.0, 2.0 * np.pi, _RIM_POINTS, endpoint=False)
         rim = np.array([[x_m, y_m]]) + self.radius_m * np.stack([np.cos(angles), np.sin(angles)], axis=1)
         carried = {step: np.zeros(_RIM_POINTS, dtype=np.bool_) for step in _SEAM_STEPS}
-        for polygon in self._floors:
+        for polygon in self.floors:
             for step, places in carried.items():
                 places |= polygon.contains(rim + np.array(step))
         here, east, west, north, south = carried.values()
-        return _covers(self._floors, np.array([[x_m, y_m]])) and bool((here | (east & west) | (north & south)).all())
+        return _covers(self.floors, np.array([[x_m, y_m]])) and bool((here | (east & west) | (north & south)).all())
 
     def largest_part(self) -> NDArray[np.bool_]:
         """Returns the mask (rows, cols) of the largest connected part of the free space.
@@ -112,9 +145,9 @@ class FreeSpace:
         Places that only a leaf connects to it which the robot would have to pull are not part of it.
         """
         free = self.free
-        if self._unpushed:
+        if unpushed := self._storey.unpushed.polygons:
             free = free.copy()
-            self._clear_near(free, self._unpushed)
+            _clear_near(self.frame, free, unpushed, self.radius_m)
         _, parts, stats, _ = cv2.connectedComponentsWithStats(free.astype(np.uint8), connectivity=4)
         areas = stats[1:, cv2.CC_STAT_AREA]
         return np.asarray(parts) == 1 + int(areas.argmax()) if areas.size else np.zeros_like(self.free)
@@ -123,7 +156,7 @@ class FreeSpace:
         """Returns the distance in metres in plan to the nearest obstacle, at most `at_most_m`."""
         here = np.array([[x_m, y_m]], dtype=np.float64)
         nearest = at_most_m
-        for polygon in self._obstacles:
+        for polygon in self.obstacles:
             x0, y0, x1, y1 = polygon.bounds_m
             if max(x0 - x_m, x_m - x1, y0 - y_m, y_m - y1) < nearest:
                 nearest = min(nearest, float(polygon.distance(here)[0]))
@@ -167,41 +200,52 @@ class FreeSpace:
                 return float(total.min())
         return math.inf
 
-    def _free_cells(self, rooms: tuple[Room, ...]) -> NDArray[np.bool_]:
-        """Returns the mask (rows, cols) of free cells; with rooms, only those connected to the inside of a room."""
-        free = self._covered(self._extent)
-        if self._floors is not None:
-            free &= self._away_from_edges(self._covered(self._floors))
-        self._clear_near(free, self._obstacles)
-        if not rooms:
-            return free
-        inside = self._covered([rectangle for room in rooms for rectangle in room_rectangles(room)])
-        return connected_to(free, free & inside)
 
-    def _clear_near(self, free: NDArray[np.bool_], obstacles: Iterable[ConvexPolygon]) -> None:
-        """Clears the cells of a mask (rows, cols) at which the robot's disc would touch an obstacle."""
-        x, y = self.frame.axes()
-        for polygon in obstacles:
-            rows, cols = self.frame.index_of(polygon.bounds_m, self.radius_m)
-            shape = (polygon.vertices_m, polygon.normals, polygon.offsets_m)
-            clear_near(free[rows, cols], x[cols], y[rows], *shape, self.radius_m)
+def _free_cells(
+    frame: GridFrame,
+    extent: list[ConvexPolygon],
+    floors: list[ConvexPolygon] | None,
+    obstacles: list[ConvexPolygon],
+    rooms: tuple[Room, ...],
+    radius_m: float,
+) -> NDArray[np.bool_]:
+    """Returns the mask (rows, cols) of free cells; with rooms, only those connected to the inside of a room."""
+    free = _covered(frame, extent)
+    if floors is not None:
+        free &= _away_from_edges(frame, _covered(frame, floors), radius_m)
+    _clear_near(frame, free, obstacles, radius_m)
+    if not rooms:
+        return free
+    inside = _covered(frame, [rectangle for room in rooms for rectangle in room_rectangles(room)])
+    return connected_to(free, free & inside)
 
-    def _away_from_edges(self, floor: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Returns a mask (rows, cols) of the cells with their disc on the floor; seams and the grid's border count."""
-        if floor.all():
-            return floor
-        seam, disc = (_disc(round(length_m / self.frame.cell_m)) for length_m in (0.5 * SEAM_M, self.radius_m))
-        whole = cv2.morphologyEx(floor.astype(np.uint8), cv2.MORPH_CLOSE, seam)
-        return floor & (cv2.erode(whole, disc, borderType=cv2.BORDER_CONSTANT, borderValue=1) > 0)
 
-    def _covered(self, polygons: Iterable[ConvexPolygon]) -> NDArray[np.bool_]:
-        """Returns the mask (rows, cols) of cells with their centre in a polygon."""
-        covered = np.zeros(self.frame.shape, dtype=np.bool_)
-        for polygon in polygons:
-            window = self.frame.index_of(polygon.bounds_m)
-            x, y = self.frame.axes(window)
-            mark_inside(covered[window], x, y, polygon.normals, polygon.offsets_m)
-        return covered
+def _clear_near(frame: GridFrame, free: NDArray[np.bool_], obstacles: Iterable[ConvexPolygon], radius_m: float) -> None:
+    """Clears the cells of a mask (rows, cols) at which the robot's disc would touch an obstacle."""
+    x, y = frame.axes()
+    for polygon in obstacles:
+        rows, cols = frame.index_of(polygon.bounds_m, radius_m)
+        shape = (polygon.vertices_m, polygon.normals, polygon.offsets_m)
+        clear_near(free[rows, cols], x[cols], y[rows], *shape, radius_m)
+
+
+def _away_from_edges(frame: GridFrame, floor: NDArray[np.bool_], radius_m: float) -> NDArray[np.bool_]:
+    """Returns a mask (rows, cols) of the cells with their disc on the floor; seams and the grid's border count."""
+    if floor.all():
+        return floor
+    seam, disc = (_disc(round(length_m / frame.cell_m)) for length_m in (0.5 * SEAM_M, radius_m))
+    whole = cv2.morphologyEx(floor.astype(np.uint8), cv2.MORPH_CLOSE, seam)
+    return floor & (cv2.erode(whole, disc, borderType=cv2.BORDER_CONSTANT, borderValue=1) > 0)
+
+
+def _covered(frame: GridFrame, polygons: Iterable[ConvexPolygon]) -> NDArray[np.bool_]:
+    """Returns the mask (rows, cols) of cells with their centre in a polygon."""
+    covered = np.zeros(frame.shape, dtype=np.bool_)
+    for polygon in polygons:
+        window = frame.index_of(polygon.bounds_m)
+        x, y = frame.axes(window)
+        mark_inside(covered[window], x, y, polygon.normals, polygon.offsets_m)
+    return covered
 
 
 _SEAM_STEPS = tuple((0.5 * SEAM_M * x, 0.5 * SEAM_M * y) for x, y in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)))

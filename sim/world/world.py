@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from sim.core.errors import ConfigError, EpisodeError, PhysicsError
-from sim.core.geometry.pose import BodyPose, Pose
-from sim.core.interface import Action, SuccessRule
+from sim.core.geometry.pose import BodyPose, Pose, with_view
+from sim.core.interface import LOOK_RAD, MAX_TILT_RAD, Action, CameraModel, SuccessRule
 from sim.gl import mujoco
 from sim.houses.glass import clear_panes, picture_panes
 from sim.houses.house import House
@@ -21,7 +21,7 @@ from sim.robot.contacts import ContactLog
 from sim.robot.drive import Driver, Motion
 from sim.robot.odometry import Odometry
 from sim.robot.velocity import Velocity, VelocityDrive
-from sim.world.compile import compile_world
+from sim.world.compile import compile_world, world_key
 from sim.world.freespace import FreeSpace
 from sim.world.kinematic import Glide, performed
 from sim.world.storeys import floor_geoms, floor_levels
@@ -53,7 +53,9 @@ class World:
         self.config = robot or RobotConfig()
         self.robot = self.config.model
         self.rule = rule or SuccessRule()
-        self.model, self.labels, self.rooms = compile_world(house, self.config)
+        self.key = world_key(house, self.config)
+        """Names the house and the robot in the user's cache (`sim.core.store`); None: they are not files."""
+        self.model, self.labels, self.rooms = compile_world(house, self.config, key=self.key)
         self.data = mujoco.MjData(self.model)
         self.glass = picture_panes(self.model, self.labels) | clear_panes(self.model, self.labels)
         """(ngeom,) True for panes of windows."""
@@ -71,6 +73,10 @@ class World:
         self._stood_at_m = 0.0  # the height of the body when it was last upright after a motion
         self._start, self._conditions = Pose(0.0, 0.0, 0.0), NOMINAL
         self._glides: dict[float, Glide] = {}
+        self.tilt_rad = 0.0
+        """Tilt of the camera; positive: up."""
+        self.camera_height_m = CameraModel().height_m
+        """The camera tilts about this point on its axis above the floor."""
 
     @property
     def pose(self) -> Pose:
@@ -91,12 +97,18 @@ class World:
 
     @property
     def camera_pose(self) -> BodyPose:
-        """The body's pose, moved ahead along its own axis to the point that is below an upright robot's camera."""
+        """The body's pose, moved ahead along its own axis to the point that is below an upright robot's camera.
+
+        With a tilt, it is the pose of a body that leans so that the camera on its axis has the tilted view.
+        """
         pose, ahead_m = self.body_pose, self.config.camera_forward_m
-        if ahead_m == 0.0:
+        if ahead_m != 0.0:
+            x_m, y_m, z_m = pose.point(ahead_m, 0.0, 0.0).tolist()
+            pose = replace(pose, x_m=x_m, y_m=y_m, rise_m=z_m - pose.floor_z_m)
+        if self.tilt_rad == 0.0:
             return pose
-        x_m, y_m, z_m = pose.point(ahead_m, 0.0, 0.0).tolist()
-        return replace(pose, x_m=x_m, y_m=y_m, rise_m=z_m - pose.floor_z_m)
+        tilted = BodyPose(0.0, 0.0, 0.0, pitch_rad=-self.tilt_rad).axes @ pose.axes
+        return with_view(pose, pose.point(0.0, 0.0, self.camera_height_m), tilted, self.camera_height_m)
 
     def reset(self, start: Pose, conditions: Conditions = NOMINAL) -> None:
         """Restores the state of the house's file, applies `conditions`, and puts the robot at rest at `start`.
@@ -110,7 +122,8 @@ class World:
         self.put(start)
 
     def restore(self) -> None:
-        """Restores the state of the house's file; the robot is then at the origin."""
+        """Restores the state of the house's file; the robot is then at the origin, its camera level."""
+        self.tilt_rad = 0.0
         mujoco.mj_resetData(self.model, self.data)
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
@@ -135,7 +148,7 @@ class World:
         self._velocity_drive.reset(self._conditions)
 
     def move(self, action: Action) -> Motion:
-        """Performs one action in physics, from rest to rest. STOP is a motion of zero.
+        """Performs one action in physics, from rest to rest. STOP and a look are motions of zero.
 
         `fell` of the motion is True when the robot is lower than before by more than a step, or when its centre of mass
         has left the hull of its supported wheels and casters: it has driven over an edge. A planar base cannot tip; it
@@ -144,6 +157,10 @@ class World:
         Raises:
             PhysicsError: NaN, an unstable state, or a robot that tipped over without an edge.
         """
+        if action in (Action.LOOK_UP, Action.LOOK_DOWN):
+            turned = self.tilt_rad + (LOOK_RAD if action == Action.LOOK_UP else -LOOK_RAD)
+            self.tilt_rad = max(-MAX_TILT_RAD, min(MAX_TILT_RAD, turned))
+            return replace(self.move(Action.STOP), action=Action(action))
         if not self._has_physics:
             return self._glide(Action(action))
         z_before = self._body.z_m

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float32, Int, UInt8
 
 from sim.core.geometry.pose import Pose, wrap_angle
-from sim.core.interface import FORWARD_M, GOAL_CATEGORIES, MAX_STEPS, MPCAT40, MPCAT40_ID, TURN_RAD, Action
+from sim.core.interface import FORWARD_M, GOAL_CATEGORIES, MAX_STEPS, MOVES, MPCAT40, MPCAT40_ID, TURN_RAD, Action
 
 WIDTH_PX, HEIGHT_PX = 64, 48
 LEVELS = 255
@@ -18,7 +18,7 @@ FAR_M = 5.0
 MOTION = ("ahead", "left", "cos", "sin", "moved ahead", "moved left", "turned", "steps done")
 """Position (in units of 10 m) and heading relative to the start; the last motion in units of the commanded motion; the
 share of the steps that were made."""
-NO_ACTION = len(Action)
+NO_ACTION = len(MOVES)
 """Value for the missing action before the first one."""
 GOAL_IDS = np.array([MPCAT40_ID[name] for name in GOAL_CATEGORIES], np.uint8)
 """The mpcat40 id of each goal category."""

@@ -11,7 +11,7 @@ import torch
 from jaxtyping import Float, UInt8
 from torch import Tensor, nn
 
-from sim.core.interface import GOAL_CATEGORIES, MPCAT40, Action
+from sim.core.interface import GOAL_CATEGORIES, MOVES, MPCAT40
 from stubborn.baselines.cloned_input import GOAL_IDS, HEIGHT_PX, LEVELS, MOTION, NO_ACTION, WIDTH_PX
 from stubborn.network_files import Family
 
@@ -58,7 +58,7 @@ class ClonedNet(nn.Module):
         self.goal = nn.Embedding(len(GOAL_CATEGORIES), config.goal)
         self.before = nn.Embedding(NO_ACTION + 1, config.goal)
         self.memory = nn.GRU(config.hidden + 2 * config.goal + len(MOTION), config.hidden)
-        self.action = nn.Linear(config.hidden, len(Action))
+        self.action = nn.Linear(config.hidden, len(MOVES))
         self.register_buffer("goal_ids", torch.from_numpy(GOAL_IDS.astype("int64")), persistent=False)
 
     def forward(

@@ -57,6 +57,10 @@ class Seeker(Protocol):
         """Returns whether the candidate at a map cell, at which the robot looks, is the goal."""
         ...
 
+    def refuse(self, navmap: NavMap) -> None:
+        """Rejects the candidate that `judge` accepted last: another judge takes it for something else."""
+        ...
+
     def one_more_forward(self, navmap: NavMap, approach: Approach, pose: Pose) -> bool:
         """Returns whether to go one forward nearer before the STOP at an accepted candidate that the robot faces."""
         ...
@@ -279,9 +283,23 @@ class TargetSeeker:
             row, col = divmod(best, view.frame.shape[1])
             self.accepted_cell = row + whole.rows.start, col + whole.cols.start
             return True
-        margin_cells = self.config.rejection_margin_m / navmap.frame.cell_m
-        view.rejected[distance_to(instance) <= margin_cells + 1e-3] = True
+        self._reject(view, instance)
         return False
+
+    def refuse(self, navmap: NavMap) -> None:
+        """See `Seeker`."""
+        if self.accepted_cell is None:
+            return
+        whole, parts = self._known(navmap), self.parts(navmap)
+        row, col = self.accepted_cell
+        number = parts.labels[row - whole.rows.start, col - whole.cols.start]
+        self._reject(navmap.view(whole), parts.labels == number)
+        self.confidence = self.accepted_cell = None
+
+    def _reject(self, view: NavMap, instance: Bool[np.ndarray, "rows cols"]) -> None:
+        """Marks the cells of a candidate, and those around them, as rejected for the rest of the episode."""
+        margin_cells = self.config.rejection_margin_m / view.frame.cell_m
+        view.rejected[distance_to(instance) <= margin_cells + 1e-3] = True
 
     def _rated(self, features: Features) -> float:
         """Returns the probability of a candidate by the verifier, else its highest score."""

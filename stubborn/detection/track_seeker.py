@@ -122,6 +122,8 @@ class TrackSeeker:
         """See `Seeker`: the probability of the track."""
         self.accepted_cell: tuple[int, int] | None = None
         """See `Seeker`."""
+        self._judged = 0  # the track that `judge` accepted last
+        self._refused: set[int] = set()  # tracks that another judge took for something else
         self._drawn_rejected: set[int] = set()  # rejected tracks that the map shows
         self._accepted: list[int] = []  # accepted tracks that are not set aside
         self._targets: list[int] = []  # those that are approached
@@ -169,6 +171,9 @@ class TrackSeeker:
         if learns:
             self._learn_attributes(posteriors, observation, objects, pose)
         self.probability = self._probabilities(self.tracks, wish)
+        if self._refused:
+            self._refused = set(self.tracks.now()[list(self._refused)].tolist())
+            self.probability[list(self._refused)] = 0.0
         if self._decide(pose):
             navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
 
@@ -291,7 +296,7 @@ class TrackSeeker:
                 self.verdicts.give_up(track)
                 self._accepted.remove(track)
                 return False
-            self.confidence = float(self.probability[track])
+            self.confidence, self._judged = float(self.probability[track]), track
             self.accepted_cell = self._best_cell(navmap, track)
             return True
         if self.pursued is not None:
@@ -299,6 +304,17 @@ class TrackSeeker:
             self._note_hidden(self.pursued)
             self.pursued = None
         return False
+
+    def refuse(self, navmap: NavMap) -> None:
+        """See `Seeker`: the track, and those that may be parts of it, count no longer in this episode."""
+        if self.accepted_cell is None:
+            return
+        for track in self._with_parts([self._judged]):
+            self._refused.add(track)
+            self.probability[track] = 0.0
+            self.verdicts.give_up(track)
+        self._accepted = [track for track in self._accepted if track not in self._refused]
+        self.confidence = self.accepted_cell = None
 
     def one_more_forward(self, navmap: NavMap, approach: Approach, pose: Pose) -> bool:
         """See `Seeker`: True at most once, if the candidate is not near enough and the path is free."""

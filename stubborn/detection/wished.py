@@ -25,6 +25,7 @@ from sim.core.interface import (
     Segmenter,
     SegmenterSpec,
     SegmentsPictures,
+    TakesWords,
 )
 from sim.core.wishes import Wish, parse_wish
 from stubborn.detection.pictured import PictureGoal, one_hot
@@ -70,6 +71,9 @@ class WishedSegmenter:
             categories = self.wish.categories
             self.category = next((name for name in categories if name in GOAL_CATEGORIES), categories[0])
             self._channels = np.array([MPCAT40_ID[name] - 1 for name in categories])
+        if isinstance(self._segmenter, TakesWords):
+            wish = self.wish
+            self._segmenter.ask(*(("", frozenset()) if wish is None else (wish.noun, wish.names)))
 
     def show(self, picture: UInt8[np.ndarray, "h w 3"]) -> None:
         """Sets the goal to the object in the middle of a picture."""

@@ -57,7 +57,7 @@ def draw_map(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False) -
         edge_cells = min(max(known.shape), min(agent.navmap.frame.shape))
         window = agent.navmap.frame.window_at(float(x_m.mean()), float(y_m.mean()), edge_cells)
     view = agent.navmap.view(window)
-    canvas = Canvas(_paint_layers(view, agent.config.mapping.candidate_score), view.frame, size_px)
+    canvas = Canvas(paint_layers(view, agent.config.mapping.candidate_score), view.frame, size_px)
     _draw_intention(canvas, agent, pose)
     canvas.robot(pose, agent.robot.radius_m)
     caption = f"{agent.goal}, step {agent.step}"
@@ -91,7 +91,7 @@ class AgentMapPainter:
         self._grow(pose)
         cells = round(self._side_m / agent.config.cell_m)
         view = agent.navmap.view(agent.navmap.frame.window_at(*self._middle_m, cells))
-        canvas = Canvas(_paint_layers(view, agent.config.mapping.candidate_score), view.frame, size_px)
+        canvas = Canvas(paint_layers(view, agent.config.mapping.candidate_score), view.frame, size_px)
         if self.show_route:
             _draw_intention(canvas, agent, pose)
         canvas.robot(pose, agent.robot.radius_m)
@@ -173,7 +173,7 @@ def _draw_intention(canvas: Canvas, agent: StubbornAgent, pose: Pose) -> None:
         canvas.ring((float(x_m), float(y_m)), CANDIDATE)
 
 
-def _paint_layers(view: NavMap, candidate_score: float) -> NDArray[np.uint8]:
+def paint_layers(view: NavMap, candidate_score: float) -> NDArray[np.uint8]:
     """Returns one pixel per cell, (rows, cols, 3); later layers cover earlier ones."""
     image = np.full((*view.frame.shape, 3), UNKNOWN, np.uint8)
     target = view.score_max > candidate_score

@@ -14,6 +14,7 @@ from __future__ import annotations
 import functools
 import itertools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -37,6 +38,11 @@ from stubborn.planning.planner import Goal
 
 _INSPECTED_GAP_M = 0.2
 """Ground within this distance of inspected ground is inspected too: distant floor is seen with gaps."""
+
+
+Chooser = Callable[[Ground, Float64[np.ndarray, "stops 2"], int], int]
+"""Chooses one of several stops, instead of the tour: map and pose, the middle of each stop (x and y in metres), and the
+number of the stop that the tour would choose. Returns the number of a stop."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,6 +154,12 @@ class _Stop:
     cols: Int[np.ndarray, " n"]
     weight: float
 
+    def middle_xy_m(self, known: Frontiers) -> tuple[float, float]:
+        """Returns the place of the cell nearest to the mean of all cells."""
+        off_cells = np.hypot(self.rows - self.rows.mean(), self.cols - self.cols.mean())
+        x_m, y_m = known.free.frame.centres(*(int(cells[off_cells.argmin()]) for cells in (self.rows, self.cols)))
+        return float(x_m), float(y_m)
+
 
 class _Paths:
     """Path lengths in the free space, on blocks of cells, which is exact enough to order the stops."""
@@ -191,6 +203,8 @@ class TourExplorer:
     def __init__(self, config: TourConfig, camera: CameraModel) -> None:
         self.config = config
         self.glancer = Glancer(config.glance, camera)
+        self.chooser: Chooser | None = None
+        """Chooses among the stops; None: the tour does."""
         self.reset()
 
     def reset(self, seed: int = 0) -> None:
@@ -301,7 +315,10 @@ class TourExplorer:
             if not stops:
                 self._goal = None
                 return None
-            stop = stops[self._first(known, paths, stops, pose)]
+            number = self._first(known, paths, stops, pose)
+            if self.chooser is not None and len(stops) > 1:
+                number = self.chooser(ground, np.array([stop.middle_xy_m(known) for stop in stops]), number)
+            stop = stops[number]
             cells = np.zeros(known.free.frame.shape, np.bool_)
             cells[stop.rows, stop.cols] = True
             route = yield Goal(known.free, cells)

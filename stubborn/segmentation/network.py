@@ -10,7 +10,7 @@ import torch
 from jaxtyping import Float, Float32, UInt8
 from torch import Tensor
 
-from sim.core.interface import CameraModel, ConfigError, Observation, Scores, SegmenterSpec, category_id
+from sim.core.interface import CameraModel, ConfigError, Observation, Scores, SegmenterSpec, scores_of
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.inputs import INPUTS
@@ -127,12 +127,7 @@ class NetworkSegmenter:
         Raises:
             ConfigError: the goal is not a category of the network.
         """
-        channel = category_id(goal) - 1
-        posteriors = self.posteriors(observation)
-        others = np.maximum(
-            posteriors[:channel].max(axis=0, initial=0.0), posteriors[channel + 1 :].max(axis=0, initial=0.0)
-        )
-        return Scores(posteriors[channel].copy(), others)
+        return scores_of(self.posteriors(observation), goal)
 
     def posteriors(self, observation: Observation) -> Float32[np.ndarray, "classes rows cols"]:
         """Returns the probability of each mpcat40 category except void, in their order, at the resolution of `scores`.

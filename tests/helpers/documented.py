@@ -285,6 +285,21 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         ),
         Only("tests/sim/app/services runs servers and clients"),
     ),
+    "stubborn views --split train --views 400 --out runs/views_train": (
+        "stubborn views --split train --views 4 --views-per-shard 4 --out {tmp}/views",
+    ),
+    "stubborn evaluate --views runs/views_train --semantics http://localhost:8320 --config detector.form=coco"
+    " --calibration server.json": Only("tests/sim/app/commands/test_evaluate.py calibrates a server"),
+    # docs/models.md
+    f"{_RUN} --agent vlm --config agent.url=http://localhost:11434/v1 agent.model=qwen2.5vl:7b"
+    " agent.cache=runs/replies": Only("tests/sim/app/services/vlm runs the agent with a scripted server"),
+    # docs/lerobot.md
+    f"{_RUN} --agent stubborn-plus --episodes 200 --record --workers 2 --out runs/plus": (
+        f"{_RUN} --agent stubborn-plus {_SMALL} --episodes 1 --record --workers 1 --out {{tmp}}/plus",
+    ),
+    "stubborn export lerobot runs/plus --out runs/plus_lerobot --only-success": Only(
+        "needs pyarrow; tests/sim/app/bridges/test_lerobot.py exports runs"
+    ),
     # docs/tables/splits.md
     f"{PYTHON} -m tools.maintenance.split_report --workers 2 --published --out splits.md": (
         f"{PYTHON} -m tools.maintenance.split_report --splits hazards --episodes 2 --workers 1 --published --out "

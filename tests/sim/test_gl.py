@@ -74,3 +74,13 @@ def test_a_limit_of_memory_is_named_where_opengl_does_not_start() -> None:
     )
     done = _run(code, MUJOCO_GL="egl")
     assert "(no memory). This process is limited to 4096 MB of memory" in done.stderr
+
+
+def test_a_renderer_of_the_user_works_if_mujoco_was_imported_first() -> None:
+    code = (
+        'import mujoco, sim.gl; model = mujoco.MjModel.from_xml_string(\'<mujoco><worldbody><geom size="1"/>'
+        "</worldbody></mujoco>'); r = mujoco.Renderer(model, 8, 8); data = mujoco.MjData(model);"
+        "mujoco.mj_forward(model, data); r.update_scene(data); print(r.render().shape)"
+    )
+    done = _run(code)
+    assert done.stdout == "(8, 8, 3)\n", done.stderr

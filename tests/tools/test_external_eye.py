@@ -15,9 +15,20 @@ import pytest
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import CameraModel
+from sim.core.pictures import decode_picture
 from sim.gl import mujoco
 from tools.research import external_eye
-from tools.research.external_eye import FILES, SeenView, by_style, difference, missed, read_views, scores, write_sheets
+from tools.research.external_eye import (
+    FILES,
+    SeenView,
+    by_style,
+    difference,
+    false_detections,
+    missed,
+    read_views,
+    scores,
+    write_sheets,
+)
 from tools.research.external_eye_scores import (
     Detection,
     Truth,
@@ -133,11 +144,16 @@ def test_views_are_read_as_they_were_written(tmp_path: Path) -> None:
         read_views(tmp_path / "absent")
 
 
-def test_a_missed_object_is_on_a_sheet(tmp_path: Path) -> None:
-    view = SeenView("house", HERE, (CHAIR,), ())
-    assert missed(view) == [CHAIR]
-    write_sheets(tmp_path, [(CHAIR, np.zeros((480, 640, 3), np.uint8))])
-    assert [file.name for file in tmp_path.iterdir()] == ["missed_chair.png"]
+def test_missed_objects_and_false_detections_are_listed_and_drawn(tmp_path: Path) -> None:
+    bed, doubtful = Detection("bed", SEEN.box, 0.3), replace(SEEN, score=0.2)
+    view = SeenView("house", HERE, (CHAIR,), (bed, doubtful))
+    assert missed(view) == []
+    assert false_detections(view) == [bed]
+    assert missed(replace(view, detections=(bed,))) == [CHAIR]
+    write_sheets(tmp_path, {"missed_dining table": [np.full((4, 4, 3), 9, np.uint8)] * 7})
+    (file,) = tmp_path.iterdir()
+    assert file.name == "missed_dining_table.png"
+    assert decode_picture(file.read_bytes(), where="the sheet").shape == (8, 24, 3)
 
 
 def test_missing_packages_and_a_missing_node_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -23,8 +23,11 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from sim.app.commands.bench import PlainRenderer, free_poses, make_agent, make_env
+from sim.core.interface import MOVES as EVERY_MOVE
 from sim.core.interface import Action, CameraModel
+from sim.core.paths import CACHE_VARIABLE
 from sim.core.reading import read_text
+from sim.core.store import SIZE_VARIABLE
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.scene import Scene
 from sim.episodes.house_list import copy_textures
@@ -87,6 +90,22 @@ def test_first_step_in_a_new_house(benchmark: BenchmarkFixture) -> None:
     benchmark.pedantic(start, rounds=9, warmup_rounds=1)
 
 
+@pytest.mark.parametrize("state", ["first", "prepared"])
+def test_reset_to_another_house(
+    benchmark: BenchmarkFixture, state: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The reset to a house that is not loaded: computed, and from the cache of houses seen before."""
+    benchmark.group = "reset"
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    monkeypatch.setenv(SIZE_VARIABLE, "1000")
+    env = ObjectNavEnv(split="val", sensors=("depth",), camera=SMALL)
+    firsts = list({episode.house: episode for episode in env.split.episodes}.values())[:8]
+    for episode in firsts if state == "prepared" else ():
+        env.reset(options={"episode": episode})
+    episodes = iter(firsts)
+    benchmark.pedantic(lambda: env.reset(options={"episode": next(episodes)}), rounds=7, warmup_rounds=1)
+
+
 @pytest.mark.parametrize("profile", ["fast", "good"])
 def test_views(benchmark: BenchmarkFixture, tmp_path: Path, profile: str) -> None:
     """A shard of labelled views, as `stubborn views` writes it."""
@@ -128,7 +147,7 @@ def test_learning_with_resets(benchmark: BenchmarkFixture, houses: int) -> None:
     env = ObjectNavEnv(split="val", houses=names, cached_houses=houses, sensors=("depth",), camera=SMALL)
     for episode in {(episode.house, episode.goal): episode for episode in env.split.episodes}.values():
         env.reset(options={"episode": episode})  # loads the house and computes the distances to the goal
-    benchmark.pedantic(_random_steps(env, tuple(Action)), rounds=400, warmup_rounds=2)
+    benchmark.pedantic(_random_steps(env, EVERY_MOVE), rounds=400, warmup_rounds=2)
 
 
 @pytest.mark.parametrize(("number", "mode"), [(1, "sync"), (2, "sync"), (1, "async"), (2, "async"), (4, "async")])

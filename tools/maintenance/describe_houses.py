@@ -20,9 +20,8 @@ from sim.app import cli
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.files import csv_text, write_together
 from sim.core.interface import GOAL_CATEGORIES, ConfigError, SuccessRule
-from sim.core.paths import assets_dir
+from sim.core.paths import CACHE_VARIABLE, assets_dir
 from sim.core.reading import read_bytes
-from sim.episodes.house_list import CACHE_VARIABLE
 from sim.episodes.splits import UNREACHABLE_FILE, Split, load_split, read_unreachable
 from sim.homes.housegen.splits.recipes import SPLITS as RECIPES
 from sim.homes.housegen.splits.recipes import Recipe

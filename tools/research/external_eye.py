@@ -8,7 +8,8 @@ The detector is the CenterNet of `@vladmandic/human` (80 classes of COCO), which
 visible box covers 1 % of the picture and at least half of their silhouette is visible. The table has precision and
 recall with 95 % intervals from a bootstrap over houses. `--like` renders the poses of an earlier run again, for example
 after a change of the furniture, and adds the paired difference of recall. `--aim` looks at objects of the eight
-categories from 1 to 3.5 m, which gives more of the rare ones. `sheets/` holds pictures of the objects that were missed.
+categories from 1 to 3.5 m, which gives more of the rare ones. `sheets/` holds pictures of the objects that were missed
+and of the detections that are false.
 """
 
 from __future__ import annotations
@@ -48,6 +49,7 @@ from sim.training.views.coco import bounding_box
 from sim.training.views.poses import mixed_poses
 from sim.training.views.views import is_bare, start_world
 from tools.research.external_eye_scores import (
+    Box,
     Detection,
     Truth,
     match,
@@ -82,6 +84,7 @@ FILES = ("node_modules/@vladmandic/human/models/centernet.json", "node_modules/@
          "node_modules/@tensorflow/tfjs-backend-wasm/package.json")  # fmt: skip
 TILES, TILE_PX = (6, 4), 240
 """Columns and rows of a sheet, and the side of a tile."""
+Tile = NDArray[np.uint8]
 VIEWS_FILE = "views.json"
 _TRIES = 40
 
@@ -125,14 +128,19 @@ class SeenView:
 def main(args: Args) -> int:
     """Renders the views, runs the detector, writes the results and prints the table; returns the exit status."""
     earlier = None if args.like is None else read_views(args.like)
-    views, crops = [], []
+    views, tiles = [], collections.defaultdict[str, list[Tile]](list)
     known = None if earlier is None else {view.house for view in earlier}
     with Detector(args.detector) as detector:
         for house, scene, styles in _scenes(args, known):
             for pose, image, truths in _labelled(args, scene, house, styles, earlier):
                 view = SeenView(house, pose, truths, tuple(detector.detect(image)))
                 views.append(view)
-                crops += [(truth, image) for truth in missed(view)]
+                for truth in missed(view):
+                    text = f"{truth.style or truth.name} {truth.visible_share:.2f}"
+                    tiles[f"missed_{truth.category}"].append(_tile(image, truth.box, text))
+                for found in false_detections(view):
+                    text = f"{found.category} {found.score:.2f}"
+                    tiles[f"false_{found.category}"].append(_tile(image, found.box, text))
             print(f"{house}: {len(views)} views", file=sys.stderr, flush=True)
     args.out.mkdir(parents=True, exist_ok=True)
     write_atomically(args.out / VIEWS_FILE, json.dumps([asdict(view) for view in views]).encode())
@@ -141,7 +149,7 @@ def main(args: Args) -> int:
         rows = [row | difference(earlier, views, row["category"], row["score"]) for row in rows]
     tables = {"classes": rows, "styles": [row for score in SCORES for row in by_style(views, score)]}
     write_atomically(args.out / "table.json", (json.dumps(tables, indent=1) + "\n").encode())
-    write_sheets(args.out / "sheets", crops)
+    write_sheets(args.out / "sheets", tiles)
     _print(rows)
     return 0
 
@@ -360,6 +368,13 @@ def missed(view: SeenView) -> list[Truth]:
     return [truth for truth, hit in zip(view.truths, found, strict=True) if truth.counted and not hit]
 
 
+def false_detections(view: SeenView) -> list[Detection]:
+    """Returns the detections of a view that are false at the higher score."""
+    detections = [found for found in view.detections if found.score >= max(SCORES)]
+    _, right = match(view.truths, detections, ALIASES)
+    return [found for found, correct in zip(detections, right, strict=True) if correct is False]
+
+
 def read_views(folder: Path) -> list[SeenView]:
     """Returns the views of an earlier run.
 
@@ -369,26 +384,23 @@ def read_views(folder: Path) -> list[SeenView]:
     return read_json(folder / VIEWS_FILE, list[SeenView], what="Views of an earlier run")
 
 
-def write_sheets(folder: Path, crops: Sequence[tuple[Truth, NDArray[np.uint8]]]) -> None:
-    """Writes a sheet `missed_<class>.png` for each class: the largest missed objects with their surroundings."""
+def write_sheets(folder: Path, tiles: Mapping[str, Sequence[Tile]]) -> None:
+    """Writes a sheet NAME.png for each name, of tiles that are spread over all views."""
     folder.mkdir(parents=True, exist_ok=True)
-    for category in CLASSES.values():
-        tiles = [_tile(truth, image) for truth, image in crops if truth.category == category]
-        if not tiles:
-            continue
-        columns, rows = TILES
-        spread = np.linspace(0, len(tiles) - 1, min(columns * rows, len(tiles))).round().astype(int)
-        some = [tiles[i] for i in spread]
+    columns, rows = TILES
+    for name, of_name in tiles.items():
+        spread = np.linspace(0, len(of_name) - 1, min(columns * rows, len(of_name))).round().astype(int)
+        some = [of_name[i] for i in spread]
         some += [np.zeros_like(some[0])] * (-len(some) % columns)
         sheet = np.concatenate([np.concatenate(some[i : i + columns], 1) for i in range(0, len(some), columns)])
         encoded = cv2.imencode(".png", sheet[..., ::-1])[1]
-        write_atomically(folder / f"missed_{category.replace(' ', '_')}.png", encoded.tobytes())
+        write_atomically(folder / f"{name.replace(' ', '_')}.png", encoded.tobytes())
 
 
-def _tile(truth: Truth, image: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Returns a square part of a view around an object, with its box, its style and its visible share."""
+def _tile(image: NDArray[np.uint8], box: Box, text: str) -> Tile:
+    """Returns a square part of a view around a box, with the box and a text."""
     height, width = image.shape[:2]
-    x0, y0, x1, y1 = truth.box
+    x0, y0, x1, y1 = box
     side = int(min(max(1.5 * max(x1 - x0, y1 - y0), 120), height))
     left = int(np.clip(0.5 * (x0 + x1 - side), 0, width - side))
     top = int(np.clip(0.5 * (y0 + y1 - side), 0, height - side))
@@ -397,7 +409,6 @@ def _tile(truth: Truth, image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     low = int((x0 - left) * scale), int((y0 - top) * scale)
     high = int((x1 - left) * scale) - 1, int((y1 - top) * scale) - 1
     cv2.rectangle(tile, low, high, (255, 0, 0), 1)
-    text = f"{truth.style or truth.name} {truth.visible_share:.2f}"
     cv2.putText(tile, text, (3, TILE_PX - 5), cv2.FONT_HERSHEY_SIMPLEX, 0.42, (255, 255, 0), 1, cv2.LINE_AA)
     return np.asarray(tile, np.uint8)
 

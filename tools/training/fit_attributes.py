@@ -126,7 +126,7 @@ def _fit_pictures(alike: Sequence[tuple[float, float]], same: Sequence[bool]) ->
     from sklearn.model_selection import cross_val_predict
 
     fitted = LogisticRegression(C=10.0).fit(alike, same)
-    right = (cross_val_predict(fitted, alike, same, cv=5) == np.array(same)).mean()
+    right = np.mean(np.asarray(cross_val_predict(fitted, alike, same, cv=5)) == np.array(same))
     print(f"pictures: {100 * right:.0f} % of {len(same)} pairs, {sum(same)} of the same object, cross-validated")
     return {"weights": np.round(fitted.coef_[0], 4).tolist(), "offset": round(float(fitted.intercept_[0]), 4)}
 

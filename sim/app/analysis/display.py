@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from sim.app.evaluation.summary import few_episodes
 from sim.core import invocation
 from sim.core.errors import debug
 from sim.core.reading import printable
@@ -153,7 +154,7 @@ def _success_cell(result: EpisodeResult) -> str:
 
 
 def _summary_table(summary: Mapping[str, Any]) -> Table:
-    caption = f"Intervals are over {summary['ci95_over']}."
+    caption = f"Intervals are over {summary['ci95_over']}. {few_episodes(summary['episodes'])}".rstrip()
     if spread := summary.get("replicates"):
         success, spl = (spread[metric]["std"] or 0.0 for metric in ("success", "spl"))
         caption += f" Standard deviation over replicates: success {success:.3f}, SPL {spl:.3f}."

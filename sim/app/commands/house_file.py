@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim.core.errors import ConfigError
+from sim.episodes.splits import labels_of
 from sim.houses.house import House
 from sim.houses.load import load_house
 
@@ -29,4 +30,4 @@ class HouseFile:
     def load(self) -> House:
         """Returns the house of --house."""
         assert self.house is not None
-        return load_house(self.house, labels_path=self.labels, root=self.root)
+        return load_house(self.house, labels_path=self.labels or labels_of(self.house.parent), root=self.root)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import importlib
-import importlib.metadata
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -51,6 +50,7 @@ COMMANDS: Mapping[str, Command] = {
     "serve detectors": Command(
         "sim.app.commands.serve.detectors", "Serve detectors in the forms of VLFM's model servers"
     ),
+    "export lerobot": Command("sim.app.commands.export.lerobot", "Write a recorded run as a LeRobot dataset"),
     "gallery": Command("sim.app.commands.gallery", "Render pictures of houses and sheets of furniture"),
     "houses generate": Command("sim.app.commands.houses.generate", "Generate houses"),
     "houses check": Command("sim.app.commands.houses.check", "Check houses for faults"),
@@ -103,9 +103,9 @@ REPLACED: Mapping[str, str] = {"teleop": "web"}
 def entry(argv: Sequence[str] | None = None) -> int:
     """Runs the command line of `stubborn`; returns its exit status."""
     if argv is None:
-        from sim.app import cli
-
-        return cli.leave_soon(entry(sys.argv[1:]))
+        status = entry(sys.argv[1:])
+        cli = sys.modules.get("sim.app.cli")  # a list of commands needs no parser of options, and starts no thread
+        return status if cli is None else cli.leave_soon(status)
     words = list(argv)
     name, rest = split(words)
     is_word = bool(rest) and not rest[0].startswith("-")
@@ -115,6 +115,8 @@ def entry(argv: Sequence[str] | None = None) -> int:
         print(_text_of_list())
         return 0
     if words == ["--version"]:
+        import importlib.metadata
+
         print(importlib.metadata.version("stubborn-objectnav"))
         return 0
     if name and (not rest or rest[0] in ("-h", "--help")):

@@ -18,6 +18,7 @@ from sim.app.composition.imports import import_attribute
 from sim.app.evaluation.own_code import place_of, text_of
 from sim.app.evaluation.watch import FACTORY_S, is_stop, marked
 from sim.app.options import HABITAT, is_process
+from sim.app.services.vlm import agent as vlm
 from sim.core.errors import AgentError, ConfigError, ObjectNavError, did_you_mean
 from sim.core.interface import Agent, AgentFactory, AgentSpec, CameraModel, RobotModel, Segmenter, SuccessRule
 from sim.core.paths import assets_dir
@@ -42,6 +43,7 @@ def _make_oracle(*, truth: ObjectNavEnv, **_: object) -> Agent:
 SPECS: Mapping[str, AgentSpec] = MappingProxyType(
     {
         **agents.SPECS,
+        "vlm": vlm.SPEC,
         "oracle": AgentSpec(
             make=_make_oracle,
             description="follows the true shortest path; an upper bound",

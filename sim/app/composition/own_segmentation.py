@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import numpy as np
@@ -16,13 +16,13 @@ from sim.app.evaluation.watch import is_stop
 from sim.core.errors import AgentError, ConfigError, ObjectNavError
 from sim.core.interface import (
     MPCAT40,
-    MPCAT40_ID,
     POSE_SENSORS,
     CameraModel,
     Observation,
     Scores,
     SegmentationSpec,
     SegmenterSpec,
+    scores_of,
 )
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ class OwnSegmenter:
 
     def __init__(self, name: str, segmenter: Any, spec: SegmenterSpec, camera: CameraModel) -> None:
         self.spec = spec
-        self._name, self._inner = name, segmenter
+        self._name, self.inner = name, segmenter
         self._methods = {name for name in _METHODS if callable(getattr(segmenter, name, None))}
         self._shape = camera.height_px, camera.width_px
         names = [sensor if isinstance(sensor, str) else sensor.name for sensor in spec.sensors]
@@ -133,6 +133,26 @@ class OwnSegmenter:
         """
         return self._once(observation, "categories", lambda seen: self._categories(observation, seen))
 
+    def objects(self, observation: Observation) -> tuple[NDArray[np.int32], Sequence[str]] | None:
+        """Returns the objects that the user's segmenter tells apart; None: it has no such method, or sees none.
+
+        Raises:
+            AgentError: the user's code failed, or returned other types or numbers.
+        """
+        if not callable(getattr(self.inner, "objects", None)):
+            return None
+        return self._once(observation, "objects", self._objects)
+
+    def ask(self, word: str, names: frozenset[str]) -> None:
+        """Gives the words of the goal to a segmenter that takes them; see `sim.core.interface.TakesWords`.
+
+        Raises:
+            AgentError: the user's code failed.
+        """
+        if callable(getattr(self.inner, "ask", None)):
+            self._arrays = ()  # the same frame may look different now
+            self._ask("ask", lambda: self.inner.ask(word, names))
+
     def _once(self, observation: Observation, key: str, compute: Callable[[Observation], T]) -> T:
         """Returns a result of a frame; it is computed at the first request, from the sensors that are declared."""
         arrays = tuple(observation.values())
@@ -146,7 +166,7 @@ class OwnSegmenter:
     def _scores(self, observation: Observation, seen: Observation, goal: str) -> Scores:
         if "scores" not in self._methods:
             return scores_of(self.posteriors(observation), goal)
-        scores = self._ask("scores", lambda: tuple(np.asarray(score) for score in self._inner.scores(seen, goal)))
+        scores = self._ask("scores", lambda: tuple(np.asarray(score) for score in self.inner.scores(seen, goal)))
         if len(scores) != 2 or scores[0].shape != scores[1].shape:
             shapes = ", ".join(str(score.shape) for score in scores)
             self._refuse("scores", f"arrays of shapes {shapes}; it returns Scores(target, best_other), both (h, w)")
@@ -158,7 +178,7 @@ class OwnSegmenter:
             raise AgentError(
                 f"Segmentation '{self._name}' has no method posteriors, which this agent reads in addition to scores."
             )
-        posteriors = self._ask("posteriors", lambda: np.asarray(self._inner.posteriors(seen)))
+        posteriors = self._ask("posteriors", lambda: np.asarray(self.inner.posteriors(seen)))
         return self._checked("posteriors", posteriors, (len(MPCAT40) - 1,))
 
     def _categories(self, observation: Observation, seen: Observation) -> NDArray[np.uint8] | None:
@@ -168,11 +188,21 @@ class OwnSegmenter:
             posteriors = self.posteriors(observation)
             named = (posteriors.argmax(axis=0) + 1).astype(np.uint8)
             return np.where(posteriors.max(axis=0) > 0.0, named, np.uint8(0))
-        categories = self._ask("categories", lambda: np.asarray(self._inner.categories(seen)))
+        categories = self._ask("categories", lambda: np.asarray(self.inner.categories(seen)))
         self._require_shape("categories", categories, ())
         if categories.dtype.kind not in "iu" or not 0 <= categories.min() <= categories.max() < len(MPCAT40):
             self._refuse("categories", f"an array of {categories.dtype}; it holds mpcat40 ids, integers from 0 to 40")
         return categories.astype(np.uint8)
+
+    def _objects(self, seen: Observation) -> tuple[NDArray[np.int32], Sequence[str]] | None:
+        found = self._ask("objects", lambda: self.inner.objects(seen))
+        if found is None:
+            return None
+        image, names = self._ask("objects", lambda: (np.asarray(found[0]), [str(name) for name in found[1]]))
+        self._require_shape("objects", image, ())
+        if image.dtype.kind not in "iu" or not -1 <= int(image.min()) <= int(image.max()) < len(names):
+            self._refuse("objects", f"an array of {image.dtype}; it holds numbers of the {len(names)} names, -1: none")
+        return image.astype(np.int32), names
 
     def _checked(self, method: str, array: NDArray, before: tuple[int, ...]) -> NDArray[np.float32]:
         """Returns an array (*before, h, w) as float32 after a check of shape and range."""
@@ -208,12 +238,3 @@ class OwnSegmenter:
 
     def _refuse(self, method: str, what: str) -> NoReturn:
         raise AgentError(f"Segmentation '{self._name}': {method} returned {what}.")
-
-
-def scores_of(posteriors: NDArray[np.float32], goal: str) -> Scores:
-    """Returns the scores of a goal category, (h, w) each, from posteriors (40, h, w)."""
-    channel = MPCAT40_ID[goal] - 1
-    others = np.maximum(
-        posteriors[:channel].max(axis=0, initial=0.0), posteriors[channel + 1 :].max(axis=0, initial=0.0)
-    )
-    return Scores(posteriors[channel].copy(), others)

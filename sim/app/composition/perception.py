@@ -23,6 +23,7 @@ from sim.core.interface import (
     SegmenterSpec,
     SegmentsPictures,
     StatesSegmentation,
+    TakesWords,
 )
 
 
@@ -66,6 +67,11 @@ class AskedSegmenter:
     def picture_categories(self) -> NDArray[np.uint8] | None:
         """Returns what the picture of the goal shows; None: the segmenter does not know it."""
         return self._inner.picture_categories() if isinstance(self._inner, SegmentsPictures) else None
+
+    def ask(self, word: str, names: frozenset[str]) -> None:
+        """Forwards the words of the goal to a segmenter that takes them."""
+        if isinstance(self._inner, TakesWords):
+            self._inner.ask(word, names)
 
     def perceived(self, observation: Observation, goal: str) -> Perceived | None:
         """Returns scores and categories of a frame; None if the agent did not call the segmenter for it."""

@@ -72,7 +72,7 @@ def _checksums(setup: Setup) -> dict[str, str]:
     if config.verification.parameters is not None:
         checksums["verifier"] = file_sha256(config.verification.parameters)
     if setup.options.robot is not None:
-        checksums["robot"] = robot_sha256(setup.options.robot)
+        checksums["robot"] = robot_sha256(setup.options.robot, root=setup.options.root)
     return checksums | {name: file_sha256(file) for name, file in _files_in(config.agent, "agent")}
 
 

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from safetensors import SafetensorError, safe_open
 
 from sim.app.composition.own_segmentation import load_specification, make_own
-from sim.app.services.remote import HttpConfig, HttpSegmenter, is_address
+from sim.app.services.client import is_address
+from sim.app.services.remote import HttpConfig, HttpSegmenter
 from sim.core.configuration import as_json
 from sim.core.errors import AgentError, ConfigError, did_you_mean
 from sim.core.interface import CameraModel, Observation, Scores, SegmentationSpec, Segmenter, SegmenterSpec

@@ -27,14 +27,17 @@ from sim.app.viewers import selection
 from sim.core.configuration import parse_assignments, read_settings, with_absolute_paths, with_fields
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
-from sim.core.interface import GOAL_CATEGORIES, TRUE_IMAGES, AgentSpec, CameraModel, SegmenterSpec
+from sim.core.interface import GOAL_CATEGORIES, TRUE_IMAGES, AgentSpec, CameraModel, SegmenterSpec, reads_truth
 from sim.core.invocation import command
 from sim.core.reading import printable
 from sim.episodes.habitat import IndexFile
 from sim.episodes.splits import Split, read_index
+from sim.houses.references import require_root
+from sim.renderer.mounted import CameraConfig
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
-from sim.robot.foreign import load_robot
+from sim.robot.foreign import load_robot, robot_cameras
+from sim.sensors.cameras import camera_sensors, cameras_by_name
 from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.scan import ScanConfig
 from sim.sensors.sensor import Sensor
@@ -82,6 +85,8 @@ class RunConfig:
     camera: Annotated[CameraModel, WORLD]
     sensors: tuple[str, ...]
     """Sensors in the agent's observation, by name: those that agent and segmentation declare."""
+    cameras: Annotated[Mapping[str, CameraConfig], WORLD]
+    """Further cameras by name, `cameras.left.yaw_deg=60`; their images are `left_rgb`, `left_depth`, ..."""
     scan: Annotated[ScanConfig, WORLD]
     """The lidar of the sensor `scan`."""
     profile: Annotated[RenderProfile, WORLD]
@@ -147,7 +152,7 @@ class Setup:
         if not isinstance(self.agent.config, BridgeConfig):
             return self.agent
         sensors = self.config.sensors
-        return replace(self.agent, sensors=sensors, uses_ground_truth="semantic" in sensors)
+        return replace(self.agent, sensors=sensors, uses_ground_truth=any(map(reads_truth, sensors)))
 
     @property
     def sensors(self) -> tuple[str | Sensor, ...]:
@@ -222,7 +227,9 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
     settings |= parse_assignments(options.config)
     config = with_fields(_presets(options, spec, segmentation), settings)
     verification, verifier = _verified(segmentation.spec, config.verification)
-    config = replace(config, verification=verification)
+    keys = (sensor.name for sensor in camera_sensors(config.cameras))
+    sensors = tuple(dict.fromkeys((*config.sensors, *keys)))
+    config = replace(config, verification=verification, sensors=sensors)
     setup = Setup(
         options=options,
         agent=spec,
@@ -257,8 +264,11 @@ def _received(content: bytes) -> Setup:
 
 def _check(options: RunOptions) -> None:
     """Raises ConfigError if options contradict each other or are out of range."""
-    if options.house is None and any(value is not None for value in (options.labels, options.root, options.start_deg)):
-        raise ConfigError("--labels, --root and --start-deg need --house.")
+    if options.house is None and any(value is not None for value in (options.labels, options.start_deg)):
+        raise ConfigError("--labels and --start-deg need --house.")
+    if options.root is not None and options.house is None and options.robot is None:
+        raise ConfigError("--root needs --house or --robot: a file that may use this folder, too.")
+    require_root(options.root)
     if options.only and options.house is not None:
         raise ConfigError("--only names episodes of a split; with --house, episodes are sampled.")
     if options.retry_errors and options.out is None:
@@ -299,7 +309,9 @@ def _start_pose(start_deg: str | None) -> Pose | None:
 
 def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind) -> RunConfig:
     """Returns the configuration tree before the user's settings."""
-    robot, camera = (RobotConfig(), CameraModel()) if options.robot is None else load_robot(options.robot)
+    robot, camera = (
+        (RobotConfig(), CameraModel()) if options.robot is None else load_robot(options.robot, root=options.root)
+    )
     return RunConfig(
         agent=_agent_config(options, spec),
         detector=detector_config(segmentation, options.weights),
@@ -307,6 +319,7 @@ def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKin
         robot=replace(robot, motion=options.motion),
         camera=camera,
         sensors=_sensor_names(spec, segmentation, _for_goals(options, spec)),
+        cameras={} if options.robot is None else cameras_by_name(robot_cameras(options.robot)),
         scan=ScanConfig(),
         profile=get_profile(options.profile),
         noise=get_noise(options.noise),
@@ -366,9 +379,10 @@ def _check_sensors(setup: Setup) -> None:
             f"--semantics '{options.semantics}': the sensor 'semantic' is ground truth; declare truth=('semantic',), "
             "and read it in the environment that the factory gets as `truth`."
         )
-    if "semantic" in sensors and not spec.uses_ground_truth:
+    true = [name for name in sensors if reads_truth(name)]
+    if true and not spec.uses_ground_truth:
         raise ConfigError(
-            f"sensors: 'semantic' is ground truth, and agent '{options.agent}' does not declare uses_ground_truth."
+            f"sensors: '{true[0]}' is ground truth, and agent '{options.agent}' does not declare uses_ground_truth."
         )
 
 

@@ -4,9 +4,10 @@ Episodes in one house are similar, so they are not independent samples. The vari
 estimator over houses: with `r` the sum of a house's deviations from the mean, `H / (H - 1) * sum(r^2) / n^2` for H
 houses and n episodes (Cochran 1977, section 6.3). Student's t with H - 1 degrees of freedom gives the interval:
 
-- a value between 0 and 1, such as success or SPL: Wilson's interval with the effective number of episodes
-  `mean * (1 - mean) / variance` (Korn and Graubard 1998 do the same with Clopper and Pearson's). It stays within 0 and
-  1 and has a width where all episodes succeed: all of 100 episodes give [0.96, 1] or, in 20 houses, a little less;
+- a value with a largest one, such as success, SPL or a number of steps, as a share of it: Wilson's interval with the
+  effective number of episodes `mean * (1 - mean) / variance` (Korn and Graubard 1998 do the same with Clopper and
+  Pearson's). It stays within 0 and the largest value and has a width where all episodes succeed: all of 100 episodes
+  give [0.96, 1] or, in 20 houses, a little less;
 - an amount without an upper limit, such as collisions: on the logarithm of the mean;
 - a difference: around the mean. Of two values between 0 and 1, its variance is at least that of one changed episode,
   `1 / n^2`, because equal results in n episodes do not show that other episodes are equal.
@@ -34,6 +35,8 @@ from scipy.special import ndtr, stdtr, stdtrit
 Value = float | bool | None
 RESAMPLES = 2_000
 """Resamples of `ratio_of_medians`."""
+MIN_EPISODES = 30
+"""Intervals of fewer episodes are rough: they were tried with 70 and more."""
 MIN_PAIRS = 20
 """A difference with fewer pairs is never significant: intervals were tried with 50 episodes and more."""
 MAX_EFFECTIVE = 25.0
@@ -103,7 +106,7 @@ def estimate(
         values: 0 or more.
         houses: the house of each value.
         episodes: the episode of each value. Values of the same episode, its replicates, count once, with their mean.
-        most: the largest possible value, 1 or infinite.
+        most: the largest possible value, or infinite.
 
     Raises:
         ValueError: the arguments have different lengths.
@@ -112,7 +115,11 @@ def estimate(
     if not names:
         return Estimate(None, None, None, 0, 0)
     mean, error, clusters = _mean_and_error(numbers, names)
-    interval = _bounded(mean, error, clusters, len(names)) if most == 1.0 else _amount(mean, error, clusters)
+    if math.isfinite(most) and max(numbers) <= most:  # a limit of steps may have been raised above it
+        low, high = _bounded(mean / most, error / most, clusters, len(names))
+        interval = (low, high) if low is None or high is None else (low * most, high * most)
+    else:
+        interval = _amount(mean, error, clusters)
     return Estimate(mean, *interval, len(names), len(set(names)))
 
 

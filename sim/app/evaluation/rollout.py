@@ -12,16 +12,28 @@ from typing import Any, TypeVar
 
 import msgspec
 import numpy as np
+from msgspec import UNSET, UnsetType
 
 from sim.app.evaluation.own_code import MAX_CHARACTERS, one_line, place_of, text_of
 from sim.app.evaluation.watch import count_steps, is_stop, marked
 from sim.app.viewers.viewer import Moment, Viewer
 from sim.core.errors import AgentError, PhysicsError, debug
 from sim.core.geometry.pose import Pose
-from sim.core.interface import Action, Agent, KeepsMemory, Observation, StatesConfidence, StatesTarget
+from sim.core.interface import (
+    MOVES,
+    Action,
+    Agent,
+    KeepsMemory,
+    Observation,
+    StatesConfidence,
+    StatesModelUse,
+    StatesTarget,
+    as_action,
+)
+from sim.core.reading import convert
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
-from sim.task.result import EpisodeMetrics, RolloutResult, failed_metrics
+from sim.task.result import EpisodeMetrics, ModelUse, RolloutResult, failed_metrics
 from sim.task.trajectory import FARTHEST_M, Recording, trajectory_file, write_trajectory
 
 T = TypeVar("T")
@@ -108,7 +120,7 @@ class _RunningEpisode:
 
     def _decide(self) -> Action:
         where = f"Agent '{self.name}', step {self.steps + 1}"
-        action = next_action(self.agent, self.observation, where)
+        action = next_action(self.agent, self.observation, where, self.env.actions)
         if action is Action.STOP:
             self.confidence = confidence_of(self.agent, where)
             record_target(self.env, self.observation, target_of(self.agent, where))
@@ -136,9 +148,10 @@ class _RunningEpisode:
     def result(self, wall_time_s: float) -> RolloutResult:
         """Returns the result of the episode, which took some seconds."""
         rate = self.steps / wall_time_s if self.steps else 0.0
-        return rollout_result(
+        ended = rollout_result(
             self.env.scene.task.metrics(), self.error, self.confidence, round(wall_time_s, 3), round(rate, 2)
         )
+        return msgspec.structs.replace(ended, model_use=model_use_of(self.agent, self.name))
 
 
 def rollout_result(
@@ -191,18 +204,19 @@ def give_next_goal(agent: Agent, goal: str, seed: int, where: str) -> None:
         ask(where, lambda: agent.reset(goal, seed))
 
 
-def next_action(agent: Agent, observation: Observation, where: str) -> Action:
+def next_action(agent: Agent, observation: Observation, where: str, actions: Sequence[Action] = MOVES) -> Action:
     """Returns the agent's next action.
 
     Raises:
         AgentError: `act` failed, or returned something else; the message begins with `where`.
     """
     chosen = ask(where, lambda: agent.act(observation))
-    try:
-        return Action(chosen)
-    except (ValueError, TypeError):
-        actions = ", ".join(f"{action.value} {action.name}" for action in Action)
-        raise AgentError(f"{where}: act() returned {reprlib.repr(chosen)}; an action is one of {actions}.") from None
+    action = as_action(chosen)
+    if action is not None and action in actions:
+        return action
+    hint = "" if action is None else " `AgentSpec(looks=True)` allows to tilt the camera."
+    names = ", ".join(f"{action.value} {action.name}" for action in actions)
+    raise AgentError(f"{where}: act() returned {reprlib.repr(chosen)}; an action is one of {names}.{hint}")
 
 
 def confidence_of(agent: Agent, where: str) -> float | None:
@@ -221,6 +235,14 @@ def confidence_of(agent: Agent, where: str) -> float | None:
             f"{where}: stop_confidence() returned {reprlib.repr(confidence)}; it is a number in [0, 1], or None."
         )
     return round(float(confidence), 6)
+
+
+def model_use_of(agent: Agent, name: str) -> ModelUse | UnsetType:
+    """Returns what an agent asked of a model; UNSET if it does not state it, or states something else."""
+    if not isinstance(agent, StatesModelUse):
+        return UNSET
+    where = f"Agent '{name}', model_use"
+    return convert(ask(where, agent.model_use), ModelUse, where=where, error=AgentError)
 
 
 def target_of(agent: Agent, where: str) -> tuple[float, float] | None:

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from sim.app.evaluation.intervals import estimate, replicate_spread
+from sim.app.evaluation.intervals import MIN_EPISODES, estimate, replicate_spread
 from sim.episodes.replicates import episode_of, replicate_number
 from sim.task.result import METRICS, EpisodeResult, metrics_for
 
@@ -65,6 +65,13 @@ def _goals(results: Sequence[EpisodeResult]) -> dict[str, Any]:
             value = estimate(values, [result.house for result, _ in members], most=most)
             means[name][field] = {"mean": value.mean, "ci95": [value.low, value.high]}
     return {"goals": means}
+
+
+def few_episodes(count: int) -> str:
+    """Returns the warning of a summary of too few episodes; "" for enough."""
+    if not 0 < count < MIN_EPISODES:
+        return ""
+    return f"Warning: {count} episode{'s' * (count > 1)}; with fewer than {MIN_EPISODES}, intervals are rough."
 
 
 def _replicates(results: Sequence[EpisodeResult], episodes: Sequence[str]) -> dict[str, Any]:

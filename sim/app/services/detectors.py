@@ -37,6 +37,8 @@ class Segment:
     score: float
     mask: NDArray[np.bool_]
     """(h, w)."""
+    phrase: str = ""
+    """The word of the service for it; "": it has none."""
 
     @functools.cached_property
     def box(self) -> tuple[float, float, float, float]:

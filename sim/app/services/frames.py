@@ -76,8 +76,9 @@ class Frame:
         Raises:
             ConfigError: the file is not one of `to_bytes`.
         """
+        stream = io.BytesIO(data)
         try:
-            with np.load(io.BytesIO(data), allow_pickle=False) as file:
+            with np.load(stream, allow_pickle=False) as file:
                 arrays = {name: file[name] for name in _ARRAYS}
                 others = json.loads(file["others"].tobytes())
             names, categories = tuple(map(str, others["names"])), tuple(map(str, others["categories"]))

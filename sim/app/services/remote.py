@@ -5,38 +5,33 @@ without loss, and the probabilities of all categories, so that a run has the res
 `vlfm` asks GroundingDINO for boxes and MobileSAM for the mask of each, as VLFM does. `coco` asks the address itself,
 with JSON {"image": base64 of a PNG, "words": [...]}; the reply is a list of annotations as COCO has them, each with
 `category` (a word), `score`, `bbox` (x, y, width, height, pixels) and, where there is a mask, `segmentation` (runs).
-
-Replies can be kept in a folder by the content of their requests. A run whose replies are all there needs no server.
+In the last two forms the words are the goal categories and, if the goal is in words, the word for the object.
 """
 
 from __future__ import annotations
 
 import base64
 import functools
-import hashlib
-import http.client
 import io
 import json
 import math
-import time
-import urllib.error
 import urllib.parse
-import urllib.request
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal, NamedTuple, TypeVar
 
 import cv2
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.app.services.client import JSON, Client, ServiceConfig
 from sim.app.services.detectors import Segment
 from sim.app.services.words import category_of
 from sim.core.configuration import as_json
-from sim.core.errors import AgentError, ConfigError
-from sim.core.files import write_together
+from sim.core.errors import ConfigError
 from sim.core.interface import (
     GOAL_CATEGORIES,
     MPCAT40,
@@ -45,58 +40,83 @@ from sim.core.interface import (
     Observation,
     Scores,
     SegmenterSpec,
-    category_id,
+    scores_of,
 )
-from sim.core.reading import parse_json, printable
+from sim.core.reading import Number, parse_json, printable, read_json
+from sim.core.vocabulary import vocabulary
 from sim.training.views.coco import decode_mask
 
 T = TypeVar("T")
 STRIDE_PX = 4
 """Edge of the image block of one posterior in the forms `vlfm` and `coco`."""
-MAX_BYTES = 1 << 28
-"""Longest reply."""
-WAIT_S = 0.5
-"""Time before a request is repeated."""
+_MIDDLE = slice(STRIDE_PX // 2, None, STRIDE_PX)
+_IS_STUFF = np.array([name in ("wall", "floor", "ceiling") for name in MPCAT40[1:]])
 VLFM_PORTS = {"gdino": 0, "mobile_sam": 2}
 """Ports of VLFM's servers after that of the first."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class HttpConfig:
+class HttpConfig(ServiceConfig):
     """How a server of detectors is asked."""
 
-    url: str
-    """Address, such as http://localhost:12181."""
     form: Literal["posteriors", "vlfm", "coco"] = "posteriors"
     """posteriors: that of `stubborn serve detectors`; vlfm: GroundingDINO at the port of `url`, MobileSAM two above;
     coco: annotations in JSON."""
-    timeout_s: float = 10.0
-    """Longest time of one request."""
-    retries: int = 2
-    """How often a request is repeated if there is no valid reply."""
-    cache: Path | None = None
-    """Folder in which replies are kept by the content of their requests; None: they are not kept."""
     box_threshold: float = 0.35
     """Least score of a detection in the forms `vlfm` and `coco`."""
+    words: bool = True
+    """In these forms the server is also asked for the words of the goal; False: it knows only categories, and a goal in
+    words is every object of its category."""
+    calibration: Path | None = None
+    """File of the calibration that `stubborn evaluate --calibration` fitted to this server; None: its scores count as
+    they are."""
 
     def __post_init__(self) -> None:
-        if not is_address(self.url):
-            raise ConfigError(f"HttpConfig.url must be http://HOST:PORT or https://HOST:PORT, got '{self.url}'.")
-        if not 0.0 < self.timeout_s < math.inf or self.retries < 0:
-            raise ConfigError(
-                f"HttpConfig needs timeout_s > 0 and retries >= 0, got {self.timeout_s} and {self.retries}."
-            )
+        super().__post_init__()
         if not 0.0 <= self.box_threshold <= 1.0:
             raise ConfigError(f"HttpConfig.box_threshold must lie in [0, 1], got {self.box_threshold}.")
 
 
-def is_address(semantics: str) -> bool:
-    """Returns whether a value of `--semantics` is the address of a server."""
-    try:
-        parts = urllib.parse.urlsplit(semantics)
-        return parts.scheme in ("http", "https") and bool(parts.hostname) and (parts.port or 1) > 0
-    except ValueError:
-        return False
+class LogitFactors(msgspec.Struct, frozen=True):
+    """A calibration as `stubborn.segmentation.calibration` fits and stores it, without PyTorch."""
+
+    scale: list[Number]
+    """Factor of the logarithm of each category's probability."""
+    offset: list[Number]
+
+    @classmethod
+    def read(cls, file: Path) -> LogitFactors:
+        """Returns the calibration in a file.
+
+        Raises:
+            ConfigError: there is no such file, or it is not a calibration of the 40 categories.
+        """
+        factors = read_json(file, cls, what="Calibration of a server")
+        if not len(factors.scale) == len(factors.offset) == len(MPCAT40) - 1:
+            raise ConfigError(f"'{file}' must have {len(MPCAT40) - 1} factors and offsets, one for each category.")
+        return factors
+
+    def applied(self, posteriors: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Returns the calibrated probabilities of (40, ...)."""
+        scale, offset = (np.array(values, np.float32) for values in (self.scale, self.offset))
+        logits = (logits_of(posteriors).T * scale + offset).T
+        odds = np.exp(logits - logits.max(axis=0))
+        return odds / odds.sum(axis=0)
+
+
+def logits_of(posteriors: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Returns the logarithms of probabilities, at least that of 1e-6."""
+    return np.log(np.maximum(posteriors, np.float32(1e-6)))
+
+
+class _Seen(NamedTuple):
+    """What a server saw in a frame."""
+
+    posteriors: NDArray[np.float32]
+    """(40, h, w)."""
+    objects: tuple[NDArray[np.int32], Sequence[str]] | None = None
+    """The detection of each pixel, -1: none, and the name of each; None: the form has no detections."""
+    segments: Sequence[Segment] = ()
 
 
 class HttpSegmenter:
@@ -105,14 +125,25 @@ class HttpSegmenter:
     Args:
         camera: gives field of view, height and range.
         config: how the server is asked.
+
+    Raises:
+        ConfigError: the file of the calibration cannot be read.
     """
 
     spec = SegmenterSpec(sensors=("rgb",))
 
     def __init__(self, camera: CameraModel, config: HttpConfig) -> None:
-        self._camera, self._config = camera, config
-        self._ask = {"posteriors": self._of_ours, "vlfm": self._of_vlfm, "coco": self._of_coco}[config.form]
-        self._last: tuple[NDArray[np.uint8], NDArray[np.float32]] | None = None
+        self._camera, self._config, self._client = camera, config, Client(config)
+        self._look = {"posteriors": self._by_ours, "vlfm": self._by_vlfm, "coco": self._by_coco}[config.form]
+        self._calibration = None if config.calibration is None else LogitFactors.read(config.calibration)
+        self.ask("", frozenset())
+
+    def ask(self, word: str, names: frozenset[str]) -> None:
+        """See `sim.core.interface.TakesWords`."""
+        words = [goal.replace("_", " ") for goal in GOAL_CATEGORIES]
+        self._words = [word, *words] if word and word not in words and self._config.words else words
+        self._names = names if self._config.words else frozenset()
+        self._last: tuple[NDArray[np.uint8], _Seen] | None = None
 
     def scores(self, observation: Observation, goal: str) -> Scores:
         """Returns the scores of one frame.
@@ -121,11 +152,7 @@ class HttpSegmenter:
             ConfigError: the goal is not a category of mpcat40.
             AgentError: the server gave no valid reply.
         """
-        channel, posteriors = category_id(goal) - 1, self.posteriors(observation)
-        others = np.maximum(
-            posteriors[:channel].max(axis=0, initial=0.0), posteriors[channel + 1 :].max(axis=0, initial=0.0)
-        )
-        return Scores(posteriors[channel].copy(), others)
+        return scores_of(self.posteriors(observation), goal)
 
     def posteriors(self, observation: Observation) -> NDArray[np.float32]:
         """Returns the probability of each category except void, float32 (40, h, w), at the server's resolution.
@@ -133,9 +160,15 @@ class HttpSegmenter:
         Raises:
             AgentError: the server gave no valid reply.
         """
-        if self._last is None or self._last[0] is not observation["rgb"]:
-            self._last = observation["rgb"], self._ask(observation["rgb"], observation["depth"])
-        return self._last[1]
+        return self._seen(observation).posteriors
+
+    def objects(self, observation: Observation) -> tuple[NDArray[np.int32], Sequence[str]] | None:
+        """See `sim.core.interface.SeesObjects`; None also where the goal is a category.
+
+        Raises:
+            AgentError: the server gave no valid reply.
+        """
+        return self._seen(observation).objects if self._names else None
 
     def categories(self, observation: Observation) -> NDArray[np.uint8]:
         """Returns the most probable mpcat40 id of each pixel; 0 where the server saw nothing."""
@@ -144,70 +177,84 @@ class HttpSegmenter:
         best[posteriors.max(axis=0) <= 1.0 / len(posteriors)] = 0
         return best
 
-    def _of_ours(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> NDArray[np.float32]:
-        body, rows_columns = view_bytes(rgb, depth, self._camera), rgb.shape[:2]
-        read = functools.partial(read_posteriors, shape=(rows_columns[0], rows_columns[1]))
-        return self._reply("/posteriors", body, "application/octet-stream", read)
+    def _seen(self, observation: Observation) -> _Seen:
+        if self._last is None or self._last[0] is not observation["rgb"]:
+            seen = self._look(observation["rgb"], observation["depth"])
+            if self._calibration is not None and seen.objects is None:
+                seen = seen._replace(posteriors=self._calibration.applied(seen.posteriors))
+            self._last = observation["rgb"], seen
+        return self._last[1]
 
-    def _of_vlfm(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> NDArray[np.float32]:
+    def _by_ours(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> _Seen:
+        read = functools.partial(read_posteriors, shape=(rgb.shape[0], rgb.shape[1]))
+        body = view_bytes(rgb, depth, self._camera)
+        return _Seen(self._client.ask(self._url("/posteriors"), body, "application/octet-stream", read))
+
+    def _by_vlfm(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> _Seen:
         del depth
         height, width = rgb.shape[:2]
         image = base64.b64encode(cv2.imencode(".png", rgb)[1].tobytes()).decode()
-        words = [goal.replace("_", " ") for goal in GOAL_CATEGORIES]
-        question = {"image": image, "caption": " . ".join(words) + " .", "box_threshold": self._config.box_threshold}
+        caption = " . ".join(self._words) + " ."
+        question = {"image": image, "caption": caption, "box_threshold": self._config.box_threshold}
         found, read = self._json("/gdino", question, read_boxes), functools.partial(read_mask, shape=(height, width))
         segments = []
         for box in found:
             if box.score >= self._config.box_threshold:
                 corners = (np.array(box.corners) * (width, height, width, height)).tolist()
                 mask = self._json("/mobile_sam", {"image": image, "bbox": corners}, read)
-                segments.append(Segment(category=box.category, score=box.score, mask=mask))
-        return painted(segments, (height, width))
+                segments.append(Segment(category=box.category, score=box.score, mask=mask, phrase=box.phrase))
+        return self._painted(segments, (height, width))
 
-    def _of_coco(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> NDArray[np.float32]:
+    def _by_coco(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> _Seen:
         del depth
         image = base64.b64encode(cv2.imencode(".png", rgb[..., ::-1])[1].tobytes()).decode()
-        words = [goal.replace("_", " ") for goal in GOAL_CATEGORIES]
         shape = rgb.shape[0], rgb.shape[1]
-        segments = self._json("", {"image": image, "words": words}, functools.partial(read_annotations, shape=shape))
-        return painted([one for one in segments if one.score >= self._config.box_threshold], shape)
+        read = functools.partial(read_annotations, shape=shape)
+        return self._painted(self._json("", {"image": image, "words": self._words}, read), shape)
 
-    def _json(self, path: str, question: dict[str, Any], read: Callable[[bytes], T]) -> T:
-        body = json.dumps(question, sort_keys=True).encode()
-        return self._reply(path, body, "application/json", read)
+    def _painted(self, segments: Sequence[Segment], shape: tuple[int, int]) -> _Seen:
+        """Returns the detections with a high enough score as posteriors and objects."""
+        shown = sorted((one for one in segments if one.score >= self._config.box_threshold), key=lambda one: one.score)
+        posteriors = painted(shown, shape, self._calibration)
+        numbers = np.full(posteriors.shape[1:], -1, np.int32)
+        for number, segment in enumerate(shown):
+            numbers[segment.mask[_MIDDLE, _MIDDLE]] = number
+        return _Seen(posteriors, (numbers, [self._name(segment.phrase) for segment in shown]), shown)
 
-    def _reply(self, path: str, body: bytes, kind: str, read: Callable[[bytes], T]) -> T:
-        """Returns the reply to a request, from the cache if it is there.
+    def samples(
+        self, observation: Observation, channels: NDArray[np.int64]
+    ) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+        """Returns what a calibration is fitted to: logarithms of probabilities (k, 40), and true channels (k,).
+
+        A sample is a detection, whose truth is the object category in the middle half of its box that covers a quarter
+        of it, or else what covers most. In the form `posteriors` a sample is a pixel.
 
         Args:
-            path: of the request.
-            body: of the request.
-            kind: media type of the body.
-            read: returns the value of a reply, or raises ConfigError if it is not valid.
+            observation: of a view.
+            channels: true channel of each pixel, (h, w); -1: void.
 
         Raises:
-            AgentError: there was no valid reply.
+            AgentError: the server gave no valid reply.
         """
-        kept = self._kept(path, body)
-        if kept is not None and kept.is_file():
-            try:
-                return read(kept.read_bytes())
-            except (ConfigError, OSError) as error:
-                raise AgentError(f"The cached reply '{kept}' cannot be used: {error}") from None
-        url, problem = self._url(path), ""
-        for attempt in range(self._config.retries + 1):
-            time.sleep(WAIT_S if attempt else 0.0)
-            try:
-                data = _post(url, body, kind, self._config.timeout_s)
-                value = read(data)
-            except ConfigError as error:
-                problem = str(error)
-                continue
-            if kept is not None:
-                kept.parent.mkdir(parents=True, exist_ok=True)
-                write_together({kept: data})
-            return value
-        raise AgentError(f"{url} gave no valid reply in {self._config.retries + 1} attempts: {problem}")
+        seen = self._seen(observation)
+        if seen.objects is None:
+            block = channels.shape[0] // seen.posteriors.shape[1]
+            logits = logits_of(seen.posteriors)[:, 2::8, 2::8].reshape(len(seen.posteriors), -1).T
+            truth = channels[block // 2 :: block, block // 2 :: block][2::8, 2::8].reshape(-1)
+        else:
+            logits = np.array([logits_of(vector_of(segment)) for segment in seen.segments]).reshape(
+                -1, len(MPCAT40) - 1
+            )
+            truth = np.array([_shown_in(segment, channels) for segment in seen.segments], np.int64)
+        return logits[truth >= 0], truth[truth >= 0]
+
+    def _name(self, phrase: str) -> str:
+        """Returns a name that the goal means if the goal means all that a phrase does; else the phrase."""
+        found = vocabulary().find(phrase)
+        return min(found.names) if found is not None and found.names <= self._names else phrase
+
+    def _json(self, path: str, question: dict[str, Any], read: Callable[[bytes], T]) -> T:
+        return self._client.ask(self._url(path), json.dumps(question, sort_keys=True).encode(), JSON, read)
 
     def _url(self, path: str) -> str:
         parts = urllib.parse.urlsplit(self._config.url)
@@ -216,44 +263,6 @@ class HttpSegmenter:
             host = f"[{parts.hostname}]" if ":" in (parts.hostname or "") else parts.hostname
             parts = parts._replace(netloc=f"{host}:{parts.port + offset}")
         return urllib.parse.urlunsplit(parts._replace(path=parts.path.rstrip("/") + path))
-
-    def _kept(self, path: str, body: bytes) -> Path | None:
-        """Returns the file of the reply to a request; None: replies are not kept."""
-        if self._config.cache is None:
-            return None
-        name = hashlib.sha256(self._url(path).encode() + b"\0" + body).hexdigest()
-        return self._config.cache / name[:2] / name
-
-
-def _post(url: str, body: bytes, kind: str, timeout_s: float) -> bytes:
-    """Returns the body of the reply to a POST request.
-
-    Raises:
-        ConfigError: there is no reply in time, it has another status than 200, or it is too long.
-    """
-    request = urllib.request.Request(url, body, {"Content-Type": kind}, method="POST")
-    deadline, parts, size = time.monotonic() + timeout_s, list[bytes](), 0
-    try:
-        with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(request, timeout=timeout_s) as reply:
-            announced = reply.headers.get("Content-Length")
-            while part := reply.read1(1 << 16):
-                parts.append(part)
-                size += len(part)
-                if size > MAX_BYTES:
-                    raise ConfigError(f"its reply is longer than {MAX_BYTES} bytes.")
-                if time.monotonic() > deadline:
-                    raise ConfigError(f"its reply took longer than {timeout_s:g} s.")
-    except urllib.error.HTTPError as error:
-        with error:
-            text = error.read(300).decode(errors="replace")
-        raise ConfigError(f"status {error.code}: {printable(' '.join(text.split()))[:200]}") from None
-    except (OSError, http.client.HTTPException) as error:
-        reason = getattr(error, "reason", error)
-        text = f"no reply in {timeout_s:g} s" if isinstance(reason, TimeoutError) else str(reason)
-        raise ConfigError(f"{printable(text)}.") from None
-    if announced is not None and announced.isdigit() and size != int(announced):
-        raise ConfigError(f"its reply ended after {size} of {announced} bytes.")
-    return b"".join(parts)
 
 
 def view_bytes(rgb: NDArray[np.uint8], depth: NDArray[np.float32], camera: CameraModel) -> bytes:
@@ -270,8 +279,9 @@ def read_view(data: bytes) -> tuple[NDArray[np.uint8], NDArray[np.float32], Came
     Raises:
         ConfigError: it is not one of `view_bytes`.
     """
+    stream = io.BytesIO(data)
     try:
-        with np.load(io.BytesIO(data), allow_pickle=False) as file:
+        with np.load(stream, allow_pickle=False) as file:
             rgb, depth = file["rgb"], file["depth"]
             camera = CameraModel(**json.loads(file["camera"].tobytes()))
     except (ValueError, KeyError, TypeError, OSError, EOFError, zipfile.BadZipFile) as error:
@@ -299,8 +309,9 @@ def read_posteriors(data: bytes, *, shape: tuple[int, int]) -> NDArray[np.float3
     Raises:
         ConfigError: they have another type, no whole fraction of the picture's size, or values outside of [0, 1].
     """
+    stream = io.BytesIO(data)
     try:
-        posteriors = np.load(io.BytesIO(data), allow_pickle=False)
+        posteriors = np.load(stream, allow_pickle=False)
     except (ValueError, OSError, EOFError) as error:
         raise ConfigError(f"its reply cannot be read as an NPY file: {printable(str(error))[:120]}.") from None
     if not isinstance(posteriors, np.ndarray) or posteriors.dtype != np.float32 or posteriors.ndim != 3:
@@ -314,23 +325,50 @@ def read_posteriors(data: bytes, *, shape: tuple[int, int]) -> NDArray[np.float3
     return posteriors
 
 
-def painted(segments: Sequence[Segment], shape: tuple[int, int]) -> NDArray[np.float32]:
+def painted(
+    segments: Sequence[Segment], shape: tuple[int, int], calibration: LogitFactors | None = None
+) -> NDArray[np.float32]:
     """Returns the posteriors of detections, float32 (40, h / 4, w / 4).
 
-    A pixel has the score of the most probable detection that covers it, and the other categories share the rest. Where
-    there is no detection, all categories are equally probable.
+    A pixel has the probabilities of the last detection that covers it. Where there is no detection, all categories are
+    equally probable.
 
     Args:
-        segments: what a detector reports.
+        segments: what a detector reports, the most probable last.
         shape: rows and columns of the picture.
+        calibration: of the probabilities of the detections.
     """
-    small, count = slice(STRIDE_PX // 2, None, STRIDE_PX), len(MPCAT40) - 1
-    posteriors = np.full((count, *np.empty(shape, np.bool_)[small, small].shape), 1.0 / count, np.float32)
-    for segment in sorted(segments, key=lambda segment: segment.score):  # the most probable is painted last
-        mask = segment.mask[small, small]
-        posteriors[:, mask] = (1.0 - segment.score) / (count - 1)
-        posteriors[MPCAT40_ID[segment.category] - 1, mask] = segment.score
+    count = len(MPCAT40) - 1
+    posteriors = np.full((count, *np.empty(shape, np.bool_)[_MIDDLE, _MIDDLE].shape), 1.0 / count, np.float32)
+    for segment in segments:
+        vector = vector_of(segment) if calibration is None else calibration.applied(vector_of(segment))
+        posteriors[:, segment.mask[_MIDDLE, _MIDDLE]] = vector[:, None]
     return posteriors
+
+
+def vector_of(segment: Segment) -> NDArray[np.float32]:
+    """Returns the probabilities (40,) of a detection: its score, and equal shares of the rest for other categories."""
+    count = len(MPCAT40) - 1
+    vector = np.full(count, (1.0 - segment.score) / (count - 1), np.float32)
+    vector[MPCAT40_ID[segment.category] - 1] = segment.score
+    return vector
+
+
+def _shown_in(segment: Segment, channels: NDArray[np.int64]) -> int:
+    """Returns the channel of what a detection shows, see `HttpSegmenter.samples`; -1: nothing that is labelled."""
+    if not segment.mask.any():
+        return -1
+    left, top, right, bottom = segment.box
+    edges = ((low + (high - low) * share) for low, high in ((top, bottom), (left, right)) for share in (0.25, 0.75))
+    row, last_row, column, last_column = (
+        int(edge * size) for edge, size in zip(edges, np.repeat(channels.shape, 2).tolist(), strict=True)
+    )
+    middle = channels[row : max(last_row, row + 1), column : max(last_column, column + 1)]
+    counts = np.bincount(middle[middle >= 0], minlength=len(MPCAT40) - 1)
+    objects = np.where(_IS_STUFF, 0, counts)
+    if objects.max() >= 0.25 * middle.size:
+        return int(objects.argmax())
+    return int(counts.argmax()) if counts.any() else -1
 
 
 def read_annotations(data: bytes, *, shape: tuple[int, int]) -> list[Segment]:
@@ -351,7 +389,8 @@ def read_annotations(data: bytes, *, shape: tuple[int, int]) -> list[Segment]:
             if not 0.0 <= score <= 1.0:
                 raise ConfigError("its reply has scores outside of [0, 1].")
             if category is not None:
-                segments.append(Segment(category=category, score=score, mask=_mask_of(entry, shape)))
+                mask = _mask_of(entry, shape)
+                segments.append(Segment(category=category, score=score, mask=mask, phrase=entry["category"]))
     except (TypeError, ValueError, KeyError, AttributeError, OverflowError) as error:
         if isinstance(error, ConfigError):
             raise
@@ -383,6 +422,8 @@ class Box:
     """Left, top, right and bottom edge, as shares of the picture."""
     score: float
     category: str
+    phrase: str
+    """The server's word."""
 
 
 def read_boxes(data: bytes) -> list[Box]:
@@ -395,7 +436,7 @@ def read_boxes(data: bytes) -> list[Box]:
     boxes, scores, phrases = (reply.get(name) for name in ("boxes", "logits", "phrases"))
     try:
         rows = [
-            Box((float(left), float(top), float(right), float(bottom)), float(score), category)
+            Box((float(left), float(top), float(right), float(bottom)), float(score), category, phrase)
             for (left, top, right, bottom), score, phrase in zip(boxes, scores, phrases, strict=True)  # pyright: ignore[reportArgumentType]
             if (category := category_of(phrase)) is not None
         ]

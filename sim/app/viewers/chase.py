@@ -24,7 +24,7 @@ from sim.houses.labels import RENDERED_GROUPS, collidable_geoms, geoms_of, opaci
 from sim.houses.proposals import geom_box
 from sim.renderer.lamps import Lamps
 from sim.renderer.occlusion import Visibility
-from sim.renderer.opengl import Z_FAR_M, Z_NEAR_M, free_contexts, make_frame_buffer, make_gl_context
+from sim.renderer.opengl import Z_FAR_M, Z_NEAR_M, SharedContext, free_frame_buffers, make_frame_buffer
 from sim.renderer.profiles import get_profile
 from sim.renderer.scene import GeomScene
 from sim.renderer.shading import make_shading
@@ -81,10 +81,11 @@ class ChaseView:
         self._color = np.zeros((height_px, width_px, 3), np.uint8)
         self._depth = np.zeros((height_px, width_px), np.float32)
         profile = get_profile("fast")
-        self._gl = make_gl_context(self._size)
+        context = SharedContext(self._size)
+        self._gl = context.gl
         with self._gl.as_current():
             self._context = make_frame_buffer(model, self._size, profile)
-        self._finalizer = weakref.finalize(self, free_contexts, self._gl, {self._context})
+        self._finalizer = weakref.finalize(self, free_frame_buffers, context, {self._context}, is_own=True)
         self._finalizer.atexit = False  # OpenGL may be unloaded before the process ends
         robot = np.flatnonzero(geoms_of(model, PREFIX) & (opacity(model) > 0.0))
         visual = rendered_geoms(model)

@@ -189,7 +189,7 @@ def storeys(house: House) -> list[House]:
         for site in list(storey.worldbody.sites):
             if not low_m < site.pos[2] <= high_m:
                 storey.delete(site)
-        cut.append(replace(house, spec=storey))
+        cut.append(replace(house, source=storey, checksum=None))
     return cut
 
 

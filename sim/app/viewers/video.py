@@ -55,13 +55,21 @@ def video_file(run: Path, episode_id: str) -> Path:
 class VideoWriter:
     """A writer of one video file, which exists only when it is complete; it encodes in a thread of its own."""
 
-    def __init__(self, file: Path, *, size_px: tuple[int, int], frames_per_s: float = FRAMES_PER_S) -> None:
+    def __init__(
+        self,
+        file: Path,
+        *,
+        size_px: tuple[int, int],
+        frames_per_s: float = FRAMES_PER_S,
+        keyframe_every: int | None = None,
+    ) -> None:
         """Creates a file.
 
         Args:
             file: ends with `.mp4`; its folder is created.
             size_px: width and height, even numbers.
             frames_per_s: playback speed.
+            keyframe_every: largest number of frames from one that is decoded alone to the next; None: the encoder's.
 
         Raises:
             ConfigError: the folder is not writable, or this PyAV has none of the codecs.
@@ -73,7 +81,8 @@ class VideoWriter:
             )
         self.file = file
         self._part = part_file(file, what="video")
-        self._size_px, self._frames_per_s, self._codec = size_px, frames_per_s, codec
+        self._size_px, self._frames_per_s, self.codec = size_px, frames_per_s, codec
+        self._options = CODECS[codec] | ({} if keyframe_every is None else {"g": str(keyframe_every)})
         self._frames: queue.Queue[NDArray[np.uint8] | None] = queue.Queue(maxsize=_WAITING_FRAMES)
         self._failure: Exception | None = None
         self._thread = threading.Thread(target=self._encode, daemon=True, name="video")
@@ -125,7 +134,7 @@ class VideoWriter:
         width, height = self._size_px
         rate = Fraction(self._frames_per_s).limit_denominator(1000)
         with av.open(str(self._part), "w", format="mp4", options={"movflags": "+faststart"}) as container:
-            stream = container.add_stream(self._codec, rate=rate, options=CODECS[self._codec])
+            stream = container.add_stream(self.codec, rate=rate, options=self._options)
             assert isinstance(stream, av.VideoStream)
             stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
             stream.codec_context.thread_count = 1

@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple
 from sim.app.evaluation.results import RunRecord
 from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
-from sim.core.interface import Action
+from sim.core.interface import MOVES, Action
 
 Driver = Literal["agent", "person"]
 SPEEDS = (1.0, 2.0, 5.0, 60.0)
@@ -179,6 +179,6 @@ def _speed(value: object) -> float:
 
 
 def _action(value: object) -> Action:
-    if isinstance(value, bool) or value not in tuple(Action):
-        raise ConfigError(f"The action must be one of {', '.join(str(int(action)) for action in Action)}.")
+    if isinstance(value, bool) or value not in MOVES:
+        raise ConfigError(f"The action must be one of {', '.join(str(int(action)) for action in MOVES)}.")
     return Action(value)

@@ -6,8 +6,9 @@ where edges cross the two heights. `sim.houses.geoms` makes polytopes of MuJoCo 
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -98,6 +99,39 @@ class ConvexPolygon:
             entry = np.where(inward, np.maximum(entry, t), entry)
             leave = np.where(~(outward | inward) & (depth_m < 0.0), -1.0, leave)
         return (leave - entry) * np.linalg.norm(step, axis=1) > MIN_CROSSING_M
+
+
+@dataclass(frozen=True, eq=False)
+class PolygonTable:
+    """Polygons in a few arrays, as which they are kept: thousands of small arrays take long to read."""
+
+    corners_m: Float64[np.ndarray, "n 2"]
+    normals: Float64[np.ndarray, "n 2"]
+    offsets_m: Float64[np.ndarray, " n"]
+    bounds_m: Float64[np.ndarray, "k 4"]
+    ends: Int64[np.ndarray, " k"]
+    """Index after the last corner of each polygon."""
+
+    @classmethod
+    def of(cls, polygons: Sequence[ConvexPolygon]) -> PolygonTable:
+        """Returns the table of some polygons."""
+        empty = np.zeros((0, 2))
+        return cls(
+            np.concatenate([empty, *(polygon.vertices_m for polygon in polygons)]),
+            np.concatenate([empty, *(polygon.normals for polygon in polygons)]),
+            np.concatenate([empty[:, 0], *(polygon.offsets_m for polygon in polygons)]),
+            np.array([polygon.bounds_m for polygon in polygons], np.float64).reshape(-1, 4),
+            np.cumsum([len(polygon.vertices_m) for polygon in polygons], dtype=np.int64),
+        )
+
+    @functools.cached_property
+    def polygons(self) -> tuple[ConvexPolygon, ...]:
+        """The polygons, in their order."""
+        ends, bounds = self.ends.tolist(), self.bounds_m.tolist()
+        return tuple(
+            ConvexPolygon(self.corners_m[i:j], self.normals[i:j], self.offsets_m[i:j], (x0, y0, x1, y1))
+            for i, j, (x0, y0, x1, y1) in zip([0, *ends], ends, bounds, strict=False)
+        )
 
 
 def polygon_from_above(body: Polytope, low_m: float = -math.inf, high_m: float = math.inf) -> ConvexPolygon | None:

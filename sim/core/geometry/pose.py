@@ -84,6 +84,28 @@ class BodyPose(Pose):
         return origin + np.array([forward_m, left_m, up_m]) @ self.axes
 
 
+def with_view(pose: Pose, eye_m: NDArray[np.float64], axes: NDArray[np.float64], height_m: float) -> BodyPose:
+    """Returns the pose of a body from which a camera at a height on its axis has this place and direction.
+
+    Args:
+        pose: its floor counts.
+        eye_m: (3,) optical centre in the world.
+        axes: (3, 3) ahead, left and up of the camera in the world, as rows.
+        height_m: of the camera on the body's axis.
+    """
+    ahead, left, up = axes
+    x_m, y_m, z_m = (eye_m - height_m * up).tolist()
+    return BodyPose(
+        x_m,
+        y_m,
+        math.atan2(ahead[1], ahead[0]),
+        pose.floor_z_m,
+        z_m - pose.floor_z_m,
+        math.asin(max(-1.0, min(1.0, -ahead[2]))),
+        math.atan2(left[2], up[2]),
+    )
+
+
 def as_body_pose(pose: Pose) -> BodyPose:
     """Returns the pose of a body; one without a lean stands upright on its floor."""
     if isinstance(pose, BodyPose):

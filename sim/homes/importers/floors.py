@@ -103,6 +103,10 @@ def level_triangles(corners_m: NDArray[np.float64]) -> NDArray[np.bool_]:
     return upward if normal[upward, 2].sum() >= 0.2 * np.abs(normal[level, 2]).sum() else level
 
 
+class NoFloorError(HouseError):
+    """A home without a level floor, for example because another axis points up."""
+
+
 def find_levels(floors_m: NDArray[np.float64]) -> list[float]:
     """Returns the heights of the storeys, the lowest first.
 
@@ -129,7 +133,7 @@ def find_levels(floors_m: NDArray[np.float64]) -> list[float]:
         intervals.append((size_m2, height))
         left &= np.abs(z - height) > STOREYS_APART_M
     if not intervals:
-        raise HouseError(f"it has no level floor of {MIN_STOREY_M2:g} m2 or more.")
+        raise NoFloorError(f"it has no level floor of {MIN_STOREY_M2:g} m2 or more.")
     return sorted(height for _, height in intervals)
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError, HouseError
-from sim.homes.importers.floors import LEVEL_M, find_levels, level_triangles
+from sim.homes.importers.floors import LEVEL_M, NoFloorError, find_levels, level_triangles
 from sim.homes.importers.losses import Losses
 from sim.homes.importers.mesh_house import MeshConfig, MeshHouse, MeshObject, Shape, build_house, require_few
 from sim.homes.importers.obj import read_obj, used_files
@@ -85,14 +85,30 @@ def import_mesh(file: Path, *, rules: Mapping[str, str], up: Axis, config: MeshC
     Args:
         file: a GLB, glTF, OBJ or PLY file.
         rules: `{"regex over node names": "category"}`; nodes of the category `void` are left out.
-        up: the axis that points up; `auto`: z in PLY files, y in others.
+        up: the axis that points up; `auto`: z in PLY files, y in others, and the other one if there is no level floor.
         config: options of the house.
 
     Raises:
         HouseError: the file is broken or does not contain a home; the message names it.
     """
+    axes: tuple[Up, Up] = ("z", "y") if file.suffix.lower() == ".ply" else ("y", "z")
+    usual, other = axes
+    if up != "auto":
+        return _import(file, rules, up, config)
+    try:
+        return _import(file, rules, usual, config)
+    except NoFloorError as error:
+        try:
+            return _import(file, rules, other, config, change=f"{other} points up, not {usual}")
+        except NoFloorError:
+            raise error from None
+
+
+def _import(file: Path, rules: Mapping[str, str], axis: Up, config: MeshConfig, *, change: str = "") -> MeshScene:
+    """Returns the house of a file with this axis up; `change` goes to its report."""
     losses = Losses()
-    axis: Up = up if up != "auto" else "z" if file.suffix.lower() == ".ply" else "y"
+    if change:
+        losses.changes[change] += 1
     try:
         surfaces = _read(file, axis, config.texture_px, losses)
         nodes = _nodes(surfaces)
@@ -104,7 +120,7 @@ def import_mesh(file: Path, *, rules: Mapping[str, str], up: Axis, config: MeshC
         house = build_house(file.stem, str(file), objects, (), config, losses)
     except HouseError as error:
         said = str(error)
-        raise HouseError(said if said.startswith("Mesh ") else f"Mesh '{file}': {said}") from None
+        raise type(error)(said if said.startswith("Mesh ") else f"Mesh '{file}': {said}") from None
     table = {**{rule: rules[rule] for rule in rules}, **rules_of(proposals)}
     return MeshScene(house, table)
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from sim.core.files import write_atomically
 from sim.core.geometry.pose import Pose
-from sim.core.interface import GOAL_CATEGORIES, MPCAT40, Action, ConfigError
+from sim.core.interface import GOAL_CATEGORIES, MOVES, MPCAT40, ConfigError
 from sim.core.reading import Name, parse_json, read_npz, reason_of
 from sim.renderer.camera import Camera
 from sim.world.world import World
@@ -163,7 +163,7 @@ def _check(arrays: Mapping[str, NDArray[Any]], goal: str) -> None:
         raise ValueError(f"the images are {arrays['depth_mm'].shape} and {arrays['semantic'].shape}")
     if goal not in GOAL_CATEGORIES:
         raise ValueError(f"{goal!r} is not a goal category")
-    if np.any(arrays["actions"] >= len(Action)) or np.any(arrays["semantic"] >= len(MPCAT40)):
+    if np.any(arrays["actions"] >= len(MOVES)) or np.any(arrays["semantic"] >= len(MPCAT40)):
         raise ValueError("an action or a category is out of range")
     if not np.isfinite(arrays["poses"]).all():
         raise ValueError("a pose is not finite")

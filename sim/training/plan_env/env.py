@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sim.core.errors import ConfigError, EpisodeError
 from sim.core.geometry.grid import GridFrame, Window, cells_near_segment
 from sim.core.geometry.pose import Pose
-from sim.core.interface import GOAL_CATEGORIES, MAX_STEPS, Action
+from sim.core.interface import GOAL_CATEGORIES, MAX_STEPS, MOVES, Action
 from sim.core.invocation import command
 from sim.homes.plans.episode import PlanEpisode, draw_goal, draw_goal_and_start
 from sim.homes.plans.motion_kernels import mark_square, mark_swept
@@ -156,7 +156,7 @@ class PlanEnv(gymnasium.Env[Any, Any]):
             }
         )
         primitive = self.config.actions == "primitive"
-        self.action_space = spaces.Discrete(len(Action)) if primitive else spaces.Box(0.0, 1.0, (2,), np.float32)
+        self.action_space = spaces.Discrete(len(MOVES)) if primitive else spaces.Box(0.0, 1.0, (2,), np.float32)
         self._episode: PlanEpisode | None = None
         self._navmap: NavMap | None = None
         self._untrap = Untrap(self.config.untrap.failed_forwards, turns_reset=self.config.untrap.turns_reset)

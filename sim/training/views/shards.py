@@ -42,6 +42,20 @@ OpenCV's own choice tries five filters on each row: it takes twice as long, and 
 INDEX_FILE = "index.json"
 
 
+CARD_FILE = "README.md"
+CARD = """---
+configs:
+- config_name: default
+  data_files: "*.tar"
+---
+
+# Labelled views
+
+{views} views of {houses} houses in WebDataset's layout: `KEY.rgb.jpg` (or `.png`), `KEY.depth.png` (millimetres),
+`KEY.semantic.png` (mpcat40 ids), `KEY.json`. `index.json` has counts by category. Made by `{command}`.
+"""
+
+
 @dataclass
 class ShardNote:
     """Content of the note, the JSON file next to a shard."""
@@ -128,7 +142,10 @@ def read_note(folder: Path, name: str, *, verify: bool) -> ShardNote | None:
 
 
 def write_index(folder: Path, notes: Sequence[ShardNote], *, command: str, config: Mapping[str, Any]) -> dict[str, Any]:
-    """Writes `index.json`: the shards, counts by category and the command that made them; returns its content."""
+    """Writes `index.json`: the shards, counts by category and the command that made them; returns its content.
+
+    A card, `README.md`, tells `datasets.load_dataset` that the data are in the shards; one that exists is kept.
+    """
     views = sum(note.views for note in notes)
     total = max(1, sum(sum(note.pixels.values()) for note in notes))
     categories = {
@@ -154,6 +171,8 @@ def write_index(folder: Path, notes: Sequence[ShardNote], *, command: str, confi
         "shards": [{"shard": f"{n.shard}.tar", "house": n.house, "views": n.views, "sha256": n.sha256} for n in notes],
     }
     write_atomically(folder / INDEX_FILE, (json.dumps(index, indent=1) + "\n").encode())
+    if not (folder / CARD_FILE).exists():
+        write_atomically(folder / CARD_FILE, CARD.format(views=views, houses=index["houses"], command=command))
     return index
 
 

@@ -13,8 +13,9 @@ import pytest
 from sim.core.errors import HouseError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import ConfigError
+from sim.core.paths import CACHE_VARIABLE, cache_dir
 from sim.episodes.episode import Episode
-from sim.episodes.house_list import CACHE_VARIABLE, cache_dir, house_maker, write_house_list
+from sim.episodes.house_list import house_maker, write_house_list
 from sim.episodes.splits import Split, load_split, write_split
 from sim.homes.housegen.splits.recipes import MAX_TRAIN_SEEDS, SPLITS, Recipe, train_recipe
 from tests.helpers import wording

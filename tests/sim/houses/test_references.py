@@ -143,7 +143,7 @@ def test_a_run_with_a_root_works_and_one_without_names_the_missing_option(
     assert f"--root '{tmp_path / 'package'}'" in capsys.readouterr().err
     assert run.entry([*house, *few, "--root", str(tmp_path / "package")]) == 0
     assert run.entry(["--root", str(tmp_path), *few]) == 2
-    assert "--root and --start-deg need --house" in capsys.readouterr().err
+    assert "--root needs --house or --robot" in capsys.readouterr().err
 
 
 ELSEWHERE = {

@@ -224,7 +224,7 @@ WRONG = {
     "a radius that is too small": ({"radius_m": 0.15}, {}, r"radius_m in the sidecar is 0\.150 m.*at least 0\.205"),
     "a camera outside": ({"camera_forward_m": 0.5}, {}, r"camera_forward_m must be within .* 0\.205 m"),
     "a robot that heads along y": ({}, {'"0.4 0.1 0.075"': '"0.4 0.1 0.075" euler="90 0 0"'}, "with .x ahead"),
-    "a wheel that slides": ({}, {'name="hub_l"': 'name="hub_l" type="slide"'}, "'hub_l' is not a hinge"),
+    "a wheel that slides": ({}, {'name="hub_l"': 'name="hub_l" type="slide"'}, "'hub_l' is a slide"),
     "a mesh that is missing": ({}, {"cube.obj": "deck.obj"}, r"deck\.obj"),
     "another format": ({}, {"<mujoco": "<robot"}, "not an MJCF file that MuJoCo can read"),
     "two bodies": ({"casters": None}, {ROBOT: TWO_BODIES}, "belong to different bodies of the world"),

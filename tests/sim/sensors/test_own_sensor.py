@@ -18,6 +18,7 @@ from sim.core.interface import (
     GOAL_SENSORS,
     POSE_SENSORS,
     ROBOT_SENSORS,
+    SEMANTIC_MAP,
     SENSORS,
     Action,
     CameraModel,
@@ -138,7 +139,7 @@ def observations(house: Path, actions: list[Action], **options) -> list[dict[str
 
 
 def test_the_standard_sensors_are_those_of_the_interface() -> None:
-    assert tuple(STANDARD_SENSORS) == (*SENSORS, *POSE_SENSORS, *ROBOT_SENSORS, *GOAL_SENSORS)
+    assert tuple(STANDARD_SENSORS) == (*SENSORS, *POSE_SENSORS, *ROBOT_SENSORS, *GOAL_SENSORS, SEMANTIC_MAP)
 
 
 @pytest.mark.filterwarnings("error")

@@ -11,7 +11,7 @@ import pytest
 import torch
 
 from sim.core.geometry.pose import Pose
-from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, Action, CameraModel, ConfigError, RobotModel
+from sim.core.interface import GOAL_CATEGORIES, MOVES, MPCAT40_ID, Action, CameraModel, ConfigError, RobotModel
 from sim.training.cloned.samples import LabelledSteps, Streams
 from stubborn.agents import make
 from stubborn.baselines.cloned import SHIPPED, ClonedAgent, ClonedConfig
@@ -169,7 +169,7 @@ def test_the_agent_repeats_itself_with_the_same_seed_and_forgets_between_episode
     first, second = actions_of(agent, 1), actions_of(agent, 2)
     assert first != second
     assert actions_of(agent, 1) == first
-    assert set(first) == set(Action)  # the untrained policy samples all actions
+    assert set(first) == set(MOVES)  # the untrained policy samples all actions
 
 
 def test_a_stop_can_require_a_probability(net: ClonedNet, tmp_path: Path):

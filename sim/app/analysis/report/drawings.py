@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import NotRequired, TypedDict
 
 import numpy as np
@@ -191,8 +192,9 @@ def ground_truth_of(run: Run, house: House, robot: RobotConfig | None = None) ->
 def robot_of(run: Run) -> RobotConfig:
     """Returns the robot of a run: the default robot or that of `--robot`, with the fields that `--config` changed."""
     file = run.config.get("robot")
-    robot = load_robot(file)[0] if file else RobotConfig()
     recorded = run.config.get("config", {}).get("robot", {})
+    root = (recorded.get("file") or {}).get("root")
+    robot = load_robot(file, root=Path(root) if root else None)[0] if file else RobotConfig()
     return with_fields(robot, {name: value for name, value in recorded.items() if name != "file"})
 
 

@@ -6,6 +6,7 @@ import json
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from sim.app.analysis.comparison import Run
 from sim.app.analysis.report.drawings import Trajectories
@@ -49,7 +50,7 @@ def facts_of(run: Run, label: str, trajectories: Trajectories, index: int) -> Ru
         ("folder", run.path),
         ("agent", config.get("agent")),
         ("explorer", config.get("explorer")),
-        ("semantics", config.get("semantics")),
+        ("segmentation", segmentation_of(config)),
         ("houses", f"{split.get('name')} {split.get('version')} ({str(split.get('sha256'))[:8]})"),
         ("noise", config.get("noise")),
         ("profile", config.get("profile")),
@@ -66,6 +67,20 @@ def facts_of(run: Run, label: str, trajectories: Trajectories, index: int) -> Ru
         list(_notes(run, trajectories, index)),
         _hint(run, trajectories, index),
     )
+
+
+def segmentation_of(config: Mapping[str, Any]) -> str | None:
+    """Returns the segmentation that acted, and which weights it had; "none" for an agent that uses none."""
+    declared = config.get("segmentation")
+    if declared is None:  # a run of an older version
+        return config.get("semantics")
+    name = declared.get("name")
+    if not name:
+        return "none: the agent uses none"
+    weights = (config.get("files_sha256") or {}).get("weights")
+    if weights is None:
+        return str(name)
+    return f"{name}, {config['weights'] if config.get('weights') else 'shipped weights'} ({str(weights)[:8]})"
 
 
 def command_of(config: RunRecord) -> str:

@@ -11,6 +11,7 @@ import msgspec
 from sim.app.analysis.metrics import SUCCESS, difference_cell, episodes_of, houses_of, mean_cell
 from sim.app.analysis.tables import Cell
 from sim.app.evaluation.intervals import estimate, paired_difference
+from sim.app.evaluation.summary import few_episodes
 from sim.core.interface import GOAL_CATEGORIES
 from sim.task.explanations import MEANING, outcome
 from sim.task.failures import CAUSES
@@ -140,6 +141,9 @@ def differences(metric: Metric, runs: Runs) -> list[Cell]:
 
 def interval_note(runs: Runs) -> str:
     """Returns the sentence that says how the intervals of a report are made."""
+    few = few_episodes(min(len(set(episodes_of(run))) for run in runs))
     if len(set(houses_of(runs[0]))) == 1:
-        return "95 % intervals. There is one house: they (*) are over its episodes, and say nothing about other houses."
-    return "95 % intervals over houses, by Student's t and Wilson's formula."
+        note = "95 % intervals. There is one house: they (*) are over its episodes, and say nothing about other houses."
+    else:
+        note = "95 % intervals over houses, by Student's t and Wilson's formula."
+    return f"{note} {few}".rstrip()

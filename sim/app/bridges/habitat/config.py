@@ -12,7 +12,7 @@ from pathlib import Path
 
 from sim.app.bridges.habitat_client import Config, add, merge, override, remove_other_actions, to_config
 from sim.core.errors import ConfigError
-from sim.core.interface import FORWARD_M, MAX_STEPS, TURN_RAD, Action, CameraModel, RobotModel, SuccessRule
+from sim.core.interface import FORWARD_M, MAX_STEPS, MOVES, TURN_RAD, CameraModel, RobotModel, SuccessRule
 from sim.core.reading import read_bytes
 
 _LOG = logging.getLogger("habitat")
@@ -47,7 +47,7 @@ def make_config(
     depth = rgb | {"min_depth": camera.min_depth_m, "max_depth": camera.max_depth_m, "normalize_depth": True}
     body = {"height": robot.height_m, "radius": robot.radius_m}
     motion = {"forward_step_size": FORWARD_M, "turn_angle": round(math.degrees(TURN_RAD))}
-    actions = [action.name for action in Action]
+    actions = [action.name for action in MOVES]
     task = {"type": "ObjectNav-v1", "success_distance": distance_m, "goal_sensor_uuid": "objectgoal"}
     measurements = {"distance_to_goal": {}, "success": {"success_distance": distance_m}}
     measurements |= {"spl": {}, "soft_spl": {}, "collisions": {}}

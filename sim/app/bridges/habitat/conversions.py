@@ -29,7 +29,7 @@ from sim.app.bridges.habitat_client import ACTION_IDS, HabitatActions
 from sim.app.bridges.stubborn_client import Observation as _Observation
 from sim.app.bridges.stubborn_client import from_habitat
 from sim.core.errors import AgentError, ConfigError, did_you_mean
-from sim.core.interface import GOAL_CATEGORIES, MPCAT40, Action, CameraModel, Observation
+from sim.core.interface import GOAL_CATEGORIES, MOVES, MPCAT40, Action, CameraModel, Observation
 
 HM3D_GOALS = ("chair", "bed", "plant", "toilet", "tv_monitor", "sofa")
 """The six goal categories of the ObjectNav challenges 2022 and 2023, in their order."""
@@ -138,8 +138,8 @@ def to_action(chosen: object) -> Action:
         number = None
     if number in (ACTION_IDS["look_up"], ACTION_IDS["look_down"]):
         raise AgentError(f"Action {reprlib.repr(chosen)}: the camera of this robot does not tilt.")
-    if number is None or number not in tuple(Action):
-        names = ", ".join(f"{number} {name}" for name, number in ACTION_IDS.items() if number < len(Action))
+    if number is None or number not in MOVES:
+        names = ", ".join(f"{number} {name}" for name, number in ACTION_IDS.items() if number < len(MOVES))
         raise AgentError(
             f'Unknown action {reprlib.repr(chosen)}. An action is one of {names}, or a dict {{"action": one of these}}.'
         )

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from sim.app.bridges.habitat_sim.maths import (
     rotation_of,
 )
 from sim.app.bridges.habitat_sim.settings import AgentConfiguration, SensorSpec
-from sim.core.geometry.pose import BodyPose, Pose, wrap_angle
+from sim.core.geometry.pose import BodyPose, Pose, with_view, wrap_angle
 from sim.episodes.habitat import from_agent_state, to_position, to_rotation
 from sim.world.world import World
 
@@ -166,12 +165,7 @@ class Agent:
             body = BodyPose(body.x_m, body.y_m, body.yaw_rad, body.floor_z_m)
         eye_m = body.point(-back_m, -right_m, up_m)
         axes = _axes_of(node.rotation) @ body.axes  # rows: the camera's ahead, left, up
-        ahead, left, up = axes
-        x_m, y_m, z_m = (eye_m - height_m * up).tolist()
-        return replace(
-            body, x_m=x_m, y_m=y_m, rise_m=z_m - body.floor_z_m, yaw_rad=math.atan2(ahead[1], ahead[0]),
-            pitch_rad=math.asin(max(-1.0, min(1.0, -ahead[2]))), roll_rad=math.atan2(left[2], up[2]),
-        )  # fmt: skip
+        return with_view(body, eye_m, axes, height_m)
 
 
 def _axes_of(rotation: ArrayLike | Quaternion) -> NDArray[np.float64]:

@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from sim.core.interface import Action
+from sim.core.interface import MOVES, Action
 
 
 @dataclass
@@ -72,7 +72,7 @@ class Requests:
         """Takes a discrete action; another number is refused."""
         with self._changed:
             self.counts.commands += 1
-            if number in list(Action):
+            if number in MOVES:
                 self._actions.append(Action(number))
                 self._changed.notify_all()
             else:

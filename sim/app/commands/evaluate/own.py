@@ -1,4 +1,7 @@
-"""Evaluates a user's segmentation on labelled views: intersection over union, objects found, time per frame."""
+"""Evaluates a user's segmentation or a server of detectors on labelled views, and fits the calibration of a server.
+
+Results are intersection over union, objects found, and time per frame.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +11,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import torch
 from jaxtyping import Float32, Int64
+from torch import Tensor
 
 from sim.app.commands.evaluate.network_card import distances_and_sizes
 from sim.app.composition.own_segmentation import OwnSegmenter, built, load_specification
+from sim.app.services.client import is_address
+from sim.app.services.remote import HttpConfig, HttpSegmenter
 from sim.core.configuration import parse_assignments, with_fields
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError, Observation
 from sim.training.segmentation.breakdown import Breakdown
 from sim.training.segmentation.dataset import LabelledView, list_shards, read_shard, spread_views, stored_block_px
 from sim.training.segmentation.evaluation import Iou, confusion
+from stubborn.segmentation.calibration import Calibration, fit_calibration
 from stubborn.segmentation.preprocess import shrink
 from stubborn.segmentation.rednet import CLASSES
 
@@ -47,13 +55,17 @@ class OwnMeasured:
     """mIoU over the goal categories of each folder of views."""
     frames_ms: list[float] = field(default_factory=list)
     """Time of each frame, milliseconds."""
+    samples: dict[str, list[tuple[Float32[np.ndarray, "k classes"], Int64[np.ndarray, " k"]]]] = field(
+        default_factory=dict
+    )
+    """Of a server: what a calibration is fitted to, by house; see `HttpSegmenter.samples`."""
 
 
 def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Sequence[str]) -> OwnMeasured:
     """Returns the results of a user's segmentation on the views of some folders.
 
     Args:
-        name: `package.module:NAME`, as in `--semantics` of a run.
+        name: `package.module:NAME` or the address of a server, as in `--semantics` of a run.
         folders: folders with shards of views.
         count: number of views of each folder; 0: all.
         config: `detector.FIELD=VALUE` for its configuration.
@@ -61,7 +73,7 @@ def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Seque
     Raises:
         ConfigError: the segmentation reads sensors that views do not have or cannot be built, or there are no such
             views or fields.
-        AgentError: the user's code failed on a view, or returned another type, shape or range.
+        AgentError: the user's code or the server failed on a view, or returned another type, shape or range.
     """
     measured, segmenter = OwnMeasured(name), None
     shape: tuple[int, ...] = ()
@@ -76,6 +88,10 @@ def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Seque
                 camera = CameraModel(width_px=shape[1], height_px=shape[0])
                 segmenter = segmenter_for(name, camera, parse_assignments(config))
             _add_view(measured, segmenter, view, block_px)
+            if isinstance(segmenter.inner, HttpSegmenter):
+                observation, channels = {"rgb": view.rgb, "depth": view.depth_m}, view.semantic.astype(np.int64) - 1
+                sample = segmenter.inner.samples(observation, channels)
+                measured.samples.setdefault(view.record["house"], []).append(sample)
         measured.by_folder[folder.name] = Iou.of(measured.matrix - before).goals
     return measured
 
@@ -84,13 +100,17 @@ def segmenter_for(name: str, camera: CameraModel, settings: Mapping[str, object]
     """Returns a user's segmenter for images without an environment.
 
     Args:
-        name: `package.module:NAME`.
+        name: `package.module:NAME`, or the address of a server.
         camera: of the images.
         settings: values of `detector.FIELD`.
 
     Raises:
         ConfigError: it reads other sensors than rgb and depth, cannot be built, or has no such field.
     """
+    if is_address(name):
+        config = with_fields(_Settings(HttpConfig(url=name)), settings).detector
+        assert isinstance(config, HttpConfig)
+        return OwnSegmenter(name, HttpSegmenter(camera, config), HttpSegmenter.spec, camera)
     own = load_specification(name)
     sensors = [sensor if isinstance(sensor, str) else sensor.name for sensor in own.spec.sensors]
     missing = [*own.spec.truth, *(sensor for sensor in sensors if sensor not in ("rgb", "depth"))]
@@ -109,6 +129,32 @@ def _add_view(measured: OwnMeasured, segmenter: OwnSegmenter, view: LabelledView
     predicted, truth, depth_m = (shrink(image, coarser) for image in (whole, view.semantic, view.depth_m))
     measured.matrix += confusion(predicted.astype(np.int64), truth.astype(np.int64) - 1)
     measured.breakdown.add(predicted.astype(np.int64), truth, depth_m, block_px * coarser)
+
+
+def fitted_calibration(measured: OwnMeasured) -> tuple[Calibration, float, float]:
+    """Returns the calibration of a server by every second house, and the log loss on the others without and with it.
+
+    Raises:
+        ConfigError: fewer than two houses have samples.
+    """
+    houses = sorted(house for house, parts in measured.samples.items() if any(len(truth) for _, truth in parts))
+    if len(houses) < 2:
+        raise ConfigError("A calibration needs views of two houses in which the server reports something.")
+    calibration = fit_calibration(*_joined(measured, houses[::2]))
+    logits, truth = _joined(measured, houses[1::2])
+    losses = (
+        torch.nn.functional.cross_entropy(scores, truth)
+        for scores in (logits, logits * calibration.scale + calibration.offset)
+    )
+    before, after = (float(loss) for loss in losses)
+    return calibration, before, after
+
+
+def _joined(measured: OwnMeasured, houses: Sequence[str]) -> tuple[Tensor, Tensor]:
+    """Returns the samples of some houses."""
+    parts = [sample for house in houses for sample in measured.samples[house]]
+    logits, truth = (np.concatenate([part[i] for part in parts]) for i in range(2))
+    return torch.from_numpy(logits), torch.from_numpy(truth)
 
 
 def _channels(segmenter: OwnSegmenter, observation: Observation) -> Int64[np.ndarray, "h w"]:

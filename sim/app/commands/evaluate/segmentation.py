@@ -2,6 +2,7 @@
 
     stubborn evaluate --views runs/views_val_fast runs/views_val_good
     stubborn evaluate --views runs/views_val_fast --semantics my_network:SEGMENTATION --config detector.weights=my.pt
+    stubborn evaluate --views runs/views_train --semantics http://localhost:8000 --calibration server.json
     stubborn evaluate --weights runs/rednet/rednet.safetensors --views runs/views_val_fast \\
         --calibrate --card stubborn/segmentation/weights/README.md
 
@@ -14,6 +15,7 @@ learning curves of the trainings that led to the network.
 from __future__ import annotations
 
 import itertools
+import json
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
@@ -27,8 +29,9 @@ from torch.utils.data import DataLoader
 
 from sim.app import cli
 from sim.app.commands.evaluate.network_card import Evaluated, Measured, card_text, training_stages, write_card
-from sim.app.commands.evaluate.own import measure_own, own_text
+from sim.app.commands.evaluate.own import fitted_calibration, measure_own, own_text
 from sim.app.composition.segmenters import weights_file
+from sim.app.services.client import is_address
 from sim.core.files import write_atomically
 from sim.core.interface import CameraModel, ConfigError
 from sim.training.segmentation.breakdown import Breakdown
@@ -58,7 +61,8 @@ class Args:
     weights: Path | None = None
     """Weights of the network; None: the shipped ones."""
     semantics: str | None = None
-    """A segmentation of your own, package.module:NAME, in place of a network of this project."""
+    """A segmentation of your own, package.module:NAME, or a server, http://HOST:PORT, in place of a network of this
+    project."""
     config: tuple[str, ...] = ()
     """With --semantics: fields of its configuration, detector.FIELD=VALUE."""
     count: cli.Amount = 0
@@ -67,6 +71,8 @@ class Args:
     """Fit the calibration and write it to the file of the weights, --weights."""
     shipped: bool = False
     """With --calibrate: allow that the file is that of the weights that ship."""
+    calibration: cli.OutFile | None = None
+    """With a server: fit its calibration and write it to this file, for detector.calibration of a run."""
     card: cli.OutFile | None = None
     """File of the model card to write."""
     curves: tuple[Path, ...] = ()
@@ -104,8 +110,8 @@ def main(args: Args) -> int:
     torch.set_num_threads(args.threads)
     if args.semantics is not None:
         return _evaluate_own(args, args.semantics)
-    if args.config:
-        raise ConfigError("--config needs --semantics.")
+    if args.config or args.calibration is not None:
+        raise ConfigError("--config and --calibration need --semantics.")
     file = weights_file(args.weights)
     if args.calibrate and not args.shipped and file.resolve() == SHIPPED_REDNET.resolve():
         raise ConfigError(
@@ -133,16 +139,25 @@ def main(args: Args) -> int:
 
 
 def _evaluate_own(args: Args, semantics: str) -> int:
-    """Evaluates a user's segmentation and prints the results; returns the exit status.
+    """Evaluates a user's segmentation or a server and prints the results; returns the exit status.
 
     Raises:
         ConfigError: an option is for networks of this project only, or as `measure_own`.
     """
-    allowed = {"views", "semantics", "config", "count", "threads", "card"}
+    allowed = {"views", "semantics", "config", "count", "threads", "card", "calibration"}
     for option in fields(args):
         if option.name not in allowed and getattr(args, option.name) != option.default:
             raise ConfigError(f"--{option.name.replace('_', '-')} is for networks of this project, not --semantics.")
-    text = own_text(measure_own(semantics, args.views, count=args.count, config=args.config))
+    if args.calibration is not None and not is_address(semantics):
+        raise ConfigError(f"--calibration is for a server, http://HOST:PORT, not for '{semantics}'.")
+    if args.calibration is not None and any(text.startswith("detector.calibration=") for text in args.config):
+        raise ConfigError("--calibration fits raw scores: leave out detector.calibration.")
+    measured = measure_own(semantics, args.views, count=args.count, config=args.config)
+    text = own_text(measured)
+    if args.calibration is not None:
+        calibration, before, after = fitted_calibration(measured)
+        write_atomically(args.calibration, json.dumps(calibration.to_metadata()) + "\n")
+        text += f"\n\nLog loss on every second house: {before:.3f}, calibrated {after:.3f}."
     print(text)
     if args.card is not None:
         write_atomically(args.card, text + "\n")

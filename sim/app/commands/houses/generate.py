@@ -36,7 +36,8 @@ from sim.core.errors import HouseError
 from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
 from sim.core.invocation import command
-from sim.episodes.house_list import cache_dir, copy_textures, write_house_list
+from sim.core.paths import cache_dir
+from sim.episodes.house_list import copy_textures, write_house_list
 from sim.homes.housegen.floor_plan.rooms import PlanKind
 from sim.homes.housegen.furniture import CATALOGUE
 from sim.homes.housegen.furniture.item import Pool

@@ -41,7 +41,7 @@ class Args(MeshArgs):
     categories: Path | None = None
     """A JSON file {"regex over node names": "category"}; nodes of the category "void" are left out."""
     up: Axis = "auto"
-    """The axis that points up; by default z in PLY files and y in others."""
+    """The axis that points up; by default z in PLY files and y in others, or the one with a level floor."""
 
 
 def main(args: Args) -> int:

@@ -25,7 +25,7 @@ import tyro
 from sim.app import cli
 from sim.app.commands.importing.folder import ImportArgs, Made, Work, import_all
 from sim.core.files import inside
-from sim.core.reading import sha256_of
+from sim.core.reading import open_plain, sha256_of
 from sim.homes.housegen.furniture.item import Pool
 from sim.homes.importers.procthor import Doors, ProcthorConfig, import_house
 from sim.homes.importers.procthor_files import Asset, Source, find_assets, read_assets, read_houses
@@ -50,6 +50,7 @@ class Args(ImportArgs):
 
 def main(args: Args) -> int:
     """Writes the houses, pictures and import.json; returns 1 if a house could not be imported."""
+    open_plain(args.path, what="Houses").close()  # a pointer of Git LFS, for example, is named before its neighbours
     database = find_assets(args.path, args.assets)
     config = ProcthorConfig(doors=args.doors, pool=args.pool, seed=args.seed)
     options = f"procthor {config} {sha256_of(database, what='Asset database')}"

@@ -134,6 +134,8 @@ def main(args: Args) -> int:
     notes = {task.number: _kept(args, task, config) for task in tasks}
     missing = [task for task in tasks if notes[task.number] is None]
     todo = [task for task in missing if shard.contains(task.number)]
+    if "instances" not in args.extras:
+        print("Without --extras instances, the views have no ids of objects, which `train segmentation` needs.")
     print(f"{len(tasks)} shards, {len(tasks) - len(missing)} complete, {len(todo)} to generate here.", flush=True)
     began, made = time.perf_counter(), 0
     for note in ordered_map(functools.partial(make_shard, args, config), todo, executor=executor):

@@ -26,7 +26,7 @@ from tests.helpers.sampling import sample
 
 ROOT = Path(__file__).resolve().parents[4]
 TRIED = [command for command, trial in TRIALS.items() if not isinstance(trial, Only)]
-OUTPUTS = ("out", "log", "card")
+OUTPUTS = ("calibration", "out", "log", "card")
 """Fields of tools' `Args` that name what they write."""
 SHIPPED = [(split, recipe.name) for split, recipes in SPLITS.items() for recipe in recipes]
 

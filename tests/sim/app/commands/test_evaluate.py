@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import http.server
+import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,12 +18,14 @@ from sim.app import cli
 from sim.app.commands.evaluate import own
 from sim.app.commands.evaluate import segmentation as evaluate_rednet
 from sim.app.commands.evaluate.segmentation import Args
+from sim.app.services.remote import posteriors_bytes, read_view
 from sim.core.interface import MPCAT40_ID, ConfigError
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 from tests.helpers import wording
+from tests.helpers.services import Server, send
 from tests.sim.app.commands.test_train_segmentation import write_views
 
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
@@ -189,7 +194,8 @@ def test_the_configuration_of_a_segmentation_of_ones_own_counts(
         ({"semantics": f"{OWN}:Truth"}, "'semantic'"),
         ({"semantics": f"{OWN}:BRIGHT", "calibrate": True}, "--calibrate"),
         ({"semantics": f"{OWN}:BRIGHT", "config": ("detector.level=1",)}, "bar"),
-        ({"config": ("detector.level=1",)}, "--config needs --semantics"),
+        ({"config": ("detector.level=1",)}, "--config and --calibration need --semantics"),
+        ({"semantics": f"{OWN}:BRIGHT", "calibration": Path("calibration.json")}, "--calibration is for a server"),
     ],
 )
 def test_options_that_a_segmentation_of_ones_own_cannot_take_are_refused(
@@ -198,3 +204,27 @@ def test_options_that_a_segmentation_of_ones_own_cannot_take_are_refused(
     write_views(tmp_path / "views", 1)
     with pytest.raises(ConfigError, match=message):
         evaluate_rednet.main(Args(views=(tmp_path / "views",), **options))
+
+
+def test_a_server_is_evaluated_and_calibrated_on_other_houses(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def answer(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+        rgb = read_view(body)[0][2::4, 2::4, 0]
+        posteriors = np.full((40, *rgb.shape), 0.01 / 39, np.float32)
+        right = np.where(rgb > 100, MPCAT40_ID["sofa"], MPCAT40_ID["wall"]) - 1
+        wrong = np.random.default_rng(0).random(rgb.shape) < 0.3  # of which the server is certain, too
+        np.put_along_axis(posteriors, np.where(wrong, MPCAT40_ID["bed"] - 1, right)[None], 0.99, axis=0)
+        send(handler, posteriors_bytes(posteriors))
+
+    write_views(tmp_path / "views", 40)
+    server, file = Server(answer), tmp_path / "calibration.json"
+    args = Args(views=(tmp_path / "views",), semantics=server.url, calibration=file)
+    assert evaluate_rednet.main(args) == 0
+    line = capsys.readouterr().out.splitlines()[-1]
+    before, after = (float(number) for number in re.findall(r"\d+\.\d+", line))
+    assert after < 0.5 * before, line
+    assert len(json.loads(file.read_text())["scale"]) == 40
+    with pytest.raises(ConfigError, match="--calibration fits raw scores"):
+        evaluate_rednet.main(replace(args, config=(f"detector.calibration={file}",)))
+    server.close()

@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 
 from sim.app.commands.run import entry
+from sim.app.composition.own_segmentation import OwnSegmenter
 from sim.app.composition.perception import StatedByAgent, seen_by
 from sim.app.composition.segmenters import find_segmentation
 from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
 from sim.core.errors import AgentError, ConfigError
-from sim.core.interface import AgentSpec, CameraModel, Perceived, Scores, SegmenterSpec
+from sim.core.interface import MPCAT40_ID, AgentSpec, CameraModel, Observation, Perceived, Scores, SegmenterSpec
 from sim.env.objectnav import ObjectNavEnv
+from stubborn.detection.wished import WishedSegmenter
 from tests.helpers import segmentations, wording
 from tests.helpers.agents import Ahead
 
@@ -138,3 +140,50 @@ def test_the_segmentation_that_an_agent_brings_is_shown_and_no_other() -> None:
     agent.seen = Perceived(None, np.full((2, 2), 99, np.uint8))
     with pytest.raises(AgentError, match="mpcat40 ids 0 to 40"):
         seen.perceived({}, "sofa")
+
+
+class Named:
+    """Takes the word of the goal, and sees one object with that name on the left."""
+
+    def __init__(self, returned: object = None) -> None:
+        self.returned, self.asked = returned, ("", frozenset[str]())
+
+    def ask(self, word: str, names: frozenset[str]) -> None:
+        self.asked = word, names
+
+    def posteriors(self, observation: Observation) -> np.ndarray:
+        posteriors = np.zeros((40, 12, 16), np.float32)
+        posteriors[MPCAT40_ID["chair"] - 1] = 0.9
+        return posteriors
+
+    def objects(self, observation: Observation) -> object:
+        if self.returned is not None:
+            return self.returned
+        return np.where(np.arange(16) < 8, 0, -1)[None].repeat(12, axis=0), [min(self.asked[1], default="chair")]
+
+
+def own_of(inner: object) -> OwnSegmenter:
+    return OwnSegmenter("mine:SEG", inner, SegmenterSpec(), CameraModel(width_px=64, height_px=48))
+
+
+FRAME = {"rgb": np.zeros((48, 64, 3), np.uint8), "depth": np.ones((48, 64), np.float32)}
+
+
+def test_the_words_of_the_goal_and_named_objects_pass_a_segmentation_of_ones_own() -> None:
+    inner = Named()
+    wished = WishedSegmenter(own_of(inner))
+    wished.ask("the red rocking chair")
+    assert inner.asked == ("rocking chair", frozenset({"rocking chair"}))
+    target = wished.scores(FRAME, wished.category).target
+    np.testing.assert_allclose(target[:, :8], 0.9)
+    assert (target[:, 8:] == 0.0).all()
+    wished.ask("chair")
+    assert inner.asked == ("", frozenset())
+    plain = own_of(segmentations.Flat(segmentations.FlatConfig()))
+    assert plain.objects(FRAME) is None
+
+
+@pytest.mark.parametrize("returned", [(np.zeros((5, 5), int), ["a"]), (np.ones((12, 16), int), ["a"]), (7, 8)])
+def test_objects_in_another_form_are_named_with_the_segmentation(returned: object) -> None:
+    with pytest.raises(AgentError, match=r"Segmentation 'mine:SEG'.*objects"):
+        own_of(Named(returned)).objects(FRAME)

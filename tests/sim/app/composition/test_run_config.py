@@ -118,7 +118,8 @@ def test_the_record_holds_the_whole_tree_and_the_checksums_of_files() -> None:
     options = RunOptions(semantics="rednet", config=("agent.planning.dilation_m=0.1",))
     record = record_of(resolve(options), SPLIT)
     assert set(record["config"]) == {
-        "agent", "detector", "verification", "robot", "camera", "sensors", "scan", "profile", "noise", "task",
+        "agent", "detector", "verification", "robot", "camera", "cameras", "sensors", "scan", "profile", "noise",
+        "task",
     }  # fmt: skip
     assert record["config"]["agent"]["planning"]["dilation_m"] == 0.1
     assert len(record["files_sha256"]["weights"]) == 64

@@ -10,6 +10,7 @@ import pytest
 from scipy import stats
 
 from sim.app.evaluation.intervals import Estimate, estimate, paired_difference, ratio_of_medians, replicate_spread
+from sim.app.evaluation.summary import few_episodes
 
 
 def houses_of(count: int, episodes: int) -> list[str]:
@@ -224,3 +225,21 @@ def test_the_interval_of_a_ratio_of_medians_holds_the_true_one_in_about_95_of_10
 def test_a_ratio_without_pairs_or_to_zero_is_no_number_that_misleads() -> None:
     assert ratio_of_medians([None], [1.0], ["a"]) == Estimate(None, None, None, 0, 0, neutral=1.0)
     assert ratio_of_medians([0.0, 0.0], [1.0, 2.0], ["a", "b"]).mean == float("inf")
+
+
+@pytest.mark.parametrize("steps", [[3, 500], [500, 500, 500, 0], [500] * 9 + [400]])
+def test_the_interval_of_a_bounded_number_stays_within_what_is_possible(steps: list[int]) -> None:
+    value = estimate(steps, [f"h{i}" for i in range(len(steps))], most=500.0)
+    low, high = interval(value)
+    assert 0.0 <= low < value.mean < high <= 500.0  # type: ignore[operator]
+    share = estimate([step / 500.0 for step in steps], [f"h{i}" for i in range(len(steps))], most=1.0)
+    assert (low, high) == pytest.approx(tuple(500.0 * end for end in interval(share)))
+
+
+def test_a_raised_limit_of_steps_has_no_upper_end() -> None:
+    assert interval(estimate([100, 900, 800], ["a", "b", "c"], most=500.0))[1] > 500.0
+
+
+@pytest.mark.parametrize(("count", "warns"), [(0, False), (1, True), (29, True), (30, False)])
+def test_few_episodes_are_named(count: int, warns: bool) -> None:
+    assert ("intervals are rough" in few_episodes(count)) == warns

@@ -5,9 +5,6 @@ from __future__ import annotations
 import base64
 import http.server
 import json
-import threading
-import time
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,13 +12,14 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
+import torch
 
 from sim.app.composition.segmenters import find_segmentation
 from sim.app.options import RunOptions
+from sim.app.services.client import is_address
 from sim.app.services.remote import (
     HttpConfig,
     HttpSegmenter,
-    is_address,
     posteriors_bytes,
     read_posteriors,
     read_view,
@@ -30,60 +28,11 @@ from sim.app.services.remote import (
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import MPCAT40_ID, CameraModel
 from sim.training.views.coco import encode_mask
+from stubborn.detection.wished import WishedSegmenter
+from stubborn.segmentation.calibration import Calibration
+from tests.helpers.services import Handler, Start, body_of, closed, cut, late, send, trickled
 
 CAMERA = CameraModel(width_px=64, height_px=48)
-Handler = Callable[[http.server.BaseHTTPRequestHandler, bytes], None]
-
-
-class Server:
-    """A server whose answer each test states."""
-
-    def __init__(self, answer: Handler) -> None:
-        self.requests: list[tuple[str, bytes]] = []
-        owner = self
-
-        class OneHandler(http.server.BaseHTTPRequestHandler):
-            def do_POST(self) -> None:
-                body = self.rfile.read(int(self.headers["content-length"]))
-                owner.requests.append((self.path, body))
-                answer(self, body)
-
-            def log_message(self, format: str, *args: object) -> None:
-                pass
-
-        self._server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), OneHandler)
-        self._server.daemon_threads = True
-        threading.Thread(target=self._server.serve_forever, daemon=True).start()
-        self.url = f"http://127.0.0.1:{self._server.server_port}"
-
-    def close(self) -> None:
-        self._server.shutdown()
-        self._server.server_close()
-
-
-Start = Callable[[Handler], Server]
-
-
-@pytest.fixture
-def start(monkeypatch: pytest.MonkeyPatch) -> Iterator[Start]:
-    monkeypatch.setattr("sim.app.services.remote.WAIT_S", 0.0)
-    monkeypatch.setattr("sim.app.services.remote.VLFM_PORTS", {})  # both services on one port
-    servers: list[Server] = []
-
-    def made(answer: Handler) -> Server:
-        servers.append(Server(answer))
-        return servers[-1]
-
-    yield made
-    for server in servers:
-        server.close()
-
-
-def send(handler: http.server.BaseHTTPRequestHandler, data: bytes, status: int = 200) -> None:
-    handler.send_response(status)
-    handler.send_header("Content-Length", str(len(data)))
-    handler.end_headers()
-    handler.wfile.write(data)
 
 
 def view(seed: int = 0) -> dict[str, np.ndarray]:
@@ -190,39 +139,6 @@ def test_annotations_of_coco_become_posteriors(start: Start) -> None:
     assert [path for path, _ in server.requests] == ["/detect"]
 
 
-def slow(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
-    time.sleep(0.6)
-    send(handler, posteriors_bytes(probabilities()))
-
-
-def trickle(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
-    data = posteriors_bytes(probabilities())
-    handler.send_response(200)
-    handler.send_header("Content-Length", str(len(data)))
-    handler.end_headers()
-    for first in range(8):
-        handler.wfile.write(data[first : first + 1])
-        handler.wfile.flush()
-        time.sleep(0.1)
-
-
-def closed(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
-    handler.close_connection = True
-    handler.connection.close()
-
-
-def half(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
-    data = posteriors_bytes(probabilities())
-    handler.send_response(200)
-    handler.send_header("Content-Length", str(len(data)))
-    handler.end_headers()
-    handler.wfile.write(data[: len(data) // 2])
-
-
-def body_of(data: bytes, status: int = 200) -> Handler:
-    return lambda handler, body: send(handler, data, status)
-
-
 def pickled(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
     stream = np.array([print], object)
     import io
@@ -234,6 +150,9 @@ def pickled(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
 
 def as_json(**reply: Any) -> Handler:
     return body_of(json.dumps(reply).encode())
+
+
+slow, trickle, half = (fault(posteriors_bytes(probabilities())) for fault in (late, trickled, cut))
 
 
 FAULTS: dict[str, tuple[Handler, str, str]] = {
@@ -350,3 +269,74 @@ def test_posteriors_may_have_any_whole_fraction_of_the_size() -> None:
     for rows, columns in ((48, 64), (12, 16), (3, 4)):
         flat = np.full((40, rows, columns), 0.025, np.float32)
         assert read_posteriors(posteriors_bytes(flat), shape=(48, 64)).shape == flat.shape
+
+
+def test_the_words_of_the_goal_are_asked_for_and_name_the_objects(start: Start) -> None:
+    def answer(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+        annotations = [
+            {"category": "chair", "score": 0.9, "bbox": [0, 0, 32, 48]},
+            {"category": "rocking chair", "score": 0.8, "bbox": [32, 0, 32, 48]},
+        ]
+        send(handler, json.dumps(annotations).encode())
+
+    server, observation = start(answer), view()
+    wished = WishedSegmenter(asking(server.url, form="coco"))
+    wished.ask("the red rocking chair in the bedroom")
+    target = wished.scores(observation, wished.category).target
+    assert json.loads(server.requests[0][1])["words"][:2] == ["rocking chair", "chair"]
+    np.testing.assert_allclose(target[:, 8:], 0.8)
+    assert (target[:, :8] == 0.0).all()  # it is a chair, but not named as a rocking chair
+    wished.ask("chair")
+    np.testing.assert_allclose(wished.scores(observation, "chair").target[:, :8], 0.9)
+    assert "rocking chair" not in json.loads(server.requests[1][1])["words"]
+    closed = WishedSegmenter(asking(server.url, form="coco", words=False))
+    closed.ask("rocking chair")
+    assert (closed.scores(observation, "chair").target > 0.7).all()
+    assert "rocking chair" not in json.loads(server.requests[2][1])["words"]
+
+
+def test_a_general_word_means_all_that_a_detector_names_below_it(start: Start) -> None:
+    server = start(as_json(annotations=[{"category": "couch", "score": 0.9, "bbox": [0, 0, 64, 48]}]))
+    wished = WishedSegmenter(asking(server.url, form="coco"))
+    wished.ask("something to sit on")
+    assert (wished.scores(view(), wished.category).target >= 0.9).all()
+    narrow = WishedSegmenter(asking(server.url, form="coco"))
+    narrow.ask("rocking chair")
+    assert (narrow.scores(view(), narrow.category).target < 0.1).all()
+
+
+def test_a_calibration_changes_the_probabilities_as_the_one_of_a_network_does(start: Start, tmp_path: Path) -> None:
+    server, file = start(body_of(posteriors_bytes(probabilities()))), tmp_path / "calibration.json"
+    calibration = Calibration(torch.linspace(0.5, 1.5, 40), torch.linspace(-1.0, 1.0, 40))
+    file.write_text(json.dumps(calibration.to_metadata()))
+    expected = calibration.applied(torch.from_numpy(probabilities()).log()).softmax(dim=0).numpy()
+    calibrated = asking(server.url, calibration=file).posteriors(view())
+    np.testing.assert_allclose(calibrated, expected, atol=1e-3)  # the file has four decimals
+    file.write_text(json.dumps({"scale": [1.0], "offset": [0.0]}))
+    with pytest.raises(ConfigError, match="40 factors and offsets"):
+        asking(server.url, calibration=file)
+
+
+def test_the_samples_of_a_calibration_are_detections_with_what_they_show(start: Start) -> None:
+    annotations = [
+        {"category": "chair", "score": 0.8, "bbox": [8, 8, 16, 16]},
+        {"category": "bed", "score": 0.6, "bbox": [40, 0, 20, 20]},
+        {"category": "bed", "score": 0.2, "bbox": [0, 0, 9, 9]},  # below the threshold
+        {"category": "sofa", "score": 0.7, "bbox": [0, 40, 4, 4]},
+    ]
+    channels = np.full((48, 64), MPCAT40_ID["wall"] - 1, np.int64)
+    channels[14:18, 14:19] = MPCAT40_ID["stool"] - 1  # a quarter of the middle half of the first box
+    channels[40:] = -1
+    segmenter = asking(start(as_json(annotations=annotations)).url, form="coco")
+    logits, truth = segmenter.samples(view(), channels)
+    assert truth.tolist() == [MPCAT40_ID["wall"] - 1, MPCAT40_ID["stool"] - 1]  # by score; the third has no truth
+    np.testing.assert_allclose(np.exp(logits).sum(axis=1), 1.0, atol=1e-5)
+    assert np.exp(logits[0, MPCAT40_ID["bed"] - 1]) == pytest.approx(0.6)
+
+
+def test_a_calibration_changes_detections_and_leaves_the_rest_unknown(start: Start, tmp_path: Path) -> None:
+    server = start(as_json(annotations=[{"category": "bed", "score": 0.4, "bbox": [0, 0, 32, 48]}]))
+    (file := tmp_path / "calibration.json").write_text(json.dumps({"scale": [3.0] * 40, "offset": [0.0] * 40}))
+    posteriors = asking(server.url, form="coco", calibration=file).posteriors(view())
+    assert (posteriors[MPCAT40_ID["bed"] - 1, :, :8] > 0.95).all()
+    np.testing.assert_allclose(posteriors[:, :, 8:], 1 / 40)

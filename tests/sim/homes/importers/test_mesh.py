@@ -296,3 +296,24 @@ def test_an_error_that_nobody_expected_is_named_and_the_other_homes_are_imported
     printed = capsys.readouterr()
     assert "b: left out: it cannot be imported (RecursionError: maximum recursion depth exceeded in a" in printed.err
     assert "2 houses with 2 rooms" in printed.out
+
+
+@pytest.mark.parametrize(("given", "works"), [("auto", True), ("z", True), ("y", False)])
+def test_a_room_whose_file_has_z_up_is_turned_if_it_has_no_floor_otherwise(
+    given: str, works: bool, tmp_path: Path
+) -> None:
+    room = trimesh.Scene()
+    boxes = {"floor": ((5, 4, 0.1), (0, 0, -0.05)), "sofa": ((1.8, 0.8, 0.7), (0, 1.4, 0.35))}
+    boxes |= {f"wall_{y}": ((5, 0.1, 2.6), (0, y, 1.3)) for y in (-2, 2)}
+    boxes |= {f"wall_x{x}": ((0.1, 4, 2.6), (x, 0, 1.3)) for x in (-2.5, 2.5)}
+    for name, (size, place) in boxes.items():
+        box = trimesh.creation.box(size)
+        box.apply_translation(place)
+        room.add_geometry(box, node_name=name, geom_name=name)
+    room.export(tmp_path / "room.glb")
+    if not works:
+        with pytest.raises(HouseError, match="no level floor"):
+            import_mesh(tmp_path / "room.glb", rules={}, up=given, config=MeshConfig())  # type: ignore[arg-type]
+        return
+    scene = import_mesh(tmp_path / "room.glb", rules={}, up=given, config=MeshConfig())  # type: ignore[arg-type]
+    assert ("z points up, not y" in str(scene.house.report)) == (given == "auto")

@@ -1,0 +1,1 @@
+"""Commands that write recorded runs in the formats of other projects."""

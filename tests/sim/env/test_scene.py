@@ -1,0 +1,87 @@
+"""Scenes from the cache of prepared houses: equal to the bit, and made again when a file of theirs changes."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim.core.interface import CameraModel
+from sim.core.paths import CACHE_VARIABLE
+from sim.core.store import SIZE_VARIABLE
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import load_split
+from sim.gl import mujoco
+from sim.houses.load import load_house
+from sim.world.world import World
+from tests.helpers.sampling import sample
+
+ACTIONS = (1, 2, 1, 3, 1, 1, 2, 2, 1, 0)
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setenv(SIZE_VARIABLE, "1000")
+    return tmp_path / "cache" / "prepared"
+
+
+@pytest.mark.parametrize("split", ["val", "hazards", "large"])
+def test_a_prepared_house_gives_the_same_episode_to_the_bit(
+    split: str, cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (house,) = sample(load_split(split).houses, 1)
+    kept = [list(_frames(split, house)) for _ in range(2)]
+    assert any(cache.iterdir())
+    monkeypatch.setenv(SIZE_VARIABLE, "0")
+    plain = list(_frames(split, house))
+    assert kept[0] == plain
+    assert kept[1] == plain
+
+
+def _frames(split: str, house: str) -> Iterator[tuple[object, ...]]:
+    """Yields the bytes of observations, the metrics and the distances of two episodes in a house."""
+    camera = CameraModel(width_px=64, height_px=48)
+    with_images = ("rgb", "depth", "semantic")
+    env = ObjectNavEnv(split=split, houses=(house,), sensors=with_images, camera=camera)
+    for episode in env.split.episodes[:2]:
+        observation, info = env.reset(seed=0, options={"episode": episode})
+        truth = env.scene.task.truth
+        target = truth.target(episode.goal, episode.start.floor_z_m)
+        yield target.distance_m.tobytes(), target.reached.tobytes(), info["shortest_path"]
+        for action in ACTIONS:
+            observation, _, _, _, info = env.step(action)
+            yield *(value.tobytes() for value in observation.values()), repr(info)
+    env.close()
+
+
+def test_a_house_or_a_texture_that_changed_is_read_again(house: Path, cache: Path, tmp_path: Path) -> None:
+    file = tmp_path / "own" / house.name
+    file.parent.mkdir()
+    shutil.copy(house, file)
+    before = World(load_house(file))
+    files = set(cache.iterdir())
+    assert World(load_house(file)).key == before.key
+    assert set(cache.iterdir()) == files
+    file.write_text(file.read_text().replace("sofa_00", "bed_00"))
+    assert {i.category for i in World(load_house(file)).labels.instances} >= {"bed"}
+
+
+def test_the_model_of_a_prepared_house_is_that_of_its_specification(house: Path, cache: Path) -> None:
+    World(load_house(house))
+    kept, house_kept = World(load_house(house)), load_house(house)
+    assert callable(house_kept.source)  # it was not read
+    compiled = [np.empty(mujoco.mj_sizeModel(model), np.uint8) for model in (kept.model, _plain(house).model)]
+    mujoco.mj_saveModel(kept.model, None, compiled[0])
+    mujoco.mj_saveModel(_plain(house).model, None, compiled[1])
+    assert np.array_equal(compiled[0], compiled[1])
+    assert house_kept.spec.compile().ngeom > 0
+
+
+def _plain(house: Path) -> World:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(SIZE_VARIABLE, "0")
+        return World(load_house(house))
