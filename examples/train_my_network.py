@@ -3,8 +3,9 @@
 python -m examples.train_my_network --views views --minutes 10 --out my_network.pt
 """
 
-import argparse
+import sys
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from torch.utils.data import DataLoader
 
 from examples.my_segmentation import MyNetwork
 from sim import LabelledView, ViewDataset
+from sim.app import cli
 from sim.training.segmentation.dataset import list_shards
 
 
@@ -24,13 +26,20 @@ def batch_of(views: list[LabelledView]) -> tuple[torch.Tensor, torch.Tensor]:
     return images, ids - 1  # id 0 is void
 
 
-def main() -> None:
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Trains a small network on labelled views."""
+
+    views: Path
+    """Folder of views."""
+    minutes: cli.Positive = 10.0
+    """Time of the training."""
+    out: Path = Path("my_network.pt")
+    """File of the weights."""
+
+
+def main(args: Args) -> int:
     """Trains for some minutes, and saves the weights."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--views", type=Path, required=True)
-    parser.add_argument("--minutes", type=float, default=10.0)
-    parser.add_argument("--out", type=Path, default=Path("my_network.pt"))
-    args = parser.parse_args()
     network = MyNetwork().train()
     optimizer = torch.optim.Adam(network.parameters(), 1e-3)
     end_s, step, smooth = time.monotonic() + 60.0 * args.minutes, 0, 0.0
@@ -47,7 +56,8 @@ def main() -> None:
                 break
     torch.save(network.state_dict(), args.out)
     print(f"{args.out} has the weights after {step} steps")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(cli.run(Args, main))

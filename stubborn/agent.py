@@ -179,7 +179,7 @@ class StubbornAgent:
         Raises:
             WishError: a word of the goal is not known.
         """
-        self._ask(goal)
+        self._look_for(goal)
         self._seed = seed
         self.navmap = NavMap.empty(GridFrame.around_start(self.config.map_cells, self.config.cell_m))
         self.window: Window | None = None
@@ -203,12 +203,12 @@ class StubbornAgent:
         if not self.config.memory:
             self.reset(goal, self._seed)
             return
-        self._ask(goal)
+        self._look_for(goal)
         self.navmap.forget_goal()
         self.standstill.reset()
         self.seeker.next_goal(self.goal)
 
-    def _ask(self, goal: str) -> None:
+    def _look_for(self, goal: str) -> None:
         self.wished.ask(goal)
         self.goal = self.wished.category
         """The category that is looked for."""

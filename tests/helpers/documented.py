@@ -203,6 +203,21 @@ _SUBMIT = "stubborn submit {tmp}/entry --name 'My agent' --authors 'A. Author' -
 _ROWS = "a row needs 50 episodes; tests/sim/app/submissions/test_submission_commands.py makes tables of fewer"
 _SEAL = "stubborn seal make --out {tmp}/sealed2027 --secret-file {tmp}/secret --houses 1 --episodes 2"
 _ANNOUNCED = Only("tests/sim/app/submissions/test_sealing.py announces, makes and reveals a split of one house")
+_COMPARED = (
+    f"{_RUN} --agent oracle {_SMALL} --episodes 1 --out {{tmp}}/before",
+    f"{_RUN} --agent random {_SMALL} --episodes 1 --out {{tmp}}/after",
+    "stubborn compare {tmp}/before {tmp}/after",
+)
+_REPORTED = (
+    f"{_RUN} --agent oracle --goal bed --episodes 1 --out {{tmp}}/before",
+    _RECORDED,
+    "stubborn report {tmp}/before {tmp}/mine",
+)
+_FLAT = "stubborn episodes --house examples/my_flat.xml --episodes 2 --out {tmp}/flat_split"
+_MY_NETWORK = (
+    _VIEWS.replace(" --shrink 4", ""),
+    f"{PYTHON} -m examples.train_my_network --views {{tmp}}/views --minutes 0.01 --out {{tmp}}/my_network.pt",
+)
 TRIALS: dict[str, tuple[str, ...] | Only] = {
     "make run": _NEEDS_SETUP,
     "make test": _NEEDS_SETUP,
@@ -224,11 +239,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --agent 'process:{sys.executable} tests/helpers/client_agent.py' {_SMALL} --episodes 1 "
         "--config task.max_steps=5 --out {tmp}/run",
     ),
-    "stubborn compare runs/before runs/after": (
-        f"{_RUN} --agent oracle {_SMALL} --episodes 1 --out {{tmp}}/before",
-        f"{_RUN} --agent random {_SMALL} --episodes 1 --out {{tmp}}/after",
-        "stubborn compare {tmp}/before {tmp}/after",
-    ),
+    "stubborn compare runs/before runs/after": _COMPARED,
     # docs/gymnasium.md
     f"{PYTHON} -m examples.gym_agents": (f"{PYTHON} -m examples.gym_agents",),
     f"{PYTHON} -m examples.train_ppo --minutes 30 --envs 2 --out runs/ppo": (
@@ -314,6 +325,96 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn words --split val --kind descriptions --episodes 10 --out assets/mjcf_houses/my_words": Only(
         "writes beside the shipped houses; tests/sim/app/commands/test_words.py makes a split of one house"
     ),
+    # docs/stubborn_plus.md
+    f"{_RUN} --agent stubborn-plus --config agent.seeker.look.visit=0.2 agent.seeker.context_share=0 --episodes 100"
+    " --out runs/changed": (
+        f"{_RUN} --agent stubborn-plus --config agent.seeker.look.visit=0.2 agent.seeker.context_share=0"
+        f" task.max_steps=5 {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    # docs/tutorials
+    f"{_RUN} --agent random_agent:make --episodes 2 --video --out runs/random": Only(
+        "tests/test_docs.py runs the agent"
+    ),
+    **{
+        f"{_RUN} --agent examples.{name}_agent:AGENT --semantics gt --episodes 20 --workers 2 --out runs/first_{run}": (
+            f"{_RUN} --agent examples.{name}_agent:AGENT --semantics gt {_SMALL} --episodes 1 --workers 1"
+            f" --config task.max_steps=60 --out {{tmp}}/first_{run}",
+        )
+        for name, run in (("my", "seeing"), ("map", "map"))
+    },
+    "stubborn compare runs/first_seeing runs/first_map": _COMPARED,
+    "stubborn compare runs/random20 runs/cloned20": _COMPARED,
+    "stubborn report runs/first_map": (_RECORDED, "stubborn report {tmp}/mine"),
+    "stubborn report runs/pt_truth runs/pt_network": _REPORTED,
+    "stubborn houses check --house examples/my_flat.xml": ("stubborn houses check --house examples/my_flat.xml",),
+    "stubborn gallery --houses examples/my_flat.xml --out runs/flat_pictures": (
+        "stubborn gallery --houses examples/my_flat.xml --out {tmp}/pictures",
+    ),
+    f"{_RUN} --house examples/my_flat.xml --goal bed --agent oracle --episodes 2 --video --out runs/flat_oracle": (
+        f"{_RUN} --house examples/my_flat.xml --goal bed --agent oracle --episodes 1 --video --out {{tmp}}/oracle",
+    ),
+    f"{_RUN} --house examples/my_flat.xml --goal 'the blue sofa' --agent stubborn-plus --semantics gt --episodes 2": (
+        f"{_RUN} --house examples/my_flat.xml --goal 'the blue sofa' --agent stubborn-plus --semantics gt --episodes 1"
+        " --out {tmp}/run",
+    ),
+    "stubborn episodes --house examples/my_flat.xml --episodes 20 --out runs/flat_split": (_FLAT,),
+    f"{_RUN} --split runs/flat_split --agent stubborn-plus --semantics gt --episodes 20 --workers 2": (
+        _FLAT,
+        f"{_RUN} --split {{tmp}}/flat_split --agent oracle --semantics gt --episodes 1 --workers 1 --out {{tmp}}/run",
+    ),
+    "stubborn views --split train --views 1000 --profile fast --out runs/views_train --workers 2": (_VIEWS,),
+    "stubborn views --split val --views 200 --profile fast --out runs/views_test --workers 2": (_VIEWS,),
+    "stubborn views --split train --views 2000 --profile fast --shrink 2 --extras instances --out runs/views_finer"
+    " --workers 2": (_VIEWS + " --extras instances",),
+    "stubborn views show --views runs/views_train --out runs/views.png": (
+        _VIEWS,
+        "stubborn views show --views {tmp}/views --out {tmp}/views.png",
+    ),
+    f"{PYTHON} -m examples.train_my_network --views runs/views_train --minutes 10 --out runs/my_network.pt": _MY_NETWORK,
+    "stubborn evaluate --views runs/views_test --semantics examples.my_segmentation:SEGMENTATION"
+    " --config detector.weights=runs/my_network.pt": (
+        *_MY_NETWORK,
+        "stubborn evaluate --views {tmp}/views --semantics examples.my_segmentation:SEGMENTATION"
+        " --config detector.weights={tmp}/my_network.pt",
+    ),
+    f"stubborn evaluate --views runs/views_test --weights {_SHIPPED}": (
+        _VIEWS,
+        f"stubborn evaluate --views {{tmp}}/views --weights {_SHIPPED}",
+    ),
+    f"{_RUN} --agent stubborn-plus --semantics examples.my_segmentation:SEGMENTATION"
+    " --config detector.weights=runs/my_network.pt --goal bed --episodes 5 --video": (
+        *_MY_NETWORK,
+        f"{_RUN} --agent stubborn-plus --semantics examples.my_segmentation:SEGMENTATION"
+        f" --config detector.weights={{tmp}}/my_network.pt task.max_steps=5 {_SMALL} --episodes 1 --video"
+        " --out {tmp}/run",
+    ),
+    "stubborn train segmentation --init shipped --views runs/views_finer --val-views views_val --rate 0.0003 --hours 1"
+    " --out runs/finer": Only("docs/segmentation.md has the same command, which is tried"),
+    "stubborn import procthor val.jsonl.gz --houses 10 --workers 2 --out runs/procthor10": _PACKAGE,
+    "stubborn gallery --houses runs/procthor10/house_00003.xml --out runs/procthor10/pictures": _PACKAGE,
+    "stubborn episodes --split runs/procthor10 --episodes 100": _PACKAGE,
+    **dict.fromkeys(
+        (
+            f"{_RUN} --split runs/procthor10 --agent oracle --episodes 100 --workers 2 --out runs/pt_oracle",
+            f"{_RUN} --split runs/procthor10 --agent stubborn-plus --semantics gt --episodes 100 --workers 2"
+            " --out runs/pt_truth",
+            f"{_RUN} --split runs/procthor10 --agent stubborn-plus --episodes 100 --workers 2 --out runs/pt_network",
+        ),
+        _PACKAGE,
+    ),
+    f"{_RUN} --agent cloned --semantics gt --episodes 20 --workers 2 --out runs/cloned20": (
+        f"{_RUN} --agent cloned --semantics gt {_SMALL} --episodes 1 --workers 1 --config task.max_steps=5"
+        " --out {tmp}/cloned20",
+    ),
+    f"{_RUN} --agent random --episodes 20 --workers 2 --out runs/random20": (
+        f"{_RUN} --agent random {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/random20",
+    ),
+    f"{_RUN} --agent 'process:python my_agent.py' --split val --episodes 5 --record --out runs/walker": (_ENTRY,),
+    "stubborn submit runs/walker --name Walker --authors 'A. Student' --out walker.json.gz": (
+        _ENTRY,
+        "stubborn submit {tmp}/entry --name Walker --authors 'A. Student' --out {tmp}/walker.json.gz",
+    ),
+    "stubborn verify walker.json.gz": (_ENTRY, _SUBMIT, "stubborn verify {tmp}/my_agent.json.gz"),
     # docs/houses.md
     f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1": (
         f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
@@ -347,11 +448,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         " --out {tmp}/harsh",
     ),
     "stubborn report runs/harsh": (_RECORDED, "stubborn report {tmp}/mine"),
-    "stubborn report runs/before runs/after": (
-        f"{_RUN} --agent oracle --goal bed --episodes 1 --out {{tmp}}/before",
-        _RECORDED,
-        "stubborn report {tmp}/before {tmp}/mine",
-    ),
+    "stubborn report runs/before runs/after": _REPORTED,
     "stubborn gallery --houses assets/mjcf_houses/val/val_03.xml --out runs/gallery": (
         "stubborn gallery --houses examples/my_house.xml --out {tmp}/gallery",
     ),
@@ -640,6 +737,7 @@ STAND_INS = (
     "my_traps",
     "my_models",
     "train.jsonl.gz",
+    "val.jsonl.gz",
     "kitchen.xml",
     "assets",
     "hm3d/val",
