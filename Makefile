@@ -36,7 +36,7 @@ test: setup
 
 test-all: setup
 	@echo "== every test, every case"
-	$(BIN)/python -m pytest -n 2 --dist worksteal --all-cases
+	$(BIN)/python -m pytest -n 2 --dist worksteal --all-cases $(PYTEST_OPTIONS)
 
 habitat: setup
 	@test -d .venv-habitat || $(BIN)/stubborn habitat setup
@@ -57,6 +57,9 @@ test-ros: ros
 lint: setup
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/codespell
+	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(BIN)/check-jsonschema --builtin-schema vendor.github-issue-forms .github/ISSUE_TEMPLATE/*.yml
 
 types: setup
 	$(BIN)/python -m tools.maintenance.mujoco_stubs

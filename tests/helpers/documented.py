@@ -370,7 +370,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _VIEWS,
         "stubborn views show --views {tmp}/views --out {tmp}/views.png",
     ),
-    f"{PYTHON} -m examples.train_my_network --views runs/views_train --minutes 10 --out runs/my_network.pt": _MY_NETWORK,
+    f"{PYTHON} -m examples.train_my_network --views runs/views_train --minutes 10 --out runs/my_network.pt": (
+        *_MY_NETWORK,
+    ),
     "stubborn evaluate --views runs/views_test --semantics examples.my_segmentation:SEGMENTATION"
     " --config detector.weights=runs/my_network.pt": (
         *_MY_NETWORK,
