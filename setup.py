@@ -15,7 +15,7 @@ setup(
         "sim.core": ["words/*"],
         "sim.houses": ["*.csv"],
         "sim.robot": ["sidecars/*.json"],
-        "sim": ["*.pyi"],
-        "stubborn": ["*.pyi", "**/*.json", "**/*.npz", "**/*.safetensors"],
+        "sim": ["*.pyi", "py.typed"],
+        "stubborn": ["*.pyi", "py.typed", "**/*.json", "**/*.npz", "**/*.safetensors"],
     },
 )
