@@ -104,10 +104,16 @@ class NavMap:
         return cls(frame=frame, **layers)
 
     def forget_goal(self) -> None:
-        """Clears the layers that depend on the goal: its scores and the candidates; the ground stays known."""
+        """Clears the layers that depend on the goal: its scores and the candidates; the ground stays known.
+
+        `frames_in_view` counts anew from 1, so that means over frames are those of the new goal.
+        """
+        if self.known is None:
+            return
         of_goal = ("score_sum", "score_max", "other_max", "found_step", "shown_x", "shown_y", "rejected", "set_aside")
-        for name in of_goal if self.known is not None else ():
+        for name in of_goal:
             getattr(self, name)[self.known] = 0
+        np.minimum(self.frames_in_view[self.known], 1, out=self.frames_in_view[self.known])
 
     def view(self, window: Window) -> NavMap:
         """Returns the part of the map in a window; its layers share memory with this map's."""
