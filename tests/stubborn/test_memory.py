@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -16,7 +18,7 @@ from tests.helpers.gridworld import SMALL_CAMERA, GridWorld
 from tests.stubborn.test_agent import APARTMENT
 
 
-def chain(name: str, *goals: str, **options: object) -> tuple[StubbornAgent, list[int], list[float]]:
+def chain(name: str, *goals: str, **options: Any) -> tuple[StubbornAgent, list[int], list[float]]:
     """Runs an agent over a chain; returns the agent, the steps of each goal, and the distance to it at its STOP."""
     agent = agents.make(
         name, camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter(), max_steps=400, **options
