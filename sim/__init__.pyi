@@ -5,6 +5,8 @@ from .core.errors import ConfigError as ConfigError
 from .core.errors import HouseError as HouseError
 from .core.errors import ObjectNavError as ObjectNavError
 from .core.geometry.pose import Pose as Pose
+from .core.goals import GoalSpec as GoalSpec
+from .core.goals import PictureCamera as PictureCamera
 from .core.interface import GOAL_CATEGORIES as GOAL_CATEGORIES
 from .core.interface import MPCAT40 as MPCAT40
 from .core.interface import MPCAT40_ID as MPCAT40_ID
@@ -49,6 +51,7 @@ __all__ = [
     "CameraModel",
     "ConfigError",
     "Episode",
+    "GoalSpec",
     "HouseConfig",
     "HouseError",
     "LabelledView",
@@ -56,6 +59,7 @@ __all__ = [
     "ObjectNavEnv",
     "ObjectNavError",
     "Observation",
+    "PictureCamera",
     "Pose",
     "RobotModel",
     "Scores",

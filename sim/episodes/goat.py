@@ -88,7 +88,7 @@ def read_goat(file: Path) -> list[Episode]:
         for category, kind, object_id, _ in entry.tasks:
             if kind == "image":
                 raise EpisodeError(f"File of GOAT-Bench '{file}': goals by pictures are not read.")
-            text = category if kind == "object" else described.get((category, object_id or ""), "")
+            text = category if kind == "object" else described.get((category, object_id or "")) or ""
             objects = _objects_of(content, category, kind, object_id)
             goal = GoalSpec.of(text)
             goals.append(GoalSpec(goal.text, goal.kind, None, asked.get(objects)))

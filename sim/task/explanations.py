@@ -74,8 +74,9 @@ class Outcome:
 
 
 def in_words(category: str) -> str:
-    """Returns the name of a category with spaces, "chest of drawers", or a goal in words without its article."""
-    return re.sub(r"^(the|an?) ", "", category.strip().replace("_", " "), flags=re.IGNORECASE)
+    """Returns the name of a category with spaces, "chest of drawers", or a goal in words from its noun phrase on."""
+    words = category.strip().replace("_", " ")
+    return re.sub(r"^((find|go to|look for) )?((the|an?) )?", "", words, flags=re.IGNORECASE)
 
 
 def with_article(category: str) -> str:

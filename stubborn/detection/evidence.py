@@ -98,6 +98,12 @@ class Evidence:
         """Returns the directions from which a track was seen well: whole, at the right distance, with enough pixels."""
         return np.asarray(self._whole[track].reshape(-1, self.config.sectors)[self.config.near_ring] >= 1.0)
 
+    def side(self, track: int) -> tuple[float, float]:
+        """Returns the sum of the directions from which a track was seen, x and y, by the weights of its views."""
+        weight = self._weights[track].reshape(-1, self.config.sectors).sum(axis=0)
+        angle_rad = np.arange(self.config.sectors) * (math.tau / self.config.sectors)
+        return float(weight @ np.cos(angle_rad)), float(weight @ np.sin(angle_rad))
+
     def _view(self, dx_m: Float64[np.ndarray, " n"], dy_m: Float64[np.ndarray, " n"]) -> Int[np.ndarray, " n"]:
         sector = self.sector_of(np.arctan2(dy_m, dx_m))
         ring = np.searchsorted(np.array(self.config.rings_m), np.hypot(dx_m, dy_m))

@@ -138,6 +138,7 @@ class TrackSeeker:
         self._hidden: dict[int, Bool[np.ndarray, " sectors"]] = {}  # directions from which a look did not show a track
         # The pose at which the count of patience began, and the steps of pursuit since then.
         self._pursuit: tuple[Pose, int] | None = None
+        self._recalled = set[int]()  # tracks whose seen side is on the map of this goal
         self._times_felt = 0  # collisions that had changed the map when the count of patience began
         # The pose at the last approach, whether it led along a route, and the steps in which the robot did not move.
         self._approached_from: Pose | None = None
@@ -174,8 +175,19 @@ class TrackSeeker:
         if self._refused:
             self._refused = set(self.tracks.now()[list(self._refused)].tolist())
             self.probability[list(self._refused)] = 0.0
+        if navmap.sided:
+            self._recall_sides(navmap, self.tracks)
         if self._decide(pose):
             navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
+
+    def _recall_sides(self, navmap: NavMap, tracks: Tracks) -> None:
+        """Enters into the map from which side candidates were seen that are remembered from an earlier goal."""
+        for track in np.flatnonzero(self.probability >= self.config.look.visit).tolist():
+            if track not in self._recalled:
+                self._recalled.add(track)
+                (index, mask), (x, y) = tracks.footprint(track), tracks.evidence.side(track)
+                navmap.shown_x[index][mask] += np.float32(x)
+                navmap.shown_y[index][mask] += np.float32(y)
 
     def _learn_attributes(
         self,

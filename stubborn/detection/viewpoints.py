@@ -100,5 +100,11 @@ class ViewpointFinder:
         # A picture hides the wall it is mounted on. Behind that wall there may seem to be free ground, from which the
         # picture cannot be seen: ground never in view counts only on the side from which the candidate was seen.
         seen_side = (rows - ends[0]) * view.shown_y[ends] + (cols - ends[1]) * view.shown_x[ends] > 0
-        in_sight[rows, cols] &= seen_side | (view.frames_in_view[rows, cols] > 0)
+        # An object that is remembered may be behind a wall that furniture hides: there all ground in between must have
+        # been in view.
+        from_here = view.frames_in_view[rows, cols] > 0
+        if view.sided:
+            unknown = (view.frames_in_view == 0) & ~view.visited
+            from_here &= sight_is_clear(view.seen_at_eye_level | unknown, (rows, cols), ends, 1.0)
+        in_sight[rows, cols] &= seen_side | from_here
         return in_sight

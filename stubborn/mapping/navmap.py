@@ -84,6 +84,9 @@ class NavMap:
     """True: a candidate here could not be reached; it is tried again later."""
     known: tuple[slice, slice] | None = None
     """Rows and columns of a rectangle that holds all ground seen or driven over; None: no ground yet."""
+    sided: bool = False
+    """True: objects are remembered from an earlier goal, and the robot may be behind the wall on which one is mounted.
+    What seems to be a clear view of it then counts only on the side that was seen, see `ViewpointFinder.in_sight`."""
     times_felt: int = 0
     """Number of collisions that changed the marks, where the agent draws conclusions from several
     (`stubborn.mapping.felt`); else 0."""
@@ -104,15 +107,23 @@ class NavMap:
         return cls(frame=frame, **layers)
 
     def forget_goal(self) -> None:
-        """Clears the layers that depend on the goal: its scores and the candidates; the ground stays known."""
+        """Clears the layers that depend on the goal: its scores and the candidates; the ground stays known.
+
+        `frames_in_view` counts anew from 1, so that means over frames are those of the new goal.
+        """
+        self.sided = True
+        if self.known is None:
+            return
         of_goal = ("score_sum", "score_max", "other_max", "found_step", "shown_x", "shown_y", "rejected", "set_aside")
-        for name in of_goal if self.known is not None else ():
+        for name in of_goal:
             getattr(self, name)[self.known] = 0
+        np.minimum(self.frames_in_view[self.known], 1, out=self.frames_in_view[self.known])
 
     def view(self, window: Window) -> NavMap:
         """Returns the part of the map in a window; its layers share memory with this map's."""
         index = window.index
-        return NavMap(frame=window.frame, **{name: getattr(self, name)[index] for name in _LAYERS})
+        layers = {name: getattr(self, name)[index] for name in _LAYERS}
+        return NavMap(frame=window.frame, sided=self.sided, **layers)
 
     def collision_marks(self, layer: CollisionLayer) -> Bool[np.ndarray, "rows cols"]:
         """Returns the marks of a collision layer; the mask of `CollisionLayer.NONE` is empty."""

@@ -88,7 +88,8 @@ def run_missing(
             if (cache := choose_cache()) is not None:
                 console.print(f"Neither the installation nor a home folder can be written: {cache} keeps the result.")
         spec = RunnerSpec(runner, setup)
-        progress = ProgressReport(console, total=len(todo), max_steps=setup.config.task.max_steps)
+        longest = max((len(episode.specs) for episode in todo), default=1) * setup.config.task.max_steps
+        progress = ProgressReport(console, total=len(todo), max_steps=longest)
 
         def lost(episode: Episode, reason: str) -> EpisodeResult:
             return error_result(setup, episode, reason)

@@ -377,11 +377,14 @@ def tick_off(frame: Picture, goals: Sequence[GoalMark], *, opaque: bool = False)
     if not goals:
         return
     left, top, row_px, wide = _CAMERA[0] + 8, _CAMERA[1] + 8, 20, 300
-    panel = frame[top : top + row_px * len(goals) + 8, left : left + wide]
+    present = next((number for number, goal in enumerate(goals) if goal.present), 0)
+    first = max(0, min(present - _MAX_ROWS // 2, len(goals) - _MAX_ROWS))
+    rows = list(enumerate(goals))[first : first + _MAX_ROWS]
+    panel = frame[top : top + row_px * len(rows) + 8, left : left + wide]
     below = 0 if opaque else panel.astype(np.uint16)
     panel[:] = (below * 1 // 4 + np.array(HEADER, np.uint16) * (4 if opaque else 3) // 4).astype(np.uint8)
-    for number, goal in enumerate(goals):
-        base = top + row_px * (number + 1)
+    for row, (number, goal) in enumerate(rows):
+        base = top + row_px * (row + 1)
         colour = _GOAL_COLOURS[goal.found]
         middle = left + 14, base - 5
         if goal.found is None:
@@ -397,4 +400,6 @@ def tick_off(frame: Picture, goals: Sequence[GoalMark], *, opaque: bool = False)
         write(frame, f"{number + 1}  {goal.words}", (left + 28, base), wide - 36, 14, ink, weight)
 
 
+_MAX_ROWS = 12
+"""Goals of a long chain that are shown, around the present one."""
 _GOAL_COLOURS: Mapping[bool | None, Colour] = {True: FOUND, False: MISSED, None: (190, 194, 202)}

@@ -97,6 +97,7 @@ def test_gymnasiums_checker_accepts_the_environment_of_chains(tmp_path: Path) ->
     env = gymnasium.make("sim.gym:stubborn/ObjectNavChain-v0", camera=SMALL, render_mode="rgb_array")
     check_env(env.unwrapped, skip_close_check=True)
     _, info = env.reset(seed=1)
+    assert isinstance(env.unwrapped, ObjectNavEnv)
     assert env.unwrapped.episode.is_chain
     assert info["goal_number"] == 0
     env.close()

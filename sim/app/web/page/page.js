@@ -174,6 +174,7 @@ function facts(frame) {
   const shortest = frame.hint ? `Shortest path: ${frame.hint.words}. ` : "";
   $("doing").textContent = shortest + advice + (frame.doing ? `Agent: ${frame.doing}.` : "");
   fill($("goals"), frame.goals.map(goalItem));
+  if (frame.goals.length && state.phase === "running") $("message").textContent = frame.looking;
   fill($("sight"), frame.in_sight.map((item) => legendItem(item.name, item.colour, item.goal)));
 }
 

@@ -8,12 +8,13 @@ from typing import Any
 
 import pytest
 
-from sim.app.commands import submit
+from sim.app.commands import merge, report, submit
 from sim.core.errors import ConfigError
 from sim.core.geometry.pose import Pose
 from sim.core.goals import GoalSpec
 from sim.episodes.episode import Episode
 from sim.episodes.splits import write_split
+from tests.helpers.results import lines_of
 from tests.helpers.submissions import checked, content_of, judged, recorded, written
 from tests.helpers.worlds import sofa_room, with_box
 
@@ -50,6 +51,25 @@ def test_a_recorded_chain_is_verified_equal_and_known_as_the_oracles(chains: Pat
     verdicts = judged(chains, chains / "oracle.json.gz", frames=1.0)
     assert [(verdict.judgement, verdict.text) for verdict in verdicts] == [("equal", "")] * 2
     assert [verdict.known_path for verdict in verdicts] == ["oracle"] * 2
+
+
+def test_a_run_over_chains_is_resumed_merged_and_reported_as_others(
+    chains: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole = lines_of(chains / "oracle")
+    one = recorded(chains / "tiny", tmp_path / "resumed", "oracle", "--seed-key", "key", episodes=1)
+    recorded(chains / "tiny", one, "oracle", "--seed-key", "key", episodes=2)
+    assert lines_of(one) == whole
+    for shard in ("1/2", "2/2"):
+        options = ("--seed-key", "key", "--shard", shard)
+        recorded(chains / "tiny", tmp_path / "parts", "oracle", *options, episodes=2)
+    assert merge.main(merge.Args(runs=(tmp_path / "parts",))) == 0
+    assert lines_of(tmp_path / "parts") == whole
+    assert "3 of 3" in capsys.readouterr().out
+    assert report.main(report.Args(runs=(one,))) == 0
+    page = (one / "report.html").read_text()
+    assert "\N{CHECK MARK} sofa, \N{CHECK MARK} the table, \N{CHECK MARK} couch" in page
+    assert "words, second visit" in page
 
 
 def _failed(content: dict[str, Any]) -> None:

@@ -258,6 +258,29 @@ def test_no_text_leaves_the_frame_or_lies_on_another(goal: str, written: list[tu
     assert all(right <= overlay.WIDTH_PX and bottom <= 540 for _, (_, _, right, bottom) in written)
 
 
+def test_the_goals_of_a_chain_are_ticked_off(written: list[tuple[str, Box]]) -> None:
+    marks = [
+        overlay.GoalMark("sofa", True),
+        overlay.GoalMark("desk", False),
+        overlay.GoalMark("bed", None, present=True),
+    ]
+    composer, moment = overlay.FrameComposer("bed", CameraModel(), plan_legend=()), crowded_moment()
+    without = composer.compose(moment, plan=WIDE_PLAN)
+    written.clear()
+    frame = composer.compose(moment, plan=WIDE_PLAN, goals=[*marks, overlay.GoalMark("chair", None)])
+    assert [text for text, _ in written][:4] == ["1  sofa", "2  desk", "3  bed", "4  chair"]
+    rows = [(frame != without)[72 + 20 * row : 88 + 20 * row, 20:36] for row in range(4)]
+    colours = [frame[72 + 20 * row : 88 + 20 * row, 20:36].reshape(-1, 3) for row in range(4)]
+    assert all(row.any() for row in rows)
+    for row, colour in enumerate([overlay.FOUND, overlay.MISSED, overlay.WHITE]):
+        assert (colours[row] == colour).all(axis=1).any()
+    written.clear()
+    composer.compose(moment, plan=WIDE_PLAN, goals=[overlay.GoalMark(f"goal {i}", None, i == 30) for i in range(50)])
+    shown = [text for text, _ in written if text.split()[0].isdigit() and "goal" in text]
+    assert len(shown) == 12
+    assert "31  goal 30" in shown
+
+
 @pytest.mark.parametrize("shape", [(360, 640), (480, 480), (64, 48)])
 def test_a_camera_of_another_shape_keeps_its_proportions(shape: tuple[int, int]) -> None:
     images = {
