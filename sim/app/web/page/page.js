@@ -233,6 +233,11 @@ function chosenHouse() {
 
 let above = null;  // the house that is shown: its picture, the place in its middle, metres per pixel
 
+// Shows the house in place of the last episode's pictures; a running episode goes on.
+function showAbove() {
+  if (!["running", "loading"].includes(state.phase)) delete document.body.dataset.step;
+}
+
 async function showHouse() {
   const asked = {split: $("split").value, house: $("house").value};
   $("place").value = "";
@@ -650,8 +655,8 @@ addEventListener("pagehide", leave);
 addEventListener("pageshow", comeBack);
 $("choose").addEventListener("submit", (event) => { event.preventDefault(); start("agent"); });
 $("start-driving").addEventListener("click", () => start("person"));
-$("split").addEventListener("change", chosenSplit);
-$("house").addEventListener("change", chosenHouse);
+$("split").addEventListener("change", () => { chosenSplit(); showAbove(); });
+$("house").addEventListener("change", () => { chosenHouse(); showAbove(); });
 $("goal").addEventListener("change", () => { $("wish").value = ""; chosenGoal(); });
 $("wish").addEventListener("change", wished);
 $("episode").addEventListener("change", chosenEpisode);
@@ -666,6 +671,7 @@ $("run-filter").addEventListener("input", showRuns);
 $("compare").addEventListener("click", compare);
 $("outcome-filter").addEventListener("change", showEpisodes);
 $("place").addEventListener("input", drawHouse);
+$("place").addEventListener("focus", showAbove);
 $("above-picture").addEventListener("pointerdown", press);
 $("above-picture").addEventListener("pointermove", aim);
 for (const end of ["pointerup", "pointercancel"]) $("above-picture").addEventListener(end, () => { pressed = null; });
