@@ -272,7 +272,8 @@ def _goals_of_house(file: Path, options: RunOptions) -> Goals:
     categories = read_labels(house.spec.copy().compile(), rules=house.rules).categories()
     goals = [goal for goal in GOAL_CATEGORIES if goal in categories and fixed in (None, goal)]
     if not goals:
-        raise HouseError(f"House '{file}' has no object of a goal category to look for.")
+        there_is = ", ".join(categories) or "no labels"
+        raise HouseError(f"House '{file}' has no object of a goal category to look for. It has: {there_is}.")
     return {file.stem: {goal: [] for goal in sorted(goals)}}
 
 
