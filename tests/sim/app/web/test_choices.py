@@ -277,6 +277,7 @@ def test_the_house_is_shown_from_above_to_scale(own: Choices, house: Path) -> No
     view: Any = own.house_from_above(split, house.stem)
     picture = cv2.imdecode(np.frombuffer(base64.b64decode(view["jpeg"]), np.uint8), cv2.IMREAD_COLOR)
     assert view["middle_m"] == pytest.approx((0.0, 0.0), abs=0.02)
+    assert picture is not None
     rows, cols = np.nonzero(np.abs(picture.astype(int) - picture[0, 0]).max(axis=2) > 25)  # not the background
     for cells in (rows, cols):  # a room of 6 x 6 m; the tops of its walls are nearer to the eye than its floor
         assert (np.ptp(cells) + 1) * view["m_per_px"] == pytest.approx(6.5, abs=0.4)
