@@ -37,7 +37,7 @@ from sim.renderer.opengl import SharedContext
 from sim.renderer.profiles import RenderProfile, get_profile
 from sim.robot.config import RobotConfig
 from sim.robot.drive import Motion
-from sim.sensors.cameras import camera_sensors, cameras_of
+from sim.sensors.cameras import cameras_of, with_cameras
 from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise, noise_from_dict
 from sim.sensors.scan import ScanConfig, ScanSensor
 from sim.sensors.sensor import Sensor, SensorContext, declared_fields
@@ -154,16 +154,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             raise ConfigError("start needs house: the episodes of a split have their own.")
         self.goal, self.start = goal, start
         self.scan_config = as_settings(scan, ScanConfig(), name="scan")
-        mounted = camera_sensors(cameras or {})
-        keys = [sensor.name for sensor in mounted]
-        others = (
-            sensors
-            if isinstance(sensors, str)
-            else [sensor for sensor in sensors if not (isinstance(sensor, str) and sensor in keys)]
-        )
-        self.sensors = _with_scan(
-            resolve_sensors(others if isinstance(others, str) else [*others, *mounted]), self.scan_config
-        )
+        all_sensors = resolve_sensors(with_cameras(sensors, cameras or {}))
+        self.sensors = _with_scan(all_sensors, self.scan_config)
         self._cameras = cameras_of(self.sensors)
         self.truth_images: dict[str, NDArray] = {}
         """Images that were rendered last, without noise: at least those of `truth`."""

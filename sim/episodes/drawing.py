@@ -41,7 +41,10 @@ def sample_episode(
         world.reset(start)
     goals = (goal,) if goal is not None else tuple(rng.permutation(np.array(task.truth.goals())).tolist())
     if not goals:
-        raise EpisodeError(f"House '{world.house.name}' has none of the goals: {', '.join(GOAL_CATEGORIES)}.")
+        there_is = ", ".join(world.labels.categories()) or "no labels"
+        raise EpisodeError(
+            f"House '{world.house.name}' has none of the goals: {', '.join(GOAL_CATEGORIES)}. It has: {there_is}."
+        )
     refusals = []
     for candidate in goals:
         try:

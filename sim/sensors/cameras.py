@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -69,6 +69,19 @@ def camera_sensors(cameras: Mapping[str, CameraConfig | Mapping[str, object]]) -
         for name, config in cameras_by_name(cameras).items()
         for image in config.images
     )
+
+
+def with_cameras(
+    sensors: Sequence[str | Sensor], cameras: Mapping[str, CameraConfig | Mapping[str, object]]
+) -> Sequence[str | Sensor]:
+    """Returns the sensors of an observation with those of further cameras, which take the place of their names.
+
+    Raises:
+        ConfigError: see `camera_sensors`.
+    """
+    mounted = camera_sensors(cameras)
+    names = [sensor.name for sensor in mounted]  # a list: sensors of users need not be hashable
+    return [*(sensor for sensor in sensors if sensor not in names), *mounted] if mounted else sensors
 
 
 def cameras_by_name(cameras: Mapping[str, CameraConfig | Mapping[str, object]]) -> dict[str, CameraConfig]:

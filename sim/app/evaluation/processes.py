@@ -28,6 +28,8 @@ from sim.app.evaluation.workers import (
     run_in_pool,
 )
 from sim.app.options import RunOptions, is_process
+from sim.core.errors import ConfigError
+from sim.core.reading import reason_of
 
 LAST_WORDS_S = 5.0
 """Longest time in which a process may end with its threads and exit handlers; then it is killed."""
@@ -93,7 +95,13 @@ class _Process:
     def __init__(self, *, threads: int, preload: str) -> None:
         context = mp.get_context("spawn")
         self.connection, child_connection = context.Pipe()
-        self.calls = Calls(context, limit_s=0.0)
+        try:
+            self.calls = Calls(context, limit_s=0.0)
+        except OSError as error:  # for example a read-only /dev/shm of a container
+            raise ConfigError(
+                f"Processes of workers need shared memory (/dev/shm), which cannot be used here: {reason_of(error)}. "
+                "--workers 1 needs none, except for agents of --step-timeout (give 0)."
+            ) from None
         from_main_thread = threading.current_thread() is threading.main_thread()
         args = (child_connection, self.calls, preload, from_main_thread)
         self.process = context.Process(target=_worker_main, args=args, daemon=True)

@@ -39,7 +39,7 @@ Short = Annotated[str, Meta(min_length=1, max_length=80, pattern=_NO_FORMULA)]
 """A name."""
 Text = Annotated[str, Meta(max_length=2000, pattern=_PLAIN)]
 Link = Annotated[str, Meta(max_length=300, pattern=r"^https://[A-Za-z0-9.-]+(/[A-Za-z0-9._~/?#&=%+:@-]*)?\Z")]
-Actions = Annotated[str, Meta(max_length=MAX_ACTIONS, pattern=r"^[0-3]*\Z")]
+Actions = Annotated[str, Meta(max_length=MAX_ACTIONS, pattern=r"^[0-5]*\Z")]
 Version = Annotated[str, Meta(max_length=300, pattern=_PLAIN)]
 
 

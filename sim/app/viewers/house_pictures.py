@@ -7,6 +7,7 @@ import itertools
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,6 +62,16 @@ CEILING_M = 2.5
 _STRUCTURE = tuple(MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling", "door", "window"))
 
 
+class TopPicture(NamedTuple):
+    """A house from above: +x is to the right, +y up."""
+
+    picture: Picture
+    middle_m: tuple[float, float]
+    """The place of the ground storey's floor in the middle of the picture."""
+    m_per_px: float
+    """Metres of that floor per pixel."""
+
+
 def draw_top(house: House, *, colours: NDArray[np.uint8] | None = None) -> Picture:
     """Renders a house from above, without ceilings and ceiling lamps, (h, w, 3) RGB.
 
@@ -68,6 +79,11 @@ def draw_top(house: House, *, colours: NDArray[np.uint8] | None = None) -> Pictu
         house: it is not changed.
         colours: uint8 (41, 3), a colour for each mpcat40 id in place of the materials; the instances are then named.
     """
+    return draw_top_to_scale(house, colours=colours).picture
+
+
+def draw_top_to_scale(house: House, *, colours: NDArray[np.uint8] | None = None) -> TopPicture:
+    """Returns the picture of `draw_top` with its scale."""
     open_top = house.spec.copy()
     floors_m = {room.floor_z_m for room in read_rooms(house.spec.compile())}
     add_backdrop(open_top)
@@ -84,10 +100,13 @@ def draw_top(house: House, *, colours: NDArray[np.uint8] | None = None) -> Pictu
     reach = max((high[1] - low[1] + 1.0) / 2, (high[0] - low[0] + 1.0) / 2 * height / width)
     camera.distance = reach / math.tan(math.radians(TOP_FOVY_DEG / 2)) + (high[2] - low[2]) / 2
     view = {"fovy_deg": TOP_FOVY_DEG, "near_far_m": (0.5 * camera.distance, 2.0 * camera.distance)}
+    above_m = camera.distance * math.sin(math.radians(89.9)) + float(camera.lookat[2])  # the eye above z = 0
+    m_per_px = 2.0 * above_m * math.tan(math.radians(TOP_FOVY_DEG / 2)) / height
+    middle_m = (float(camera.lookat[0]), float(camera.lookat[1]))
     light = model.vis.headlight
     if colours is None:
         light.ambient, light.specular = np.maximum(light.ambient, TOP_AMBIENT), np.zeros(3)
-        return render(model, camera, TOP_PX, **view)
+        return TopPicture(render(model, camera, TOP_PX, **view), middle_m, m_per_px)
     objects = void_objects(model, labels)
     model.geom_matid[:] = -1
     model.geom_rgba[:, :3] = colours[labels.geom_category] / 255.0
@@ -102,7 +121,7 @@ def draw_top(house: House, *, colours: NDArray[np.uint8] | None = None) -> Pictu
     ]
     named += [(f"{name}: {VOID}", tuple(geoms)) for name, geoms in objects.items()]
     _write_names(picture, model, named, np.array(camera.lookat), float(camera.distance))
-    return picture
+    return TopPicture(picture, middle_m, m_per_px)
 
 
 def distinct_colours(categories: Sequence[str]) -> NDArray[np.uint8]:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import re
+import threading
+from collections import OrderedDict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
+import cv2
 import msgspec
 
 from sim.app.composition.agents import EXPLORERS, SPECS, find_agent, find_explorer, takes_explorer
@@ -16,6 +20,7 @@ from sim.app.composition.driven import HUMAN_NAME
 from sim.app.composition.segmenters import KINDS, NetworkConfig, find_segmentation
 from sim.app.evaluation.results import RunRecord
 from sim.app.options import RunOptions
+from sim.app.viewers.house_pictures import draw_top_to_scale
 from sim.app.web.controls import Driver, EpisodeRequest
 from sim.core import invocation
 from sim.core.configuration import with_fields
@@ -24,7 +29,7 @@ from sim.core.interface import GOAL_CATEGORIES
 from sim.core.option_types import meanings
 from sim.core.reading import convert
 from sim.core.wishes import parse_wish
-from sim.episodes.splits import HOUSE_SUFFIXES, load_split, one_house, shipped_splits
+from sim.episodes.splits import HOUSE_SUFFIXES, Split, load_split, one_house, shipped_splits
 from sim.houses.labels import read_labels
 from sim.task.result import EpisodeResult
 
@@ -34,6 +39,8 @@ FIRST = ("val", "large", "hazards", "traps", "contact-val")
 """The splits that the page lists first."""
 Goals = Mapping[str, Mapping[str, list[str]]]
 """The ids of the episodes by house and goal; the lists of a house file are empty, because its episodes are drawn."""
+MAX_PICTURES = 16
+"""Pictures of houses that are kept."""
 _PLAIN_TEXT = re.compile(r"[\w-]*")
 
 
@@ -69,6 +76,8 @@ class Choices:
         others = [name for name in shipped_splits() if name not in (*NOT_OFFERED, *self._splits)]
         others.sort(key=lambda name: (FIRST.index(name) if name in FIRST else len(FIRST), name))
         self._splits |= {name: _goals_of_split(name) for name in others}
+        self._pictures: OrderedDict[tuple[str, str], dict[str, object]] = OrderedDict()
+        self._drawing = threading.Lock()
         self._first = {
             "split": next(iter(self._splits)),
             "agent": (*offer.agents, offer.options.agent)[0],
@@ -93,6 +102,33 @@ class Choices:
             "first": self._first,
             "run_command": invocation.command("run", "--video"),
         }
+
+    def house_from_above(self, split: str, house: str) -> dict[str, object]:
+        """Returns the picture of a house before its start: JPEG in Base64, the place in its middle, metres per pixel.
+
+        Raises:
+            ConfigError: the page does not offer this house.
+            HouseError: the house cannot be read.
+        """
+        self._require("split", split, self._splits)
+        if house not in self._splits[split]:
+            raise ConfigError(f"There is no house '{house}' in '{split}'.")
+        with self._drawing:
+            if (split, house) not in self._pictures:
+                top = draw_top_to_scale(self._split_of(split).load_house(house))
+                picture = cv2.resize(top.picture, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+                jpeg = cv2.imencode(".jpg", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))[1].tobytes()
+                if len(self._pictures) >= MAX_PICTURES:
+                    self._pictures.popitem(last=False)
+                self._pictures[split, house] = {
+                    "jpeg": base64.b64encode(jpeg).decode(), "middle_m": top.middle_m, "m_per_px": 2.0 * top.m_per_px
+                }  # fmt: skip
+            return self._pictures[split, house]
+
+    def _split_of(self, split: str) -> Split:
+        if split in self._houses:
+            return one_house(self._houses[split], labels=self._options.labels, root=self._options.root)
+        return load_split(split)
 
     def request(self, message: Mapping[str, object]) -> EpisodeRequest:
         """Returns the request that a message of the page describes.
@@ -154,15 +190,31 @@ class Choices:
             options = replace(options, house=self._houses[asked.split], goal=goal)
         else:
             options = replace(options, split=asked.split, labels=None, root=None, goal=goal if in_words else None)
+        if asked.start is not None:
+            options = self._with_start(options, asked, house, goal)
         if not isinstance(self._semantics[asked.semantics].config, NetworkConfig):
             options = replace(options, weights=None)
         return EpisodeRequest(
             split=asked.split,
             house=house,
             goal=goal,
-            episode_id=asked.episode or None,
+            episode_id=None if asked.start is not None else asked.episode or None,
             driver=asked.driver,
             options=options,
+        )
+
+    def _with_start(self, options: RunOptions, asked: _Start, house: str, goal: str) -> RunOptions:
+        """Returns options with a chosen start: those of an episode in the house's file."""
+        assert asked.start is not None
+        split = self._split_of(asked.split)
+        start_deg = " ".join(f"{number:.4f}" for number in asked.start)
+        return replace(
+            options,
+            house=split.house_file(house),
+            labels=split.labels_path,
+            root=split.root,
+            goal=goal,
+            start_deg=start_deg,
         )
 
     def _require_words(self, house: str, goal: str, asked: _Start, houses: Goals) -> None:
@@ -182,6 +234,9 @@ class Choices:
             raise ConfigError(f"This page does not offer --{option} '{name}'. Start the server with it: {command}")
 
 
+Coordinate = Annotated[float, msgspec.Meta(ge=-1000.0, le=1000.0)]
+
+
 class _Start(msgspec.Struct):
     """A message of the page that requests an episode."""
 
@@ -193,6 +248,8 @@ class _Start(msgspec.Struct):
     explorer: str = ""
     episode: str = ""
     driver: Literal["agent", "person"] = "agent"
+    start: tuple[Coordinate, Coordinate, Coordinate] | None = None
+    """Metres, metres and degrees; None: that of an episode."""
 
 
 def _split_name(name: str) -> str:
@@ -215,7 +272,8 @@ def _goals_of_house(file: Path, options: RunOptions) -> Goals:
     categories = read_labels(house.spec.copy().compile(), rules=house.rules).categories()
     goals = [goal for goal in GOAL_CATEGORIES if goal in categories and fixed in (None, goal)]
     if not goals:
-        raise HouseError(f"House '{file}' has no object of a goal category to look for.")
+        there_is = ", ".join(categories) or "no labels"
+        raise HouseError(f"House '{file}' has no object of a goal category to look for. It has: {there_is}.")
     return {file.stem: {goal: [] for goal in sorted(goals)}}
 
 

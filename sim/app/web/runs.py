@@ -6,7 +6,11 @@ are refused, and only plain files are opened.
 
 from __future__ import annotations
 
+import fcntl
 import os
+import shutil
+import tempfile
+import zipfile
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
@@ -19,7 +23,7 @@ from sim.app.evaluation.results import read_record, read_results
 from sim.app.viewers.video import video_file
 from sim.core import invocation
 from sim.core.errors import ConfigError
-from sim.core.reading import open_plain, printable
+from sim.core.reading import open_plain, printable, reason_of
 from sim.task.result import EpisodeResult, metrics_for
 
 MAX_RUNS = 100
@@ -30,6 +34,11 @@ _FILES: Mapping[str, Callable[[Path, str], Path]] = {"pictures": picture_file, "
 _COLUMNS = (
     "episode_id", "house", "goal", "agent", "success", "spl", "num_steps", "collisions", "failure", "end_reason",
 )  # fmt: skip
+
+
+def _member(folder: Path, file: Path) -> str:
+    """Returns the name of a file in the archive of a run's folder."""
+    return printable(f"{folder.name}/{file.relative_to(folder)}")
 
 
 class _Read(NamedTuple):
@@ -111,6 +120,43 @@ class Runs:
             if file.name == file_name and self._there(file):
                 return self._open(file)
         raise ConfigError(f"Run '{name}' has no file '{file_name}' in '{kind}'.")
+
+    def packed(self, name: str) -> BinaryIO:
+        """Returns a ZIP file of a run's folder, open for reading; links are left out.
+
+        Raises:
+            ConfigError: there is no such run, or a file cannot be read.
+        """
+        folder = self._folder_of(name)
+        packed = tempfile.TemporaryFile()  # noqa: SIM115 - the response closes it
+        try:
+            with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:  # its large files are compressed already
+                for file in sorted(folder.rglob("*")):
+                    if not file.name.startswith(".") and self._there(file):
+                        with self._open(file) as source, archive.open(_member(folder, file), "w") as target:
+                            shutil.copyfileobj(source, target)
+        except (OSError, ValueError) as error:
+            packed.close()
+            raise ConfigError(f"Run '{name}' cannot be packed: {reason_of(error)}.") from None
+        packed.seek(0)
+        return packed
+
+    def delete(self, name: str) -> None:
+        """Deletes the folder of a run.
+
+        Raises:
+            ConfigError: there is no such run, it is being written, or it cannot be deleted.
+        """
+        folder = self._folder_of(name)
+        try:
+            with open(folder / ".lock", "ab") as lock:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                shutil.rmtree(folder)
+        except BlockingIOError:
+            raise ConfigError(f"Run '{name}' is being written; it can be deleted when it has ended.") from None
+        except OSError as error:
+            raise ConfigError(f"Run '{name}' cannot be deleted: {reason_of(error)}.") from None
+        self._read.pop(folder, None)
 
     def report(self, name: str) -> BinaryIO:
         """Returns the report of a run, open for reading.

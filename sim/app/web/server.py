@@ -1,6 +1,6 @@
 """Serves the page: HTTP for the page and for finished runs, a websocket for the running episode.
 
-The server sends only files of this package, and reports, pictures and videos of the folder of runs. It refuses a
+The server sends only files of this package, and those of the folder of runs. It refuses a
 request unless its `Host` is one of the allowed names (against DNS rebinding), and a websocket unless the page itself
 opens it.
 """
@@ -250,6 +250,26 @@ def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -
     async def one_run(request: Request) -> Response:
         return await or_404(lambda: Json(runs.episodes(request.path_params["run"])))
 
+    async def house(request: Request) -> Response:
+        asked = (request.query_params.get(name, "") for name in ("split", "house"))
+        return await or_404(lambda: Json(choices.house_from_above(*asked)))
+
+    async def packed_run(request: Request) -> Response:
+        run = request.path_params["run"]
+        name = re.sub(r"[^\w.-]", "_", run, flags=re.ASCII)
+        headers = {"content-disposition": f'attachment; filename="{name}.zip"'}
+        return await or_404(file_answer(request, lambda: runs.packed(run), "application/zip", headers))
+
+    async def delete_run(request: Request) -> Response:
+        if request.headers.get("origin") is None:  # a page of this server always sends it
+            return PlainTextResponse("Only the page may delete a run.", 403)
+
+        def delete() -> Response:
+            runs.delete(request.path_params["run"])
+            return Response(status_code=204)
+
+        return await or_404(delete)
+
     async def comparison(request: Request) -> Response:
         asked = (request.query_params.get(name, "") for name in ("first", "second"))
         return await or_404(lambda: Json(runs.comparison(*asked)))
@@ -273,6 +293,9 @@ def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -
         Route("/api/choices", offered),
         Route("/api/runs", all_runs),
         Route("/api/runs/{run}", one_run),
+        Route("/api/runs/{run}", delete_run, methods=["DELETE"]),
+        Route("/api/house", house),
+        Route("/runs/{run}/run.zip", packed_run),
         Route("/api/comparison", comparison),
         Route("/runs/{run}/video", video),
         Route("/runs/{run}/report.html", report),

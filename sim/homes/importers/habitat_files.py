@@ -165,8 +165,12 @@ class SceneDataset:
                 renamed = isinstance(own, dict) and "render_asset" in own
                 return self._template(short, values, self.folder if renamed else base, where, source)
         file = self.files[kind].get(short)
-        if file is None:
-            raise HouseError(f"{where}: the {kind} have no configuration '{printable(name)[:80]}'.")
+        if file is None:  # Habitat also takes a part of a handle
+            similar = sorted(known for known in self.files[kind] if short and short in known)
+            if len(similar) != 1:
+                fits = f" It is part of several: {', '.join(map(printable, similar[:3]))}." if similar else ""
+                raise HouseError(f"{where}: the {kind} have no configuration '{printable(name)[:80]}'.{fits}")
+            file = self.files[kind][similar[0]]
         if not file.name.endswith(".json"):
             return self._template(short, values | {"render_asset": file.name}, file.parent, where)
         values |= read_json(file, dict[str, object], what="Configuration", error=HouseError)

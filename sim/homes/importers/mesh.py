@@ -9,7 +9,7 @@ the others wall. The rest becomes objects. The result is also returned as a tabl
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
@@ -55,21 +55,31 @@ class _Node:
         return np.concatenate([surface.corners_m for surface in self.surfaces])
 
 
+MAX_SEARCHED = 100_000
+"""Names that are looked at below a folder without meshes of its own."""
+
+
 def find_files(path: Path) -> list[Path]:
-    """Returns the meshes of a folder, or the one file that is given, sorted.
+    """Returns the meshes of a folder, else those of the folders in it, or the one file that is given, sorted.
 
     Raises:
         ConfigError: the folder has no such files, or two of them have one name.
     """
     if not path.is_dir():
         return [path]
-    files = sorted(file for file in path.iterdir() if file.suffix.lower().lstrip(".") in FORMATS)[:MAX_HOUSES]
+    files = _meshes(path.iterdir()) or _meshes(itertools.islice(path.rglob("*"), MAX_SEARCHED))
     if not files:
-        raise ConfigError(f"'{path}' has no file of a home: {', '.join(f'.{kind}' for kind in FORMATS)}.")
+        raise ConfigError(
+            f"'{path}' has no file of a home, nor have the folders in it: {', '.join(f'.{kind}' for kind in FORMATS)}."
+        )
     twice = next((b.name for a, b in itertools.pairwise(files) if a.stem == b.stem), None)
     if twice is not None:
         raise ConfigError(f"'{path}' has two homes of the name '{Path(twice).stem}', one of them '{twice}'.")
     return files
+
+
+def _meshes(files: Iterable[Path]) -> list[Path]:
+    return sorted(file for file in files if file.suffix.lower().lstrip(".") in FORMATS and file.is_file())[:MAX_HOUSES]
 
 
 def files_of(file: Path) -> list[Path]:

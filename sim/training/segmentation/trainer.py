@@ -158,7 +158,8 @@ class Trainer:
             self.step += 1
             self.spent_s = time.perf_counter() - start_s
             made = self.step - self.first_step
-            if self.args.hours is not None and (made < LOG_EVERY_STEPS or self.step % LOG_EVERY_STEPS == 0):
+            is_due = made < LOG_EVERY_STEPS or self.step % LOG_EVERY_STEPS == 0
+            if self.args.hours is not None and (is_due or self._left_s() <= 0.0):  # steps take longer under load
                 per_step_s = (time.perf_counter() - train_s) / made
                 self.total = self.step + max(0, int(self._left_s() / per_step_s))
             if time.perf_counter() - self._printed_s >= PRINT_EVERY_S:

@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 import torch
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
+from sim.app.submissions.contents import Actions
 from sim.core.geometry.pose import BodyPose, Pose
 from sim.core.interface import MPCAT40, MPCAT40_ID, SENSORS, Action, AgentSpec, CameraModel, ConfigError, as_action
 from sim.env.objectnav import ObjectNavEnv
@@ -193,3 +195,12 @@ def test_a_sidecar_whose_cameras_are_no_object_is_refused(tmp_path: Path) -> Non
     assert json.loads(robot.with_suffix(".json").read_text())["cameras"] == ["left"]
     with pytest.raises(ConfigError, match='"cameras" in its sidecar must be an object'):
         resolve(RunOptions(robot=str(robot)))
+
+
+@pytest.mark.parametrize(("actions", "allowed"), [("0123", True), ("1450", True), ("16", False)])
+def test_submissions_hold_looks(actions: str, allowed: bool) -> None:
+    if allowed:
+        assert msgspec.convert(actions, Actions) == actions
+    else:
+        with pytest.raises(msgspec.ValidationError):
+            msgspec.convert(actions, Actions)

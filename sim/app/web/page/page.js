@@ -237,6 +237,88 @@ function chosenSplit() {
 function chosenHouse() {
   options($("goal"), Object.keys(goalsNow()));
   chosenGoal();
+  showHouse();
+}
+
+// --- the house before the start -------------------------------------------------------------------------------------
+
+let above = null;  // the house that is shown: its picture, the place in its middle, metres per pixel
+
+// Shows the house in place of the last episode's pictures; a running episode goes on.
+function showAbove() {
+  if (!["running", "loading"].includes(state.phase)) delete document.body.dataset.step;
+}
+
+async function showHouse() {
+  const asked = {split: $("split").value, house: $("house").value};
+  $("place").value = "";
+  above = null;
+  $("above-words").textContent = `Drawing ${asked.house.replaceAll("_", " ")} ...`;
+  const answer = await fetch(`api/house?${new URLSearchParams(asked)}`);
+  if ($("split").value !== asked.split || $("house").value !== asked.house) return;  // another one was chosen since
+  $("above").classList.toggle("missing", !answer.ok);
+  if (!answer.ok) {
+    $("above-words").textContent = await answer.text();
+    return;
+  }
+  const house = await answer.json();
+  const bytes = Uint8Array.from(atob(house.jpeg), (letter) => letter.charCodeAt(0));
+  above = {...house, picture: await createImageBitmap(new Blob([bytes], {type: "image/jpeg"}))};
+  drawHouse();
+}
+
+// x, y and direction in the field; null: there is no start in it.
+function chosenPlace() {
+  const numbers = $("place").value.trim().split(/[\s,]+/).map(Number);
+  if (!$("place").value.trim() || numbers.length < 2 || numbers.some((number) => !Number.isFinite(number))) return null;
+  return [numbers[0], numbers[1], numbers[2] ?? 0];
+}
+
+function drawHouse() {
+  if (!above) return;
+  const canvas = $("above-picture"), pen = canvas.getContext("2d"), place = chosenPlace();
+  canvas.width = above.picture.width;
+  canvas.height = above.picture.height;
+  pen.drawImage(above.picture, 0, 0);
+  $("above-words").textContent = `${$("house").value.replaceAll("_", " ")} from above. ` + (place ? "Start: the arrow." : "Press to choose a start, drag to turn it.");
+  if (!place) return;
+  const x = (place[0] - above.middle_m[0]) / above.m_per_px + canvas.width / 2;
+  const y = canvas.height / 2 - (place[1] - above.middle_m[1]) / above.m_per_px;
+  const turn = place[2] * Math.PI / 180, size = Math.max(9, 0.25 / above.m_per_px);
+  pen.translate(x, y);
+  pen.rotate(-turn);
+  pen.beginPath();
+  for (const [ahead, left] of [[1.6, 0], [-1, 0.9], [-0.5, 0], [-1, -0.9]]) pen.lineTo(ahead * size, -left * size);
+  pen.closePath();
+  pen.lineWidth = 3;
+  pen.strokeStyle = "#fff";
+  pen.fillStyle = "#c4146c";
+  pen.stroke();
+  pen.fill();
+}
+
+function placeAt(event) {
+  const box = $("above-picture").getBoundingClientRect(), scale = $("above-picture").width / box.width;
+  const x = (event.clientX - box.left) * scale - $("above-picture").width / 2;
+  const y = $("above-picture").height / 2 - (event.clientY - box.top) * scale;
+  return [x * above.m_per_px + above.middle_m[0], y * above.m_per_px + above.middle_m[1]];
+}
+
+let pressed = null;  // where the pointer went down on the picture, metres
+
+function press(event) {
+  if (!above || event.button !== 0) return;
+  pressed = placeAt(event);
+  event.currentTarget.setPointerCapture(event.pointerId);
+  aim(event);
+}
+
+function aim(event) {
+  if (!pressed) return;
+  const [x, y] = placeAt(event), far = Math.hypot(x - pressed[0], y - pressed[1]) > 0.2;
+  const deg = far ? Math.atan2(y - pressed[1], x - pressed[0]) * 180 / Math.PI : chosenPlace()?.[2] ?? 0;
+  $("place").value = `${pressed[0].toFixed(2)} ${pressed[1].toFixed(2)} ${deg.toFixed(0)}`;
+  drawHouse();
 }
 
 // Removes the chosen episode if it is of another house or goal.
@@ -251,8 +333,10 @@ function chosenEpisode() {
   for (const [house, goals] of Object.entries(choices.splits[$("split").value])) {
     for (const [goal, ids] of Object.entries(goals)) {
       if (!ids.includes(id)) continue;
+      const other = $("house").value !== house;
       $("house").value = house;
       options($("goal"), Object.keys(goals), goal);
+      if (other) showHouse();
     }
   }
 }
@@ -293,6 +377,8 @@ function start(driver) {
   const wish = $("wish").value.trim();
   if (wish) request.goal = wish;
   request.episode = wish ? "" : $("episode").value.trim();
+  const place = chosenPlace();
+  if (place) request.start = place;
   request.explorer = $("explorer").disabled ? "" : $("explorer").value;
   send(request);
   if (phone.matches) window.scrollTo(0, 0);
@@ -379,7 +465,86 @@ async function compare() {
   $("comparison-message").hidden = answer.ok;
   $("comparison-message").textContent = answer.ok ? "" : await answer.text();
   fill($("comparison-tables"), answer.ok ? comparisonShown(...(await answer.json())) : []);
+  await offerReplay(first, second, answer.ok);
   $("comparison").scrollIntoView({block: "nearest"});
+}
+
+// --- two runs side by side ------------------------------------------------------------------------------------------
+
+const replayed = ["first", "second"].map((name) => $(`replay-${name}`));
+let replaying = null;  // timer of the time that is shown while both play
+
+async function offerReplay(first, second, comparable) {
+  stopReplay();
+  const lines = [];
+  for (const name of comparable ? [first, second] : []) {
+    const answer = await fetch(`api/runs/${encodeURIComponent(name)}`);
+    lines.push(answer.ok ? (await answer.json()).filter((line) => line.video).map((line) => line.episode_id) : []);
+  }
+  const common = comparable ? lines[0].filter((id) => lines[1].includes(id)) : [];
+  $("replay").hidden = !common.length;
+  $("no-replay").hidden = !comparable || common.length > 0;
+  options($("replay-episode"), common);
+  $("replay-first-name").textContent = `A: ${first}`;
+  $("replay-second-name").textContent = `B: ${second}`;
+  $("replay").dataset.runs = JSON.stringify([first, second]);
+  if (common.length) chooseReplay();
+}
+
+function chooseReplay() {
+  stopReplay();
+  JSON.parse($("replay").dataset.runs).forEach((run, number) => {
+    replayed[number].src = `runs/${encodeURIComponent(run)}/video?episode=${encodeURIComponent($("replay-episode").value)}`;
+  });
+  $("replay-at").value = 0;
+}
+
+const longest_s = () => Math.max(...replayed.map((video) => video.duration || 0));
+
+function showTime() {
+  const at = Math.max(...replayed.map((video) => video.currentTime));
+  $("replay-at").max = longest_s() || 1;
+  $("replay-at").value = at;
+  $("replay-time").textContent = `${at.toFixed(1)} of ${longest_s().toFixed(1)} s`;
+  if (replaying && replayed.every((video) => video.ended || video.paused)) stopReplay();
+}
+
+function scrub() {
+  stopReplay();
+  const at = Number($("replay-at").value);
+  for (const video of replayed) video.currentTime = Math.min(at, video.duration || at);
+  $("replay-time").textContent = `${at.toFixed(1)} of ${longest_s().toFixed(1)} s`;
+}
+
+function stopReplay() {
+  clearInterval(replaying);
+  replaying = null;
+  for (const video of replayed) video.pause();
+  $("replay-play").textContent = "Play";
+}
+
+async function playReplay() {
+  if (replaying) return stopReplay();
+  if (Number($("replay-at").value) >= longest_s() - 0.05) for (const video of replayed) video.currentTime = 0;
+  await Promise.all(replayed.map((video) => (video.currentTime < video.duration ? video.play().catch(() => {}) : null)));
+  $("replay-play").textContent = "Pause";
+  replaying = setInterval(showTime, 100);
+}
+
+async function deleteRun() {
+  const button = $("run-delete");
+  if (button.dataset.sure !== opened.name) {  // the first click asks
+    button.dataset.sure = opened.name;
+    button.textContent = "Really delete?";
+    return;
+  }
+  const answer = await fetch(`api/${opened.address}`, {method: "DELETE"});
+  $("video-title").textContent = answer.ok ? "" : await answer.text();
+  if (!answer.ok) return;
+  $("run").hidden = true;
+  $("comparison").hidden = true;
+  stopReplay();
+  listRuns();
 }
 
 function comparisonShown(means, differences) {
@@ -406,6 +571,9 @@ async function openRun(run) {
   $("run-name").textContent = run.name;
   $("run-report").href = `${address}/report.html`;
   $("run-report").hidden = !run.report;
+  $("run-download").href = `${address}/run.zip`;
+  $("run-delete").textContent = "Delete";
+  delete $("run-delete").dataset.sure;
   $("video").hidden = true;
   $("video").removeAttribute("src");
   $("video-title").textContent = "";
@@ -498,8 +666,8 @@ addEventListener("pagehide", leave);
 addEventListener("pageshow", comeBack);
 $("choose").addEventListener("submit", (event) => { event.preventDefault(); start("agent"); });
 $("start-driving").addEventListener("click", () => start("person"));
-$("split").addEventListener("change", chosenSplit);
-$("house").addEventListener("change", chosenHouse);
+$("split").addEventListener("change", () => { chosenSplit(); showAbove(); });
+$("house").addEventListener("change", () => { chosenHouse(); showAbove(); });
 $("goal").addEventListener("change", () => { $("wish").value = ""; chosenGoal(); });
 $("wish").addEventListener("change", wished);
 $("episode").addEventListener("change", chosenEpisode);
@@ -513,6 +681,16 @@ $("hints").addEventListener("click", hints);
 $("run-filter").addEventListener("input", showRuns);
 $("compare").addEventListener("click", compare);
 $("outcome-filter").addEventListener("change", showEpisodes);
+$("place").addEventListener("input", drawHouse);
+$("place").addEventListener("focus", showAbove);
+$("above-picture").addEventListener("pointerdown", press);
+$("above-picture").addEventListener("pointermove", aim);
+for (const end of ["pointerup", "pointercancel"]) $("above-picture").addEventListener(end, () => { pressed = null; });
+$("replay-episode").addEventListener("change", chooseReplay);
+$("replay-play").addEventListener("click", playReplay);
+$("replay-at").addEventListener("input", scrub);
+for (const video of replayed) video.addEventListener("loadedmetadata", showTime);
+$("run-delete").addEventListener("click", deleteRun);
 $("end").addEventListener("click", () => send({do: "stop"}));
 $("tab-live").addEventListener("click", () => tab("live"));
 $("tab-runs").addEventListener("click", () => tab("runs"));

@@ -5,7 +5,9 @@ from __future__ import annotations
 import csv
 import json
 import re
+import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -269,3 +271,23 @@ def test_a_card_says_which_options_of_a_training_are_of_earlier_versions(options
     text = "\n".join(training_commands([Training(options={"seed": "1"}), Training(options={**options})]))
     assert "--seed 1\nstubborn train segmentation --rate 0.001" in text
     assert ("earlier versions" in text) == told
+
+
+def test_the_time_limit_is_kept_when_steps_suddenly_take_longer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_views(tmp_path / "train", 3)
+    write_views(tmp_path / "val", 2)
+    monkeypatch.setattr("sim.training.segmentation.trainer.LOG_EVERY_STEPS", 4)
+    trainer = Trainer(options(tmp_path, hours=0.05, evaluate_every=10_000))
+    step, now, steps = trainer._train_on, time.perf_counter, []
+
+    def slow(*batch: Any) -> Any:
+        steps.append(len(steps) + 1)
+        if len(steps) == 5:
+            monkeypatch.setattr(time, "perf_counter", lambda: now() + 180.0)
+        return step(*batch)
+
+    monkeypatch.setattr(trainer, "_train_on", slow)
+    trainer.run()
+    assert steps == [1, 2, 3, 4, 5]

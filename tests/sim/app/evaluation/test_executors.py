@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import importlib
 import os
 import subprocess
@@ -294,3 +295,12 @@ def test_a_worker_with_threads_and_exit_handlers_that_do_not_end_is_ended(monkey
 def test_an_error_that_cannot_be_pickled_reaches_the_caller_as_text() -> None:
     with pytest.raises(WorkersError, match="OwnError: first"):
         list(Processes(1, Isolation(needed=True)).run(SPEC, [Job("a", "b", hang="raise")], on_death=never))
+
+
+def test_shared_memory_that_cannot_be_used_is_named_with_the_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    monkeypatch.setattr("sim.app.evaluation.processes.Calls", refuse)
+    with pytest.raises(ConfigError, match=r"shared memory \(/dev/shm\).*Read-only file system.*--workers 1"):
+        processes._Process(threads=1, preload="")

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import base64
 import json
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
 
+import cv2
+import numpy as np
 import pytest
 
 from sim.app.commands import run as sim_run
@@ -15,8 +19,9 @@ from sim.app.options import RunOptions
 from sim.app.web.choices import Choices, Offer
 from sim.app.web.controls import EpisodeRequest
 from sim.app.web.driven import DrivenRuns
-from sim.app.web.session import Frame, Session
+from sim.app.web.session import Frame, Session, choose_episode
 from sim.core.errors import ConfigError, EpisodeError
+from sim.episodes.splits import load_split
 from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.results import a_result
 from tests.helpers.worlds import room, with_box
@@ -265,3 +270,46 @@ def test_a_wish_that_the_house_cannot_satisfy_is_answered_with_what_is_there(cho
 def test_wishes_that_are_refused(choices, change, words):
     with pytest.raises(ConfigError, match=words):
         choices.request(WISH | change)
+
+
+def test_the_house_is_shown_from_above_to_scale(own: Choices, house: Path) -> None:
+    (split,) = [name for name in own.as_json()["splits"] if name.endswith(house.name)]  # type: ignore[attr-defined]
+    view: Any = own.house_from_above(split, house.stem)
+    picture = cv2.imdecode(np.frombuffer(base64.b64decode(view["jpeg"]), np.uint8), cv2.IMREAD_COLOR)
+    assert view["middle_m"] == pytest.approx((0.0, 0.0), abs=0.02)
+    assert picture is not None
+    rows, cols = np.nonzero(np.abs(picture.astype(int) - picture[0, 0]).max(axis=2) > 25)  # not the background
+    for cells in (rows, cols):  # a room of 6 x 6 m; the tops of its walls are nearer to the eye than its floor
+        assert (np.ptp(cells) + 1) * view["m_per_px"] == pytest.approx(6.5, abs=0.4)
+    assert own.house_from_above(split, house.stem) is view
+    for asked in ((split, "nowhere"), ("nowhere", house.stem)):
+        with pytest.raises(ConfigError):
+            own.house_from_above(*asked)
+
+
+@pytest.mark.parametrize("of_split", [True, False])
+def test_an_episode_begins_at_the_chosen_start(
+    of_split: bool, own: Choices, choices: Choices, house: Path, tmp_path: Path
+) -> None:
+    if of_split:
+        offered, message = choices, START | {"driver": "agent"}
+        pose = next(e.start for e in load_split("traps").episodes if e.house == "wedged_spawn")
+        x, y = pose.x_m, pose.y_m
+    else:
+        (split,) = [name for name in own.as_json()["splits"] if name.endswith(house.name)]  # type: ignore[attr-defined]
+        offered, message, x, y = own, START | {"split": split, "house": house.stem, "goal": "sofa"}, 1.0, 1.0
+    request = offered.request(message | {"start": [x, y, 90.0], "episode": "ignored" if not of_split else ""})
+    shown: list[Any] = []
+
+    def watch(session: Session) -> None:
+        made = session._made_for(request)
+        shown.append(choose_episode(made.parts.env, request, 0, made.setup).start)
+
+    play(request, tmp_path, watch)
+    assert (shown[0].x_m, shown[0].y_m, math.degrees(shown[0].yaw_rad)) == pytest.approx((x, y, 90.0), abs=0.001)
+
+
+@pytest.mark.parametrize("start", [[1.0, 2.0], [1e9, 0.0, 0.0], ["1", 2.0, 0.0], "1 2 0", [float("nan"), 0.0, 0.0]])
+def test_a_start_is_three_numbers(start: object, choices: Choices) -> None:
+    with pytest.raises(ConfigError):
+        choices.request(START | {"start": start})

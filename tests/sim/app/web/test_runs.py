@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -102,3 +104,33 @@ def test_a_run_that_goes_on_is_read_again_and_an_unchanged_one_is_not(tmp_path: 
 def test_a_folder_that_does_not_exist_holds_no_run(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     assert Runs(tmp_path / "none").as_json() == Runs(tmp_path / "file").as_json() == []
+
+
+def test_a_run_is_packed_without_links_and_hidden_files(tmp_path: Path) -> None:
+    run = write_run(tmp_path / "runs" / "mine")
+    (run / "videos").mkdir()
+    (run / "videos" / "e%2F0.mp4").write_bytes(b"a video")
+    (run / ".lock").write_bytes(b"")
+    (tmp_path / "secret").write_text("SECRET")
+    (run / "videos" / "link").symlink_to(tmp_path / "secret")
+    with Runs(tmp_path / "runs").packed("mine") as stream, zipfile.ZipFile(stream) as archive:
+        assert sorted(archive.namelist()) == ["mine/config.json", "mine/results.jsonl", "mine/videos/e%2F0.mp4"]
+        assert archive.read("mine/videos/e%2F0.mp4") == b"a video"
+        assert archive.read("mine/results.jsonl") == (run / "results.jsonl").read_bytes()
+
+
+def test_a_run_is_deleted_unless_it_is_being_written(tmp_path: Path) -> None:
+    runs, run = Runs(tmp_path / "runs"), write_run(tmp_path / "runs" / "mine")
+    other = write_run(tmp_path / "elsewhere")
+    (tmp_path / "runs" / "link").symlink_to(other)
+    with (run / ".lock").open("ab") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        with pytest.raises(ConfigError, match="'mine' is being written"):
+            runs.delete("mine")
+    assert run.is_dir()
+    runs.delete("mine")
+    assert not run.exists()
+    for name in ("mine", "link", "..", "../elsewhere", ""):
+        with pytest.raises(ConfigError, match="There is no run"):
+            runs.delete(name)
+    assert (other / "results.jsonl").is_file()

@@ -7,6 +7,7 @@ import http.client
 import json
 import os
 import re
+import shutil
 import socket as socket_module
 import struct
 import subprocess
@@ -394,7 +395,57 @@ def test_finished_runs_are_filtered_opened_and_compared(server: Server, browser:
     compared = wait_for(lambda: browser.run("return document.getElementById('comparison-tables').innerText"))
     assert "paired over 1 episodes" in compared
     assert "-100.0" in compared
+    assert not browser.run("return document.getElementById('no-replay').hidden")  # they share no video
     assert browser.console_errors() == []
+
+
+def test_a_press_on_the_house_chooses_the_start(server: Server, browser: Browser) -> None:
+    browser.visit(server.address)
+    wait_for(lambda: browser.run("return above !== null && state.phase !== 'running'"))
+    browser.run("document.getElementById('place').focus()")
+    browser.run(
+        "const c = document.getElementById('above-picture'), box = c.getBoundingClientRect();"
+        "c.setPointerCapture = () => {};"
+        "const at = (type, x, y) => c.dispatchEvent(new PointerEvent(type, {button: 0, pointerId: 1,"
+        " clientX: box.left + x * box.width, clientY: box.top + y * box.height}));"
+        "at('pointerdown', 0.5, 0.5); at('pointermove', 0.5, 0.4); at('pointerup', 0.5, 0.4);"
+    )
+    x, y, deg = (float(word) for word in browser.run("return document.getElementById('place').value").split())
+    assert [x, y] == pytest.approx(browser.run("return above.middle_m"), abs=0.02)
+    assert deg == 90
+    assert "Start: the arrow" in browser.run("return document.getElementById('above-words').textContent")
+    browser.run("document.getElementById('house').selectedIndex = 1; chosenHouse();")
+    assert browser.run("return document.getElementById('place').value") == ""
+    assert browser.console_errors() == []
+
+
+def test_a_run_is_downloaded_and_deleted_with_a_second_click(runs: Path, server: Server, browser: Browser) -> None:
+    spare = runs / "spare"
+    shutil.copytree(runs / "other", spare)
+    status, headers, content = server.get("/runs/spare/run.zip")
+    assert (status, headers["content-type"], content[:2]) == (200, "application/zip", b"PK")
+    browser.visit(server.address)
+    browser.click("#tab-runs")
+    names = "return [...document.querySelectorAll('#run-list button')].map(button => button.innerText)"
+    wait_for(lambda: "spare" in browser.run(names))
+    browser.run("[...document.querySelectorAll('#run-list button')].find(b => b.innerText === 'spare').click()")
+    wait_for(lambda: browser.run("return !document.getElementById('run').hidden"))
+    browser.click("#run-delete")
+    assert browser.run("return document.getElementById('run-delete').textContent") == "Really delete?"
+    assert spare.is_dir()
+    browser.click("#run-delete")
+    wait_for(lambda: not spare.exists())
+    wait_for(lambda: "spare" not in browser.run(names))
+    assert browser.console_errors() == []
+
+
+def test_only_the_page_deletes_runs(server: Server, runs: Path) -> None:
+    for headers in ({}, {"Origin": "http://evil.example"}):
+        connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=30)
+        connection.request("DELETE", "/api/runs/other", headers={"Host": f"127.0.0.1:{server.port}", **headers})
+        assert connection.getresponse().status == 403
+        connection.close()
+    assert (runs / "other" / "results.jsonl").is_file()
 
 
 def test_a_report_shows_its_pictures_and_videos(tmp_path: Path, browser: Browser) -> None:

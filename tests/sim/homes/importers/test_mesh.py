@@ -317,3 +317,12 @@ def test_a_room_whose_file_has_z_up_is_turned_if_it_has_no_floor_otherwise(
         return
     scene = import_mesh(tmp_path / "room.glb", rules={}, up=given, config=MeshConfig())  # type: ignore[arg-type]
     assert ("z points up, not y" in str(scene.house.report)) == (given == "auto")
+
+
+def test_folders_without_meshes_of_their_own_are_searched(tmp_path: Path) -> None:
+    for name in ("b/home.glb", "a/deep/flat.PLY", "a/notes.txt"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(b"")
+    assert find_files(tmp_path) == [tmp_path / "a/deep/flat.PLY", tmp_path / "b/home.glb"]
+    (tmp_path / "own.obj").write_bytes(b"")
+    assert find_files(tmp_path) == [tmp_path / "own.obj"]
