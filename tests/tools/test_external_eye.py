@@ -150,6 +150,7 @@ def test_missed_objects_and_false_detections_are_listed_and_drawn(tmp_path: Path
     assert missed(view) == []
     assert false_detections(view) == [bed]
     assert missed(replace(view, detections=(bed,))) == [CHAIR]
+    assert false_detections(replace(view, truths=(replace(CHAIR, counted=False),), detections=(SEEN,))) == []
     write_sheets(tmp_path, {"missed_dining table": [np.full((4, 4, 3), 9, np.uint8)] * 7})
     (file,) = tmp_path.iterdir()
     assert file.name == "missed_dining_table.png"

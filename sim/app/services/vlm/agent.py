@@ -71,7 +71,7 @@ class VlmConfig(ChatConfig, AgentConfig):
     transcripts: Path | None = None
     """Folder to which each question with its pictures and the reply are written; None: they are not."""
     explorer: ExplorerConfig = field(default_factory=lambda: replace(INFORMED_TOUR, replan_steps=25))
-    """A tour; between two questions where to go are at least `replan_steps` steps, or an arrival."""
+    """A tour. The model is asked again on arrival, and after `replan_steps` steps that showed new ground."""
     seeker: SeekerConfig = PLUS.seeker
     feel: FeelConfig | None = PLUS.feel
     untrap: UntrapConfig = PLUS.untrap
@@ -120,8 +120,6 @@ class VlmAgent(StubbornAgent):
         self.words = in_words(goal) if goal in GOAL_CATEGORIES else goal
         self.fell_back_step: int | None = None
         """Step from which the model was not asked any more; None: it is asked."""
-        self.reason = ""
-        """The last reason that the model gave."""
         self._seed, self._asked_step = seed, -1
         self._observation: Observation = {}
         self.chat.begin()
@@ -169,7 +167,7 @@ class VlmAgent(StubbornAgent):
 
     def _choose(self, ground: Ground, places_xy_m: NDArray[np.float64], own: int) -> int:
         """Returns the number of the stop that the model chooses, or that of the tour; see `tour.Chooser`."""
-        if self._asked_step == self.step:  # the chosen stop could not be reached
+        if self.fell_back_step is not None or self._asked_step == self.step:  # the chosen stop could not be reached
             return own
         self._asked_step = self.step
         away_m = np.hypot(*(places_xy_m - np.array(ground.pose.xy_m)).T)
@@ -205,7 +203,7 @@ class VlmAgent(StubbornAgent):
                 self.fell_back_step = self.step
                 _log.warning("%s: %d failures: it is not asked again.", printable(where), self.chat.failed)
         else:
-            self.reason, answer = reply.reason, repr(reply)
+            answer = repr(reply)
         if self.options.transcripts is not None:
             name = f"{self.words.replace(' ', '_')}_{self._seed}_{self.step:03d}_{what}"
             write_transcript(self.options.transcripts, name, f"{text}\n\n-> {answer}\n", pictures)

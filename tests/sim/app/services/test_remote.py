@@ -27,6 +27,7 @@ from sim.app.services.remote import (
 )
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import MPCAT40_ID, CameraModel
+from sim.core.vocabulary import vocabulary
 from sim.training.views.coco import encode_mask
 from stubborn.detection.wished import WishedSegmenter
 from stubborn.segmentation.calibration import Calibration
@@ -300,9 +301,14 @@ def test_a_general_word_means_all_that_a_detector_names_below_it(start: Start) -
     wished = WishedSegmenter(asking(server.url, form="coco"))
     wished.ask("something to sit on")
     assert (wished.scores(view(), wished.category).target >= 0.9).all()
-    narrow = WishedSegmenter(asking(server.url, form="coco"))
-    narrow.ask("rocking chair")
-    assert (narrow.scores(view(), narrow.category).target < 0.1).all()
+    chairs = vocabulary().find("chair")
+    assert chairs is not None
+    server = start(as_json(annotations=[{"category": "chair", "score": 0.9, "bbox": [0, 0, 64, 48]}]))
+    for name in sorted(chairs.names):  # a chair is not yet one of these
+        narrow = WishedSegmenter(asking(server.url, form="coco"))
+        narrow.ask(name)
+        target = narrow.scores(view(), narrow.category).target
+        assert (target > 0.8).all() if name == "chair" else (target < 0.1).all()
 
 
 def test_a_calibration_changes_the_probabilities_as_the_one_of_a_network_does(start: Start, tmp_path: Path) -> None:
