@@ -171,7 +171,7 @@ FRAME = {"rgb": np.zeros((48, 64, 3), np.uint8), "depth": np.ones((48, 64), np.f
 
 def test_the_words_of_the_goal_and_named_objects_pass_a_segmentation_of_ones_own() -> None:
     inner = Named()
-    wished = WishedSegmenter(own_of(inner))
+    wished = WishedSegmenter(own_of(inner), CameraModel(width_px=64, height_px=48))
     wished.ask("the red rocking chair")
     assert inner.asked == ("rocking chair", frozenset({"rocking chair"}))
     target = wished.scores(FRAME, wished.category).target

@@ -281,7 +281,7 @@ def test_the_words_of_the_goal_are_asked_for_and_name_the_objects(start: Start) 
         send(handler, json.dumps(annotations).encode())
 
     server, observation = start(answer), view()
-    wished = WishedSegmenter(asking(server.url, form="coco"))
+    wished = WishedSegmenter(asking(server.url, form="coco"), CAMERA)
     wished.ask("the red rocking chair in the bedroom")
     target = wished.scores(observation, wished.category).target
     assert json.loads(server.requests[0][1])["words"][:2] == ["rocking chair", "chair"]
@@ -290,7 +290,7 @@ def test_the_words_of_the_goal_are_asked_for_and_name_the_objects(start: Start) 
     wished.ask("chair")
     np.testing.assert_allclose(wished.scores(observation, "chair").target[:, :8], 0.9)
     assert "rocking chair" not in json.loads(server.requests[1][1])["words"]
-    closed = WishedSegmenter(asking(server.url, form="coco", words=False))
+    closed = WishedSegmenter(asking(server.url, form="coco", words=False), CAMERA)
     closed.ask("rocking chair")
     assert (closed.scores(observation, "chair").target > 0.7).all()
     assert "rocking chair" not in json.loads(server.requests[2][1])["words"]
@@ -298,14 +298,14 @@ def test_the_words_of_the_goal_are_asked_for_and_name_the_objects(start: Start) 
 
 def test_a_general_word_means_all_that_a_detector_names_below_it(start: Start) -> None:
     server = start(as_json(annotations=[{"category": "couch", "score": 0.9, "bbox": [0, 0, 64, 48]}]))
-    wished = WishedSegmenter(asking(server.url, form="coco"))
+    wished = WishedSegmenter(asking(server.url, form="coco"), CAMERA)
     wished.ask("something to sit on")
     assert (wished.scores(view(), wished.category).target >= 0.9).all()
     chairs = vocabulary().find("chair")
     assert chairs is not None
     server = start(as_json(annotations=[{"category": "chair", "score": 0.9, "bbox": [0, 0, 64, 48]}]))
     for name in sorted(chairs.names):  # a chair is not yet one of these
-        narrow = WishedSegmenter(asking(server.url, form="coco"))
+        narrow = WishedSegmenter(asking(server.url, form="coco"), CAMERA)
         narrow.ask(name)
         target = narrow.scores(view(), narrow.category).target
         assert (target > 0.8).all() if name == "chair" else (target < 0.1).all()
