@@ -9,6 +9,7 @@ HM3D-OVON (Yokoyama et al. 2024) has the files of ObjectNav with any words as ca
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any
@@ -73,25 +74,27 @@ def ovon_house(task: Task, episodes: Sequence[Episode], scene_id: str, *, step_c
 
 
 def read_goat(file: Path) -> list[Episode]:
-    """Returns the chains in GOAT-Bench's file of a house, whose goals are categories, words and descriptions.
+    """Returns the chains in GOAT-Bench's file of a house.
 
     Raises:
         ConfigError: the file has another format.
-        EpisodeError: a goal is not known here, or is a picture.
+        EpisodeError: a goal is not known here, or a picture is not listed.
     """
     content = read_gzip_json(file, _GoatFile, what="File of GOAT-Bench")
-    described = {(of.object_category, of.object_id): of.lang_desc for goals in content.goals.values() for of in goals}
+    listed = {(of.object_category, of.object_id): of for goals in content.goals.values() for of in goals}
     episodes = []
     for entry in content.episodes:
         goals: list[GoalSpec] = []
         asked: dict[frozenset[str], int] = {}
-        for category, kind, object_id, _ in entry.tasks:
+        for category, kind, object_id, number in entry.tasks:
+            of, objects = listed.get((category, object_id or "")), _objects_of(content, category, kind, object_id)
             if kind == "image":
-                raise EpisodeError(f"File of GOAT-Bench '{file}': goals by pictures are not read.")
-            text = category if kind == "object" else described.get((category, object_id or "")) or ""
-            objects = _objects_of(content, category, kind, object_id)
-            goal = GoalSpec.of(text)
-            goals.append(GoalSpec(goal.text, goal.kind, None, asked.get(objects)))
+                if of is None or number is None or number >= len(of.image_goals):
+                    raise EpisodeError(f"File of GOAT-Bench '{file}': '{object_id}' has no picture {number}.")
+                goal = GoalSpec(next(iter(objects)), "picture", of.image_goals[number].camera)
+            else:
+                goal = GoalSpec.of(category if kind == "object" else (of and of.lang_desc) or "")
+            goals.append(replace(goal, repeats=asked.get(objects)))
             asked.setdefault(objects, len(goals) - 1)
         start = habitat.from_agent_state(entry.start_position, entry.start_rotation)
         name, house = entry.info.stubborn_id or str(entry.episode_id), Path(entry.scene_id).stem
@@ -184,6 +187,7 @@ class _GoatGoal(msgspec.Struct):
     object_id: Name
     object_category: Name
     lang_desc: str | None = None
+    image_goals: list[habitat.ImageGoal] = msgspec.field(default_factory=list)
 
 
 class _GoatInfo(msgspec.Struct):

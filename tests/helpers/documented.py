@@ -322,6 +322,13 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --agent stubborn-plus --semantics gt --split words-seen --episodes 1 --config task.max_steps=5"
         " --out {tmp}/run",
     ),
+    f"{_RUN} --agent stubborn-plus --semantics gt --split pictures --episodes 20": (
+        f"{_RUN} --agent stubborn-plus --semantics gt --split pictures --episodes 1 --config task.max_steps=5"
+        " --out {tmp}/run",
+    ),
+    "stubborn words --split val --kind pictures --episodes 150 --out assets/mjcf_houses/my_pictures": Only(
+        "writes beside the shipped houses; tests/sim/app/commands/test_words.py makes a split of one house"
+    ),
     "stubborn words --split val --kind descriptions --episodes 10 --out assets/mjcf_houses/my_words": Only(
         "writes beside the shipped houses; tests/sim/app/commands/test_words.py makes a split of one house"
     ),

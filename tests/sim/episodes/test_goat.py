@@ -60,7 +60,7 @@ def test_goats_loader_finds_one_list_of_each_category_and_each_object_in_it(task
     assert len(content["goals"]["home.xml_chair"]) == 2
 
 
-def test_a_picture_is_written_with_its_camera_and_not_read(task: Task, tmp_path: Path) -> None:
+def test_a_picture_is_written_with_its_camera_and_read(task: Task, tmp_path: Path) -> None:
     chain = replace(CHAIN, goals=(GOALS[0], GoalSpec("table_00", "picture", CAMERA), *GOALS[1:3]))
     content = goat_house(task, [chain], "stubborn/mine/home.xml", step_cells=4, most=50)
     assert content["episodes"][0]["tasks"][1:3] == [
@@ -71,7 +71,15 @@ def test_a_picture_is_written_with_its_camera_and_not_read(task: Task, tmp_path:
     assert entry["lang_desc"] == "the white table"
     file = tmp_path / "home.json.gz"
     file.write_bytes(habitat.zipped_json(content))
-    with pytest.raises(EpisodeError, match="pictures"):
+    (read,) = read_goat(file)
+    assert [goal.kind for goal in read.goals] == ["category", "picture", "description", "words"]
+    camera = read.goals[1].camera
+    assert camera is not None
+    assert camera.yaw_rad == pytest.approx(CAMERA.yaw_rad)
+    assert (camera.x_m, camera.z_m, camera.pitch_rad) == pytest.approx((CAMERA.x_m, CAMERA.z_m, CAMERA.pitch_rad))
+    content["episodes"][0]["tasks"][1][3] = 1
+    file.write_bytes(habitat.zipped_json(content))
+    with pytest.raises(EpisodeError, match="no picture 1"):
         read_goat(file)
 
 
