@@ -141,7 +141,7 @@ class GoalRegion:
         distance, nearest = footprint.boundary_m.query(xy_m, distance_upper_bound=r * (1.0 + 1e-12))
         reached = footprint.contains(xy_m)
         within = np.flatnonzero(~reached & np.isfinite(distance))
-        reached[within] = ~lines_blocked(xy_m[within], points[nearest[within]], blockers)
+        reached[within] = ~lines_blocked(xy_m[within], points[np.asarray(nearest)[within]], blockers)
         for hidden in _chunks(_not_hidden(within[~reached[within]], xy_m, footprint.bounds_m, blockers)):
             place, point = np.nonzero(_distances(xy_m[hidden], points) <= r)
             seen = ~lines_blocked(xy_m[hidden][place], points[point], blockers)
