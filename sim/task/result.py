@@ -237,7 +237,8 @@ class EpisodeResult(RolloutResult, frozen=True, kw_only=True):
 
     def as_json(self) -> dict[str, object]:
         """Returns the JSON values of the line, the episode and the agent first."""
-        values = msgspec.to_builtins(self)
+        # msgspec omits a default by identity, and a result from a worker holds another string of the same characters.
+        values = msgspec.to_builtins(self) | {"motion": self.motion}
         return {name: values[name] for name in _KEYS if name in values}
 
 

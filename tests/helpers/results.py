@@ -20,6 +20,7 @@ ENTRIES: dict[str, Any] = msgspec.to_builtins(metrics_without_episode(4.2)) | {
     "isolated": False,
     "semantics": "gt",
     "seed": 0,
+    "motion": "contacts",
     "success": 1.0,
     "spl": 0.5,
     "soft_spl": 0.5,
