@@ -146,8 +146,8 @@ class Task:
     @property
     def images(self) -> tuple[str, ...]:
         """The true images that `look` needs: in a chain those of all goals, as a frame can be the first of the next."""
-        by_category = self._goals[:1] == self._goals and self._goals[0].text in GOAL_CATEGORIES
-        return ("semantic",) if by_category else ("semantic", "geom")
+        by_category = all(goal.text in GOAL_CATEGORIES for goal in self._goals)
+        return ("semantic",) if by_category and not self.is_chain else ("semantic", "geom")
 
     def goal_mask(self, images: Mapping[str, NDArray]) -> NDArray[np.bool_]:
         """Returns (h, w) the pixels of the goal in the true images that `images` names."""

@@ -51,9 +51,10 @@ def test_the_place_is_that_of_the_agents_own_stop(
 def test_the_world_can_be_shown_before_the_first_action() -> None:
     shown: list[Frame] = []
     metrics = metrics_without_episode(None)
+    task = SimpleNamespace(goal_metrics=lambda: metrics, num_steps=0, goal="bed", is_chain=False)
     env = SimpleNamespace(
         truth_images={"semantic": np.zeros((4, 4), np.uint8)},
-        scene=SimpleNamespace(task=SimpleNamespace(metrics=lambda: metrics)),
+        scene=SimpleNamespace(task=task),
         episode=SimpleNamespace(goal="bed"),
     )
     parts: Any = SimpleNamespace(agent=Stops(), env=env, painter=None)
