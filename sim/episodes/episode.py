@@ -41,6 +41,11 @@ class Episode:
         return self.goals or (GoalSpec.of(self.goal),)
 
     @property
+    def in_picture(self) -> bool:
+        """True: the first goal is a picture."""
+        return self.specs[0].camera is not None
+
+    @property
     def is_chain(self) -> bool:
         """True: it has several goals."""
         return len(self.goals) > 1

@@ -34,6 +34,8 @@ class Started(Protocol):
     def house(self) -> str: ...  # noqa: D102
     @property
     def goal(self) -> str: ...  # noqa: D102
+    @property
+    def in_picture(self) -> bool: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ class ProgressReport:
         """Reports that an episode begins; `steps` returns its number of steps so far."""
         with self._lock:
             self._running[episode.episode_id] = _Running(steps, time.monotonic())
-            goal = episode.goal.replace("_", " ")
+            goal = f"the picture of {episode.goal}" if episode.in_picture else episode.goal.replace("_", " ")
             self._print(f"{episode.episode_id} begins: looking for {goal} in house {episode.house}")
 
     def over(self, results: Iterable[EpisodeResult]) -> Iterator[EpisodeResult]:

@@ -58,6 +58,8 @@ _SMALL_TOP, _SMALL_LEFT = 562, (8, 226)
 _CHASE = (656, 60, *CHASE_PX)
 _DEPTH = (1068, 60, 204, 153)
 _LOW_DEPTH, _SCORE = (1068, 60, 204, 112), (1068, 198, 204, 112)
+_INSET_PX = 150
+"""Side of the picture of a goal, over the camera's picture."""
 _NAMES_PX = 104
 """Width of a column of names of categories."""
 _MAPS_TOP, _MAP_LEFT, _PLAN_LEFT = 334, 656, 976
@@ -114,6 +116,7 @@ class FrameComposer:
         names: whether that segmentation names the category of each pixel.
         max_steps: number of actions that the episode allows.
         segmentation: name of the agent's segmentation.
+        picture: the picture of the goal, uint8 (h, w, 3); None: the goal is text.
     """
 
     def __init__(
@@ -127,7 +130,9 @@ class FrameComposer:
         names: bool = False,
         max_steps: int = 500,
         segmentation: str = "",
+        picture: Picture | None = None,
     ) -> None:
+        self._inset = None if picture is None else _framed(picture)
         self.goal, self._camera, self._max_steps = goal, camera, max_steps
         self._depth = _LOW_DEPTH if scores else _DEPTH
         self._segments = ("predicted", "true") if names else ("true",)
@@ -140,7 +145,8 @@ class FrameComposer:
         self._ground = np.full((HEIGHT_PX, WIDTH_PX, 3), PAPER, np.uint8)
         frame = self._ground
         frame[:_HEADER_PX] = HEADER
-        write(frame, f"Looking for {with_article(goal)}", (14, 28), 560, 24, WHITE, BOLD)
+        asked = with_article(goal) if picture is None else "the object in the picture"
+        write(frame, f"Looking for {asked}", (14, 28), 560, 24, WHITE, BOLD)
         for box, title in (
             (_CAMERA, "camera of the robot"),
             (_CHASE, "third person"),
@@ -171,6 +177,9 @@ class FrameComposer:
         frame = self._ground.copy()
         _put(frame, moment.seen("rgb"), _CAMERA)
         tick_off(frame, goals)
+        if self._inset is not None:
+            height, width, _ = self._inset.shape
+            _put(frame, self._inset, (_CAMERA[0] + _CAMERA[2] - width - 8, _CAMERA[1] + 8, width, height))
         self._segmentations(frame, moment, perceived, goal_mask)
         _put(frame, colour_depth(_resized(moment.seen("depth"), self._depth), self._camera), self._depth)
         if chase is not None:
@@ -364,6 +373,12 @@ def _legend(frame: Picture, legend: tuple[tuple[str, Colour], ...], left: int, w
 def _swatch(frame: Picture, left: int, top: int, colour: Colour, rim: Colour) -> None:
     cv2.rectangle(frame, (left, top), (left + 11, top + 9), colour, cv2.FILLED)
     cv2.rectangle(frame, (left, top), (left + 11, top + 9), rim, 1)
+
+
+def _framed(picture: Picture) -> Picture:
+    """Returns the picture of a goal, made smaller, in a white frame."""
+    small = cv2.resize(picture, (_INSET_PX, _INSET_PX), interpolation=cv2.INTER_AREA)
+    return cv2.copyMakeBorder(small, 3, 3, 3, 3, cv2.BORDER_CONSTANT, value=WHITE).astype(np.uint8)
 
 
 def tick_off(frame: Picture, goals: Sequence[GoalMark], *, opaque: bool = False) -> None:

@@ -173,7 +173,7 @@ class VideoRecorder:
         self._writer = VideoWriter(file, size_px=(overlay.WIDTH_PX, overlay.HEIGHT_PX))
 
     def _composer_for(self, goal: str) -> overlay.FrameComposer:
-        env = self._env
+        env, task = self._env, self._env.scene.task
         return overlay.FrameComposer(
             goal,
             env.camera_model,
@@ -183,6 +183,7 @@ class VideoRecorder:
             names=self._seen is not None and self._seen.names,
             max_steps=env.task_config.max_steps,
             segmentation=self._seen.name if self._seen is not None else "",
+            picture=env.scene.picture_of(task.goals[task.goal_number]),
         )
 
     def decided(self, moment: Moment) -> None:

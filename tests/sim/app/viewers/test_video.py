@@ -281,6 +281,17 @@ def test_the_goals_of_a_chain_are_ticked_off(written: list[tuple[str, Box]]) -> 
     assert "31  goal 30" in shown
 
 
+def test_the_picture_of_a_goal_lies_over_the_camera_picture(written: list[tuple[str, Box]]) -> None:
+    orange = np.full((512, 512, 3), (250, 130, 10), np.uint8)
+    composer = overlay.FrameComposer("chair_00", CameraModel(), plan_legend=(), picture=orange)
+    assert "Looking for the object in the picture" in [text for text, _ in written]
+    frame = composer.compose(crowded_moment(), plan=WIDE_PLAN)
+    rows, cols = np.nonzero((frame == (250, 130, 10)).all(axis=2))
+    assert np.ptp(rows) == np.ptp(cols) > 100
+    assert cols.max() < 648
+    assert rows.max() < 300
+
+
 @pytest.mark.parametrize("shape", [(360, 640), (480, 480), (64, 48)])
 def test_a_camera_of_another_shape_keeps_its_proportions(shape: tuple[int, int]) -> None:
     images = {
