@@ -58,8 +58,8 @@ _SMALL_TOP, _SMALL_LEFT = 562, (8, 226)
 _CHASE = (656, 60, *CHASE_PX)
 _DEPTH = (1068, 60, 204, 153)
 _LOW_DEPTH, _SCORE = (1068, 60, 204, 112), (1068, 198, 204, 112)
-_INSET_PX = 150
-"""Side of the picture of a goal, over the camera's picture."""
+_INSET_SHARE = 0.3
+"""Side of the picture of a goal, as a share of the height of the camera's picture, over which it lies."""
 _NAMES_PX = 104
 """Width of a column of names of categories."""
 _MAPS_TOP, _MAP_LEFT, _PLAN_LEFT = 334, 656, 976
@@ -132,7 +132,7 @@ class FrameComposer:
         segmentation: str = "",
         picture: Picture | None = None,
     ) -> None:
-        self._inset = None if picture is None else _framed(picture)
+        self._picture = picture
         self.goal, self._camera, self._max_steps = goal, camera, max_steps
         self._depth = _LOW_DEPTH if scores else _DEPTH
         self._segments = ("predicted", "true") if names else ("true",)
@@ -175,11 +175,8 @@ class FrameComposer:
         `goal_mask` (h, w) are the true pixels of the goal; None: those of its category. `goals` are those of a chain.
         """
         frame = self._ground.copy()
-        _put(frame, moment.seen("rgb"), _CAMERA)
+        _put(frame, with_inset(moment.seen("rgb"), self._picture), _CAMERA)
         tick_off(frame, goals)
-        if self._inset is not None:
-            height, width, _ = self._inset.shape
-            _put(frame, self._inset, (_CAMERA[0] + _CAMERA[2] - width - 8, _CAMERA[1] + 8, width, height))
         self._segmentations(frame, moment, perceived, goal_mask)
         _put(frame, colour_depth(_resized(moment.seen("depth"), self._depth), self._camera), self._depth)
         if chase is not None:
@@ -375,10 +372,15 @@ def _swatch(frame: Picture, left: int, top: int, colour: Colour, rim: Colour) ->
     cv2.rectangle(frame, (left, top), (left + 11, top + 9), rim, 1)
 
 
-def _framed(picture: Picture) -> Picture:
-    """Returns the picture of a goal, made smaller, in a white frame."""
-    small = cv2.resize(picture, (_INSET_PX, _INSET_PX), interpolation=cv2.INTER_AREA)
-    return cv2.copyMakeBorder(small, 3, 3, 3, 3, cv2.BORDER_CONSTANT, value=WHITE).astype(np.uint8)
+def with_inset(image: Picture, picture: Picture | None) -> Picture:
+    """Returns an image of the camera with the picture of the goal in its upper right corner; None: without one."""
+    if picture is None:
+        return image
+    side_px = round(_INSET_SHARE * image.shape[0])
+    small = cv2.resize(picture, (side_px, side_px), interpolation=cv2.INTER_AREA)
+    framed, result = cv2.copyMakeBorder(small, 3, 3, 3, 3, cv2.BORDER_CONSTANT, value=WHITE), image.copy()
+    result[8 : 8 + framed.shape[0], -8 - framed.shape[1] : -8] = framed
+    return result
 
 
 def tick_off(frame: Picture, goals: Sequence[GoalMark], *, opaque: bool = False) -> None:

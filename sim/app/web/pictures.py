@@ -45,7 +45,9 @@ class Pictures:
         semantic, task = moment.images["semantic"], env.scene.task
         outlined = _small(task.goal_mask(moment.images).astype(np.uint8)) > 0
         make: dict[str, Callable[[], NDArray[np.uint8]]] = {
-            "camera": lambda: moment.seen("rgb"),
+            "camera": lambda: overlay.with_inset(
+                moment.seen("rgb"), env.scene.picture_of(task.goals[task.goal_number])
+            ),
             "chase": self._third_person,
             "plan": lambda: self._plan.paint(MAP_PX),
             "semantic": lambda: overlay.segmentation_picture(_small(semantic), goal, outlined),

@@ -257,7 +257,9 @@ class SharedAgent:
             "left_m": metrics.distance_to_goal,
             "shortest_m": metrics.shortest_path,
             "in_sight": in_sight(images["semantic"], task.goal),
-            "looking": f"Looking for {with_article(task.goal)}.",
+            "looking": "Looking for the object in the picture."
+            if task.goals[task.goal_number].camera is not None
+            else f"Looking for {with_article(task.goal)}.",
             "goals": [asdict(mark) for mark in goal_marks(task)],
         }
         self._display.show(Frame(facts, self._pictures.draw(names, moment) if names else {}))
