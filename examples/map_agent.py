@@ -76,6 +76,7 @@ class MapAgent:
                 self.obstacle | self.felt, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (width, width))
             )
             cv2.circle(blocked, cell(place), 4, 0, -1)  # the robot stands here, so it can leave
+            blocked[[0, -1]] = blocked[:, [0, -1]] = 1  # the border of the map
             path = shortest_path(cell(place), wanted, blocked)
             if path:
                 self.aim = path[-1]

@@ -117,14 +117,17 @@ class VlmAgent(StubbornAgent):
 
     def reset(self, goal: str, seed: int) -> None:
         """Starts a new episode; see `StubbornAgent.reset`."""
-        self.words = in_words(goal) if goal in GOAL_CATEGORIES else goal
         self.fell_back_step: int | None = None
         """Step from which the model was not asked any more; None: it is asked."""
-        self._seed, self._asked_step = seed, -1
         self._observation: Observation = {}
         self.chat.begin()
         self.views.forget()
         super().reset(goal, seed)
+
+    def _look_for(self, goal: str) -> None:
+        super()._look_for(goal)
+        self.words = in_words(goal) if goal in GOAL_CATEGORIES else goal
+        self._asked_step = -1
 
     def act(self, observation: Observation) -> Action:
         """Returns the next action."""
@@ -216,5 +219,5 @@ SPEC = AgentSpec(
     config=VlmConfig(),
     sensors=(*SENSORS, "rgb"),
     painter=make_painter,
-    words=("rgb",),
+    words=("rgb", "goal"),
 )

@@ -296,3 +296,10 @@ def test_the_time_is_left_out_of_scores_that_are_compared() -> None:
     line = a_result(model_use=use)
     assert line.as_json()["model_use"] == msgspec.to_builtins(use)
     assert line.without_times().model_use == msgspec.structs.replace(use, wait_s=None)
+
+
+def test_the_next_goal_of_a_chain_is_what_the_model_is_asked_for(start: Start) -> None:
+    agent = agent_for(start(scripted()))
+    agent.reset("bed", 0)
+    agent.next_goal("the red sofa")
+    assert agent.words == "the red sofa"
