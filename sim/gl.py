@@ -106,6 +106,8 @@ def make_context(width_px: int, height_px: int) -> Any:
     try:
         context = importlib.import_module(f"mujoco.{names[BACKEND]}").GLContext(width_px, height_px)
         with context.as_current():
+            if names[BACKEND] == "glfw" and not importlib.import_module("glfw").get_current_context():
+                raise RuntimeError("GLFW opened no window: it needs a display")
             return context
     except Exception as error:  # EGL, OSMesa and GLFW raise different classes
         reason = " ".join(str(error).split())[:200]

@@ -30,6 +30,14 @@ def test_a_backend_that_cannot_render_is_refused_only_when_something_is_rendered
     assert done.stderr.splitlines()[-1].startswith(f"sim.core.errors.RenderError: MUJOCO_GL is '{name}'")
 
 
+def test_a_window_without_a_display_is_one_sentence() -> None:
+    done = _run(RENDER, MUJOCO_GL="glfw")
+    assert done.stderr.splitlines()[-1].startswith(
+        "sim.core.errors.RenderError: OpenGL did not start with MUJOCO_GL=glfw"
+    )
+    assert "needs a display" in done.stderr.splitlines()[-1]
+
+
 def test_a_missing_library_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     from sim import gl
 
