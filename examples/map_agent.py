@@ -1,4 +1,4 @@
-"""An agent with a map, in 120 lines. docs/tutorials/first_agent.md explains how it was built from a random one."""
+"""An agent with a map, in 126 lines. docs/tutorials/first_agent.md explains how it was built from a random one."""
 
 from __future__ import annotations
 
