@@ -1,4 +1,4 @@
-"""An agent with a map, in 126 lines. docs/tutorials/first_agent.md explains how it was built from a random one."""
+"""An agent with a map, in 127 lines. docs/tutorials/first_agent.md explains how it was built from a random one."""
 
 from __future__ import annotations
 
@@ -77,6 +77,7 @@ class MapAgent:
                 self.obstacle | self.felt, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (width, width))
             )
             cv2.circle(blocked, cell(place), 4, 0, -1)  # the robot stands here, so it can leave
+            blocked[[0, -1]], blocked[:, [0, -1]] = 1, 1  # the search stays in the map
             path = shortest_path(cell(place), wanted, blocked)
             if path:
                 self.aim = path[-1]
