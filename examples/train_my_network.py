@@ -50,7 +50,7 @@ def main(args: Args) -> int:
             loss.backward()
             optimizer.step()
             step, smooth = step + 1, 0.98 * smooth + 0.02 * loss.item()
-            if step % 50 == 0:
+            if step in (1, 10) or step % 50 == 0:
                 print(f"step {step}: loss {smooth / (1.0 - 0.98**step):.2f}", flush=True)
             if time.monotonic() > end_s:
                 break

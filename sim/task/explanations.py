@@ -23,7 +23,7 @@ from sim.task.failures import (
     first_trapped_step,
 )
 from sim.task.metrics import EXPLORED_SHARE, TRAPPED_RADIUS_M, TRAPPED_WINDOW_STEPS
-from sim.task.result import EpisodeResult, GoalResult, RolloutResult
+from sim.task.result import EpisodeResult, GoalResult, RolloutResult, goals_found
 from sim.task.trajectory import Trajectory
 
 ACTION_WORDS: Mapping[Action, str] = {
@@ -116,11 +116,6 @@ def explain_end(
     if left_m == 0.0:
         remaining = " The robot is where a STOP counts, and STOP was not called."
     return Outcome(False, headline, f"All {steps} are used up. {cause}{remaining}")
-
-
-def goals_found(goals: Sequence[GoalResult]) -> str:
-    """Returns the number of goals of a chain that were found: "5 of 7 goals found"."""
-    return f"{sum(goal.success == 1.0 for goal in goals)} of {len(goals)} goals found"
 
 
 def chain_in_words(goals: Sequence[GoalResult]) -> str:

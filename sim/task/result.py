@@ -11,7 +11,7 @@ its field here with `| None = None`, so that earlier runs, recordings and submis
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType, NoneType
 from typing import Annotated, Any, Literal, Self, get_args, get_type_hints
@@ -139,6 +139,11 @@ class GoalResult(GoalMetrics, frozen=True, kw_only=True, omit_defaults=True):
     goat_success: Share
     """1: STOP less than `GOAT_DISTANCE_M` from a place where it succeeds, which is GOAT-Bench's rule."""
     goat_spl: Share
+
+
+def goals_found(goals: Sequence[GoalResult]) -> str:
+    """Returns the number of goals of a chain that were found: "5 of 7 goals found"."""
+    return f"{sum(goal.success == 1.0 for goal in goals)} of {len(goals)} goals found"
 
 
 class EpisodeMetrics(GoalMetrics, frozen=True, kw_only=True, omit_defaults=True):

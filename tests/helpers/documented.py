@@ -322,6 +322,16 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --agent stubborn-plus --semantics gt --split words-seen --episodes 1 --config task.max_steps=5"
         " --out {tmp}/run",
     ),
+    **{
+        f"{_RUN} --agent stubborn-plus --semantics gt --split chains-val --episodes 5{option}": (
+            f"{_RUN} --agent stubborn-plus --semantics gt --split chains-val --episodes 1{option or ' --config'}"
+            " task.max_steps=3 --out {tmp}/run",
+        )
+        for option in ("", " --config agent.memory=false")
+    },
+    "stubborn words --split val --kind chains --episodes 120 --out assets/mjcf_houses/my_chains": Only(
+        "writes beside the shipped houses; tests/sim/app/commands/test_words.py makes a split of one house"
+    ),
     f"{_RUN} --agent stubborn-plus --semantics gt --split pictures --episodes 20": (
         f"{_RUN} --agent stubborn-plus --semantics gt --split pictures --episodes 1 --config task.max_steps=5"
         " --out {tmp}/run",

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from examples import my_agent
+from examples import map_agent, my_agent
 from sim.app.bridges.habitat.agents import HabitatAgent
 from sim.app.bridges.habitat.conversions import Conversion
 from sim.app.bridges.process import ProcessAgent
@@ -350,3 +350,13 @@ def test_agents_with_a_last_resort_know_the_limit_of_steps(name: str) -> None:
     if isinstance(agent, StubbornAgent):
         assert isinstance(agent.seeker, (TargetSeeker, TrackSeeker))
         assert agent.seeker._last_resort_step == 220
+
+
+def test_the_map_agent_of_the_tutorial_does_not_wait_where_its_stop_is_too_far() -> None:
+    agent = map_agent.MapAgent(SMALL_CAMERA, GroundTruthSegmenter())
+    agent.reset("chair", 0)
+    goal = np.array(map_agent.cell(np.array([0.65, 0.65])))
+    agent.found[goal[1], goal[0]] = 1
+    assert agent._next(np.zeros(2)) is not None
+    assert agent.aim is not None
+    assert np.hypot(*(np.array(agent.aim) - goal)) * map_agent.CELL_M < 0.8

@@ -16,8 +16,7 @@ from sim.app.evaluation.summary import few_episodes
 from sim.core import invocation
 from sim.core.errors import debug
 from sim.core.reading import printable
-from sim.task.explanations import goals_found
-from sim.task.result import METRICS, EpisodeResult
+from sim.task.result import METRICS, EpisodeResult, goals_found
 
 MAX_EPISODES_SHOWN = 20
 PLAIN_WIDTH = 120

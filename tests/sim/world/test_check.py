@@ -50,6 +50,11 @@ def test_an_object_in_the_air_is_reported() -> None:
     assert "table_00 has no support" in check_house(table(room(5, 4), z_m=1.2).spec)
 
 
+def test_an_object_that_touches_a_wall_hangs_on_it() -> None:
+    hanging = table(room(5, 4), x_m=2.2, z_m=1.2)
+    assert "table_00 has no support" not in check_house(hanging.spec)
+
+
 def test_a_divided_room_is_reported() -> None:
     house = with_box(room(6, 4), "bed_00", centre_m=(-0.8, 0.0, 0.5), half_m=(0.3, 2.0, 0.5))
     assert "the robot cannot reach a part of room_living_00" in check_house(house.spec)

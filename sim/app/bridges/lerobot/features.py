@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
-from sim.core.interface import GOAL_CATEGORIES, Action, Observation
+from sim.core.interface import GOAL_CATEGORIES, MOVES, Action, Observation
 from sim.core.vocabulary import in_words
 
 FPS = 4
@@ -29,7 +29,7 @@ VECTORS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         STATE: ("forward_m", "left_m", "yaw_rad"),
         GOAL: GOAL_CATEGORIES,
-        ACTION: tuple(action.name.lower() for action in Action),
+        ACTION: tuple(action.name.lower() for action in MOVES),
     }
 )
 """Names of the entries of each vector, float32."""
@@ -61,7 +61,7 @@ def goal_of(goal: str) -> NDArray[np.float32]:
 
 def vector_of(action: Action) -> NDArray[np.float32]:
     """Returns an action as the vector of policies, (4,)."""
-    return np.array([other is action for other in Action], np.float32)
+    return np.array([other is action for other in MOVES], np.float32)
 
 
 def action_of(vector: NDArray[np.floating]) -> Action:
@@ -71,9 +71,9 @@ def action_of(vector: NDArray[np.floating]) -> Action:
         ConfigError: it has another shape, or no number.
     """
     values = np.asarray(vector, np.float64).reshape(-1)
-    if values.shape != (len(Action),) or np.isnan(values).any():
-        raise ConfigError(f"An action has {len(Action)} values, one for each of {', '.join(VECTORS[ACTION])}.")
-    return list(Action)[int(values.argmax())]
+    if values.shape != (len(MOVES),) or np.isnan(values).any():
+        raise ConfigError(f"An action has {len(MOVES)} values, one for each of {', '.join(VECTORS[ACTION])}.")
+    return MOVES[int(values.argmax())]
 
 
 def task_of(goal: str) -> str:

@@ -19,7 +19,7 @@ from sim.app.bridges.lerobot.environment import LeRobotEnv
 from sim.app.bridges.lerobot.replays import Replayer
 from sim.app.commands.export import lerobot
 from sim.core.errors import ConfigError, EpisodeError
-from sim.core.interface import GOAL_CATEGORIES, Action
+from sim.core.interface import GOAL_CATEGORIES, MOVES, Action
 from sim.task.trajectory import read_trajectory, trajectory_file, write_trajectory
 from tests.helpers.submissions import recorded, tiny_split
 
@@ -45,7 +45,7 @@ def rows_of(file: Path) -> dict[str, Any]:
 
 
 def test_actions_goals_and_tasks_in_the_form_of_policies() -> None:
-    for action in Action:
+    for action in MOVES:
         assert features.action_of(features.vector_of(action)) is action
     assert features.action_of(np.array([-3.0, -1.0, -2.0, -9.0])) is Action.MOVE_FORWARD
     for wrong in (np.zeros(3), np.array([0.0, np.nan, 0.0, 0.0])):

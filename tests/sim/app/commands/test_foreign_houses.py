@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import cv2
@@ -180,9 +181,10 @@ def test_labels_without_a_floor_are_refused_after_the_table(
 
 
 def test_the_refusal_of_a_scene_names_the_labels_option(
-    scene: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+    scene: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run.entry(["--house", str(scene[0]), "--episodes", "1"]) == 2
+    shutil.copytree(scene[0].parent, tmp_path / "alone", ignore=shutil.ignore_patterns(scene[1].name))
+    assert run.entry(["--house", str(tmp_path / "alone" / scene[0].name), "--episodes", "1"]) == 2
     assert "A scene from elsewhere needs --labels: `stubborn label` proposes" in capsys.readouterr().err
 
 

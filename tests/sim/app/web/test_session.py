@@ -10,6 +10,7 @@ import pytest
 
 from sim.app.web.controls import Choice
 from sim.app.web.session import Frame, SharedAgent
+from sim.core.goals import GoalSpec
 from sim.core.interface import Action, StatesTarget
 from sim.task.result import metrics_without_episode
 
@@ -51,7 +52,9 @@ def test_the_place_is_that_of_the_agents_own_stop(
 def test_the_world_can_be_shown_before_the_first_action() -> None:
     shown: list[Frame] = []
     metrics = metrics_without_episode(None)
-    task = SimpleNamespace(goal_metrics=lambda: metrics, num_steps=0, goal="bed", is_chain=False)
+    task = SimpleNamespace(
+        goal_metrics=lambda: metrics, num_steps=0, goal="bed", is_chain=False, goals=[GoalSpec.of("bed")], goal_number=0
+    )
     env = SimpleNamespace(
         truth_images={"semantic": np.zeros((4, 4), np.uint8)},
         scene=SimpleNamespace(task=task),
