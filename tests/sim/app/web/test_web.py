@@ -283,8 +283,13 @@ def test_ten_actions_are_driven_the_agent_is_taken_over_from_and_gets_the_robot_
         browser.click("#pause")
         wait_for(lambda: browser.run("return document.querySelector('#pause').textContent") == "Run")
         before = wait_for(lambda: frame_now(browser) + 1)
-        browser.click("#step")
-        wait_for(lambda: frame_now(browser) >= before)
+
+        def stepped() -> bool:  # a click that comes before the pause does nothing
+            browser.click("#step")
+            time.sleep(1.0)
+            return frame_now(browser) >= before
+
+        wait_for(stepped)
         browser.click("#take")
         wait_for(lambda: browser.run("return document.querySelector('#driver').textContent") == "you drive")
         for step in range(10):
