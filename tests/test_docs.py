@@ -36,7 +36,7 @@ from tests.helpers import documented
 from tests.helpers.documented import ROOT, Block
 from tests.helpers.sampling import sample
 from tests.sim.homes.housegen import test_furniture as furniture_laws
-from tools.maintenance.site_hooks import fetched_from_elsewhere
+from tools.maintenance.site_hooks import fetched_from_elsewhere, without_links_outside
 
 DOCS = ROOT / "docs"
 CONFIGURED = (agent, collision_marks, corners, mapper, planner, distances)
@@ -103,6 +103,12 @@ def test_a_page_reads_on_github_as_on_the_site_and_names_no_commit(page: str) ->
 def test_commits_and_marks_of_mkdocs_are_found() -> None:
     assert len(COMMIT.findall("`2158948a`, 1f9d8bd, 1234567, effaced, 0.474, val_0018")) == 2
     assert len(NOT_ON_GITHUB.findall('--8<-- "examples/my_agent.py"\n\n::: sim.core.interface\n')) == 2
+
+
+def test_only_links_to_files_outside_of_the_docs_become_paths() -> None:
+    text = "[start](../index.md) and [licence](../../LICENSE)"
+    assert without_links_outside(text, "tutorials/own_house.md") == "[start](../index.md) and licence (`LICENSE`)"
+    assert without_links_outside("[a card](../stubborn/README.md)", "index.md") == "a card (`stubborn/README.md`)"
 
 
 def test_the_changelog_keeps_its_headings() -> None:

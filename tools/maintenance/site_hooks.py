@@ -7,15 +7,17 @@ hosts, so that they work offline and no other host learns of the reader. Links t
 from __future__ import annotations
 
 import logging
+import posixpath
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 _LOG = logging.getLogger("mkdocs.hooks.site")
 _TAG = re.compile(r"<(script|link|img|iframe|source|video|audio|object|embed)\b[^>]*>", re.IGNORECASE)
 _ADDRESS = re.compile(r"""\b(?:src|href|data|srcset|poster)\s*=\s*["']?((?:https?:)?//[^"'\s>]+)""", re.IGNORECASE)
 _IN_STYLE = re.compile(r"""(?:url\(|@import)\s*["']?((?:https?:)?//[^"')\s]+)""", re.IGNORECASE)
-_OUTSIDE = re.compile(r"\[([^\]]+)\]\(\.\./([^)]+)\)")
+_UPWARDS = re.compile(r"\[([^\]]+)\]\((\.\./[^)]+)\)")
 _MERMAID = re.compile(r"""<(?:pre|div)[^>]*class=["'][^"']*\bmermaid\b""")
 
 
@@ -29,9 +31,19 @@ def fetched_from_elsewhere(page: str) -> Iterator[str]:
         yield "https://unpkg.com/mermaid (the theme's script draws class mermaid with it: use an SVG file)"
 
 
-def on_page_markdown(markdown: str, **_: object) -> str:
-    """Returns the text of a page in which links to files outside `docs/` are replaced by the paths of these files."""
-    return _OUTSIDE.sub(r"\1 (`\2`)", markdown)
+def without_links_outside(markdown: str, page: str) -> str:
+    """Returns the text of a page, `tutorials/own_house.md`, with paths in place of links to files outside `docs/`."""
+
+    def replaced(link: re.Match[str]) -> str:
+        target = posixpath.normpath(posixpath.join(posixpath.dirname(page), link[2]))
+        return f"{link[1]} (`{target.removeprefix('../')}`)" if target.startswith("../") else link[0]
+
+    return _UPWARDS.sub(replaced, markdown)
+
+
+def on_page_markdown(markdown: str, page: Any, **_: object) -> str:
+    """Returns the text of a page for the site."""
+    return without_links_outside(markdown, page.file.src_uri)
 
 
 def on_post_build(config: Mapping[str, str]) -> None:
