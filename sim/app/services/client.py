@@ -6,6 +6,7 @@ can be kept in a folder by the content of their requests: a run whose replies ar
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import http.client
 import math
@@ -132,7 +133,8 @@ def _post(url: str, body: bytes, headers: Mapping[str, str], timeout_s: float) -
                 if time.monotonic() > deadline:
                     raise ConfigError(f"its reply took longer than {timeout_s:g} s.")
     except urllib.error.HTTPError as error:
-        with error:
+        text = "without a text"
+        with error, contextlib.suppress(OSError, http.client.HTTPException):
             text = error.read(300).decode(errors="replace")
         raise ConfigError(f"status {error.code}: {printable(' '.join(text.split()))[:200]}") from None
     except (OSError, http.client.HTTPException) as error:
