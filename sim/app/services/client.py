@@ -120,7 +120,9 @@ def _post(url: str, body: bytes, headers: Mapping[str, str], timeout_s: float) -
     Raises:
         ConfigError: there is no reply in time, it has another status than 200, or it is too long.
     """
-    request = urllib.request.Request(url, body, dict(headers), method="POST")
+    request = urllib.request.Request(url, body, method="POST")
+    for name, value in headers.items():
+        request.add_unredirected_header(name, value)  # another host must not get the key
     deadline, parts, size = time.monotonic() + timeout_s, list[bytes](), 0
     try:
         with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(request, timeout=timeout_s) as reply:
