@@ -19,9 +19,11 @@ class Server:
 
         class OneHandler(http.server.BaseHTTPRequestHandler):
             def do_POST(self) -> None:
-                body = self.rfile.read(int(self.headers["content-length"]))
+                body = self.rfile.read(int(self.headers["content-length"] or 0))
                 owner.requests.append((self.path, body))
                 answer(self, body)
+
+            do_GET = do_POST  # after a redirection
 
             def log_message(self, format: str, *args: object) -> None:
                 pass
@@ -40,9 +42,7 @@ Start = Callable[[Handler], Server]
 
 
 def send(handler: http.server.BaseHTTPRequestHandler, data: bytes, status: int = 200) -> None:
-    handler.send_response(status)
-    handler.send_header("Content-Length", str(len(data)))
-    handler.end_headers()
+    _begin(handler, data, status)
     handler.wfile.write(data)
 
 
@@ -79,6 +79,13 @@ def trickled(data: bytes) -> Handler:
     return answer
 
 
+def mute(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+    """Answers with status 500 and does not send the text that it announces."""
+    _begin(handler, b"broken", 500)
+    handler.wfile.flush()
+    time.sleep(0.6)
+
+
 def cut(data: bytes) -> Handler:
     """Sends half of what it announces."""
 
@@ -89,7 +96,7 @@ def cut(data: bytes) -> Handler:
     return answer
 
 
-def _begin(handler: http.server.BaseHTTPRequestHandler, data: bytes) -> None:
-    handler.send_response(200)
+def _begin(handler: http.server.BaseHTTPRequestHandler, data: bytes, status: int = 200) -> None:
+    handler.send_response(status)
     handler.send_header("Content-Length", str(len(data)))
     handler.end_headers()

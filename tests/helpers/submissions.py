@@ -40,10 +40,13 @@ def tiny_split(folder: Path) -> Path:
 
 
 def recorded(split: Path, out: Path, agent: str, *options: str, episodes: int = 3) -> Path:
-    """Runs an agent on the first episodes of a split with small images, records it, and returns its folder."""
+    """Runs an agent on the first episodes of a split with small images, records it, and returns its folder.
+
+    Options are fields of the configuration, and after them others.
+    """
     name = "process:" + shlex.join([sys.executable, str(CLIENT_AGENT)]) if agent == "process" else agent
     fixed = ("--split", str(split), "--agent", name, "--semantics", "gt", "--episodes", str(episodes))
-    assert entry([*fixed, "--out", str(out), *options, "--record", "--config", *SMALL]) == 0
+    assert entry([*fixed, "--out", str(out), "--record", "--config", *SMALL, *options]) == 0
     return out
 
 

@@ -33,6 +33,7 @@ from rich.table import Table
 
 from sim.app import cli
 from sim.app.analysis import display
+from sim.app.services.words import COCO as CLASSES
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
 from sim.core.geometry.pose import Pose
@@ -58,17 +59,10 @@ from tools.research.external_eye_scores import (
     whole_px,
 )
 
-CLASSES: Mapping[str, str] = MappingProxyType(
-    {
-        "chair": "chair", "sofa": "couch", "plant": "potted plant", "bed": "bed", "table": "dining table",
-        "toilet": "toilet", "tv_monitor": "tv", "sink": "sink",
-    }
-)  # fmt: skip
-"""Class of the detector for each of our categories that it knows."""
 COCO: Mapping[int, str] = MappingProxyType(
     {56: "chair", 57: "couch", 58: "potted plant", 59: "bed", 60: "dining table", 61: "toilet", 62: "tv", 71: "sink"}
 )
-"""Names of these classes by their number, from 0."""
+"""Names of the classes by their number, from 0."""
 ALIASES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {"chair": ("stool", "seating"), "couch": ("seating",), "dining table": ("counter",)}
 )

@@ -6,6 +6,7 @@ can be kept in a folder by the content of their requests: a run whose replies ar
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import http.client
 import math
@@ -119,7 +120,9 @@ def _post(url: str, body: bytes, headers: Mapping[str, str], timeout_s: float) -
     Raises:
         ConfigError: there is no reply in time, it has another status than 200, or it is too long.
     """
-    request = urllib.request.Request(url, body, dict(headers), method="POST")
+    request = urllib.request.Request(url, body, method="POST")
+    for name, value in headers.items():
+        request.add_unredirected_header(name, value)  # another host must not get the key
     deadline, parts, size = time.monotonic() + timeout_s, list[bytes](), 0
     try:
         with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(request, timeout=timeout_s) as reply:
@@ -132,7 +135,8 @@ def _post(url: str, body: bytes, headers: Mapping[str, str], timeout_s: float) -
                 if time.monotonic() > deadline:
                     raise ConfigError(f"its reply took longer than {timeout_s:g} s.")
     except urllib.error.HTTPError as error:
-        with error:
+        text = "without a text"
+        with error, contextlib.suppress(OSError, http.client.HTTPException):
             text = error.read(300).decode(errors="replace")
         raise ConfigError(f"status {error.code}: {printable(' '.join(text.split()))[:200]}") from None
     except (OSError, http.client.HTTPException) as error:

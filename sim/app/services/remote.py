@@ -442,7 +442,7 @@ def read_boxes(data: bytes) -> list[Box]:
         ]
     except (TypeError, ValueError, AttributeError):
         raise ConfigError("its reply must have lists boxes (of four numbers), logits and phrases.") from None
-    if not all(0.0 <= value <= 1.0 for box in rows for value in (box.score,)):
+    if not all(0.0 <= box.score <= 1.0 for box in rows):
         raise ConfigError("its reply has scores outside of [0, 1].")
     return [replace(box, corners=tuple(min(max(side, 0.0), 1.0) for side in box.corners)) for box in rows]
 

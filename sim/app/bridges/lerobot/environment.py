@@ -18,6 +18,7 @@ from sim.app.bridges.lerobot.features import (
     action_of,
     goal_of,
     picture_of,
+    require_one_text,
     state_of,
     task_of,
 )
@@ -43,7 +44,7 @@ class LeRobotEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of array
         render_mode: as `ObjectNavEnv`.
 
     Raises:
-        ConfigError: see `ObjectNavEnv` and `features.picture_of`.
+        ConfigError: see `ObjectNavEnv`, `features.picture_of` and `features.require_one_text`.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": FPS}  # noqa: RUF012 - declared by Gymnasium
@@ -62,6 +63,7 @@ class LeRobotEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of array
         self._env = ObjectNavEnv(
             split=split, goal=goal or None, max_steps=max_steps, profile=profile, noise=noise, sensors=("rgb",)
         )
+        require_one_text(self._env.split.episodes)
         self._width_px, self._max_episode_steps = width_px, max_steps
         self.render_mode = render_mode
         camera = self._env.camera_model

@@ -11,7 +11,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
 import cv2
@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from sim.core.errors import ConfigError
 from sim.core.interface import GOAL_CATEGORIES, MOVES, Action, Observation
 from sim.core.vocabulary import in_words
+from sim.episodes.episode import Episode
 
 FPS = 4
 """Frames a second in datasets and videos: one frame is one action, whatever time it takes."""
@@ -83,3 +84,11 @@ def task_of(goal: str) -> str:
     name = in_words(goal)
     article = "" if goal in _NO_ARTICLE else "an " if name[0] in "aeiou" else "a "
     return f"find {article}{name}"
+
+
+def require_one_text(episodes: Iterable[Episode]) -> None:
+    """Raises ConfigError if an episode is a chain or its goal is a picture: it has one `task`, which is a text."""
+    for episode in episodes:
+        if episode.is_chain or episode.in_picture:
+            what = "several goals" if episode.is_chain else "a picture as its goal"
+            raise ConfigError(f"Episode '{episode.episode_id}' has {what}; an episode of LeRobot has one goal, a text.")

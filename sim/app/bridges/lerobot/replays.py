@@ -10,14 +10,16 @@ from numpy.typing import NDArray
 
 from sim.app.analysis.comparison import Run
 from sim.app.analysis.report.drawings import split_of
-from sim.app.bridges.lerobot.features import picture_of, state_of
+from sim.app.bridges.lerobot.features import picture_of, require_one_text, state_of
 from sim.app.submissions.setting import setting_of
+from sim.core.configuration import with_fields
 from sim.core.errors import ConfigError, EpisodeError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.seeds import episode_seeds
+from sim.renderer.profiles import get_profile
 from sim.task.trajectory import read_trajectory, trajectory_file
 
 MAX_OFF_M = 0.01
@@ -45,13 +47,13 @@ class Replayer:
         run: a run with `--record`.
 
     Raises:
-        ConfigError: its split has changed, or its robot is that of a file.
+        ConfigError: its split has changed, its robot is that of a file, or see `features.require_one_text`.
     """
 
     def __init__(self, run: Run) -> None:
         config = run.config
         setting = setting_of(config, where=f"'{run.path}'")
-        split_of(run)  # it must not have changed
+        require_one_text(split_of(run).episodes)
         house = config.get("house")
         worlds = (
             {"house": house, "labels": config.get("labels"), "root": config.get("root")}
@@ -62,7 +64,7 @@ class Replayer:
         self._env = ObjectNavEnv(
             **worlds,
             sensors=("rgb",),
-            profile=config.get("profile") or "fast",
+            profile=with_fields(get_profile("fast"), config.get("config", {}).get("profile", {})),
             robot=setting.robot,
             camera=setting.camera,
             task=setting.task,

@@ -52,18 +52,17 @@ def main(args: Args) -> int:
     if not ids:
         raise ConfigError(f"'{args.run}' has no recorded episode to export: run it with --record.")
     writer, replayer = DatasetWriter(args.out, args.width_px), Replayer(run)
-    _require_same(args, ids)
     tasks = list(dict.fromkeys(task_of(run.results[episode_id].goal) for episode_id in ids))
-    rows, shape = 0, replayer.picture_shape(args.width_px)
     try:
+        rows, shape = 0, replayer.picture_shape(args.width_px)
+        _require_same(args, ids)
         for number, episode_id in enumerate(ids):
             if writer.has(number):
                 rows += writer.length_of(number)
                 continue
             goal = run.results[episode_id].goal
             task = task_of(goal)
-            frames = replayer.frames(episode_id)
-            count = writer.add(number, goal, task, tasks.index(task), rows, frames)
+            count = writer.add(number, goal, task, tasks.index(task), rows, replayer.frames(episode_id))
             rows += count
             print(f"[{number + 1}/{len(ids)}] {episode_id}: {task}, {counted(count, 'frame')}", flush=True)
     finally:

@@ -119,7 +119,6 @@ class VlmAgent(StubbornAgent):
         """Starts a new episode; see `StubbornAgent.reset`."""
         self.fell_back_step: int | None = None
         """Step from which the model was not asked any more; None: it is asked."""
-        self._observation: Observation = {}
         self.chat.begin()
         self.views.forget()
         super().reset(goal, seed)
@@ -131,7 +130,6 @@ class VlmAgent(StubbornAgent):
 
     def act(self, observation: Observation) -> Action:
         """Returns the next action."""
-        self._observation = observation
         if "views" in self.options.shown and "place" in self.options.asked:
             self.views.add(read_pose(observation), observation["rgb"], observation["depth"])
         return super().act(observation)
@@ -161,8 +159,8 @@ class VlmAgent(StubbornAgent):
 
     def _confirmed(self) -> bool:
         """Returns whether the model takes the candidate of a STOP for the goal; True if there is no valid reply."""
-        rgb = self._observation["rgb"]
-        mask = self.segmenter.scores(self._observation, self.goal).target > self.config.mapping.candidate_score
+        seen = self.levelling.raw  # the picture is not levelled
+        rgb, mask = seen["rgb"], self.wished.scores(seen, self.goal).target > self.config.mapping.candidate_score
         picture = outlined(rgb, mask) if mask.any() else rgb
         text = texts.filled(self.texts.stop, goal=self.words, outlined=self.texts.shown.outlined if mask.any() else "")
         reply = self._ask("stop", text, [picture], StopReply)

@@ -20,6 +20,7 @@ from sim.app.bridges.lerobot.replays import Replayer
 from sim.app.commands.export import lerobot
 from sim.core.errors import ConfigError, EpisodeError
 from sim.core.interface import GOAL_CATEGORIES, MOVES, Action
+from sim.episodes.splits import load_split
 from sim.task.trajectory import read_trajectory, trajectory_file, write_trajectory
 from tests.helpers.submissions import recorded, tiny_split
 
@@ -139,6 +140,33 @@ def test_a_stopped_export_goes_on_and_equals_one_without_a_stop(
     files = sorted(file.relative_to(tmp_path / "whole") for file in (tmp_path / "whole").rglob("*") if file.is_file())
     for file in files:
         assert (tmp_path / "whole" / file).read_bytes() == (tmp_path / "parts" / file).read_bytes(), file
+
+
+def test_the_pictures_have_the_profile_of_the_run(folder: Path, tmp_path: Path) -> None:
+    plain = tmp_path / "plain"
+    recorded(folder / "tiny", plain, "oracle", "profile.shadows=0", "profile.occlusion=0", episodes=1)
+    first = []
+    for run in (read_run(folder / "oracle"), read_run(plain)):
+        replayer = Replayer(run)
+        first.append(next(replayer.frames("tiny_0000")).rgb)
+        replayer.close()
+    assert (first[0] != first[1]).any()
+
+
+def test_a_width_that_is_not_allowed_leaves_the_folder_free(folder: Path, tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="even and at most"):
+        lerobot.main(lerobot.Args(run=folder / "oracle", out=tmp_path / "data", width_px=47))
+    assert not (tmp_path / "data").exists()
+
+
+def test_chains_and_pictures_are_refused(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for split, words in (("chains-val", "several goals"), ("pictures", "a picture as its goal")):
+        with pytest.raises(ConfigError, match=words):
+            LeRobotEnv(split=split)
+    monkeypatch.setattr("sim.app.bridges.lerobot.replays.split_of", lambda run: load_split("chains-val"))
+    with pytest.raises(ConfigError, match="several goals"):
+        export(folder, "oracle", tmp_path / "data")
+    assert not (tmp_path / "data").exists()
 
 
 def test_an_export_into_another_one_is_refused(folder: Path, tmp_path: Path) -> None:

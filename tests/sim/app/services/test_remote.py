@@ -31,7 +31,7 @@ from sim.core.vocabulary import vocabulary
 from sim.training.views.coco import encode_mask
 from stubborn.detection.wished import WishedSegmenter
 from stubborn.segmentation.calibration import Calibration
-from tests.helpers.services import Handler, Start, body_of, closed, cut, late, send, trickled
+from tests.helpers.services import Handler, Start, body_of, closed, cut, late, mute, send, trickled
 
 CAMERA = CameraModel(width_px=64, height_px=48)
 
@@ -165,6 +165,7 @@ FAULTS: dict[str, tuple[Handler, str, str]] = {
     "garbage": (body_of(b"\x00\xff garbage"), "posteriors", "cannot be read as an NPY file"),
     "code": (pickled, "posteriors", "cannot be read as an NPY file"),
     "500": (body_of(b"<h1>broken\x1b[2J</h1>", 500), "posteriors", "status 500: <h1>broken"),
+    "500 without a text": (mute, "posteriors", "status 500: without a text"),
     "404": (body_of(b"nothing here", 404), "posteriors", "status 404: nothing here"),
     "type": (body_of(posteriors_bytes(probabilities().astype(np.float64))), "posteriors", "float32"),  # type: ignore[arg-type]
     "size": (body_of(posteriors_bytes(probabilities()[:, :5])), "posteriors", r"shape \(40, 5, 16\)"),
@@ -196,7 +197,7 @@ FAULTS: dict[str, tuple[Handler, str, str]] = {
 def test_a_fault_of_the_server_is_one_sentence_after_all_attempts(start: Start, fault: str) -> None:
     answer, form, words = FAULTS[fault]
     server = start(answer)
-    timeout_s = 0.3 if fault in ("slow", "trickle") else 10.0
+    timeout_s = 0.3 if fault in ("slow", "trickle", "500 without a text") else 10.0
     segmenter = asking(server.url, form=form, timeout_s=timeout_s, retries=1)
     with pytest.raises(AgentError, match=words) as error:
         segmenter.posteriors(view())

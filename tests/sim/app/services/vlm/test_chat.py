@@ -61,6 +61,26 @@ def test_a_question_has_the_form_of_openai_and_a_reply_is_an_object(
     assert (chat.questions, chat.prompt_tokens, chat.wait_s) == (0, 0, 0.0)
 
 
+def test_a_redirection_does_not_carry_the_key_to_another_host(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+    keys: list[str | None] = []
+
+    def elsewhere(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+        keys.append(handler.headers["Authorization"])
+        send(handler, b"nothing here", 404)
+
+    def redirected(handler: http.server.BaseHTTPRequestHandler, body: bytes) -> None:
+        handler.send_response(302)
+        handler.send_header("Location", other.url)
+        handler.send_header("Content-Length", "0")
+        handler.end_headers()
+
+    other = start(elsewhere)
+    monkeypatch.setenv("MY_KEY", "secret")
+    with pytest.raises(AgentError, match="status 404"):
+        chat_with(start(redirected).url, key_variable="MY_KEY", retries=0).ask("Where to?", (), PLACE)
+    assert keys == [None]
+
+
 def test_fields_that_a_server_does_not_know_can_be_left_out(start: Start) -> None:
     server = start(body_of(RIGHT))
     chat_with(server.url, temperature=None, max_tokens=None).ask("Where to?", (), PLACE)

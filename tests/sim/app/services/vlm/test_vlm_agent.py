@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import logging
 import math
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 
 from sim.app.evaluation.rollout import model_use_of
 from sim.app.services.vlm.agent import SPEC, VlmAgent, VlmConfig
+from sim.app.services.vlm.pictures import jpeg, outlined
 from sim.app.services.vlm.prompts import FILE, Prompts
 from sim.core.errors import AgentError, ConfigError
 from sim.core.geometry.pose import Pose
@@ -174,6 +176,22 @@ def test_a_candidate_that_the_model_refuses_is_left_for_another_one(start: Start
     assert world.distance_to(other) < 1.0 < world.distance_to(first)
     assert "outlined in magenta" in text_of(refused[0])
     assert agent.model_use()["questions"] == agent.chat.questions >= 2
+
+
+def test_the_candidate_is_outlined_where_a_leaning_camera_sees_it(start: Start) -> None:
+    server, world = start(scripted()), ColouredWorld(ROOMS, START)
+    agent = agent_for(server)
+    assert run_episode(world, agent, "bed", max_steps=200).stopped
+    observation = world.observe()
+    for pitch_rad in (0.0, 0.0, 0.1):
+        imu = 9.81 * np.array([-math.sin(pitch_rad), 0.0, math.cos(pitch_rad), 0.0, 0.0, 0.0])
+        agent.levelling.level({**observation, "imu": imu})
+    agent._confirmed()
+    mask = agent.wished.scores(observation, "bed").target > agent.config.mapping.candidate_score
+    assert mask.any()
+    (sent,) = pictures_of(json.loads(server.requests[-1][1]))
+    expected = base64.b64encode(jpeg(outlined(observation["rgb"], mask))).decode()
+    assert sent.endswith(expected), "it is another picture"
 
 
 def test_the_truth_is_not_checked(start: Start) -> None:
