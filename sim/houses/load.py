@@ -65,12 +65,12 @@ def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None
 
 
 def _checksum(path: Path, rules: Mapping[str, str] | None, root: Path | None) -> str | None:
-    """Returns the checksum of a house file, of all files that it uses and of its label rules; None: not readable."""
+    """Returns the checksum of a house file, of all files that it uses and of its label rules; None: they are unknown."""
     try:
         digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=MAX_BYTES))
         add_files(digest, path, root)
     except HouseError:
-        return None  # `read_spec` says what is wrong
+        return None  # too many files; or one that cannot be read, of which `read_spec` says what is wrong
     digest.update(repr((shipped_textures_sum(), rules if rules is None else tuple(rules.items()))).encode())
     return digest.hexdigest()
 
