@@ -65,7 +65,7 @@ def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None
 
 
 def _checksum(path: Path, rules: Mapping[str, str] | None, root: Path | None) -> str | None:
-    """Returns the checksum of a house file, of all files that it uses and of its label rules; None: they are unknown."""
+    """Returns the checksum of a house file, all files that it uses and its label rules; None: it is unknown."""
     try:
         digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=MAX_BYTES))
         add_files(digest, path, root)
