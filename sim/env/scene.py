@@ -49,7 +49,7 @@ class Scene:
         """Renders further cameras."""
         self.gloss = geom_gloss(self.world.model, self.world.labels)  # (ngeom,)
         self.task = Task(self.world, config, camera=camera, steps_per_action=steps_per_action)
-        self._profile = profile
+        self._profile, self._shared = profile, shared
         self._pictures: dict[PictureCamera, Mapping[str, NDArray]] = {}
 
     def picture_of(self, goal: GoalSpec, image: Literal["rgb", "semantic"] = "rgb") -> NDArray[np.uint8] | None:
@@ -60,7 +60,13 @@ class Scene:
         if goal.camera is None:
             return None
         if goal.camera not in self._pictures:
-            camera = Camera(self.world.model, self.world.labels, camera=goal.camera.model, profile=self._profile)
+            camera = Camera(
+                self.world.model,
+                self.world.labels,
+                camera=goal.camera.model,
+                profile=self._profile,
+                shared=self._shared,
+            )
             self._pictures[goal.camera] = camera.render(self.world.data, goal.camera.pose, ("rgb", "semantic"))
             camera.close()
         return self._pictures[goal.camera][image]
