@@ -123,11 +123,10 @@ def test_calibration_counts_stops_with_a_confidence_in_tenths() -> None:
 
 def test_the_confidence_of_a_chain_is_that_of_its_last_stop() -> None:
     episode = line(stop_confidence=0.9, success=0.5)
-    fields = {name: getattr(episode, name) for name in GoalMetrics.__struct_fields__} | {
-        "goat_success": 1.0,
-        "goat_spl": 1.0,
-    }
-    first, last = (GoalResult(**fields | {"goal": "bed", "kind": "words", "success": share}) for share in (0.0, 1.0))
+    fields: dict[str, Any] = {name: getattr(episode, name) for name in GoalMetrics.__struct_fields__}
+    fields |= {"goal": "bed", "kind": "words", "goat_success": 1.0, "goat_spl": 1.0}
+    goal = GoalResult(**fields)
+    first, last = replace(goal, success=0.0), replace(goal, success=1.0)
     for goals, correct in (((first, last), 1), ((last, first), 0)):
         assert calibration([replace(episode, goals=goals)]).correct.count == correct
 
