@@ -63,7 +63,14 @@ def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None
     notes = kept(checksum and key_of("house", checksum, limit), tuple[str, ...], load)
     if made:
         return replace(made[0], checksum=checksum)
-    return House(path.stem, lambda: _read(path, rules, root).spec, rules, path, notes, checksum)
+
+    def read() -> mujoco.MjSpec:
+        spec = _read(path, rules, root).spec
+        if _checksum(path, rules, root) != checksum:  # its model would be kept in place of that of the loaded one
+            raise HouseError(f"House '{path}' was changed after it was loaded; load it again.")
+        return spec
+
+    return House(path.stem, read, rules, path, notes, checksum)
 
 
 def _checksum(path: Path, rules: Mapping[str, str] | None, root: Path | None) -> str | None:

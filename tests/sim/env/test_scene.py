@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim.core.errors import HouseError
 from sim.core.interface import CameraModel
 from sim.core.paths import CACHE_VARIABLE
 from sim.core.store import SIZE_VARIABLE
@@ -68,6 +69,19 @@ def test_a_house_that_changed_is_read_again(house: Path, cache: Path, tmp_path: 
     assert World(load_house(file)).key == before.key
     assert set(cache.iterdir()) == files
     file.write_text(file.read_text().replace("sofa_00", "bed_00"))
+    assert {i.category for i in World(load_house(file)).labels.instances} >= {"bed"}
+
+
+def test_a_house_that_changed_after_it_was_loaded_is_not_kept_as_the_loaded_one(
+    house: Path, cache: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / house.name
+    shutil.copy(house, file)
+    load_house(file)
+    checked = load_house(file)  # its specification is not read
+    file.write_text(file.read_text().replace("sofa_00", "bed_00"))
+    with pytest.raises(HouseError, match="was changed after it was loaded"):
+        World(checked)
     assert {i.category for i in World(load_house(file)).labels.instances} >= {"bed"}
 
 
