@@ -47,7 +47,6 @@ EXCEPTIONS = {
     ("sim/core/files.py", "os.open"): "the function that opens what grows, and a folder whose names are synced",
     ("sim/core/store.py", "file.read_bytes"): "a file of the store, which it wrote and whose checksum it tests",
     ("sim/houses/references.py", "file.read_bytes"): "textures that ship",
-    ("sim/app/web/runs.py", "open"): "the lock of a run, which it makes",
     ("sim/app/cli.py", "os.open"): "os.devnull",
     ("sim/core/paths.py", "file.read_bytes"): "modules of this project, for the hash of the code",
     ("sim/core/paths.py", "file.read_text"): "a fixed file of the system, /proc/cpuinfo",

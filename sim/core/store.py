@@ -37,7 +37,7 @@ _ARRAY = 1
 """Code of an array among the extension types of MessagePack."""
 _PACKAGES = ("core", "houses", "robot", "world", "task")
 """Packages of `sim` that compute the results."""
-_LIBRARIES = ("mujoco", "numpy", "numba", "opencv-python-headless", "scikit-fmm", "scipy")
+_LIBRARIES = ("mujoco", "numpy", "numba", "opencv-python-headless", "opencv-python", "scikit-fmm", "scipy")
 
 
 def key_of(*parts: object) -> str:
@@ -63,14 +63,16 @@ def kept(key: str | None, kind: Any, make: Callable[[], T]) -> T:
     most = max_bytes()
     if key is None or most == 0:
         return make()
-    file = cache_dir() / _FOLDER / f"{key}.bin"
     try:
-        content = file.read_bytes()
+        file = cache_dir() / _FOLDER / f"{key}.bin"
+    except RuntimeError:  # the user has no home folder
+        return make()
+    try:
+        content = memoryview(file.read_bytes())
         if zlib.crc32(content[4:]) == int.from_bytes(content[:4], "little"):
-            result = msgspec.msgpack.decode(
-                memoryview(content)[4:], type=kind, dec_hook=_as_it_is, ext_hook=_read_array
-            )
-            os.utime(file)  # the order of use
+            result = msgspec.msgpack.decode(content[4:], type=kind, dec_hook=_as_it_is, ext_hook=_read_array)
+            with contextlib.suppress(OSError):  # a folder that is only read
+                os.utime(file)  # the order of use
             return result
     except (OSError, msgspec.MsgspecError, ValueError, TypeError):
         pass  # missing, damaged, or made unreadable by another user
@@ -118,7 +120,7 @@ def _code() -> tuple[str, ...]:
 def _version(library: str) -> str:
     try:
         return importlib.metadata.version(library)
-    except importlib.metadata.PackageNotFoundError:  # for example `opencv-python` in place of the headless one
+    except importlib.metadata.PackageNotFoundError:  # one of the two packages of OpenCV
         return ""
 
 

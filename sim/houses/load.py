@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +20,7 @@ from sim.houses.foreign import make_walls_solid, remove_unsupported, void_notes
 from sim.houses.house import House
 from sim.houses.labels import ROBOT_PREFIX, Labels, collidable_geoms, describe_geom, read_labels
 from sim.houses.light import add_light
-from sim.houses.mjcf import read_spec, require_few_contacts, require_sizes
+from sim.houses.mjcf import TEXTURE_VARIABLE, read_spec, require_few_contacts, require_sizes
 from sim.houses.references import add_files, require_root, shipped_textures_sum
 
 FLOOR_TOLERANCE_M = 0.01
@@ -58,19 +59,27 @@ def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None
         return made[0].notes
 
     checksum = _checksum(path, rules, root)
-    notes = kept(checksum and key_of("house", checksum), tuple[str, ...], load)
+    limit = os.environ.get(TEXTURE_VARIABLE)  # a house that was checked with another one is checked again
+    notes = kept(checksum and key_of("house", checksum, limit), tuple[str, ...], load)
     if made:
         return replace(made[0], checksum=checksum)
-    return House(path.stem, lambda: _read(path, rules, root).spec, rules, path, notes, checksum)
+
+    def read() -> mujoco.MjSpec:
+        spec = _read(path, rules, root).spec
+        if _checksum(path, rules, root) != checksum:  # its model would be kept in place of that of the loaded one
+            raise HouseError(f"House '{path}' was changed after it was loaded; load it again.")
+        return spec
+
+    return House(path.stem, read, rules, path, notes, checksum)
 
 
 def _checksum(path: Path, rules: Mapping[str, str] | None, root: Path | None) -> str | None:
-    """Returns the checksum of a house file, of all files that it uses and of its label rules; None: not readable."""
+    """Returns the checksum of a house file, all files that it uses and its label rules; None: it is unknown."""
     try:
         digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=MAX_BYTES))
         add_files(digest, path, root)
     except HouseError:
-        return None  # `read_spec` says what is wrong
+        return None  # too many files; or one that cannot be read, of which `read_spec` says what is wrong
     digest.update(repr((shipped_textures_sum(), rules if rules is None else tuple(rules.items()))).encode())
     return digest.hexdigest()
 

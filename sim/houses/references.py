@@ -153,7 +153,7 @@ def require_root(root: Path | None) -> None:
         raise HouseError(f"--root '{root}' must be an existing folder.")
 
 
-def files_of(house_file: Path, root: Path | None = None) -> list[Path]:
+def files_of(house_file: Path, root: Path | None = None, *, require_all: bool = False) -> list[Path]:
     """Returns the files that an MJCF file and its included files use, sorted; shipped files do not count.
 
     The text is searched for names of files without MuJoCo. The result may therefore contain a file that is not used.
@@ -162,6 +162,10 @@ def files_of(house_file: Path, root: Path | None = None) -> list[Path]:
     Args:
         house_file: the MJCF file.
         root: another folder that the house may use.
+        require_all: whether it is an error that there are too many names and folders to try them all.
+
+    Raises:
+        HouseError: there are too many, and all are required.
     """
     shipped, house_file = assets_dir().resolve(), house_file.resolve()
     allowed = Allowed(house_file, root, HouseError).folders
@@ -184,12 +188,18 @@ def files_of(house_file: Path, root: Path | None = None) -> list[Path]:
                         path = path_as_read(base, folder, spelling)
                         if _is_plain(path) and not path.is_relative_to(shipped) and _is_below(path, allowed):
                             files.add(path)
+    if require_all and (max(len(bases), len(folders)) > _MAX_FOLDERS or len(names) > MAX_FILES):
+        raise HouseError(f"its files are in more than {_MAX_FOLDERS} folders, or are more than {MAX_FILES}.")
     return sorted(files - {house_file})
 
 
 def add_files(digest: Hash, house_file: Path, root: Path | None = None) -> None:
-    """Adds the names and the contents of the files that an MJCF file uses to a checksum."""
-    for file in files_of(house_file, root):
+    """Adds the names and the contents of the files that an MJCF file uses to a checksum.
+
+    Raises:
+        HouseError: a file cannot be read, or there are too many to find them all.
+    """
+    for file in files_of(house_file, root, require_all=True):
         digest.update(os.path.relpath(file, house_file.resolve().parent).encode(errors="replace"))
         digest.update(bytes.fromhex(sha256_of(file, what="File of a house", error=HouseError)))
 

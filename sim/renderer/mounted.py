@@ -79,16 +79,18 @@ class CameraConfig:
     @property
     def model(self) -> CameraModel:
         """The intrinsics of one view, or of a face of the cube of an equirectangular camera."""
-        size = self.width_px, self.height_px
-        hfov_deg = self.hfov_deg or (DEFAULT_HFOV_DEG if self.views == 1 else 360.0 / self.views)
+        size, hfov_deg, min_depth_m = (self.width_px, self.height_px), self.hfov_deg, self.min_depth_m
         if self.projection == "equirectangular":
             size, hfov_deg = (math.ceil(_FACE_SCALE * max(self.width_px / 4.0, self.height_px / 2.0)),) * 2, 90.0
+            min_depth_m /= math.sqrt(3.0)  # the depth of a corner of the cube at this distance
+        elif hfov_deg is None:
+            hfov_deg = DEFAULT_HFOV_DEG if self.views == 1 else 360.0 / self.views
         return CameraModel(
             width_px=size[0],
             height_px=size[1],
             hfov_rad=math.radians(hfov_deg),
             height_m=self.height_m,
-            min_depth_m=self.min_depth_m,
+            min_depth_m=min_depth_m,
             max_depth_m=self.max_depth_m,
         )
 
@@ -184,4 +186,5 @@ def _unrolled(
         return image
     depth = np.minimum(image * distance, np.float32(config.max_depth_m))
     depth[image >= config.max_depth_m] = config.max_depth_m
+    depth[depth < config.min_depth_m] = 0.0
     return depth

@@ -74,29 +74,27 @@ class SemanticMapSensor:
         c, s = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
         turn = np.array([[-c, -s], [s, -c]])  # to back and right
         for _, category, outlines in sorted(layers, key=lambda layer: layer[0]):
-            for outline in outlines:
-                cells = (outline - (pose.x_m, pose.y_m)) @ turn.T / config.cell_m + 0.5 * config.cells - 0.5
-                corners = np.round(cells[:, ::-1] * (1 << _SHIFT)).astype(np.int32)
+            cells = (outlines - (pose.x_m, pose.y_m)) @ turn.T / config.cell_m + 0.5 * config.cells - 0.5
+            near = np.all((cells.max(axis=1) > -1.0) & (cells.min(axis=1) < config.cells), axis=1)
+            for corners in np.round(cells[near, :, ::-1] * (1 << _SHIFT)).astype(np.int32):
                 cv2.fillConvexPoly(image, corners, category, shift=_SHIFT)
         return image
 
 
-_known: weakref.WeakKeyDictionary[mujoco.MjModel, dict[int, tuple[float, float, list[NDArray]]]] = (
-    weakref.WeakKeyDictionary()
-)
+_known: weakref.WeakKeyDictionary[mujoco.MjModel, dict[int, tuple[float, float, NDArray]]] = weakref.WeakKeyDictionary()
 """Outlines of the geoms of each model that cannot move."""
 
 
-def _outlines(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> tuple[float, float, list[NDArray]]:
-    """Returns the heights of the lowest and the highest point of a geom, and its convex outlines (k, 2) in plan."""
+def _outlines(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> tuple[float, float, NDArray]:
+    """Returns the heights of the lowest and the highest point of a geom, and its convex outlines (n, k, 2) in plan."""
     known = _known.setdefault(model, {})
     if geom in known:
         return known[geom]
     body = geom_polytope(model, data, geom, rendered=True)
     polygon = polygon_from_above(body)
-    outlines = [] if polygon is None else [polygon.vertices_m]
-    if outlines and is_hollow(model, geom):
-        outlines = list(mesh_triangles(model, data, geom)[..., :2])
+    outlines = np.zeros((0, 3, 2)) if polygon is None else polygon.vertices_m[None]
+    if polygon is not None and is_hollow(model, geom):
+        outlines = mesh_triangles(model, data, geom)[..., :2]
     result = float(body.vertices_m[:, 2].min()), float(body.vertices_m[:, 2].max()), outlines
     if model.body_weldid[model.geom_bodyid[geom]] == 0:
         known[geom] = result

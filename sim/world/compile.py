@@ -46,8 +46,11 @@ def world_key(house: House, config: RobotConfig) -> str | None:
         return None
     digest = hashlib.sha256()
     if config.file is not None:
-        digest.update(read_bytes(config.file.path, what="Robot", error=HouseError))
-        add_files(digest, config.file.path, config.file.root)
+        try:
+            digest.update(read_bytes(config.file.path, what="Robot", error=HouseError))
+            add_files(digest, config.file.path, config.file.root)
+        except HouseError:
+            return None  # the reader of the robot says what is wrong
     return key_of("world", house.checksum, config, digest.hexdigest())
 
 

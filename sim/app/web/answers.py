@@ -13,7 +13,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.types import Receive, Scope, Send
 
-from sim.core.errors import ConfigError
+from sim.core.errors import ObjectNavError
 from sim.core.reading import printable
 
 _CHUNK_BYTES = 1 << 18
@@ -81,10 +81,10 @@ def _range(header: str, size: int) -> tuple[int, int] | None:
 
 
 async def or_404(answer: Callable[[], Response]) -> Response:
-    """Runs a function in a thread and returns its response; after a ConfigError, a response with status 404."""
+    """Runs a function in a thread and returns its response; after an error of this project, one with status 404."""
     try:
         return await anyio.to_thread.run_sync(answer)
-    except ConfigError as error:
+    except ObjectNavError as error:
         return PlainTextResponse(printable(str(error)), 404)
 
 

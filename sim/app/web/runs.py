@@ -23,6 +23,7 @@ from sim.app.evaluation.results import read_record, read_results
 from sim.app.viewers.video import video_file
 from sim.core import invocation
 from sim.core.errors import ConfigError
+from sim.core.files import open_to_grow
 from sim.core.reading import open_plain, printable, reason_of
 from sim.task.result import EpisodeResult, metrics_for
 
@@ -149,7 +150,7 @@ class Runs:
         """
         folder = self._folder_of(name)
         try:
-            with open(folder / ".lock", "ab") as lock:
+            with open_to_grow(folder / ".lock") as lock:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 shutil.rmtree(folder)
         except BlockingIOError:
@@ -223,7 +224,7 @@ class Runs:
             "explorer": record.get("explorer"),
             "split": (record.get("split_identity") or {}).get("name"),
             "episodes": len(lines),
-            "found": sum(bool(result.success) for result in lines),
+            "found": sum(result.success == 1.0 for result in lines),
             "errors": sum(result.is_error for result in lines),
             "spl": sum(result.spl for result in lines) / max(1, len(lines)),
             "report": self._there(folder / REPORT),

@@ -41,7 +41,6 @@ OpenCV's own choice tries five filters on each row: it takes twice as long, and 
 """
 INDEX_FILE = "index.json"
 
-
 CARD_FILE = "README.md"
 CARD = """---
 configs:
@@ -51,8 +50,8 @@ configs:
 
 # Labelled views
 
-{views} views of {houses} houses in WebDataset's layout: `KEY.rgb.jpg` (or `.png`), `KEY.depth.png` (millimetres),
-`KEY.semantic.png` (mpcat40 ids), `KEY.json`. `index.json` has counts by category. Made by `{command}`.
+Views of houses in WebDataset's layout: `KEY.rgb.jpg` (or `.png`), `KEY.depth.png` (millimetres), `KEY.semantic.png`
+(mpcat40 ids), `KEY.json`. `index.json` has the numbers of views and houses, and the command that made them.
 """
 
 
@@ -172,7 +171,7 @@ def write_index(folder: Path, notes: Sequence[ShardNote], *, command: str, confi
     }
     write_atomically(folder / INDEX_FILE, (json.dumps(index, indent=1) + "\n").encode())
     if not (folder / CARD_FILE).exists():
-        write_atomically(folder / CARD_FILE, CARD.format(views=views, houses=index["houses"], command=command))
+        write_atomically(folder / CARD_FILE, CARD)
     return index
 
 

@@ -102,6 +102,17 @@ def test_a_cache_that_cannot_be_written_changes_nothing(
     assert not folder_exists or not any(folder.iterdir())
 
 
+def test_a_cache_that_is_only_read_is_used(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept(key_of("a"), Result, made)
+    monkeypatch.setattr("os.utime", _full)
+    assert kept(key_of("a"), Result, never).name == "x"
+
+
+def test_without_a_home_folder_nothing_is_kept(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, "~no-such-user/cache")
+    assert kept(key_of("a"), Result, made).name == "x"
+
+
 def _full(*_: object) -> None:
     raise OSError(28, "No space left on device")
 

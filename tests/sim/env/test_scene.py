@@ -9,10 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim.core.errors import HouseError
 from sim.core.interface import CameraModel
 from sim.core.paths import CACHE_VARIABLE
 from sim.core.store import SIZE_VARIABLE
 from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.house_list import copy_textures
 from sim.episodes.splits import load_split
 from sim.gl import mujoco
 from sim.houses.load import load_house
@@ -58,7 +60,7 @@ def _frames(split: str, house: str) -> Iterator[tuple[object, ...]]:
     env.close()
 
 
-def test_a_house_or_a_texture_that_changed_is_read_again(house: Path, cache: Path, tmp_path: Path) -> None:
+def test_a_house_that_changed_is_read_again(house: Path, cache: Path, tmp_path: Path) -> None:
     file = tmp_path / "own" / house.name
     file.parent.mkdir()
     shutil.copy(house, file)
@@ -68,6 +70,45 @@ def test_a_house_or_a_texture_that_changed_is_read_again(house: Path, cache: Pat
     assert set(cache.iterdir()) == files
     file.write_text(file.read_text().replace("sofa_00", "bed_00"))
     assert {i.category for i in World(load_house(file)).labels.instances} >= {"bed"}
+
+
+def test_a_house_that_changed_after_it_was_loaded_is_not_kept_as_the_loaded_one(
+    house: Path, cache: Path, tmp_path: Path
+) -> None:
+    file = tmp_path / house.name
+    shutil.copy(house, file)
+    load_house(file)
+    checked = load_house(file)  # its specification is not read
+    file.write_text(file.read_text().replace("sofa_00", "bed_00"))
+    with pytest.raises(HouseError, match="was changed after it was loaded"):
+        World(checked)
+    assert {i.category for i in World(load_house(file)).labels.instances} >= {"bed"}
+
+
+def test_a_house_with_a_texture_that_changed_is_another_one(cache: Path, tmp_path: Path) -> None:
+    split = load_split("val")
+    file = tmp_path / "own" / "house.xml"
+    file.parent.mkdir()
+    shutil.copy(split.house_file(split.houses[0]), file)
+    copy_textures(tmp_path / "textures")
+    checksum = load_house(file).checksum
+    texture = next(t for t in sorted((tmp_path / "textures").iterdir()) if t.name in file.read_text())
+    texture.write_bytes(texture.read_bytes() + b" ")
+    assert load_house(file).checksum not in (None, checksum)
+
+
+def test_a_house_with_more_files_than_are_searched_is_not_kept(cache: Path, tmp_path: Path) -> None:
+    for number in range(25):
+        folder = tmp_path / f"object_{number}"
+        folder.mkdir()
+        (folder / "model.xml").write_text('<mujoco><include file="parts.xml"/></mujoco>')
+        (folder / "parts.xml").write_text("<mujocoinclude/>")
+    models = "".join(f'<model name="m{k}" file="object_{k}/model.xml"/>' for k in range(25))
+    room = '<geom name="floor_00" type="box" size="2 2 0.05" pos="0 0 -0.05"/>'
+    file = tmp_path / "house.xml"
+    file.write_text(f"<mujoco><asset>{models}</asset><worldbody>{room}</worldbody></mujoco>")
+    assert World(load_house(file)).key is None
+    assert not cache.exists()
 
 
 def test_the_model_of_a_prepared_house_is_that_of_its_specification(house: Path, cache: Path) -> None:

@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 
 from sim.core.errors import HouseError
+from sim.core.paths import CACHE_VARIABLE
+from sim.core.store import SIZE_VARIABLE
 from sim.houses.load import load_house
 from sim.houses.mjcf import read_spec
 from sim.task.ground_truth import GroundTruth
@@ -160,14 +162,17 @@ def test_a_height_field_of_many_pixels_is_not_decoded(tmp_path: Path) -> None:
         load_house(tmp_path / "house.xml")
 
 
+@pytest.mark.parametrize("cache_mb", [0, 10])
 def test_the_limit_of_textures_is_a_variable_of_the_environment(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    cache_mb: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setenv(SIZE_VARIABLE, str(cache_mb))
     drawn = '<texture name="t" type="2d" builtin="flat" width="1000" height="1000"/>'
     (tmp_path / "house.xml").write_text(house(assets=drawn))
+    monkeypatch.setenv("STUBBORN_TEXTURE_MB", "20")
+    assert load_house(tmp_path / "house.xml").name == "house"
     for limit, message in (("1", "at most 1 MB are allowed.*STUBBORN_TEXTURE_MB"), ("many", "must be a number of MB")):
         monkeypatch.setenv("STUBBORN_TEXTURE_MB", limit)
         with pytest.raises(HouseError, match=message):
             load_house(tmp_path / "house.xml")
-    monkeypatch.setenv("STUBBORN_TEXTURE_MB", "20")
-    assert load_house(tmp_path / "house.xml").name == "house"

@@ -81,6 +81,15 @@ def test_an_equirectangular_image_shows_the_rays_of_its_pixels(yaw_deg: float, p
     assert same / len(errors) > 0.95
 
 
+def test_the_depth_range_of_an_equirectangular_image_counts_along_its_rays() -> None:
+    sphere = {"projection": "equirectangular", "width_px": 128, "height_px": 64, "images": ("depth",)}
+    env = env_with({"all": {**sphere, "min_depth_m": 0.0}, "far": {**sphere, "min_depth_m": 1.2}})
+    observation, _ = env.reset(seed=0)
+    everything = observation["all_depth"]
+    assert np.any(everything < 1.2)
+    assert np.array_equal(observation["far_depth"], np.where(everything < 1.2, 0.0, everything))
+
+
 def test_nothing_that_a_tilted_camera_could_see_is_left_out() -> None:
     split = load_split("val")
     world = World(split.load_house("val_03"))
@@ -162,7 +171,7 @@ def test_cameras_are_declared_by_a_configuration_and_by_a_sidecar(tmp_path: Path
     [
         ({"pitch_deg": 100}, "pitch_deg must lie in"), ({"images": ["normals"]}, "images must be some of"),
         ({"views": 2.5}, "views"), ({"projection": "fisheye"}, "projection"), ({"hfov_deg": 200}, "hfov_rad"),
-        ({"projection": "equirectangular", "views": 4}, "neither views nor hfov_deg"),
+        ({"projection": "equirectangular", "views": 4}, "neither views nor hfov_deg"), ({"hfov_deg": 0}, "hfov_rad"),
     ],
 )  # fmt: skip
 def test_a_camera_that_cannot_be_is_refused(fields: dict[str, object], reason: str) -> None:

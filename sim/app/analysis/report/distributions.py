@@ -131,7 +131,7 @@ class Calibration:
 
 
 def calibration(lines: Sequence[EpisodeResult]) -> Calibration:
-    """Returns the calibration of a run's stops; a stop is correct if the episode is a success."""
+    """Returns the calibration of a run's stops; correct ones find the goal, or the last goal of a chain."""
     stops = [result for result in lines if result.end_reason == "stop"]
     rated = [(result, result.stop_confidence) for result in stops if result.stop_confidence is not None]
     bins = []
@@ -148,4 +148,5 @@ def _mean_confidence(rated: Sequence[tuple[EpisodeResult, float]]) -> float:
 
 
 def _correct(rated: Sequence[tuple[EpisodeResult, float]]) -> Proportion:
-    return proportion_of([bool(result.success) for result, _ in rated], [result for result, _ in rated])
+    lines = [result for result, _ in rated]
+    return proportion_of([(line if line.goals is None else line.goals[-1]).success == 1.0 for line in lines], lines)

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sim.app.analysis.comparison import LETTERS
+from sim.app.analysis.report.figures import goal_group
 from sim.task.explanations import outcome
 from sim.task.result import EpisodeResult
 
@@ -37,6 +38,8 @@ class Row:
     numbers: Sequence[tuple[str, float | None]]
     """Text and value of the other columns."""
     collisions: int
+    goal_groups: Sequence[str]
+    """Values of the filter of goals that select this episode: the goal, or the groups of the goals of a chain."""
 
     @property
     def outcomes(self) -> list[str]:
@@ -70,7 +73,8 @@ def row_of(episode_id: str, lines: Sequence[EpisodeResult]) -> Row:
     cells = [[text] for text in named] if len(lines) <= 2 else [named]
     collisions = sum(result.collisions for result in lines)
     tokens = _tokens([name for _, name in named])
-    return Row(episode_id, _goal(lines), lines[0].house, cells, tokens, _numbers(lines), collisions)
+    groups = [lines[0].goal] if lines[0].goals is None else sorted({goal_group(goal) for goal in lines[0].goals})
+    return Row(episode_id, _goal(lines), lines[0].house, cells, tokens, _numbers(lines), collisions, groups)
 
 
 def _goal(lines: Sequence[EpisodeResult]) -> str:

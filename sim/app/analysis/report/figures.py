@@ -15,7 +15,7 @@ from sim.app.evaluation.summary import few_episodes
 from sim.core.interface import GOAL_CATEGORIES
 from sim.task.explanations import MEANING, outcome
 from sim.task.failures import CAUSES
-from sim.task.result import EpisodeResult, Metric, metrics_for
+from sim.task.result import EpisodeResult, GoalResult, Metric, metrics_for
 
 
 @dataclass(frozen=True)
@@ -76,18 +76,24 @@ def groups(runs: Runs, key: Literal["goal", "house"]) -> list[Group]:
     return grouped(runs, names, [*order, *sorted(set(names).difference(order))])
 
 
+def goal_group(goal: GoalResult) -> str:
+    """Returns the name of the group of a goal of a chain."""
+    return f"{goal.kind}, {'first' if goal.repeats is None else 'second'} visit"
+
+
 def _by_goals(runs: Runs) -> Runs:
     """Returns a line for each goal of the chains, with its kind and visit as its goal."""
     result: list[list[EpisodeResult]] = [[] for _ in runs]
     for lines in zip(*runs, strict=True):
         goals = next((line.goals for line in lines if line.goals is not None), ())
         for number, goal in enumerate(goals):
-            kind = f"{goal.kind}, {'first' if goal.repeats is None else 'second'} visit"
             for of_run, line in zip(result, lines, strict=True):
                 success = 0.0 if line.goals is None else line.goals[number].success
                 episode_id = f"{line.episode_id}, goal {number + 1}"  # goals are no replicates of one episode
                 of_run.append(
-                    msgspec.structs.replace(line, episode_id=episode_id, goal=kind, success=success, goals=None)
+                    msgspec.structs.replace(
+                        line, episode_id=episode_id, goal=goal_group(goal), success=success, goals=None
+                    )
                 )
     return result
 

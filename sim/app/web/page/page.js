@@ -583,12 +583,12 @@ async function openRun(run) {
 
 function showEpisodes() {
   const wanted = $("outcome-filter").value;
-  const lines = opened.lines.filter((line) => wanted === "all" || Boolean(line.success) === (wanted === "found"));
+  const lines = opened.lines.filter((line) => wanted === "all" || (line.success === 1) === (wanted === "found"));
   fill($("episodes"), lines.map(episodeRow));
 }
 
 function episodeRow(line) {
-  const outcome = line.success ? "found" : line.end_reason === "error" ? "error" : (line.failure ?? line.end_reason ?? "").replaceAll("_", " ");
+  const outcome = line.success === 1 ? "found" : line.end_reason === "error" ? "error" : (line.failure ?? line.end_reason ?? "").replaceAll("_", " ");
   const buttons = document.createElement("div");
   buttons.className = "buttons";
   const add = (words, action) => {

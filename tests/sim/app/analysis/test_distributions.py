@@ -22,7 +22,7 @@ from sim.app.analysis.report.distributions import (
 )
 from sim.app.analysis.report.figures import causes, grouped, means, proportion_of
 from sim.app.analysis.report.trend import HEIGHT, METRICS, TOP, trend
-from sim.task.result import EpisodeResult
+from sim.task.result import EpisodeResult, GoalMetrics, GoalResult
 from tests.helpers.results import a_result
 
 
@@ -119,6 +119,16 @@ def test_calibration_counts_stops_with_a_confidence_in_tenths() -> None:
     assert [(b.low, b.correct.count, b.correct.of) for b in curve.bins] == [(0.0, 0, 1), (0.3, 1, 2), (0.9, 1, 1)]
     assert curve.bins[1].confidence == pytest.approx(0.35)
     assert calibration([line()]).bins == []
+
+
+def test_the_confidence_of_a_chain_is_that_of_its_last_stop() -> None:
+    episode = line(stop_confidence=0.9, success=0.5)
+    fields: dict[str, Any] = {name: getattr(episode, name) for name in GoalMetrics.__struct_fields__}
+    fields |= {"goal": "bed", "kind": "words", "goat_success": 1.0, "goat_spl": 1.0}
+    goal = GoalResult(**fields)
+    first, last = replace(goal, success=0.0), replace(goal, success=1.0)
+    for goals, correct in (((first, last), 1), ((last, first), 0)):
+        assert calibration([replace(episode, goals=goals)]).correct.count == correct
 
 
 def runs(*collisions: Sequence[float]) -> list[list[EpisodeResult]]:

@@ -69,7 +69,10 @@ def test_a_run_over_chains_is_resumed_merged_and_reported_as_others(
     assert report.main(report.Args(runs=(one,))) == 0
     page = (one / "report.html").read_text()
     assert "\N{CHECK MARK} sofa, \N{CHECK MARK} the table, \N{CHECK MARK} couch" in page
-    assert "words, second visit" in page
+    groups = "category, first visit|words, first visit|words, second visit"
+    assert f'data-goal="{groups}"' in page  # each of the filter's values selects the chain
+    for group in groups.split("|"):
+        assert f'<option value="{group}">' in page
 
 
 def _failed(content: dict[str, Any]) -> None:

@@ -13,11 +13,14 @@ from typing import Any
 import pytest
 
 from sim.app.web.runs import Runs
-from sim.core.errors import ConfigError
+from sim.core.errors import ConfigError, HouseError
 
 pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
 
-from sim.app.web.answers import as_ascii
+import anyio
+from starlette.responses import Response
+
+from sim.app.web.answers import as_ascii, or_404
 from tests.helpers.results import ENTRIES
 
 LINE = ENTRIES | {"episode_id": "e/0"}
@@ -134,3 +137,23 @@ def test_a_run_is_deleted_unless_it_is_being_written(tmp_path: Path) -> None:
         with pytest.raises(ConfigError, match="There is no run"):
             runs.delete(name)
     assert (other / "results.jsonl").is_file()
+
+
+def test_a_lock_that_is_a_pipe_does_not_stop_the_server(tmp_path: Path) -> None:
+    runs, run = Runs(tmp_path / "runs"), write_run(tmp_path / "runs" / "mine")
+    os.mkfifo(run / ".lock")
+    with pytest.raises(ConfigError, match="cannot be deleted"):
+        runs.delete("mine")
+
+
+def test_a_chain_with_one_goal_of_two_is_not_found(tmp_path: Path) -> None:
+    write_run(tmp_path / "runs" / "half", LINE | {"success": 0.5})
+    assert [run["found"] for run in Runs(tmp_path / "runs").as_json()] == [0]
+
+
+def test_an_error_of_this_project_is_a_response() -> None:
+    def draw() -> Response:
+        raise HouseError("House 'x.xml' is broken.")
+
+    answer = anyio.run(or_404, draw)
+    assert (answer.status_code, answer.body) == (404, b"House 'x.xml' is broken.")

@@ -6,6 +6,7 @@ import errno
 import itertools
 import json
 import os
+import re
 import tarfile
 from pathlib import Path
 from typing import Any
@@ -175,3 +176,14 @@ def test_the_index_counts_what_the_shards_hold(scene: Scene, tmp_path: Path) -> 
     assert index["categories"]["sofa"]["pixels"] == sum(int((view.semantic == sofa).sum()) for view in views)
     assert index["categories"]["sofa"]["views"] == sum(bool((view.semantic == sofa).any()) for view in views)
     assert json.loads((tmp_path / "index.json").read_text()) == index
+
+
+def test_the_card_names_the_shards_and_one_that_a_user_changed_is_kept(scene: Scene, tmp_path: Path) -> None:
+    notes = [write_shard(tmp_path, "views-000000", views_of(scene, count=1), house="h", config={})]
+    write_index(tmp_path, notes, command="make them", config={})
+    card = tmp_path / "README.md"
+    (pattern,) = re.findall(r'^  data_files: "(.*)"$', card.read_text().split("---")[1], re.MULTILINE)
+    assert [file.name for file in tmp_path.glob(pattern)] == ["views-000000.tar"]
+    card.write_text("Mine.")
+    write_index(tmp_path, notes, command="make them", config={})
+    assert card.read_text() == "Mine."

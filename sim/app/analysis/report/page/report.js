@@ -53,8 +53,8 @@
 
   function fits(row, wanted) {
     const { goal, house, outcome, collisions } = row.dataset;
-    const words = `${row.cells[0].textContent} ${plain(goal)} ${house} ${plain(outcome)}`.toLowerCase();
-    return (!wanted.goal || wanted.goal === goal) && (!wanted.house || wanted.house === house)
+    const words = `${row.cells[0].textContent} ${row.cells[1].textContent} ${house} ${plain(outcome)}`.toLowerCase();
+    return (!wanted.goal || goal.split("|").includes(wanted.goal)) && (!wanted.house || wanted.house === house)
       && (!wanted.outcome || outcome.split(" ").includes(wanted.outcome))
       && (!wanted.collided || Number(collisions) > 0)
       && wanted.words.every((word) => words.includes(word));
