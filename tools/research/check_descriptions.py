@@ -10,6 +10,9 @@ outlines drawn in plan, visibility from pictures of `mujoco.Renderer`.
 - false: the object itself fails a condition.
 - invisible: none of 16 places around shows it with 400 pixels.
 - another colour: the pixels that show it have mostly another colour, by hue, saturation and value.
+
+`--pictures FOLDER` writes two pictures of each house for a reader who sees only these and the texts beside them, and says where
+(column, row) the described object is; `FOLDER/answers` has the pixels that are right.
 """
 
 from __future__ import annotations
@@ -76,6 +79,8 @@ class Args:
     """Number of processes."""
     out: cli.OutFile | None = None
     """A JSON file for all verdicts."""
+    pictures: cli.OutFolder | None = None
+    """A folder for pictures to be read by somebody."""
 
 
 @dataclass
@@ -113,7 +118,26 @@ def _check(args: Args, work: tuple[int, str]) -> list[dict[str, str]]:
     split, rng = load_split(args.split), np.random.default_rng([args.seed, number])
     written = _written(split.load_house(house), args.per_house, rng)
     judge = _Judge(split.house_paths[house])
-    return [{"house": house, "text": text, "object": name, "verdict": judge(text, name)} for text, name in written]
+    verdicts = [{"house": house, "text": text, "object": name, "verdict": judge(text, name)} for text, name in written]
+    if args.pictures is not None:
+        _write_pictures(args.pictures, house, judge, verdicts, rng)
+    return verdicts
+
+
+def _write_pictures(
+    folder: Path, house: str, judge: _Judge, verdicts: list[dict[str, str]], rng: np.random.Generator
+) -> None:
+    """Writes pictures, texts and right pixels of two objects of a house."""
+    (folder / "answers").mkdir(parents=True, exist_ok=True)
+    good = [verdict for verdict in rng.permutation(verdicts).tolist() if verdict["verdict"] == "good"]
+    by_object = {verdict["object"]: verdict["text"] for verdict in good}
+    texts = {f"{house}_{number}.png": chosen for number, chosen in enumerate(list(by_object.items())[:2])}
+    for name, (instance, _) in texts.items():
+        rgb, mask = judge.pictures[instance]
+        cv2.imwrite(str(folder / name), rgb[..., ::-1])
+        cv2.imwrite(str(folder / "answers" / name), mask.astype(np.uint8) * 255)
+    spoken = {name: text for name, (_, text) in texts.items()}
+    write_atomically(folder / f"{house}.json", json.dumps(spoken, indent=1) + "\n")
 
 
 def _written(house: House, most: int, rng: np.random.Generator) -> list[tuple[str, str]]:
@@ -159,6 +183,7 @@ class _Judge:
         )
         self._away: dict[str, np.ndarray] = {}
         self._pictured: dict[str, tuple[bool, str]] = {}
+        self.pictures: dict[str, tuple[np.ndarray, np.ndarray]] = {}
 
     def __call__(self, text: str, name: str) -> str:
         """Returns the verdict on a text for an object."""
@@ -314,7 +339,10 @@ class _Judge:
             if np.count_nonzero(mask) >= _LEAST_PIXELS:
                 shown = True
                 renderer.update_scene(self._data, camera)
-                colours.update(_rough_colours(renderer.render()[mask]))
+                rgb = renderer.render()
+                colours.update(_rough_colours(rgb[mask]))
+                if number >= 8 or name not in self.pictures:  # From farther away, more around it is seen.
+                    self.pictures[name] = rgb, mask
         return shown, colours.most_common(1)[0][0] if colours else ""
 
 
