@@ -11,8 +11,8 @@ outlines drawn in plan, visibility from pictures of `mujoco.Renderer`.
 - invisible: none of 16 places around shows it with 400 pixels.
 - another colour: the pixels that show it have mostly another colour, by hue, saturation and value.
 
-`--pictures FOLDER` writes two pictures of each house for a reader who sees only these and the texts beside them, and says where
-(column, row) the described object is; `FOLDER/answers` has the pixels that are right.
+`--pictures FOLDER` writes two pictures of each house, not aimed at the object, for a reader who sees only these and the
+texts beside them, and says where (column, row) the described object is. `FOLDER/answers` has the pixels that are right.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ def _check(args: Args, work: tuple[int, str]) -> list[dict[str, str]]:
     number, house = work
     split, rng = load_split(args.split), np.random.default_rng([args.seed, number])
     written = _written(split.load_house(house), args.per_house, rng)
-    judge = _Judge(split.house_paths[house])
+    judge = _Judge(split.house_paths[house], None if args.pictures is None else rng)
     verdicts = [{"house": house, "text": text, "object": name, "verdict": judge(text, name)} for text, name in written]
     if args.pictures is not None:
         _write_pictures(args.pictures, house, judge, verdicts, rng)
@@ -130,7 +130,7 @@ def _write_pictures(
     """Writes pictures, texts and right pixels of two objects of a house."""
     (folder / "answers").mkdir(parents=True, exist_ok=True)
     good = [verdict for verdict in rng.permutation(verdicts).tolist() if verdict["verdict"] == "good"]
-    by_object = {verdict["object"]: verdict["text"] for verdict in good}
+    by_object = {verdict["object"]: verdict["text"] for verdict in good if verdict["object"] in judge.pictures}
     texts = {f"{house}_{number}.png": chosen for number, chosen in enumerate(list(by_object.items())[:2])}
     for name, (instance, _) in texts.items():
         rgb, mask = judge.pictures[instance]
@@ -157,7 +157,7 @@ def _written(house: House, most: int, rng: np.random.Generator) -> list[tuple[st
 class _Judge:
     """Judges descriptions of the objects of one house file."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, turns: np.random.Generator | None = None) -> None:
         facts = {
             element.get("name"): dict(part.split(": ") for part in str(element.get("data")).split("; "))
             for element in ET.parse(path).getroot().iter("text")
@@ -183,6 +183,8 @@ class _Judge:
         )
         self._away: dict[str, np.ndarray] = {}
         self._pictured: dict[str, tuple[bool, str]] = {}
+        self.turns = turns
+        """Draws by how much the camera of a picture for a reader looks past the object; None: no such pictures."""
         self.pictures: dict[str, tuple[np.ndarray, np.ndarray]] = {}
 
     def __call__(self, text: str, name: str) -> str:
@@ -317,7 +319,7 @@ class _Judge:
         rows, cols = np.nonzero(seen.plan)
         middle = self._origin + _PX_M * np.array([cols.mean(), rows.mean()])
         reach = 0.5 * _PX_M * max(np.ptp(rows), np.ptp(cols))
-        camera, renderer = mujoco.MjvCamera(), self._renderer
+        camera = mujoco.MjvCamera()
         for number in range(16):
             angle, away = np.pi * number / 4.0, reach + (0.8 if number < 8 else 1.8)
             xy = middle + away * np.array([np.cos(angle), np.sin(angle)])
@@ -331,19 +333,33 @@ class _Judge:
             camera.distance = float(np.linalg.norm(ahead))
             camera.azimuth = float(np.degrees(np.arctan2(ahead[1], ahead[0])))
             camera.elevation = float(np.degrees(np.arcsin(ahead[2] / camera.distance)))
-            renderer.enable_segmentation_rendering()
-            renderer.update_scene(self._data, camera)
-            ids = renderer.render()
-            renderer.disable_segmentation_rendering()
-            mask = np.isin(ids[..., 0], self._geoms[name]) & (ids[..., 1] == mujoco.mjtObj.mjOBJ_GEOM)
-            if np.count_nonzero(mask) >= _LEAST_PIXELS:
-                shown = True
-                renderer.update_scene(self._data, camera)
-                rgb = renderer.render()
-                colours.update(_rough_colours(rgb[mask]))
-                if number >= 8 or name not in self.pictures:  # From farther away, more around it is seen.
+            rgb, mask = self._render(camera, name)
+            if np.count_nonzero(mask) < _LEAST_PIXELS:
+                continue
+            shown = True
+            colours.update(_rough_colours(rgb[mask]))
+            # More is seen from farther away.
+            if self.turns is not None and (number >= 8 or name not in self.pictures):
+                camera.azimuth += self.turns.uniform(-18.0, 18.0)
+                camera.elevation += self.turns.uniform(-12.0, 12.0)
+                yaw, rise = np.radians((camera.azimuth, camera.elevation))
+                gaze = np.array([np.cos(rise) * np.cos(yaw), np.cos(rise) * np.sin(yaw), np.sin(rise)])
+                camera.lookat[:] = eye + camera.distance * gaze
+                rgb, mask = self._render(camera, name)
+                if np.count_nonzero(mask) >= _LEAST_PIXELS:
                     self.pictures[name] = rgb, mask
         return shown, colours.most_common(1)[0][0] if colours else ""
+
+    def _render(self, camera: mujoco.MjvCamera, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """Returns a picture (rows, cols, 3) and the pixels (rows, cols) of an object."""
+        renderer = self._renderer
+        renderer.enable_segmentation_rendering()
+        renderer.update_scene(self._data, camera)
+        ids = renderer.render()
+        renderer.disable_segmentation_rendering()
+        renderer.update_scene(self._data, camera)
+        mask = np.isin(ids[..., 0], self._geoms[name]) & (ids[..., 1] == mujoco.mjtObj.mjOBJ_GEOM)
+        return renderer.render(), mask
 
 
 def _holds(box: np.ndarray, xy: np.ndarray) -> bool:
