@@ -26,6 +26,7 @@ from sim.app.analysis.metrics import (
     ratio_cell,
 )
 from sim.app.analysis.tables import Cell, ResultTable
+from sim.app.commands.reproduce import motion_tables
 from sim.app.commands.reproduce.runs import GROUND_TRUTH, AgentSetup
 from sim.app.evaluation.intervals import estimate, paired_difference
 from sim.core.errors import ConfigError
@@ -222,9 +223,10 @@ TABLES: Mapping[str, PaperTable] = {
         GROUND_TRUTH,
         explorers,
     ),
+    "motions": PaperTable(motion_tables.SETUPS, GROUND_TRUTH, motion_tables.motions),
 }
 """The tables by name."""
-PAPER_TABLES = tuple(name for name in TABLES if name not in ("verification", "splits", "explorers"))
+PAPER_TABLES = tuple(name for name in TABLES if name not in ("verification", "splits", "explorers", "motions"))
 """The tables that the paper has too; `controls` is its figure of SemExp."""
 
 

@@ -10,7 +10,7 @@ SemExp; `all` makes these six, and one page of all of them. Columns with the pap
 paper's claims come first, each replicated, not replicated or unresolved (`paper_claims`). The table `verification`
 compares the methods of verification. `splits` compares the rows of the ablation and two explorers on each of several
 splits. `explorers` compares all explorers, also by the median time to first sight, and the learned ones with their
-controls.
+controls. `motions` compares agents with contacts and with the two kinematic motions of Habitat.
 
 Each run has a folder `<out>/<agent>_<semantics>_...`, as `stubborn run --record` writes it; the tables share the runs.
 The agents take turns: each runs a chunk of episodes of every split. All agents have therefore run the same first
@@ -66,8 +66,8 @@ class Args:
     """Run the missing episodes of a table, and write the table."""
 
     table: tyro.conf.Positional[str]
-    """failures, ablation, exploration, controls, categories, overall, verification, splits, explorers, or all (the
-    first six, the paper's)."""
+    """failures, ablation, exploration, controls, categories, overall, verification, splits, explorers, motions, or all
+    (the first six, the paper's)."""
     episodes: cli.Count = 200
     """The first N episodes of each split."""
     workers: cli.Count = 1
@@ -88,7 +88,8 @@ class Args:
     """Source of segmentation, in place of the default of the table."""
     agents: tuple[str, ...] = ()
     """Agents, in place of the default of the table; the others are compared with the first. With options as
-    "AGENT [--semantics SOURCE] [--explorer NAME] [--verification METHOD] [--config FIELD=VALUE ...]"."""
+    "AGENT [--semantics SOURCE] [--explorer NAME] [--verification METHOD] [--motion KIND]
+    [--config FIELD=VALUE ...]"."""
     noise: str = "none"
     """Noise of sensors and drive."""
     seed: cli.Seed = 0
@@ -190,7 +191,10 @@ def _conditions(of: Run, other: Run) -> Mapping[str, object]:
     flat = {key: of.config[key] for key in SAME_IN_ALL if key in of.config and key in other.config}
     tree, others = of.config.get("config", {}), other.config.get("config", {})
     of_world = [name for name, option in meanings(RunConfig).items() if option.of_world]
-    return flat | {"config": {key: tree[key] for key in of_world if key in tree and key in others}}
+    world = {key: tree[key] for key in of_world if key in tree and key in others}
+    if isinstance(robot := world.get("robot"), Mapping):  # the kind of motion is part of a row's name
+        world["robot"] = {key: value for key, value in robot.items() if key != "motion"}
+    return flat | {"config": world}
 
 
 def _has_own_weights(run: Run) -> bool:

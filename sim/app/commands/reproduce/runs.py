@@ -28,9 +28,9 @@ from sim.task.result import EpisodeResult
 
 GROUND_TRUTH = "gt"
 """The segmentation of agents that do not use one: they are run once, under this name."""
-FORM = "AGENT [--semantics SOURCE] [--explorer NAME] [--verification METHOD] [--config FIELD=VALUE ...]"
+FORM = "AGENT [--semantics SOURCE] [--explorer NAME] [--verification METHOD] [--motion KIND] [--config FIELD=VALUE ...]"
 """The text that `AgentSetup.named` takes."""
-NAMES = ("explorer", "verification", "noise", "seed", "replicates")
+NAMES = ("explorer", "verification", "noise", "seed", "replicates", "motion")
 """Options of `stubborn run` with one value that make another row of a table, in the order of its name."""
 
 
@@ -150,6 +150,7 @@ class _Recorded(msgspec.Struct):
     noise: str | None = None
     seed: int | None = None
     replicates: int | None = None
+    motion: str | None = None
     settings: dict[str, object] = msgspec.field(default_factory=dict)
 
 
@@ -215,7 +216,7 @@ def _words_by_option(name: str) -> dict[str, list[str]]:
             options[option].append(word)
             continue
         option = word.removeprefix("--")
-        if option not in ("semantics", "explorer", "verification", "config") or option in options:
+        if option not in ("semantics", "explorer", "verification", "motion", "config") or option in options:
             raise ConfigError(f"--agents: {name!r} has the option {word}; an agent is given as {FORM}.")
         options[option] = []
     for option, values in options.items():

@@ -115,6 +115,20 @@ def test_explorers_are_compared_by_the_median_time_to_first_sight() -> None:
     assert ratio.verdict == "lower"
 
 
+def test_motions_have_a_column_each_and_the_orders_of_agents_are_compared() -> None:
+    agents = ("stubborn", "stubborn-i", "oracle")
+    setups = TABLES["motions"].setups((*agents, *(f"{agent} --motion sliding" for agent in agents)))
+    made = TABLES["motions"].build(lines_of(setups, failed=(10, 20, 0, 5, 2, 0)), setups)
+    means, changes, orders, measures = made
+    assert [row for row, _ in means.rows] == list(agents)
+    assert means.header[1:3] == ("success %: contacts", "success %: sliding")
+    assert cell(changes, "stubborn-i", "success %: contacts - sliding").estimate.mean == pytest.approx(-18 / 40)
+    assert cell(measures, "contacts", "success %").estimate.mean == pytest.approx(10 / 40)
+    order = cell(orders, "contacts, sliding", "success %").estimate
+    assert order.mean == pytest.approx(1 / 3)  # two of the three pairs of agents have the same order
+    assert order.low <= order.mean <= order.high
+
+
 def test_tables_share_their_runs_and_the_oracle_runs_once() -> None:
     network = {setup for setup in TABLES["failures"].setups() if setup.semantics == "rednet"}
     assert set(TABLES["categories"].setups()) | network <= set(TABLES["overall"].setups())

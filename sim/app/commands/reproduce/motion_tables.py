@@ -1,0 +1,108 @@
+"""What contacts change: agents with physics, and with the kinematic motion of Habitat, in the same episodes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy.stats import kendalltau
+
+from sim.app.analysis.metrics import COLLISIONS, SPL, SUCCESS, difference_cell, houses_of, mean_cell
+from sim.app.analysis.tables import Cell, ResultTable
+from sim.app.commands.reproduce.runs import AgentSetup
+from sim.app.evaluation.intervals import Estimate
+from sim.task.result import EpisodeResult, Metric
+
+MOTIONS = ("contacts", "no-sliding", "sliding")
+AGENTS = (
+    "stubborn", "stubborn-i", "stubborn-plus", "stubborn --explorer informed-tour", "frontier", "frontier-avoid",
+    "semexp", "poni", "random", "oracle",
+)  # fmt: skip
+SETUPS = tuple(
+    agent if motion == MOTIONS[0] else f"{agent} --motion {motion}" for agent in AGENTS for motion in MOTIONS
+)
+_DRAWS = 2000
+
+Rows = Mapping[str, Mapping[str, Sequence[EpisodeResult]]]
+"""The results of each agent, by motion."""
+
+
+def motions(lines: Mapping[AgentSetup, Sequence[EpisodeResult]], setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns the tables: means, the change by contacts, the orders of agents, and what measures are worth."""
+    rows = _by_agent(lines, setups)
+    shown = [motion for motion in MOTIONS if all(motion in of for of in rows.values())]
+    columns = [(metric, motion) for metric in (SUCCESS, SPL, COLLISIONS) for motion in shown]
+    tables = [
+        ResultTable(
+            "motions",
+            f"Agents by kind of motion, {setups[0].semantics} segmentation",
+            ("agent", *(f"{metric.title}: {motion}" for metric, motion in columns)),
+            [(agent, [mean_cell(metric, of[motion]) for metric, motion in columns]) for agent, of in rows.items()],
+            ("`contacts` is physics; `no-sliding` and `sliding` are the kinematic motions of Habitat.",),
+        ),
+        _changes(rows, shown),
+        _orders(rows, shown),
+    ]
+    if {"stubborn", "stubborn-i"} <= set(rows):
+        cells = [
+            (motion, [difference_cell(m, rows["stubborn-i"][motion], rows["stubborn"][motion]) for m in (SUCCESS, SPL)])
+            for motion in shown
+        ]
+        title = "What the measures against collisions are worth: `stubborn` minus `stubborn-i`"
+        tables.append(ResultTable("motions_measures", title, ("motion", SUCCESS.title, SPL.title), cells))
+    return tables
+
+
+def _by_agent(lines: Mapping[AgentSetup, Sequence[EpisodeResult]], setups: Sequence[AgentSetup]) -> Rows:
+    rows: dict[str, dict[str, Sequence[EpisodeResult]]] = {}
+    for setup in setups:
+        agent, _, motion = setup.name.partition(" --motion ")
+        rows.setdefault(agent, {})[motion or MOTIONS[0]] = lines[setup]
+    return rows
+
+
+def _changes(rows: Rows, shown: Sequence[str]) -> ResultTable:
+    """Returns the differences of contacts to each other motion, paired by episode."""
+    columns = [(metric, motion) for metric in (SUCCESS, SPL) for motion in shown[1:]]
+    return ResultTable(
+        "motions_differences",
+        "Contacts minus kinematic motion, paired by episode",
+        ("agent", *(f"{metric.title}: contacts - {motion}" for metric, motion in columns)),
+        [
+            (agent, [difference_cell(metric, of[motion], of[MOTIONS[0]]) for metric, motion in columns])
+            for agent, of in rows.items()
+        ],
+    )
+
+
+def _orders(rows: Rows, shown: Sequence[str]) -> ResultTable:
+    """Returns Kendall's tau-b between the orders of the agents in two motions."""
+    pairs = [(a, b) for i, a in enumerate(shown) for b in shown[i + 1 :]]
+    return ResultTable(
+        "motions_orders",
+        "Rank correlation of the agents between two kinds of motion (Kendall's tau-b)",
+        ("motions", SUCCESS.title, SPL.title),
+        [(f"{a}, {b}", [_order(rows, metric, a, b) for metric in (SUCCESS, SPL)]) for a, b in pairs],
+        (f"Intervals are of {_DRAWS} draws of the houses with replacement.",),
+    )
+
+
+def _order(rows: Rows, metric: Metric, a: str, b: str) -> Cell:
+    """Returns the rank correlation of the agents' means with an interval over houses."""
+    some = next(iter(rows.values()))[a]
+    houses, index = np.unique(houses_of(some), return_inverse=True)
+    values = np.array([[[metric.value(r) or 0.0 for r in of[motion]] for of in rows.values()] for motion in (a, b)])
+    sums = np.stack([values[..., index == house].sum(axis=-1) for house in range(len(houses))], axis=-1)
+    counts, rng = np.bincount(index), np.random.default_rng(0)
+    tau = float(kendalltau(*values.mean(axis=-1)).statistic)
+    if math.isnan(tau):  # all agents are equal
+        return Cell(Estimate(None, None, None, len(some), len(houses)), digits=2)
+    drawn = [kendalltau(*_means(sums, counts, rng.integers(len(houses), size=len(houses)))) for _ in range(_DRAWS)]
+    low, high = np.nanquantile([float(one.statistic) for one in drawn], (0.025, 0.975))
+    return Cell(Estimate(tau, float(low), float(high), len(some), len(houses)), digits=2)
+
+
+def _means(sums: np.ndarray, counts: np.ndarray, drawn: np.ndarray) -> np.ndarray:
+    """Returns the means (2, agents) over some houses, which may repeat."""
+    return sums[..., drawn].sum(axis=-1) / counts[drawn].sum()
