@@ -95,14 +95,20 @@ def _order(rows: Rows, metric: Metric, a: str, b: str) -> Cell:
     values = np.array([[[metric.value(r) or 0.0 for r in of[motion]] for of in rows.values()] for motion in (a, b)])
     sums = np.stack([values[..., index == house].sum(axis=-1) for house in range(len(houses))], axis=-1)
     counts, rng = np.bincount(index), np.random.default_rng(0)
-    tau = float(kendalltau(*values.mean(axis=-1)).statistic)
+    tau = _tau(values.mean(axis=-1))
     if math.isnan(tau):  # all agents are equal
         return Cell(Estimate(None, None, None, len(some), len(houses)), digits=2)
-    drawn = [kendalltau(*_means(sums, counts, rng.integers(len(houses), size=len(houses)))) for _ in range(_DRAWS)]
-    low, high = np.nanquantile([float(one.statistic) for one in drawn], (0.025, 0.975))
+    drawn = [_tau(_means(sums, counts, rng.integers(len(houses), size=len(houses)))) for _ in range(_DRAWS)]
+    low, high = np.nanquantile(drawn, (0.025, 0.975))
     return Cell(Estimate(tau, float(low), float(high), len(some), len(houses)), digits=2)
 
 
 def _means(sums: np.ndarray, counts: np.ndarray, drawn: np.ndarray) -> np.ndarray:
     """Returns the means (2, agents) over some houses, which may repeat."""
     return sums[..., drawn].sum(axis=-1) / counts[drawn].sum()
+
+
+def _tau(means: np.ndarray) -> float:
+    """Returns the rank correlation of two rows of means (2, agents); NaN where all agents of a row are equal."""
+    tau, _ = kendalltau(*means)
+    return float(tau)

@@ -126,7 +126,7 @@ def test_motions_have_a_column_each_and_the_orders_of_agents_are_compared() -> N
     assert cell(measures, "contacts", "success %").estimate.mean == pytest.approx(10 / 40)
     order = cell(orders, "contacts, sliding", "success %").estimate
     assert order.mean == pytest.approx(1 / 3)  # two of the three pairs of agents have the same order
-    assert order.low <= order.mean <= order.high
+    assert order.ends[0] <= 1 / 3 <= order.ends[1]
 
 
 def test_tables_share_their_runs_and_the_oracle_runs_once() -> None:
