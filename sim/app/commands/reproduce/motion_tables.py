@@ -110,5 +110,4 @@ def _means(sums: np.ndarray, counts: np.ndarray, drawn: np.ndarray) -> np.ndarra
 
 def _tau(means: np.ndarray) -> float:
     """Returns the rank correlation of two rows of means (2, agents); NaN where all agents of a row are equal."""
-    tau, _ = kendalltau(*means)
-    return float(tau)
+    return float(np.asarray(kendalltau(*means))[0])
