@@ -416,7 +416,7 @@ function showRuns() {
   $("compare").disabled = marked.size !== 2;
 }
 
-const runWords = (run) => [run.name, run.agent, run.explorer, run.semantics, run.split].filter(Boolean);
+const runWords = (run) => [run.name, run.agent, run.explorer, run.segmentation, run.split].filter(Boolean);
 const day = (seconds) => new Date(seconds * 1000).toLocaleString([], {dateStyle: "medium", timeStyle: "short"});
 
 function runRow(run) {
@@ -443,7 +443,7 @@ function runRow(run) {
   }
   const errors = run.errors ? `, ${run.errors} error${run.errors === 1 ? "" : "s"}` : "";
   const agent = [run.agent ?? "?", run.explorer].filter(Boolean).join(", ");
-  return row([...head, [agent, ""], [run.semantics ?? "?", ""], [run.split ?? "?", ""], [`${run.found} of ${run.episodes}${errors}`, ""], [run.spl.toFixed(2), "number"]]);
+  return row([...head, [agent, ""], [run.segmentation, ""], [run.split ?? "?", ""], [`${run.found} of ${run.episodes}${errors}`, ""], [run.spl.toFixed(2), "number"]]);
 }
 
 // A table row of cells, each a text or an element with a class.
