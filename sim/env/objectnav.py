@@ -43,6 +43,7 @@ from sim.sensors.scan import ScanConfig, ScanSensor
 from sim.sensors.sensor import Sensor, SensorContext, declared_fields
 from sim.sensors.standard import STANDARD_SENSORS, resolve_sensors
 from sim.task.config import TaskConfig
+from sim.task.result import Limit
 
 _ASKED = frozenset(("goal", "picture"))
 """The fields of `SensorContext` that change with the goal of a chain."""
@@ -181,6 +182,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._motion: Motion | None = None
         self._pictures: list[NDArray[np.uint8] | None] = []  # those of the goals
         self._steps_per_action = 1
+        self._limit: Limit = "max_steps"
         self._closed = False
 
     @property
@@ -326,6 +328,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             profile=self._profile,
             task=self.task_config,
             steps_per_action=self._steps_per_action,
+            limit=self._limit,
             shared=self._shared,
         )
 
