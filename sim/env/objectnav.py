@@ -29,7 +29,7 @@ from sim.core.interface import (
 from sim.core.wishes import require_goal
 from sim.env.chosen_split import chosen_split
 from sim.env.scene import Scene, SceneCache
-from sim.episodes.drawing import sample_episode
+from sim.episodes.drawing import sample_drive, sample_episode
 from sim.episodes.episode import Episode, require_start
 from sim.episodes.splits import Split
 from sim.renderer.mounted import CameraConfig
@@ -278,6 +278,16 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         fixed = self.split.sidecar(house)
         goal, start = self.goal or fixed.goal, self.start or fixed.start
         return sample_episode(self._scenes.get(house).task, house, rng, goal=goal, start=start, episode_id=episode_id)
+
+    def draw_drive(self, rng: np.random.Generator, *, episode_id: str) -> Episode:
+        """Returns a new episode without a goal in the only house, for a person who drives.
+
+        Raises:
+            EpisodeError: the robot does not fit at the start.
+        """
+        (house,) = self.split.houses
+        start = self.start or self.split.sidecar(house).start
+        return sample_drive(self._scenes.get(house).task, house, rng, start=start, episode_id=episode_id)
 
     def notes_on(self, house: str) -> tuple[str, ...]:
         """Returns sentences about what was changed in a house when it was loaded, see `House.notes`."""
