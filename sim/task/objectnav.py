@@ -96,7 +96,8 @@ class Task:
     ) -> None:
         self.world = world
         self.config = config or TaskConfig()
-        self._steps_per_action, self._limit = steps_per_action, limit
+        self._steps_per_action = steps_per_action
+        self._limit: Limit = limit
         self.truth = GroundTruth(world, success=self.config.success, camera=camera)
         self._record: _Record | None = None
         self._ended: list[_Record] = []
