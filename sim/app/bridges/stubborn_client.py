@@ -73,11 +73,11 @@ DTYPES = ("|b1", "|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f2", 
 """Allowed types of array elements, in NumPy's notation."""
 LAST_WORDS_S = 5.0
 """Longest time in which the agent may end by itself after the simulator has ended."""
-STOP = 0
+STOP, MOVE_FORWARD, TURN_LEFT, TURN_RIGHT, LOOK_UP, LOOK_DOWN = range(6)
 HABITAT_ACTIONS = {
-    name: number
-    for number, name in enumerate(("stop", "move_forward", "turn_left", "turn_right", "look_up", "look_down"))
-}
+    "stop": STOP, "move_forward": MOVE_FORWARD, "turn_left": TURN_LEFT, "turn_right": TURN_RIGHT, "look_up": LOOK_UP,
+    "look_down": LOOK_DOWN,
+}  # fmt: skip
 """The actions by Habitat's names. The last two tilt the camera; `--config agent.looks=true` declares them."""
 ACTIONS = "0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT, 3 TURN_RIGHT"
 
