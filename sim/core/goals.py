@@ -15,9 +15,10 @@ from sim.core.geometry.pose import BodyPose
 from sim.core.interface import GOAL_CATEGORIES, CameraModel
 from sim.core.wishes import category_of_label, parse_wish, require_goal
 
-GoalKind = Literal["category", "words", "description", "instance", "picture"]
+GoalKind = Literal["category", "words", "description", "instance", "picture", "none"]
 """`words` name objects ("fridge"), a `description` has further conditions ("the red chair next to the bed"), an
-`instance` is the label of an object (`chair_03`), of which only agents with the ground truth can know."""
+`instance` is the label of an object (`chair_03`), of which only agents with the ground truth can know. `none` is the
+goal of a person who drives around in a house."""
 PICTURE_PX = 512
 """Default width and height of a picture of a goal, as in GOAT-Bench and InstanceImageNav."""
 MAX_TEXT = 300
@@ -78,7 +79,10 @@ class GoalSpec:
     """In a chain, the number of the earlier goal that asked for the same objects; None: it is not a second visit."""
 
     def __post_init__(self) -> None:
-        require_goal(self.text)
+        if self.kind != "none":
+            require_goal(self.text)
+        elif self.text:
+            raise EpisodeError(f"The goal '{self.text}' has the kind 'none', which has no text.")
         if (self.camera is None) == (self.kind == "picture"):
             raise EpisodeError(f"The goal '{self.text}': a picture, and only a picture, has a camera.")
         if self.kind in ("instance", "picture") and category_of_label(self.text) is None:
@@ -108,6 +112,10 @@ class GoalSpec:
     def __str__(self) -> str:
         """Returns the text by which the task finds the objects that satisfy the goal."""
         return self.text
+
+
+NO_GOAL = GoalSpec("", "none")
+"""No object satisfies it, and no STOP succeeds."""
 
 
 def require_chain(goals: Sequence[GoalSpec]) -> None:

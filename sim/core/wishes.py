@@ -225,10 +225,12 @@ def categories_of(goal: str) -> tuple[str, ...]:
     """Returns the mpcat40 categories of the objects that a goal may mean.
 
     Args:
-        goal: a category, the label of an instance (`chair_03`), or words.
+        goal: a category, the label of an instance (`chair_03`), or words; "": no goal.
 
     Raises:
         WishError: a word is not known.
     """
+    if not goal:
+        return ()
     category = category_of_label(goal) or goal
     return (category,) if category in MPCAT40_ID else parse_wish(goal).categories

@@ -29,7 +29,7 @@ from sim.core.interface import (
 from sim.core.wishes import require_goal
 from sim.env.chosen_split import chosen_split
 from sim.env.scene import Scene, SceneCache
-from sim.episodes.drawing import sample_episode
+from sim.episodes.drawing import sample_drive, sample_episode
 from sim.episodes.episode import Episode, require_start
 from sim.episodes.splits import Split
 from sim.renderer.mounted import CameraConfig
@@ -43,6 +43,7 @@ from sim.sensors.scan import ScanConfig, ScanSensor
 from sim.sensors.sensor import Sensor, SensorContext, declared_fields
 from sim.sensors.standard import STANDARD_SENSORS, resolve_sensors
 from sim.task.config import TaskConfig
+from sim.task.result import Limit
 
 _ASKED = frozenset(("goal", "picture"))
 """The fields of `SensorContext` that change with the goal of a chain."""
@@ -181,6 +182,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._motion: Motion | None = None
         self._pictures: list[NDArray[np.uint8] | None] = []  # those of the goals
         self._steps_per_action = 1
+        self._limit: Limit = "max_steps"
         self._closed = False
 
     @property
@@ -277,6 +279,16 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         goal, start = self.goal or fixed.goal, self.start or fixed.start
         return sample_episode(self._scenes.get(house).task, house, rng, goal=goal, start=start, episode_id=episode_id)
 
+    def draw_drive(self, rng: np.random.Generator, *, episode_id: str) -> Episode:
+        """Returns a new episode without a goal in the only house, for a person who drives.
+
+        Raises:
+            EpisodeError: the robot does not fit at the start.
+        """
+        (house,) = self.split.houses
+        start = self.start or self.split.sidecar(house).start
+        return sample_drive(self._scenes.get(house).task, house, rng, start=start, episode_id=episode_id)
+
     def notes_on(self, house: str) -> tuple[str, ...]:
         """Returns sentences about what was changed in a house when it was loaded, see `House.notes`."""
         return self._scenes.get(house).notes
@@ -326,6 +338,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             profile=self._profile,
             task=self.task_config,
             steps_per_action=self._steps_per_action,
+            limit=self._limit,
             shared=self._shared,
         )
 

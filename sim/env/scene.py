@@ -21,6 +21,7 @@ from sim.renderer.profiles import RenderProfile
 from sim.robot.config import RobotConfig
 from sim.task.config import TaskConfig
 from sim.task.objectnav import Task
+from sim.task.result import Limit
 from sim.world.world import World
 
 
@@ -36,6 +37,7 @@ class Scene:
         profile: str | RenderProfile,
         task: TaskConfig | None = None,
         steps_per_action: int = 1,
+        limit: Limit = "max_steps",
         shared: SharedContext | None = None,
     ) -> None:
         """`shared` is the OpenGL context of several scenes; each of them has one of its own by default."""
@@ -48,7 +50,7 @@ class Scene:
         self.mounted = MountedCameras(self.world.model, self.world.labels, profile=profile, shared=shared)
         """Renders further cameras."""
         self.gloss = geom_gloss(self.world.model, self.world.labels)  # (ngeom,)
-        self.task = Task(self.world, config, camera=camera, steps_per_action=steps_per_action)
+        self.task = Task(self.world, config, camera=camera, steps_per_action=steps_per_action, limit=limit)
         self._profile, self._shared = profile, shared
         self._pictures: dict[PictureCamera, Mapping[str, NDArray]] = {}
 

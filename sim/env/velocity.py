@@ -34,7 +34,7 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
     a contact begins to block; `collisions` counts these. The window of 100 actions of `trapped` is 120 s.
 
     ## End
-    `terminated` at STOP and at a fall, `truncated` after `time_limit_s` (`end_reason` is `max_steps`).
+    `terminated` at STOP and at a fall, `truncated` after `time_limit_s` (`end_reason` is `time_limit`).
 
     Args:
         period_s: time for which a command is held, a whole multiple of the tick of the drive (20 ms).
@@ -56,7 +56,7 @@ class ObjectNavVelocityEnv(ObjectNavEnv):
             raise ConfigError(f"time_limit_s must be finite and at least period_s = {period_s} s, got {time_limit_s}.")
         self.period_s, self.time_limit_s = period_s, time_limit_s
         super().__init__(**options, max_steps=math.ceil(time_limit_s / period_s - 1e-6))
-        self._steps_per_action = max(1, round(ACTION_S / period_s))
+        self._steps_per_action, self._limit = max(1, round(ACTION_S / period_s)), "time_limit"
         drive = self._robot.drive
         ticks = period_s / drive.tick_s
         if abs(ticks - round(ticks)) > 1e-6:

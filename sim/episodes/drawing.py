@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from sim.core.errors import EpisodeError
 from sim.core.geometry.pose import Pose
-from sim.core.interface import GOAL_CATEGORIES, wrap_angle
+from sim.core.goals import NO_GOAL
+from sim.core.interface import wrap_angle
 from sim.episodes.episode import Episode
 from sim.task.objectnav import Task
 from sim.world.world import World
@@ -39,12 +40,7 @@ def sample_episode(
     world = task.world
     if start is not None:
         world.reset(start)
-    goals = (goal,) if goal is not None else tuple(rng.permutation(np.array(task.truth.goals())).tolist())
-    if not goals:
-        there_is = ", ".join(world.labels.categories()) or "no labels"
-        raise EpisodeError(
-            f"House '{world.house.name}' has none of the goals: {', '.join(GOAL_CATEGORIES)}. It has: {there_is}."
-        )
+    goals = (goal,) if goal is not None else tuple(rng.permutation(np.array(task.truth.require_goals())).tolist())
     refusals = []
     for candidate in goals:
         try:
@@ -57,6 +53,20 @@ def sample_episode(
             return Episode(episode_id, house, candidate, begin, distance_m)
         refusals.append(task.unreachable_error(candidate, begin))
     raise refusals[0]
+
+
+def sample_drive(
+    task: Task, house: str, rng: np.random.Generator, *, start: Pose | None = None, episode_id: str = "drawn"
+) -> Episode:
+    """Returns an episode without a goal, in which a person drives around; a start that is not given is random.
+
+    Raises:
+        EpisodeError: the robot does not fit at the start, or there is no place for it.
+    """
+    if start is not None:
+        task.world.reset(start)
+    begin = start or draw_start(task, NO_GOAL.text, rng, cells=task.truth.space().largest_part())
+    return Episode(episode_id, house, NO_GOAL.text, begin, goals=(NO_GOAL,))
 
 
 def draw_start(
@@ -98,6 +108,8 @@ def draw_start(
         )
         if space.is_free(start.x_m, start.y_m) and _fits(task.world, start):
             return start
+    if goal == NO_GOAL.text:
+        raise EpisodeError(f"House '{task.world.house.name}' has no place to start from.")
     if not task.truth.region(goal, floor_z_m).footprints:
         raise EpisodeError(
             f"House '{task.world.house.name}' has '{goal}' on another storey only; the search starts on the one at z = "

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from sim.core.errors import EpisodeError
 from sim.core.geometry.pose import Pose
-from sim.core.goals import GoalSpec, require_chain
+from sim.core.goals import NO_GOAL, GoalSpec, require_chain
 from sim.core.wishes import require_goal
 
 FARTHEST_M = 10_000.0
@@ -29,7 +29,8 @@ class Episode:
     """The goals of a chain in their order, or a single goal that is more than its text; (): `goal` is all."""
 
     def __post_init__(self) -> None:
-        require_goal(self.goal)
+        if self.goals != (NO_GOAL,):
+            require_goal(self.goal)
         require_start(self.start)
         if self.goals and self.goals[0].text != self.goal:
             raise EpisodeError(f"The goal is '{self.goal}', and the first one of `goals` is '{self.goals[0].text}'.")

@@ -57,6 +57,7 @@ MEANING: Mapping[str, str] = {
 ENDS: Mapping[str, str] = {
     "stop": "called STOP",
     "max_steps": "the steps ran out",
+    "time_limit": "the time ran out",
     "fallen": "the robot drove over an edge",
     "error": "the episode ended with an error",
 }

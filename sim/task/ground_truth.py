@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from sim.core.errors import EpisodeError
 from sim.core.geometry.grid import GridFrame
-from sim.core.goals import GoalSpec
+from sim.core.goals import NO_GOAL, GoalSpec
 from sim.core.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
+from sim.core.invocation import command
 from sim.core.store import kept, key_of
 from sim.core.wishes import parse_wish, require_goal
 from sim.gl import mujoco
@@ -90,7 +91,9 @@ class GroundTruth:
         goal = str(goal)
         if goal not in self._instances:
             labels = self.world.labels
-            if goal in GOAL_CATEGORIES:
+            if goal == NO_GOAL.text:
+                self._instances[goal] = ()
+            elif goal in GOAL_CATEGORIES:
                 self._instances[goal] = labels.of_category(goal)
             else:
                 require_goal(goal)
@@ -173,6 +176,19 @@ class GroundTruth:
             for goal in GOAL_CATEGORIES
             if any(rendered[list(instance.geom_ids)].any() for instance in of_category(goal))
         )
+
+    def require_goals(self) -> tuple[str, ...]:
+        """Returns `goals`; raises EpisodeError if there are none, with the categories that the house has."""
+        goals = self.goals()
+        if not goals:
+            raise EpisodeError(
+                f"House '{self.world.house.name}' has no object of a goal category ({', '.join(GOAL_CATEGORIES)}). It "
+                f"has: {self._what_it_has()}. A person can drive in it: {command('web', '--house', 'FILE')}"
+            )
+        return goals
+
+    def _what_it_has(self) -> str:
+        return ", ".join(self.goals() or self.world.labels.categories()) or "no labels"
 
     def succeeds_now(self, goal: str, x_m: float, y_m: float, floor_z_m: float) -> bool:
         """Returns whether a STOP at this place succeeds, with objects where they are now in the world."""
@@ -268,10 +284,9 @@ class GroundTruth:
 
     def _existing(self, region: GoalRegion) -> GoalRegion:
         """Returns the region; raises EpisodeError if no storey of the house has an instance."""
-        if not region.exists:
+        if not region.exists and region.goal != NO_GOAL.text:
             raise EpisodeError(
-                f"House '{self.world.house.name}' has no '{region.goal}'. "
-                f"It has: {', '.join(self.goals()) or 'no goal'}."
+                f"House '{self.world.house.name}' has no '{region.goal}'. It has: {self._what_it_has()}."
             )
         return region
 

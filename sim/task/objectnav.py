@@ -20,7 +20,7 @@ from sim.task.chain import chain_metrics, goal_result, not_begun
 from sim.task.config import TaskConfig
 from sim.task.failures import TARGET_ON_GOAL_M, Cause, cause_of_failure
 from sim.task.ground_truth import GroundTruth
-from sim.task.result import NO_STOP_TARGET, EndReason, EpisodeMetrics, GoalResult, StopTarget
+from sim.task.result import NO_STOP_TARGET, EndReason, EpisodeMetrics, GoalResult, Limit, StopTarget
 from sim.task.seen_floor import SeenFloor
 from sim.task.trajectory import Recorder, Trajectory, by_action, joined
 from sim.world.world import World
@@ -82,6 +82,7 @@ class Task:
         camera: the robot's camera; see `GroundTruth`.
         steps_per_action: number of steps that take as long as a discrete action. `trapped` and the causes of failures
             look at windows of actions.
+        limit: the reason that an episode ends after `max_steps` steps; of equal steps, the number is a time.
     """
 
     def __init__(
@@ -91,10 +92,12 @@ class Task:
         *,
         camera: CameraModel | None = None,
         steps_per_action: int = 1,
+        limit: Limit = "max_steps",
     ) -> None:
         self.world = world
         self.config = config or TaskConfig()
         self._steps_per_action = steps_per_action
+        self._limit: Limit = limit
         self.truth = GroundTruth(world, success=self.config.success, camera=camera)
         self._record: _Record | None = None
         self._ended: list[_Record] = []
@@ -193,7 +196,7 @@ class Task:
         elif action == Action.STOP:
             self._end("stop")
         elif record.steps >= self.config.max_steps:
-            self._end("max_steps")
+            self._end(self._limit)
         if self.is_chain and record.end_reason is not None:
             self._go_on(record, images)
 
@@ -263,8 +266,8 @@ class Task:
 
     @property
     def truncated(self) -> bool:
-        """True: the episode reached `max_steps`."""
-        return self._running.end_reason == "max_steps"
+        """True: the episode reached its limit of steps or time."""
+        return self._running.end_reason == self._limit
 
     @property
     def done(self) -> bool:

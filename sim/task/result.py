@@ -25,7 +25,9 @@ from sim.core.interface import MAX_STEPS
 from sim.core.reading import Count, Metres, Name, Number, Seed
 from sim.robot.config import MotionKind
 
-EndReason = Literal["stop", "max_steps", "fallen", "error"]
+Limit = Literal["max_steps", "time_limit"]
+"""The limit that ends an episode: a number of actions, or a time in which the robot is driven by velocities."""
+EndReason = Literal["stop", "max_steps", "time_limit", "fallen", "error"]
 Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 GOAT_DISTANCE_M = 0.25
 READ_BY = "0.2.0"

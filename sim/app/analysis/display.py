@@ -153,7 +153,8 @@ def _success_cell(result: EpisodeResult) -> str:
 
 
 def _summary_table(summary: Mapping[str, Any]) -> Table:
-    caption = f"Intervals are over {summary['ci95_over']}. {few_episodes(summary['episodes'])}".rstrip()
+    segmentation = f"Segmentation: {summary['segmentation']}. " if "segmentation" in summary else ""
+    caption = f"{segmentation}Intervals are over {summary['ci95_over']}. {few_episodes(summary['episodes'])}".rstrip()
     if spread := summary.get("replicates"):
         success, spl = (spread[metric]["std"] or 0.0 for metric in ("success", "spl"))
         caption += f" Standard deviation over replicates: success {success:.3f}, SPL {spl:.3f}."

@@ -52,8 +52,7 @@ EMPTY_PACKAGES = ("detectron2",)
 """Packages that do not install from PyPI and that agents import without using them: their modules are empty here."""
 OF_THE_RUN = ("config", "task_config")
 """Names of required arguments of an agent's constructor that get the configuration of the run."""
-ACTION_IDS = dict(HABITAT_ACTIONS, look_up=4, look_down=5)
-"""Habitat's numbers of actions; the camera of this project does not tilt, so that the last two are refused."""
+NOT_DECLARED = "Removed from the configuration: %s (--config agent.looks=true declares LOOK_UP and LOOK_DOWN)."
 CALL = re.compile(r"([A-Za-z_][\w.]*):([A-Za-z_]\w*)\(\)")
 """A value `module:NAME()` of an argument: the result of this function."""
 
@@ -152,15 +151,16 @@ def parsed(text: str) -> object:
     return text
 
 
-def remove_other_actions(config: Config) -> "set[str]":
-    """Removes actions that the robot does not have, such as LOOK_UP, from a configuration; returns their names."""
+def remove_other_actions(config: Config, known: "list[str]") -> "set[str]":
+    """Removes the actions whose names are not known from a configuration; returns their names."""
+    names = {name.lower() for name in known}
     new = config.get("habitat")
     removed = set()
     for tree, name in ((config.get("TASK"), "POSSIBLE_ACTIONS"), (new and new.get("task"), "actions")):
         listed = tree.get(name) if isinstance(tree, Config) else None
         if not isinstance(tree, Config) or not isinstance(listed, (list, Config)):
             continue
-        others = {str(action) for action in listed if str(action).lower() not in HABITAT_ACTIONS}
+        others = {str(action) for action in listed if str(action).lower() not in names}
         if isinstance(listed, Config):
             tree[name] = Config({key: value for key, value in listed.items() if key not in others})
         else:
@@ -305,21 +305,21 @@ class HabitatActions:
     """Habitat's table of action numbers: attribute, item and iteration, in lower or upper case."""
 
     def __getattr__(self, name: str) -> int:
-        if name.lower() not in ACTION_IDS:
-            raise AttributeError("HabitatSimActions has no '{}'. It has: {}.".format(name, ", ".join(ACTION_IDS)))
-        return ACTION_IDS[name.lower()]
+        if name.lower() not in HABITAT_ACTIONS:
+            raise AttributeError("HabitatSimActions has no '{}'. It has: {}.".format(name, ", ".join(HABITAT_ACTIONS)))
+        return HABITAT_ACTIONS[name.lower()]
 
     def __getitem__(self, name: str) -> int:
-        return ACTION_IDS[name.lower()]
+        return HABITAT_ACTIONS[name.lower()]
 
     def __contains__(self, name: object) -> bool:
-        return isinstance(name, str) and name.lower() in ACTION_IDS
+        return isinstance(name, str) and name.lower() in HABITAT_ACTIONS
 
     def __iter__(self):
-        return iter(ACTION_IDS)
+        return iter(HABITAT_ACTIONS)
 
     def __len__(self) -> int:
-        return len(ACTION_IDS)
+        return len(HABITAT_ACTIONS)
 
     def has_action(self, name: str) -> bool:
         """Returns whether there is an action of this name."""
@@ -335,6 +335,7 @@ def _get_config(config_path=None, overrides=None, configs_dir=None, *, config_pa
     config_path = config_paths if config_path is None else config_path
     overrides = opts if overrides is None else overrides
     config = _config_of_the_run()
+    known = list(config.TASK.POSSIBLE_ACTIONS)
     paths = config_path.split(",") if isinstance(config_path, str) else [str(path) for path in config_path or ()]
     for path in paths:
         if not os.path.isfile(path):
@@ -342,9 +343,9 @@ def _get_config(config_path=None, overrides=None, configs_dir=None, *, config_pa
             continue
         add(config, _read_yaml(path))
     override(config, overrides)
-    removed = remove_other_actions(config)
+    removed = remove_other_actions(config, known)
     if removed:
-        LOG.warning("This robot has no action %s: removed from the configuration.", ", ".join(sorted(removed)))
+        LOG.warning(NOT_DECLARED, ", ".join(sorted(removed)))
     return config
 
 

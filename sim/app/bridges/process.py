@@ -60,7 +60,7 @@ class _Done(msgspec.Struct, tag_field="type", tag="done"):
 
 
 class _Chosen(msgspec.Struct, tag_field="type", tag="action"):
-    action: Annotated[int, Meta(ge=0, le=3)]
+    action: Annotated[int, Meta(ge=0, le=5)]
     stop_confidence: Annotated[float, Meta(ge=0.0, le=1.0)] | None = None
     stop_target_xy_m: tuple[_Metres, _Metres] | None = None
 
@@ -133,12 +133,15 @@ class ProcessAgent:
             "robot": as_json(robot),
             "success": as_json(success),
             "max_steps": max_steps,
+            "looks": config.looks,
             "goals": list(GOAL_CATEGORIES),
             "labels": list(MPCAT40),
         }
         self._conversion = _conversion(camera, config)
         if self._conversion is not None:
-            of_the_run = make_config(camera=camera, robot=robot, success=success, max_steps=max_steps)
+            of_the_run = make_config(
+                camera=camera, robot=robot, success=success, max_steps=max_steps, looks=config.looks
+            )
             goals = list(self._conversion.goals)
             self._setup |= {"interface": config.interface, "goals": goals, "config": of_the_run}
         self._process: AgentProcess | None = None

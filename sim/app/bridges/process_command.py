@@ -27,6 +27,9 @@ Boundary = Literal["none", "auto", "namespace"]
 class BridgeConfig:
     """Base class of the options of agents whose code cannot declare sensors: `--config sensors=[...]` declares them."""
 
+    looks: bool = False
+    """True: the agent may also return LOOK_UP and LOOK_DOWN, Habitat's actions 4 and 5."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class ProcessConfig(BridgeConfig):

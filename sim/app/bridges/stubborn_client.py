@@ -14,8 +14,9 @@ Code that is written for Habitat runs unchanged, with `--config agent.interface=
 If Habitat is not installed, this file provides the names of Habitat that agents import.
 
 An agent has two methods. `reset(goal, seed)` starts an episode; `goal` is a category such as "chair".
-`act(observation)` returns the next action: 0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT or 3 TURN_RIGHT. The observation is a
-dict of arrays: `rgb` uint8 (h, w, 3), `depth` float32 (h, w) in metres, `gps` float32 (2,), `compass` float32 (1,) and
+`act(observation)` returns the next action: 0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT or 3 TURN_RIGHT; with `--config
+agent.looks=true` also 4 LOOK_UP or 5 LOOK_DOWN, which tilt the camera by 30 degrees. The observation is a dict of
+arrays: `rgb` uint8 (h, w, 3), `depth` float32 (h, w) in metres, `gps` float32 (2,), `compass` float32 (1,) and
 `objectgoal` int64 (1,).
 
 An agent with Habitat's interface may also be served: `reset()` and `act(observations)`, whose observations and actions
@@ -26,8 +27,9 @@ the agent's map for videos, uint8 RGB (h, w, 3), and `state()` returns a few wor
 
 `serve` also takes a class or a function that gets the description of the task and returns the agent:
 `make(setup)` with `setup.camera.width_px`, `height_px`, `hfov_rad`, `height_m`, `min_depth_m`, `max_depth_m`,
-`setup.robot.radius_m`, `height_m`, `setup.success.distance_m`, `setup.max_steps`, `setup.goals`, the categories in
-the order of `objectgoal`, and `setup.labels`, those in the order of the numbers in `semantic` images.
+`setup.robot.radius_m`, `height_m`, `setup.success.distance_m`, `setup.max_steps`, `setup.looks`, whether the agent may
+return LOOK_UP and LOOK_DOWN, `setup.goals`, the categories in the order of `objectgoal`, and `setup.labels`, those in
+the order of the numbers in `semantic` images.
 
 Protocol: messages pass through standard input and output, so that any program which forwards these (ssh, docker run -i)
 can connect the two processes. What the agent prints goes to standard error. A message consists of `PREFIX` (mark,
@@ -71,8 +73,12 @@ DTYPES = ("|b1", "|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f2", 
 """Allowed types of array elements, in NumPy's notation."""
 LAST_WORDS_S = 5.0
 """Longest time in which the agent may end by itself after the simulator has ended."""
-STOP, MOVE_FORWARD, TURN_LEFT, TURN_RIGHT = range(4)
-HABITAT_ACTIONS = {"stop": STOP, "move_forward": MOVE_FORWARD, "turn_left": TURN_LEFT, "turn_right": TURN_RIGHT}
+STOP, MOVE_FORWARD, TURN_LEFT, TURN_RIGHT, LOOK_UP, LOOK_DOWN = range(6)
+HABITAT_ACTIONS = {
+    "stop": STOP, "move_forward": MOVE_FORWARD, "turn_left": TURN_LEFT, "turn_right": TURN_RIGHT, "look_up": LOOK_UP,
+    "look_down": LOOK_DOWN,
+}  # fmt: skip
+"""The actions by Habitat's names. The last two tilt the camera; `--config agent.looks=true` declares them."""
 ACTIONS = "0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT, 3 TURN_RIGHT"
 
 

@@ -273,7 +273,9 @@ def _task(args: Args, house: str) -> Task:
 
 
 def _find_asks(args: Args, house: str) -> HouseAsks:
-    return find_house_asks(_task(args, house), recipe_of(args), _sidecar(args, house))
+    task = _task(args, house)
+    task.truth.require_goals()
+    return find_house_asks(task, recipe_of(args), _sidecar(args, house))
 
 
 def _sidecar(args: Args, house: str) -> Sidecar:

@@ -22,7 +22,7 @@ from sim.app.analysis import display
 from sim.app.analysis.comparison import Run, read_run
 from sim.app.evaluation.config_fields import field_text, run_differences
 from sim.app.evaluation.results import RunDirectory, read_record
-from sim.app.evaluation.summary import summarise
+from sim.app.evaluation.summary import summary_of
 from sim.core.files import write_atomically
 from sim.core.interface import ConfigError
 from sim.core.reading import read_bytes
@@ -65,7 +65,7 @@ def main(args: Args) -> int:
                 raise _conflict(out, result)
         for code in merged.config["codes"]:
             merged.record_code(code)  # the folder may hold lines of an earlier merge
-        summary = {"split": runs[0].recorded("split_identity")} | summarise(merged.lines)
+        summary = summary_of(runs[0].config, merged.lines)
         merged.write_summary(summary)
         display.print_results(console, merged.lines, summary)
     finally:

@@ -17,6 +17,7 @@ import tyro
 
 from sim.app import cli
 from sim.app.analysis.comparison import read_run
+from sim.app.evaluation.results import segmentation_of
 from sim.app.submissions.checks import PLACES, isolation_of, truth_of
 from sim.app.submissions.contents import SUFFIX, write_submission
 from sim.app.submissions.leaderboard import MIN_EPISODES
@@ -54,10 +55,9 @@ def main(args: Args) -> int:
     inputs, count = submission.manifest.inputs, len(submission.episodes)
     isolated = PLACES[isolation_of(inputs)]
     print(f"{out}: {count} episodes of {submission.manifest.split.name}, {size / 1000:.0f} KB.")
-    segmentation = submission.config_tree(where=str(out)).get("segmentation") or {}
-    semantics = inputs.semantics if segmentation.get("name") else "not used"
+    segmentation = segmentation_of(submission.config_tree(where=str(out)))
     print(
-        f"Declared: agent '{inputs.agent}' {isolated}; semantics {semantics}; ground truth {truth_of(inputs)}; "
+        f"Declared: agent '{inputs.agent}' {isolated}; segmentation {segmentation}; ground truth {truth_of(inputs)}; "
         f"noise {inputs.noise}."
     )
     if count < MIN_EPISODES:

@@ -151,7 +151,7 @@ def _summary(checked: Checked, choices: Choices, outcome: list[Verdict], seconds
     yield _known_paths(checked, outcome)
     yield (
         f"Declared by the authors; a replay cannot prove it: agent '{inputs.agent}' "
-        f"{PLACES[isolation_of(inputs)]}; ground truth {truth_of(inputs)}; "
+        f"{PLACES[isolation_of(inputs)]}; segmentation {checked.segmentation}; ground truth {truth_of(inputs)}; "
         f"sensors {', '.join(inputs.sensors) or 'none'}"
         f"{'; the seed, which has no effect on physics without noise' if inputs.noise == 'none' else ''}."
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import msgspec
 
@@ -13,9 +13,7 @@ from sim.app.composition.setup import RunConfig, Setup, resolve
 from sim.app.evaluation.last_view import write_last_view
 from sim.app.evaluation.rollout import record_episode
 from sim.app.options import RunOptions
-from sim.core.errors import ConfigError
-from sim.core.interface import AgentSpec
-from sim.core.invocation import command
+from sim.core.interface import Action, AgentSpec, Observation
 from sim.core.option_types import meanings
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
@@ -26,12 +24,23 @@ HUMAN_NAME = "human"
 """The agent's name in the results of a person."""
 
 
-def _make_human(**_: object) -> NoReturn:
-    raise ConfigError(f"A person drives in the browser: `{command('web')}`.")
+class Person:
+    """The `Agent` of an episode that has none: a person chooses every action."""
+
+    def reset(self, goal: str, seed: int) -> None:
+        """Does nothing."""
+
+    def act(self, observation: Observation) -> Action:
+        """Returns STOP, for a person who hands the episode over."""
+        return Action.STOP
+
+
+def _make_person(**_: object) -> Person:
+    return Person()
 
 
 HUMAN = AgentSpec(
-    make=_make_human,
+    make=_make_person,
     description="a person at the page of stubborn web",
     sensors=("rgb", "depth", "semantic"),
     uses_segmentation=False,

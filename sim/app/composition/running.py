@@ -18,8 +18,8 @@ from sim.app.composition.seed_key import seed_key_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.executors import make_executor
 from sim.app.evaluation.processes import isolation_of
-from sim.app.evaluation.results import RunDirectory
-from sim.app.evaluation.summary import summarise
+from sim.app.evaluation.results import RunDirectory, segmentation_of
+from sim.app.evaluation.summary import summary_of
 from sim.app.evaluation.workers import RunnerSpec
 from sim.app.options import RunOptions
 from sim.core.geometry.compiling import choose_cache, must_compile
@@ -72,11 +72,10 @@ def run_missing(
         if options.retry_errors:
             console.print(f"{len(again)} episodes that ended with an error are run again.")
         todo = [episode for episode in episodes if episode.episode_id not in done]
-        named = setup.segmentation_name
-        segmentation = f" with segmentation by {named}" if named else ""
         console.print(
-            f"{options.agent}{segmentation}, {display.counted(len(episodes), 'episode')} of {split['name']} "
-            f"(version {split['version']}), rendered by {versions['gl_renderer']}; results in {options.out}"
+            f"{options.agent}, {display.counted(len(episodes), 'episode')} of {split['name']} "
+            f"(version {split['version']}), rendered by {versions['gl_renderer']}; "
+            f"segmentation: {segmentation_of(record)}; results in {options.out}"
         )
         for note in notes_on(options.agent, setup.config.agent):
             console.print(note, highlight=False, soft_wrap=True)
@@ -101,7 +100,7 @@ def run_missing(
 
         for _ in progress.over(written()) if todo else ():
             pass
-        summary = {"split": split} | summarise(run.lines)
+        summary = summary_of(record, run.lines)
         run.write_summary(summary)
         return run.lines, summary
     finally:

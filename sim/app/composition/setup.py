@@ -148,11 +148,13 @@ class Setup:
 
     @property
     def spec(self) -> AgentSpec:
-        """The declaration of the agent; `--config sensors=[...]` declares the sensors of code that cannot."""
-        if not isinstance(self.agent.config, BridgeConfig):
+        """The declaration of the agent; `--config` declares the sensors and the actions of code that cannot."""
+        config, sensors = self.config.agent, self.config.sensors
+        if not isinstance(config, BridgeConfig):
             return self.agent
-        sensors = self.config.sensors
-        return replace(self.agent, sensors=sensors, uses_ground_truth=any(map(reads_truth, sensors)))
+        return replace(
+            self.agent, sensors=sensors, looks=config.looks, uses_ground_truth=any(map(reads_truth, sensors))
+        )
 
     @property
     def sensors(self) -> tuple[str | Sensor, ...]:

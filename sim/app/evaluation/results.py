@@ -365,6 +365,27 @@ def read_record(file: Path) -> RunRecord:
     return cast(RunRecord, content)
 
 
+def segmentation_of(record: RunRecord) -> str:
+    """Returns the segmentation with which a run's agent acted, and its weights, as it is shown to users.
+
+    "none" is the segmentation of an agent that the simulator gave none, and that names none of its own.
+    """
+    declared = record.get("segmentation")
+    if declared is None:  # a run of an older version
+        return record.get("semantics") or "unknown"
+    name, weights = declared.get("name"), (record.get("files_sha256") or {}).get("weights")
+    if not name:
+        return "none"
+    if weights is None or name != record.get("semantics"):  # no network, or a segmentation of the agent's own
+        return str(name)
+    return f"{name}, {own_weights(record) or 'shipped weights'} ({weights[:8]})"
+
+
+def own_weights(record: RunRecord) -> str | None:
+    """Returns the file of the weights that the user named for the network; None: those that ship."""
+    return record.get("weights") or (record.get("settings") or {}).get("detector.weights")
+
+
 def read_results(file: Path) -> Lines[EpisodeResult]:
     """Returns the lines of a run's `results.jsonl`; see `read_result_lines`."""
     return read_result_lines(file, EpisodeResult)

@@ -214,7 +214,9 @@ def next_action(agent: Agent, observation: Observation, where: str, actions: Seq
     action = as_action(chosen)
     if action is not None and action in actions:
         return action
-    hint = "" if action is None else " `AgentSpec(looks=True)` allows to tilt the camera."
+    hint = (
+        "" if action is None else " `AgentSpec(looks=True)`, or --config agent.looks=true, allows to tilt the camera."
+    )
     names = ", ".join(f"{action.value} {action.name}" for action in actions)
     raise AgentError(f"{where}: act() returned {reprlib.repr(chosen)}; an action is one of {names}.{hint}")
 

@@ -8,11 +8,20 @@ from collections.abc import Sequence
 from typing import Any
 
 from sim.app.evaluation.intervals import MIN_EPISODES, estimate, replicate_spread
+from sim.app.evaluation.results import RunRecord, segmentation_of
 from sim.episodes.replicates import episode_of, replicate_number
 from sim.task.result import METRICS, EpisodeResult, metrics_for
 
 OVER_HOUSES, OVER_ONE_HOUSE = "houses", "the episodes of the one house"
 """The units over which the intervals of a summary are taken."""
+
+
+def summary_of(record: RunRecord, results: Sequence[EpisodeResult]) -> dict[str, Any]:
+    """Returns the content of `summary.json`: split and segmentation of the run, and `summarise` of its results."""
+    return {
+        "split": record.get("split_identity"),
+        "segmentation": segmentation_of(record),
+    } | summarise(results)
 
 
 def summarise(results: Sequence[EpisodeResult]) -> dict[str, Any]:

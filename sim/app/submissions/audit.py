@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from sim.app.evaluation.parallel import ordered_map
+from sim.app.evaluation.results import segmentation_of
 from sim.app.submissions.checks import coverage, require_consistent, truth_of
 from sim.app.submissions.contents import Entry, Submission, read_submission
 from sim.app.submissions.replay import Job, replay_house
@@ -58,6 +59,8 @@ class Checked:
     """Differences of its setting from the standard."""
     origin: Origin
     """Who drew its split."""
+    segmentation: str
+    """The segmentation and its weights, as the authors declare them."""
     job: Job
     house_of: Mapping[str, str] = field(repr=False)
 
@@ -104,6 +107,7 @@ def check(file: Path, choices: Choices, truth_of_agents: Mapping[str, bool]) -> 
         covers=covers,
         changes=changes,
         origin=origin_of(split, choices.split),
+        segmentation=segmentation_of(config),
         job=Job(split=chosen, setting=setting, seed=submission.manifest.seed),
         house_of={entry.result.episode_id: entry.result.house for entry in submission.episodes},
     )

@@ -18,7 +18,7 @@ from msgspec import Meta
 from sim.app.evaluation.results import RunRecord
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically
-from sim.core.reading import Count, Metres, Name, Seed, disguise_of, parse_json, read_bytes, read_gzip_json
+from sim.core.reading import Count, Metres, Name, Seed, convert, disguise_of, parse_json, read_bytes, read_gzip_json
 from sim.task.result import EpisodeResult, Isolation
 
 FORMAT: Literal["stubborn-submission-1"] = "stubborn-submission-1"
@@ -111,7 +111,9 @@ class Submission(msgspec.Struct, forbid_unknown_fields=True):
         content = bytes(self.config)
         if len(content) > MAX_CONFIG_BYTES:
             raise ConfigError(f"{where}, field 'config': it has {len(content)} bytes, at most {MAX_CONFIG_BYTES}.")
-        return cast(RunRecord, parse_json(content, dict[str, object], where=f"{where}, field 'config',"))
+        tree = parse_json(content, dict[str, object], where=f"{where}, field 'config',")
+        convert(tree, RunRecord, where=f"{where}, field 'config'")
+        return cast(RunRecord, tree)
 
 
 def read_submission(file: Path) -> Submission:

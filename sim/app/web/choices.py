@@ -25,6 +25,7 @@ from sim.app.web.controls import Driver, EpisodeRequest
 from sim.core import invocation
 from sim.core.configuration import with_fields
 from sim.core.errors import ConfigError, HouseError
+from sim.core.goals import NO_GOAL
 from sim.core.interface import GOAL_CATEGORIES
 from sim.core.option_types import meanings
 from sim.core.reading import convert
@@ -186,12 +187,14 @@ class Choices:
         if in_words:
             self._require_words(house, goal, asked, houses)
         options = replace(self._options, agent=asked.agent, semantics=asked.semantics, explorer=asked.explorer or None)
+        if not goal:
+            options = self._without_agent(options, asked)
         if asked.split in self._houses:
-            options = replace(options, house=self._houses[asked.split], goal=goal)
+            options = replace(options, house=self._houses[asked.split], goal=goal or None)
         else:
             options = replace(options, split=asked.split, labels=None, root=None, goal=goal if in_words else None)
         if asked.start is not None:
-            options = self._with_start(options, asked, house, goal)
+            options = self._with_start(options, asked, house, goal or None)
         if not isinstance(self._semantics[asked.semantics].config, NetworkConfig):
             options = replace(options, weights=None)
         return EpisodeRequest(
@@ -203,7 +206,14 @@ class Choices:
             options=options,
         )
 
-    def _with_start(self, options: RunOptions, asked: _Start, house: str, goal: str) -> RunOptions:
+    @staticmethod
+    def _without_agent(options: RunOptions, asked: _Start) -> RunOptions:
+        """Returns the options of an episode without a goal; raises ConfigError if an agent shall search in it."""
+        if asked.driver == "agent":
+            raise ConfigError(f"House '{asked.house}' has no goal for an agent; you can drive in it yourself.")
+        return replace(options, agent=HUMAN_NAME, semantics="gt", explorer=None, weights=None)
+
+    def _with_start(self, options: RunOptions, asked: _Start, house: str, goal: str | None) -> RunOptions:
         """Returns options with a chosen start: those of an episode in the house's file."""
         assert asked.start is not None
         split = self._split_of(asked.split)
@@ -265,16 +275,19 @@ def _goals_of_split(name: str) -> Goals:
 
 
 def _goals_of_house(file: Path, options: RunOptions) -> Goals:
-    """Returns the goals in a house file: the one that its sidecar fixes, else all categories that the house has."""
+    """Returns the goals in a house file: the one that its sidecar fixes, else all categories that the house has.
+
+    A house without any has the goal "": a person can drive in it.
+    """
     split = one_house(file, labels=options.labels, root=options.root)
     house = split.load_house(file.stem)
     fixed = split.sidecar(file.stem).goal
     categories = read_labels(house.spec.copy().compile(), rules=house.rules).categories()
     goals = [goal for goal in GOAL_CATEGORIES if goal in categories and fixed in (None, goal)]
-    if not goals:
+    if fixed is not None and not goals:
         there_is = ", ".join(categories) or "no labels"
-        raise HouseError(f"House '{file}' has no object of a goal category to look for. It has: {there_is}.")
-    return {file.stem: {goal: [] for goal in sorted(goals)}}
+        raise HouseError(f"The sidecar of house '{file}' asks for '{fixed}', and it has: {there_is}.")
+    return {file.stem: {goal: [] for goal in sorted(goals) or [NO_GOAL.text]}}
 
 
 def _place_of(episode_id: str, houses: Goals, split: str) -> tuple[str, str]:

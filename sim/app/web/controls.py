@@ -69,6 +69,8 @@ class Controls:
         self._actions: deque[Action] = deque(maxlen=_WAITING_ACTIONS)
         self._steps, self._stopping, self._closed, self._redraw = 0, False, False, False
         self._next_s = 0.0
+        self._alone = False
+        """True: the episode has no goal, and only a person drives."""
         self.driver: Driver = "agent"
         self.paused = self.hints = False
         self.per_s = SPEEDS[1]
@@ -93,6 +95,8 @@ class Controls:
                 self._next_s = 0.0
             elif do == "hints":
                 self.hints, self._redraw = message.get("on") is True, True
+            elif do == "agent" and self._alone:
+                raise ConfigError("This episode has no goal, and so no agent to hand back to.")
             elif do in ("agent", "person"):
                 self._hand_to("agent" if do == "agent" else "person")
             elif do == "act":
@@ -132,7 +136,7 @@ class Controls:
             request, self._request = self._request, None
             assert request is not None
             self._stopping, self._steps, self._next_s = False, 0, 0.0
-            self.paused = False
+            self.paused, self._alone = False, not request.goal
             self._actions.clear()
             self._hand_to(request.driver)
             return request

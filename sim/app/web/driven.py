@@ -12,7 +12,7 @@ from sim.app.composition.driven import record_driven, setup_of_person
 from sim.app.composition.record import record_of
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.results import RunDirectory
-from sim.app.evaluation.summary import summarise
+from sim.app.evaluation.summary import summary_of
 from sim.app.options import RunOptions
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
@@ -69,7 +69,7 @@ class DrivenRuns:
             directory.append(
                 msgspec.structs.replace(driven, person_steps=person_steps, hint_steps=hint_steps, other_driver=other)
             )
-            directory.write_summary({"split": split} | summarise(directory.lines))
+            directory.write_summary(summary_of(content, directory.lines))
         finally:
             directory.discard_if_empty()
             directory.close()

@@ -19,7 +19,7 @@ from sim.app.analysis.comparison import Run, differences_table, require_same_epi
 from sim.app.analysis.metrics import difference_cell, episodes_of, mean_cell
 from sim.app.analysis.tables import Cell, ResultTable
 from sim.app.evaluation.last_view import picture_file
-from sim.app.evaluation.results import read_record, read_results
+from sim.app.evaluation.results import read_record, read_results, segmentation_of
 from sim.app.viewers.video import video_file
 from sim.core import invocation
 from sim.core.errors import ConfigError
@@ -220,7 +220,7 @@ class Runs:
         lines, record = run.results.values(), run.config
         return about | {
             "agent": record.get("agent"),
-            "semantics": record.get("semantics"),
+            "segmentation": segmentation_of(record),
             "explorer": record.get("explorer"),
             "split": (record.get("split_identity") or {}).get("name"),
             "episodes": len(lines),

@@ -9,7 +9,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from typing import Protocol
 
+from sim.app.analysis.display import counted
 from sim.app.cli import USAGE_ERRORS
+from sim.app.composition.driven import HUMAN, HUMAN_NAME
 from sim.app.composition.environments import drawn_episodes
 from sim.app.composition.record import record_of
 from sim.app.composition.runner import Parts, build_parts
@@ -24,6 +26,7 @@ from sim.app.web.driven import DrivenRuns
 from sim.app.web.hints import Hints
 from sim.app.web.pictures import Pictures, in_sight
 from sim.core.errors import EpisodeError, debug
+from sim.core.goals import NO_GOAL, GoalSpec
 from sim.core.interface import GOAL_CATEGORIES, Action, Agent, Closable, Observation, Overridable, StatesTarget
 from sim.core.reading import printable
 from sim.env.objectnav import ObjectNavEnv
@@ -126,7 +129,7 @@ class Session:
         def begun(env: ObjectNavEnv) -> None:
             about.update(episode_id=episode.episode_id, max_steps=env.task_config.max_steps, legends=pictures.legends())
             about.update(segmentation=parts.seen.name if parts.seen is not None else "")
-            self._show_state(request, "running", f"Looking for {with_article(request.goal)}.", **about)
+            self._show_state(request, "running", _looking_for(episode.specs[0]), **about)
 
         watcher = _Watcher(begun, shared)
         options = request.options
@@ -141,6 +144,10 @@ class Session:
             name=options.agent,
         )
         shared.show_end()
+        if not request.goal:
+            steps = counted(result.num_steps, "step")
+            self._show_state(request, "ended", f"The drive ended after {steps}; nothing was recorded.", **about)
+            return
         nearest_m = parts.env.scene.task.trajectory().nearest_instance_m
         detects = parts.seen is not None and not shared.stopped_by_person
         outcome = explain_end(result, request.goal, parts.env.success_rule, nearest_m, detects=detects)
@@ -162,7 +169,7 @@ class Session:
         """Returns environment, agent and pictures; those of the last episode if the options are the same."""
         if self._made is None or self._made.setup.options != request.options:
             self._free()
-            setup = resolve(request.options)
+            setup = resolve(request.options, HUMAN if request.options.agent == HUMAN_NAME else None)
             parts = build_parts(setup, watched=True)
             self._made = _Made(setup, parts, Pictures(parts))
         return self._made
@@ -248,7 +255,7 @@ class SharedAgent:
             "step": step,
             "ended": advised is None,
             "last": None if self._last is None else ACTION_WORDS[self._last],
-            "advice": None if advised is None else ACTION_WORDS[advised],
+            "advice": None if advised is None or not task.goal else ACTION_WORDS[advised],
             "hint": None if hint is None else {"action": int(hint), "words": ACTION_WORDS[hint]},
             "doing": painter.words() if painter is not None and not self.stopped_by_person else "",
             "collided": bool(self.info.get("collided", False)),
@@ -257,12 +264,17 @@ class SharedAgent:
             "left_m": metrics.distance_to_goal,
             "shortest_m": metrics.shortest_path,
             "in_sight": in_sight(images["semantic"], task.goal),
-            "looking": "Looking for the object in the picture."
-            if task.goals[task.goal_number].camera is not None
-            else f"Looking for {with_article(task.goal)}.",
+            "looking": _looking_for(task.goals[task.goal_number]),
             "goals": [asdict(mark) for mark in goal_marks(task)],
         }
         self._display.show(Frame(facts, self._pictures.draw(names, moment) if names else {}))
+
+
+def _looking_for(goal: GoalSpec) -> str:
+    """Returns a sentence about the goal of a running episode."""
+    if goal == NO_GOAL:
+        return "You drive, without a goal."
+    return f"Looking for {'the object in the picture' if goal.camera is not None else with_article(goal.text)}."
 
 
 class _Watcher:
@@ -334,7 +346,8 @@ def _draw_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int) -> Epis
         raise EpisodeError(
             f"Episodes of house '{request.house}' are {request.house}_0000 and so on, not {request.episode_id}."
         )
-    return env.draw_episode(drawing_generator(request.options.seed, int(number[1])), episode_id=number[0])
+    draw = env.draw_episode if request.goal else env.draw_drive
+    return draw(drawing_generator(request.options.seed, int(number[1])), episode_id=number[0])
 
 
 def unlike_the_run(setup: Setup, env: ObjectNavEnv, record: RunRecord | None) -> str:

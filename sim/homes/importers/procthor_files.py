@@ -73,15 +73,34 @@ class Wall(Struct):
     material: Material | str | None = None
 
 
+class Corners(Struct):
+    """Two opposite corners."""
+
+    min: Vector
+    max: Vector
+
+
 class Hole(Struct):
-    """A door or a window: a hole in a wall, from one corner to the opposite one, along the wall and upwards."""
+    """A door or a window: a hole in a wall, from one corner to the opposite one, along the wall and upwards.
+
+    Houses of ProcTHOR's schema 0.0.1 have the corners as `boundingBox`; ProcTHOR's own upgrade to 1.0.0
+    (procthor/utils/upgrade_house_version.py) makes `holePolygon` of them, too.
+    """
 
     id: Name
     wall0: Name
-    holePolygon: Annotated[list[Vector], Meta(min_length=2, max_length=2)]
+    holePolygon: Annotated[list[Vector], Meta(min_length=2, max_length=2)] = []
     assetId: str = ""
     room0: str = ""
     openness: Annotated[float, Meta(ge=0.0, le=1.0)] | None = None
+    boundingBox: Corners | None = None
+
+    def __post_init__(self) -> None:
+        if self.holePolygon:
+            return
+        if self.boundingBox is None:
+            raise ValueError("a hole needs `holePolygon`, or `boundingBox` as in schema 0.0.1")
+        self.holePolygon = [self.boundingBox.min, self.boundingBox.max]
 
 
 class SceneObject(Struct):

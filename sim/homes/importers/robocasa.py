@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError, HouseError
 from sim.core.interface import MPCAT40_ID
@@ -54,6 +55,12 @@ CLOSED_SHARE = 0.5
 """Share of a side that its wall covers at least; the room ends at this wall."""
 GAP_M = 0.1
 """A side gets a wall if its walls leave more than this open."""
+SEEN_SHARE = 0.5
+"""Least share of the box around the collision geoms of a body that the box around its visible geoms fills."""
+UNSEEN_M = 0.1
+"""Collision geoms whose box is thinner stay invisible."""
+UNSEEN_RGBA = (0.62, 0.62, 0.64, 1.0)
+"""Colour of collision geoms that are shown."""
 ADDED_WALL_M = 0.1
 """Thickness of walls that are added."""
 ADDED = "wall_added_"
@@ -111,6 +118,7 @@ def import_kitchen(file: Path, *, root: Path | None = None, texture_px: int | No
         if reduced:
             changes[f"A texture was reduced to {texture_px} pixels."] += reduced
         _hide_collision_geoms(spec, compiled(spec), changes)
+        _show_unseen_bodies(spec, compiled(spec), changes)
         model = compiled(spec)
         require_sizes(model)
         rules = _rules(model)
@@ -216,6 +224,48 @@ def _hide_collision_geoms(spec: mujoco.MjSpec, model: mujoco.MjModel, changes: C
         spec.delete(geom)
     if specks:
         changes["An invisible box of 2 cm or less was removed."] += len(specks)
+
+
+def _show_unseen_bodies(spec: mujoco.MjSpec, model: mujoco.MjModel, changes: Counter[str]) -> None:
+    """Shows the collision geoms of bodies whose visible geoms fill only a small part of them.
+
+    A file may hold a placeholder for a mesh: of a stove remain its window and its knobs, which float in the air.
+    """
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    collides, visible = collidable_geoms(model), rendered_geoms(model)
+    for body in range(1, model.nbody):
+        unseen = np.flatnonzero(collides & ~visible & (model.geom_bodyid == body))
+        seen = np.flatnonzero(visible & _in_subtree(model, body)[model.geom_bodyid])
+        if not (unseen.size and seen.size):
+            continue
+        (low, high), (seen_low, seen_high) = (_bounds(model, data, body, geoms) for geoms in (unseen, seen))
+        common = np.maximum(np.minimum(high, seen_high) - np.maximum(low, seen_low), 0.0)
+        if common.prod() < SEEN_SHARE * (high - low).prod() and (high - low).min() > UNSEEN_M:
+            for geom in (spec.geoms[index] for index in unseen.tolist()):
+                geom.group, geom.material, geom.rgba = 0, "", UNSEEN_RGBA
+            changes[f"The visible geoms fill little of '{model.body(body).name}'; its collision geoms are shown."] += 1
+
+
+def _in_subtree(model: mujoco.MjModel, root: int) -> NDArray[np.bool_]:
+    """Returns (nbody,) which bodies are a body or are inside of it."""
+    inside = np.zeros(model.nbody, np.bool_)
+    inside[root] = True
+    for body in range(root + 1, model.nbody):  # a body has a higher number than the one around it
+        inside[body] = inside[model.body_parentid[body]]
+    return inside
+
+
+def _bounds(
+    model: mujoco.MjModel, data: mujoco.MjData, body: int, geoms: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Returns the lowest and the highest corner (3,) of geoms, in metres in the frame of a body."""
+    turn = data.geom_xmat[geoms].reshape(-1, 3, 3)
+    centres = data.geom_xpos[geoms] + np.einsum("gij,gj->gi", turn, model.geom_aabb[geoms, :3])
+    of_body = data.xmat[body].reshape(3, 3)
+    centres = (centres - data.xpos[body]) @ of_body
+    halves = np.einsum("gij,gj->gi", np.abs(of_body.T @ turn), model.geom_aabb[geoms, 3:])
+    return (centres - halves).min(axis=0), (centres + halves).max(axis=0)
 
 
 def _rules(model: mujoco.MjModel) -> dict[str, str]:

@@ -52,6 +52,9 @@ configs:
 
 Views of houses in WebDataset's layout: `KEY.rgb.jpg` (or `.png`), `KEY.depth.png` (millimetres), `KEY.semantic.png`
 (mpcat40 ids), `KEY.json`. `index.json` has the numbers of views and houses, and the command that made them.
+
+`load_dataset("FOLDER")` reads the views; with the name of the loader, name the shards too:
+`load_dataset("webdataset", data_files="FOLDER/*.tar")`.
 """
 
 

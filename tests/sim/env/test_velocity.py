@@ -158,7 +158,7 @@ def test_an_episode_ends_after_its_time_limit(tmp_path: Path) -> None:
     env.reset(seed=0)
     assert [env.step(np.zeros(3, np.float32))[3] for _ in range(3)] == [False, False, True]
     info = env._info(collided=False)
-    assert (info["end_reason"], info["num_steps"], info["simulated_s"]) == ("max_steps", 3, pytest.approx(0.6))
+    assert (info["end_reason"], info["num_steps"], info["simulated_s"]) == ("time_limit", 3, pytest.approx(0.6))
     env.close()
     assert make(tmp_path).task_config.max_steps == 6000
 

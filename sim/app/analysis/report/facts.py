@@ -6,13 +6,12 @@ import json
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from sim.app.analysis.comparison import Run
 from sim.app.analysis.report.drawings import Trajectories
 from sim.app.analysis.report.media import picture_of, video_of
 from sim.app.evaluation.parallel import Shard
-from sim.app.evaluation.results import RunRecord
+from sim.app.evaluation.results import RunRecord, segmentation_of
 
 NO_DEFAULT = (
     "agent", "explorer", "semantics", "weights", "verifier", "split", "house", "labels", "root", "robot", "goal",
@@ -67,20 +66,6 @@ def facts_of(run: Run, label: str, trajectories: Trajectories, index: int) -> Ru
         list(_notes(run, trajectories, index)),
         _hint(run, trajectories, index),
     )
-
-
-def segmentation_of(config: Mapping[str, Any]) -> str | None:
-    """Returns the segmentation that acted, and which weights it had; "none" for an agent that uses none."""
-    declared = config.get("segmentation")
-    if declared is None:  # a run of an older version
-        return config.get("semantics")
-    name = declared.get("name")
-    if not name:
-        return "none: the agent uses none"
-    weights = (config.get("files_sha256") or {}).get("weights")
-    if weights is None:
-        return str(name)
-    return f"{name}, {config['weights'] if config.get('weights') else 'shipped weights'} ({str(weights)[:8]})"
 
 
 def command_of(config: RunRecord) -> str:

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.app.bridges.habitat.config import make_config, with_entries_of
+from sim.app.bridges.habitat.config import keeping_looks, make_config, with_entries_of
 from sim.app.bridges.habitat.conversions import Conversion, to_action
 from sim.app.bridges.habitat_client import OF_THE_RUN, Config, called, takes_config
 from sim.app.bridges.process_command import BridgeConfig
@@ -86,7 +86,8 @@ def spec_of(name: str, declared: object) -> AgentSpec:
     if not callable(declared):
         raise ConfigError(f"Agent '{name}' must be a class, a factory or an AgentSpec, got {type(declared).__name__}.")
     arguments = _arguments(declared)
-    taken = {argument[0] for argument in BRIDGE_FIELDS} & {argument.name for argument in arguments}
+    own = {"looks", *(field[0] for field in BRIDGE_FIELDS)}
+    taken = own & {argument.name for argument in arguments}
     if taken:
         raise ConfigError(
             f"Agent '{name}' has an argument '{min(taken)}', which is also a field of the bridge; give a function "
@@ -103,9 +104,9 @@ def spec_of(name: str, declared: object) -> AgentSpec:
         max_steps: int,
         **_: object,
     ) -> HabitatAgent:
-        of_the_run = make_config(camera=camera, robot=robot, success=success, max_steps=max_steps)
+        of_the_run = make_config(camera=camera, robot=robot, success=success, max_steps=max_steps, looks=config.looks)
         positional, by_name = _values(name, arguments, config, of_the_run)
-        with own_command_line():
+        with own_command_line(), keeping_looks(config.looks):
             agent = declared(*positional, **by_name)
         _require_methods(name, agent)
         return HabitatAgent(agent, _conversion(camera, config))
@@ -129,7 +130,7 @@ def _wrapped(name: str, spec: AgentSpec) -> AgentSpec:
     """Returns a specification of agents of this project, from one whose agents have Habitat's interface."""
 
     def make(*, camera: CameraModel, max_steps: int, **parts: Any) -> HabitatAgent:
-        with own_command_line():
+        with own_command_line(), keeping_looks(spec.looks):
             agent: Any = spec.build(name, max_steps=max_steps, camera=camera, **parts)
         _require_methods(name, agent)
         return HabitatAgent(agent, _conversion(camera, parts["config"]))

@@ -5,17 +5,30 @@ Agents read it; to change it changes nothing.
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextvars import ContextVar
 from pathlib import Path
 
-from sim.app.bridges.habitat_client import Config, add, merge, override, remove_other_actions, to_config
+from sim.app.bridges.habitat_client import NOT_DECLARED, Config, add, merge, override, remove_other_actions, to_config
 from sim.core.errors import ConfigError
-from sim.core.interface import FORWARD_M, MAX_STEPS, MOVES, TURN_RAD, CameraModel, RobotModel, SuccessRule
+from sim.core.interface import (  # fmt: skip
+    FORWARD_M,
+    LOOK_RAD,
+    MAX_STEPS,
+    MOVES,
+    TURN_RAD,
+    Action,
+    CameraModel,
+    RobotModel,
+    SuccessRule,
+)
 from sim.core.reading import read_bytes
 
 _LOG = logging.getLogger("habitat")
+_LOOKS: ContextVar[bool] = ContextVar("_LOOKS", default=False)
 _MAX_BYTES = 1 << 20
 _MAX_VALUES = 20_000
 """Largest number of values of a file; a value that aliases repeat counts each time."""
@@ -28,6 +41,7 @@ def make_config(
     success: SuccessRule | None = None,
     max_steps: int = MAX_STEPS,
     split: str = "val",
+    looks: bool = False,
 ) -> Config:
     """Returns the configuration of a task, in the old layout and, under `habitat`, in the new one.
 
@@ -35,6 +49,7 @@ def make_config(
         camera, robot, success: models of the task; None: the defaults.
         max_steps: largest number of actions of an episode.
         split: name of the split.
+        looks: whether the actions LOOK_UP and LOOK_DOWN are possible.
     """
     camera, robot = camera or CameraModel(), robot or RobotModel()
     distance_m = (success or SuccessRule()).distance_m
@@ -47,7 +62,8 @@ def make_config(
     depth = rgb | {"min_depth": camera.min_depth_m, "max_depth": camera.max_depth_m, "normalize_depth": True}
     body = {"height": robot.height_m, "radius": robot.radius_m}
     motion = {"forward_step_size": FORWARD_M, "turn_angle": round(math.degrees(TURN_RAD))}
-    actions = [action.name for action in MOVES]
+    motion |= {"tilt_angle": round(math.degrees(LOOK_RAD))}
+    actions = [action.name for action in (Action if looks else MOVES)]
     task = {"type": "ObjectNav-v1", "success_distance": distance_m, "goal_sensor_uuid": "objectgoal"}
     measurements = {"distance_to_goal": {}, "success": {"success_distance": distance_m}}
     measurements |= {"spl": {}, "soft_spl": {}, "collisions": {}}
@@ -80,6 +96,16 @@ def make_config(
     return to_config(old | {"habitat": habitat})
 
 
+@contextlib.contextmanager
+def keeping_looks(looks: bool) -> Iterator[None]:
+    """Lets `get_config` keep LOOK_UP and LOOK_DOWN in the `with` block, where an agent that declares them is made."""
+    token = _LOOKS.set(looks)
+    try:
+        yield
+    finally:
+        _LOOKS.reset(token)
+
+
 def get_config(
     config_path: str | Sequence[str] | None = None,
     overrides: Sequence[object] | None = None,
@@ -103,7 +129,8 @@ def get_config(
     """
     overrides = opts if overrides is None else overrides
     config_path = config_paths if config_path is None else config_path
-    config = make_config()
+    config = make_config(looks=_LOOKS.get())
+    known = list(config.TASK.POSSIBLE_ACTIONS)
     paths = config_path.split(",") if isinstance(config_path, str) else [str(path) for path in config_path or ()]
     for path in paths:
         if Path(path).is_file():
@@ -116,9 +143,9 @@ def get_config(
         override(config, overrides)
     except ValueError as error:
         raise ConfigError(str(error)) from None
-    removed = remove_other_actions(config)
+    removed = remove_other_actions(config, known)
     if removed:
-        _LOG.warning("This robot has no action %s: removed from the configuration.", ", ".join(sorted(removed)))
+        _LOG.warning(NOT_DECLARED, ", ".join(sorted(removed)))
     return config
 
 

@@ -25,11 +25,11 @@ from typing import Any, Protocol
 import numpy as np
 from gymnasium import spaces
 
-from sim.app.bridges.habitat_client import ACTION_IDS, HabitatActions
+from sim.app.bridges.habitat_client import HABITAT_ACTIONS, HabitatActions
 from sim.app.bridges.stubborn_client import Observation as _Observation
 from sim.app.bridges.stubborn_client import from_habitat
 from sim.core.errors import AgentError, ConfigError, did_you_mean
-from sim.core.interface import GOAL_CATEGORIES, MOVES, MPCAT40, Action, CameraModel, Observation
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40, Action, CameraModel, Observation
 
 HM3D_GOALS = ("chair", "bed", "plant", "toilet", "tv_monitor", "sofa")
 """The six goal categories of the ObjectNav challenges 2022 and 2023, in their order."""
@@ -129,17 +129,15 @@ def to_action(chosen: object) -> Action:
     A number may be an integer of Python or NumPy, or a tensor or array of one element; a name may be in upper case.
 
     Raises:
-        AgentError: it is not one of the four actions.
+        AgentError: it is not an action of Habitat's.
     """
     try:
         inner = from_habitat(chosen)
-        number = ACTION_IDS.get(inner.lower()) if isinstance(inner, str) else operator.index(inner)
+        number = HABITAT_ACTIONS.get(inner.lower()) if isinstance(inner, str) else operator.index(inner)
     except Exception:  # that of the user's class too
         number = None
-    if number in (ACTION_IDS["look_up"], ACTION_IDS["look_down"]):
-        raise AgentError(f"Action {reprlib.repr(chosen)}: the camera of this robot does not tilt.")
-    if number is None or number not in MOVES:
-        names = ", ".join(f"{number} {name}" for name, number in ACTION_IDS.items() if number < len(MOVES))
+    if number is None or number not in HABITAT_ACTIONS.values():
+        names = ", ".join(f"{number} {name}" for name, number in HABITAT_ACTIONS.items())
         raise AgentError(
             f'Unknown action {reprlib.repr(chosen)}. An action is one of {names}, or a dict {{"action": one of these}}.'
         )

@@ -24,16 +24,19 @@ from sim.app.evaluation.parallel import ordered_map
 from sim.app.viewers.house_pictures import draw_top, draw_views, titled
 from sim.core.errors import ConfigError, ObjectNavError, debug
 from sim.core.files import inside, write_atomically, write_picture
+from sim.core.interface import GOAL_CATEGORIES
+from sim.core.invocation import command
 from sim.core.reading import convert, printable, read_json, sha256_of
 from sim.episodes.splits import LABELS_FILE, labels_of
 from sim.homes.importers.losses import added
 from sim.homes.importers.mesh_house import Collision, MeshConfig
 from sim.homes.importers.surfaces import MAX_FILE_BYTES
+from sim.houses.labels import read_labels
 from sim.houses.load import load_house
 
 SourceT = TypeVar("SourceT")
 REPORT_FILE = "import.json"
-VERSION = 2
+VERSION = 3
 """Increased when the same source gives another house."""
 CHUNK = 64
 """Houses that are in memory at a time."""
@@ -296,3 +299,7 @@ def _draw(out: Path, name: str) -> None:
     if views is not None:
         write_picture(inside(folder, f"{name}_views.png", what="name of a house"), np.ascontiguousarray(views))
     print(f"Drew {folder / name}_top.png and _views.png.", flush=True)
+    categories = read_labels(house.spec.copy().compile(), rules=house.rules).categories()
+    if not set(categories) & set(GOAL_CATEGORIES):
+        drive = command("web", "--house", out / f"{name}.xml")
+        print(f"{name} has no object of a goal category. It has: {', '.join(categories)}. Drive in it: {drive}")

@@ -44,6 +44,7 @@ from sim.app.commands.reproduce.runs import AgentSetup, RunKey, TableRun, file_n
 from sim.app.composition.setup import RunConfig, resolve
 from sim.app.evaluation.config_fields import differing_fields, field_text
 from sim.app.evaluation.intervals import MIN_PAIRS
+from sim.app.evaluation.results import own_weights
 from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 from sim.core.files import write_atomically, write_together
@@ -179,7 +180,7 @@ def require_same_conditions(runs: Sequence[Run]) -> None:
                 f"'{other.path}' holds a run with {path} = {field_text(second)}, '{runs[0].path}' one with "
                 f"{field_text(first)}; one table needs the same conditions."
             )
-    shipped = {run.config.get("files_sha256", {}).get("weights"): run for run in runs if not _has_own_weights(run)}
+    shipped = {run.config.get("files_sha256", {}).get("weights"): run for run in runs if not own_weights(run.config)}
     shipped.pop(None, None)  # runs without a network
     if len(shipped) > 1:  # commits ship different ones
         one, another = list(shipped.values())[:2]
@@ -195,11 +196,6 @@ def _conditions(of: Run, other: Run) -> Mapping[str, object]:
     if isinstance(robot := world.get("robot"), Mapping):  # the kind of motion is part of a row's name
         world["robot"] = {key: value for key, value in robot.items() if key != "motion"}
     return flat | {"config": world}
-
-
-def _has_own_weights(run: Run) -> bool:
-    """Returns whether a run's weights were named by the user."""
-    return "detector.weights" in run.config.get("settings", {}) or run.config.get("weights") is not None
 
 
 def write_table(

@@ -93,7 +93,8 @@ function showState(news) {
   $("pause").textContent = news.paused ? "Run" : "Pause";
   $("pause").disabled = $("step").disabled = !running || news.driver === "person";
   $("take").textContent = news.driver === "person" ? "Hand back" : "Take over";
-  $("take").disabled = $("end").disabled = !running;
+  $("end").disabled = !running;
+  $("take").disabled = !running || !news.request.goal;
   $("hints").setAttribute("aria-pressed", String(news.hints));
   if (!running) hint(null);
   $("note").textContent = news.note || "";
@@ -163,7 +164,7 @@ function facts(frame) {
   if (!state.episode_id) words.shift();
   if (frame.last) words.push(frame.last);
   words.push(`driven ${frame.driven_m.toFixed(1)} m`);
-  words.push(frame.left_m === null ? "no path to the goal" : `${frame.left_m.toFixed(1)} m to go`);
+  if (state.request?.goal) words.push(frame.left_m === null ? "no path to the goal" : `${frame.left_m.toFixed(1)} m to go`);
   if (frame.shortest_m !== null) words.push(`shortest path ${frame.shortest_m.toFixed(1)} m`);
   const hits = document.createElement(frame.collided ? "b" : "span");
   hits.textContent = `${frame.collisions} collision${frame.collisions === 1 ? "" : "s"}`;
@@ -214,14 +215,14 @@ function fill(parent, children) {
 
 // --- choosing an episode --------------------------------------------------------------------------------------------
 
-function options(select, values, wanted) {
+function options(select, values, wanted, empty = "its own") {
   const before = wanted ?? select.value;
-  fill(select, values.map((value) => new Option(shortened(value).replaceAll("_", " "), value)));
+  fill(select, values.map((value) => new Option(shortened(value).replaceAll("_", " ") || empty, value)));
   if (values.includes(before)) select.value = before;
 }
 
 // Of a path, only the last name is shown.
-const shortened = (value) => (value.includes("/") ? value.replace(/\/+$/, "").split("/").at(-1) : value) || "its own";
+const shortened = (value) => (value.includes("/") ? value.replace(/\/+$/, "").split("/").at(-1) : value);
 
 const goalsNow = () => choices.splits[$("split").value][$("house").value];
 
@@ -235,7 +236,7 @@ function chosenSplit() {
 }
 
 function chosenHouse() {
-  options($("goal"), Object.keys(goalsNow()));
+  goalOptions();
   chosenGoal();
   showHouse();
 }
@@ -321,8 +322,11 @@ function aim(event) {
   drawHouse();
 }
 
-// Removes the chosen episode if it is of another house or goal.
+const goalOptions = (wanted) => options($("goal"), Object.keys(goalsNow()), wanted, "no goal");
+
+// Removes the chosen episode if it is of another house or goal. An agent needs a goal.
 function chosenGoal() {
+  $("start").disabled = !$("goal").value && !$("wish").value.trim();
   const ids = goalsNow()[$("goal").value];
   if (ids.length && !ids.includes($("episode").value)) $("episode").value = "";
 }
@@ -335,7 +339,7 @@ function chosenEpisode() {
       if (!ids.includes(id)) continue;
       const other = $("house").value !== house;
       $("house").value = house;
-      options($("goal"), Object.keys(goals), goal);
+      goalOptions(goal);
       if (other) showHouse();
     }
   }
@@ -356,7 +360,7 @@ function follow(request) {
   $("split").value = request.split;
   chosenSplit();
   $("house").value = request.house;
-  options($("goal"), Object.keys(goalsNow()), request.goal);
+  goalOptions(request.goal);
   $("wish").value = request.goal in goalsNow() ? "" : request.goal;
   for (const name of ["agent", "semantics", "explorer"]) $(name).value = request[name];
   $("episode").value = request.episode_id ?? "";
@@ -416,7 +420,7 @@ function showRuns() {
   $("compare").disabled = marked.size !== 2;
 }
 
-const runWords = (run) => [run.name, run.agent, run.explorer, run.semantics, run.split].filter(Boolean);
+const runWords = (run) => [run.name, run.agent, run.explorer, run.segmentation, run.split].filter(Boolean);
 const day = (seconds) => new Date(seconds * 1000).toLocaleString([], {dateStyle: "medium", timeStyle: "short"});
 
 function runRow(run) {
@@ -443,7 +447,7 @@ function runRow(run) {
   }
   const errors = run.errors ? `, ${run.errors} error${run.errors === 1 ? "" : "s"}` : "";
   const agent = [run.agent ?? "?", run.explorer].filter(Boolean).join(", ");
-  return row([...head, [agent, ""], [run.semantics ?? "?", ""], [run.split ?? "?", ""], [`${run.found} of ${run.episodes}${errors}`, ""], [run.spl.toFixed(2), "number"]]);
+  return row([...head, [agent, ""], [run.segmentation, ""], [run.split ?? "?", ""], [`${run.found} of ${run.episodes}${errors}`, ""], [run.spl.toFixed(2), "number"]]);
 }
 
 // A table row of cells, each a text or an element with a class.
@@ -670,6 +674,7 @@ $("split").addEventListener("change", () => { chosenSplit(); showAbove(); });
 $("house").addEventListener("change", () => { chosenHouse(); showAbove(); });
 $("goal").addEventListener("change", () => { $("wish").value = ""; chosenGoal(); });
 $("wish").addEventListener("change", wished);
+$("wish").addEventListener("input", chosenGoal);
 $("episode").addEventListener("change", chosenEpisode);
 $("agent").addEventListener("change", chosenAgent);
 $("semantics").addEventListener("change", chosenAgent);

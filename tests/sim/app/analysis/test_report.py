@@ -19,7 +19,7 @@ from msgspec.structs import replace as changed
 
 from sim.app.analysis.comparison import Run, read_run
 from sim.app.analysis.report.drawings import ground_truth_of, path_on, split_of
-from sim.app.analysis.report.facts import command_of, segmentation_of
+from sim.app.analysis.report.facts import command_of
 from sim.app.analysis.report.plans import PX_M, Sheet, draw_plan, sheet_around, shortest_path
 from sim.app.commands import run
 from sim.app.commands.report import Args, main
@@ -639,17 +639,3 @@ def test_the_ground_truth_of_a_page_follows_the_success_rule_of_the_run() -> Non
 def test_the_ground_truth_of_a_page_has_the_robot_of_the_run() -> None:
     run = Run(Path("runs/x"), {"config": {"robot": {"body": {"radius_m": 0.22}, "file": None}}}, {})
     assert ground_truth_of(run, room(6, 4)).world.robot.radius_m == 0.22
-
-
-def test_the_report_names_the_segmentation_that_acted_and_its_weights() -> None:
-    record: dict[str, Any] = {"semantics": "rednet", "weights": None, "files_sha256": {"weights": "0123456789"}}
-    seen = [
-        segmentation_of(record | {"segmentation": {"name": name}} | more)
-        for name, more in ((None, {}), ("rednet", {}), ("rednet", {"weights": "mine.safetensors"}))
-    ]
-    assert seen == [
-        "none: the agent uses none",
-        "rednet, shipped weights (01234567)",
-        "rednet, mine.safetensors (01234567)",
-    ]
-    assert segmentation_of({"semantics": "gt"}) == "gt"  # a run of an older version

@@ -134,10 +134,17 @@ def test_anything_else_is_refused_in_a_line_that_lists_the_actions(chosen: Any) 
         to_action(chosen)
 
 
-@pytest.mark.parametrize("chosen", [4, "LOOK_DOWN", {"action": "look_up"}])
-def test_a_look_up_or_down_is_refused_with_its_reason(chosen: Any) -> None:
-    with pytest.raises(AgentError, match=wording.THE_CAMERA_OF_THIS_ROBOT_DOES_NOT_TILT):
-        to_action(chosen)
+@pytest.mark.parametrize(
+    ("chosen", "action"),
+    [
+        (4, Action.LOOK_UP),
+        ("LOOK_UP", Action.LOOK_UP),
+        (5, Action.LOOK_DOWN),
+        ({"action": "look_down"}, Action.LOOK_DOWN),
+    ],
+)
+def test_habitats_actions_4_and_5_tilt_the_camera(chosen: Any, action: Action) -> None:
+    assert to_action(chosen) is action
 
 
 def test_arguments_of_the_constructor_are_fields_of_the_configuration() -> None:
@@ -280,7 +287,7 @@ def test_a_run_announces_the_stand_in_hashes_the_agent_and_resumes(
     lines = run_of(published, house, out, "--episodes", "2", "--step-timeout", "0")
     assert [(line["num_steps"], line["end_reason"]) for line in lines] == [(3, "stop"), (3, "stop")]
     record = json.loads((out / "config.json").read_text())
-    assert record["config"]["agent"] == {"steps": 2, "categories": "mp3d", "normalize_depth": True}
+    assert record["config"]["agent"] == {"steps": 2, "categories": "mp3d", "normalize_depth": True, "looks": False}
     before = code_of(RunOptions(agent=f"habitat:{published}:Forward"))
     with (tmp_path / "published_forward.py").open("a") as file:
         file.write("# edited\n")

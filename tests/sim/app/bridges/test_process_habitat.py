@@ -14,11 +14,13 @@ from sim.app.bridges.habitat.conversions import to_action
 from sim.app.bridges.process import ProcessAgent
 from sim.app.bridges.process_command import ProcessConfig
 from sim.app.bridges.stubborn_client import from_habitat
+from sim.app.commands.agent_client import client_file
 from sim.app.commands.run import entry
 from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
 from sim.core.errors import AgentError, ConfigError
 from sim.core.interface import CameraModel, RobotModel, SuccessRule
+from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.results import lines_of
 
 ROOT = Path(__file__).parents[4]
@@ -118,3 +120,66 @@ def test_a_goal_that_the_data_set_lacks_is_an_error_of_the_episode(tmp_path: Pat
         agent.reset("towel", 0)
     agent.reset("bed", 0)
     agent.close()
+
+
+LOOKS = """
+from habitat import get_config
+
+class Looks:
+    def __init__(self):
+        listed = get_config(None, ["TASK.POSSIBLE_ACTIONS", ["STOP", "LOOK_UP", "FLY"]]).TASK.POSSIBLE_ACTIONS
+        self.chosen = ["LOOK_UP", {"action": 5}, "look_down", 0] if "LOOK_UP" in listed else [4]
+        assert "FLY" not in listed
+
+    def reset(self):
+        self.left = list(self.chosen)
+
+    def act(self, observations):
+        return self.left.pop(0)
+"""
+PLAIN = """
+from stubborn_client import serve
+
+class Looks:
+    def __init__(self, setup):
+        self.chosen = [4, 5, 5, 0] if setup.looks else [4]
+
+    def reset(self, goal, seed):
+        self.left = list(self.chosen)
+
+    def act(self, observation):
+        return self.left.pop(0)
+
+serve(Looks)
+"""
+
+
+@pytest.mark.parametrize("declared", [True, False])
+@pytest.mark.parametrize("kind", ["habitat", "habitat in a process", "process"])
+def test_looks_are_actions_of_agents_that_declare_them_by_an_option(
+    kind: str, declared: bool, house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "stubborn_client.py").write_text(client_file())
+    (tmp_path / "plain.py").write_text(PLAIN)
+    (tmp_path / "own_looks.py").write_text(LOOKS)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "own_looks", raising=False)
+    agent, *more = {
+        "habitat": ("habitat:own_looks:Looks",),
+        "habitat in a process": (
+            f"process:{sys.executable} stubborn_client.py own_looks:Looks",
+            "agent.interface=habitat",
+        ),
+        "process": (f"process:{sys.executable} plain.py",),
+    }[kind]
+    options = ["--house", str(house), "--episodes", "1", "--out", "run", "--step-timeout", "0", "--record"]
+    config = [*SMALL, *more, *(["agent.looks=true"] if declared else [])]
+    status = entry([*options, "--agent", agent, "--config", *config])
+    (line,) = lines_of(tmp_path / "run")
+    if declared:
+        trajectory = read_trajectory(trajectory_file(tmp_path / "run", line["episode_id"]))
+        assert (status, trajectory.actions.tolist()) == (0, [4, 5, 5, 0])
+    else:
+        assert (status, line["end_reason"]) == (1, "error")
+        assert "agent.looks=true" in line["error"]

@@ -19,12 +19,14 @@ from sim.app.commands.run import entry
 from sim.app.evaluation.last_view import picture_file
 from sim.core.geometry.pose import Pose
 from sim.core.paths import code_hash
+from sim.core.reading import sha256_of
 from sim.episodes.episode import Episode
 from sim.episodes.splits import write_split
 from sim.task.failures import cause_of_failure
 from sim.task.metrics import EXPLORED_SHARE
 from sim.task.result import METRICS
 from sim.task.trajectory import read_trajectory, trajectory_file
+from stubborn.segmentation.shipped import SHIPPED_REDNET
 from tests.helpers.results import lines_of
 from tests.helpers.worlds import two_storeys
 
@@ -153,7 +155,11 @@ def test_the_shipped_network_is_used_unless_another_segmentation_is_requested(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert entry(["--goal", "bed", "--episodes", "1", "--out", str(tmp_path)]) == 0
-    assert "stubborn with segmentation by rednet" in capsys.readouterr().out
+    named = f"rednet, shipped weights ({sha256_of(SHIPPED_REDNET, what='Weights')[:8]})"
+    printed = " ".join(capsys.readouterr().out.split())
+    assert f"segmentation: {named}; results in" in printed
+    assert f"Segmentation: {named}. Intervals are over" in printed
+    assert json.loads((tmp_path / "summary.json").read_text())["segmentation"] == named
     (line,) = lines_of(tmp_path)
     assert (line["agent"], line["semantics"]) == ("stubborn", "rednet")
     assert "weights" in json.loads((tmp_path / "config.json").read_text())["files_sha256"]

@@ -170,3 +170,13 @@ def test_a_new_house_without_views_is_replaced_by_that_of_another_fixed_seed(mon
 def test_a_wrong_option_is_refused(split: Path, tmp_path: Path, changes: dict, sentence: str) -> None:
     with pytest.raises(ConfigError, match=sentence):
         main(options(split, tmp_path, **changes))
+
+
+@pytest.mark.parametrize("extras", [(), ("poses",), ("instances",)])
+def test_what_training_needs_is_said_before_the_first_view_is_made(
+    extras: tuple[str, ...], split: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(options(split, tmp_path, views=2, views_per_shard=2, extras=extras))
+    said, shards = capsys.readouterr().out.split("1 shards, 0 complete")
+    assert ("which `train segmentation` needs" in said) == ("instances" not in extras)
+    assert "views-000000: 2 views" in shards

@@ -38,7 +38,7 @@ def test_a_segmentation_of_ones_own_is_run_recorded_and_named(
     command += ["--step-timeout", "0"]  # in this process
     assert entry([*command, "--config", *SMALL, "detector.level=0.125"]) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    assert f"with segmentation by {FLAT}" in printed
+    assert f"segmentation: {FLAT};" in printed
     assert "No parameters are fitted to segmentation of kind 'flat'" in printed
     record = json.loads((tmp_path / "config.json").read_text())
     assert record["config"]["detector"] == {"level": 0.125}

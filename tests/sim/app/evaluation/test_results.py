@@ -10,10 +10,11 @@ import re
 import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from sim.app.evaluation.results import RunDirectory, read_results
+from sim.app.evaluation.results import RunDirectory, read_results, segmentation_of
 from sim.app.evaluation.summary import summarise
 from sim.core.interface import ConfigError
 from sim.task.result import METRICS, EpisodeResult
@@ -406,3 +407,24 @@ def test_a_run_of_other_physics_is_not_resumed(tmp_path):
     with pytest.raises(ConfigError, match=r"1.*2.*choose") as error:
         opened(tmp_path / "run", {"agent": "oracle", "physics": 2})
     assert "\n" not in str(error.value)
+
+
+SEGMENTATIONS = {
+    "none": {"segmentation": {"name": None}},
+    "rednet, shipped weights (01234567)": {"segmentation": {"name": "rednet"}},
+    "rednet, mine.safetensors (01234567)": {"segmentation": {"name": "rednet"}, "weights": "mine.safetensors"},
+    "rednet, set.safetensors (01234567)": {
+        "segmentation": {"name": "rednet"}, "settings": {"detector.weights": "set.safetensors"}
+    },
+    "the agent's network": {"segmentation": {"name": "the agent's network"}},
+    "ground truth": {"segmentation": {"name": "ground truth"}, "semantics": "gt", "files_sha256": {}},
+    "rednet": {},
+    "unknown": {"semantics": None},
+}  # fmt: skip
+"""Entries of a `config.json` by the text that names its segmentation; the last two are of older versions."""
+
+
+@pytest.mark.parametrize("text", SEGMENTATIONS)
+def test_a_run_names_the_segmentation_that_acted_and_its_weights(text: str) -> None:
+    record: Any = {"semantics": "rednet", "weights": None, "files_sha256": {"weights": "0123456789"}}
+    assert segmentation_of(record | SEGMENTATIONS[text]) == text

@@ -50,6 +50,7 @@ def test_the_exit_status_says_whether_the_results_hold(
         "an hour a core",
         "Verified: ",
         "a replay cannot prove it",
+        "segmentation none; ground truth yes",
     ):
         assert part in printed
     assert json.loads(report.read_text())["equal"] == 3
@@ -64,7 +65,7 @@ def test_an_agent_that_gets_no_segmentation_declares_none(
 ) -> None:
     words = submit.Args(run=folder / "process", name="x", authors=(), out=tmp_path / "x.json.gz")
     assert submit.main(words) == 0
-    assert "in a process of its own, as the same user; semantics not used; " in capsys.readouterr().out
+    assert "in a process of its own, as the same user; segmentation none; " in capsys.readouterr().out
 
 
 def test_a_run_without_its_actions_is_refused_with_the_command_that_records(folder: Path, tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ from sim.app.options import RunOptions
 from sim.app.web.choices import Choices, Offer
 from sim.app.web.controls import EpisodeRequest
 from sim.app.web.driven import DrivenRuns
+from sim.app.web.pictures import NAMES
 from sim.app.web.session import Frame, Session, choose_episode
 from sim.core.errors import ConfigError, EpisodeError
 from sim.episodes.splits import load_split
@@ -61,9 +62,12 @@ def own(house: Path) -> Choices:
     )
 
 
-def play(request: EpisodeRequest, runs: Path, prepare: Callable[[Session], None] = lambda _: None) -> Display:
+def play(
+    request: EpisodeRequest, runs: Path, prepare: Callable[[Session], None] = lambda _: None,
+    display: Display | None = None,
+) -> Display:  # fmt: skip
     """Plays an episode to its end in this thread."""
-    display = Display()
+    display = display or Display()
     session = Session(display, DrivenRuns(runs))
     session.controls.obey({"do": "speed", "per_s": 60})
     session.controls.ask_for(request)
@@ -313,3 +317,40 @@ def test_an_episode_begins_at_the_chosen_start(
 def test_a_start_is_three_numbers(start: object, choices: Choices) -> None:
     with pytest.raises(ConfigError):
         choices.request(START | {"start": start})
+
+
+def test_a_person_drives_in_a_house_without_a_goal_and_an_agent_does_not(tmp_path: Path) -> None:
+    file = tmp_path / "lit.xml"
+    lamp = with_box(room(5, 4), "lighting_00", centre_m=(2.0, 0, 0.45), half_m=(0.2, 0.2, 0.45))
+    file.write_text(lamp.spec.to_xml())
+    offered = Choices(Offer(houses=(file,)))
+    assert offered.as_json()["splits"][str(file)] == {"lit": {"": []}}  # type: ignore[index]
+    start = START | {"split": str(file), "house": "lit", "goal": ""}
+    with pytest.raises(ConfigError, match="'lit' has no goal for an agent; you can drive in it yourself"):
+        offered.request(start)
+
+    def drive(session: Session) -> None:
+        session.controls.obey({"do": "hints", "on": True})
+        with pytest.raises(ConfigError, match="no goal"):
+            session.controls.obey({"do": "agent"})
+        for action in (2, 1, 0):
+            session.controls.obey({"do": "act", "action": action})
+
+    class Pictured(Display):
+        def wanted(self) -> frozenset[str]:
+            return frozenset(NAMES)
+
+    request = offered.request(start | {"driver": "person"})
+    display = play(request, tmp_path / "runs", drive, Pictured())
+    assert [state["message"] for state in display.states[1:]] == [
+        "You drive, without a goal.",
+        "The drive ended after 3 steps; nothing was recorded.",
+    ]
+    last = display.frames[-1].facts
+    assert last["driven_m"] == pytest.approx(0.25, abs=0.02)
+    assert (last["left_m"], last["advice"], last["hint"]) == (None, None, None)
+    assert {"camera", "chase", "plan", "semantic", "depth"} <= set(display.frames[0].pictures)
+    assert not (tmp_path / "runs").exists()
+    placed = offered.request(start | {"driver": "person", "start": [1.0, 0.5, 90.0]})
+    assert placed.options.start_deg == "1.0000 0.5000 90.0000"
+    play(placed, tmp_path / "runs", drive)

@@ -157,3 +157,12 @@ def test_an_error_of_this_project_is_a_response() -> None:
 
     answer = anyio.run(or_404, draw)
     assert (answer.status_code, answer.body) == (404, b"House 'x.xml' is broken.")
+
+
+def test_the_list_names_the_segmentation_that_acted_and_not_the_default(tmp_path: Path) -> None:
+    names = {"a": None, "b": "rednet"}
+    for folder, name in names.items():
+        config = {"semantics": "rednet", "segmentation": {"name": name}, "files_sha256": {"weights": "0123456789"}}
+        write_run(tmp_path / folder, config=json.dumps(config).encode())
+    listed = {run["name"]: run["segmentation"] for run in Runs(tmp_path).as_json()}
+    assert listed == {"a": "none", "b": "rednet, shipped weights (01234567)"}

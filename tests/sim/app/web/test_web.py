@@ -400,7 +400,7 @@ def test_finished_runs_are_filtered_opened_and_compared(server: Server, browser:
     compared = wait_for(lambda: browser.run("return document.getElementById('comparison-tables').innerText"))
     assert "paired over 1 episodes" in compared
     assert "-100.0" in compared
-    assert not browser.run("return document.getElementById('no-replay').hidden")  # they share no video
+    wait_for(lambda: not browser.run("return document.getElementById('no-replay').hidden"))  # they share no video
     assert browser.console_errors() == []
 
 

@@ -14,9 +14,11 @@ import trimesh
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from sim.app import cli
+from sim.app.commands import episodes
 from sim.app.commands.importing import mesh as command
 from sim.app.commands.importing.folder import Made, Work, file_works, import_all
-from sim.core.errors import ConfigError, HouseError
+from sim.core.errors import ConfigError, EpisodeError, HouseError
 from sim.gl import mujoco
 from sim.homes.importers import mesh_house
 from sim.homes.importers.losses import Losses
@@ -326,3 +328,19 @@ def test_folders_without_meshes_of_their_own_are_searched(tmp_path: Path) -> Non
     assert find_files(tmp_path) == [tmp_path / "a/deep/flat.PLY", tmp_path / "b/home.glb"]
     (tmp_path / "own.obj").write_bytes(b"")
     assert find_files(tmp_path) == [tmp_path / "own.obj"]
+
+
+def test_a_home_without_a_goal_says_what_it_has_and_where_a_person_can_drive(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rules = tmp_path / "rules.json"
+    kinds = {"wall": "wall", "floor": "floor", "door": "door", "": "objects"}
+    rules.write_text(json.dumps({f"(?i){name}": kind for name, kind in kinds.items()}))
+    out = tmp_path / "out"
+    assert command.main(command.Args(path=write_glb(tmp_path), categories=rules, out=out, pictures=1)) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    there_is = "It has: wall, floor, objects"
+    assert f"flat has no object of a goal category. {there_is}" in printed
+    assert f"web --house {out / 'flat.xml'}" in printed
+    with pytest.raises(EpisodeError, match=there_is):
+        episodes.main(cli.parse(episodes.Args, ["--split", str(out)]))

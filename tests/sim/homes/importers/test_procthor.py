@@ -237,3 +237,31 @@ def test_all_samples_are_imported(tmp_path: Path) -> None:
     assert SAMPLES is not None
     for name in ("rooms_val.jsonl.gz", "house_train_1.json"):
         assert command.main(command.Args(path=SAMPLES / name, out=tmp_path, pictures=0)) == 0
+
+
+def older(house: dict[str, Any]) -> dict[str, Any]:
+    """Returns a house in the layout of ProcTHOR's schema 0.0.1."""
+    house = copy.deepcopy(house)
+    for hole in house["doors"] + house["windows"]:
+        low, high = hole.pop("holePolygon")
+        hole |= {"boundingBox": {"min": low, "max": high}, "assetOffset": {"x": 0.0, "y": 0.0, "z": 0.0}}
+    for part in house["rooms"]:
+        part["floorMaterial"] = "WoodGrain"
+    for part in house["walls"]:
+        part["material"] = "PureWhite"
+    return house
+
+
+def test_the_older_layout_of_procthor_gives_the_same_house(imported: Imported, tmp_path: Path) -> None:
+    made = import_house(source_of(older(small_house())), database(tmp_path), ProcthorConfig())
+    first, second = imported.spec.compile(), made.spec.compile()
+    assert np.array_equal(first.geom_pos, second.geom_pos)
+    assert np.array_equal(first.geom_size, second.geom_size)
+    assert {**made.report, "key": ""} == {**imported.report, "key": ""}
+
+
+def test_a_door_without_corners_is_named_with_both_layouts() -> None:
+    house = small_house()
+    del house["doors"][0]["holePolygon"]
+    with pytest.raises(HouseError, match=r"doors\[0\].*holePolygon.*boundingBox.*0\.0\.1"):
+        parse_house(source_of(house))

@@ -178,3 +178,39 @@ def test_any_fixtures_give_a_kitchen_or_one_line(
         fault = str(error)
     assert "\n" not in fault
     assert "kitchen.xml" in fault or not fault
+
+
+def placeholder(half_m: float, *, thin: bool = False) -> str:
+    """Returns a stove of 0.8 x 0.6 x 0.9 m, whose mesh is a cube with this half side, and its knob."""
+    knob = (
+        '<body name="stove_main_group_knob"><geom name="knob" type="box" size=".02 .02 .02" pos="0 -.32 .4" group="1" '
+        'contype="0" conaffinity="0"/><geom name="knob_main" type="box" size=".02 .02 .02" pos="0 -.32 .4" group="3"/>'
+        "</body>"
+    )
+    size = ".4 .04 .45" if thin else ".4 .3 .45"
+    return (
+        f'<body name="stove_main_group_main" pos="2.6 -1.5 .45"><geom name="block" type="box" size="{size}" group="3" '
+        f'rgba=".5 0 0 .5"/><geom name="mesh" type="box" size="{half_m} {half_m} {half_m}" group="1" contype="0" '
+        f'conaffinity="0"/>{knob}</body>'
+    )
+
+
+@pytest.mark.parametrize(
+    ("stove", "shown"), [(placeholder(0.18), True), (placeholder(0.45), False), (placeholder(0.03, thin=True), False)]
+)
+def test_a_fixture_whose_mesh_is_a_placeholder_shows_the_boxes_that_the_robot_touches(
+    stove: str, shown: bool, tmp_path: Path
+) -> None:
+    file = write_kitchen(tmp_path, fixtures=FIXTURES + stove)
+    assert command.main(command.Args(path=file, root=tmp_path, out=tmp_path / "out", pictures=0)) == 0
+    house, model = load(tmp_path / "out")
+    visible = rendered_geoms(model)
+    assert {name: bool(visible[model.geom(name).id]) for name in ("block", "mesh", "knob", "knob_main")} == {
+        "block": shown, "mesh": True, "knob": True, "knob_main": False
+    }  # fmt: skip
+    assert (model.geom("block").rgba[3] == 1.0) == shown
+    of_stove = [each for each in read_labels(model, rules=house.rules).instances if "stove" in each.name]
+    assert [each.category for each in of_stove] == ["appliances"]
+    assert (
+        "visible geoms fill little of 'stove_main_group_main'" in (tmp_path / "out" / "import.json").read_text()
+    ) == shown
