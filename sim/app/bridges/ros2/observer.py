@@ -122,10 +122,6 @@ class AgentNode:
             readings["goal"] = goal
         return max(complete), readings
 
-    def forget(self) -> None:
-        """Forgets all readings."""
-        self._readings.clear()
-
     def act(self, action: Action) -> None:
         """Publishes a discrete action, for a robot in stepped mode; waits for the robot if it is not known yet."""
         while self._action.get_subscription_count() == 0:
@@ -222,9 +218,7 @@ class AgentNode:
     def _announce(self, message: Any) -> None:
         content = json.loads(message.data)
         stamp = content.get("stamp", {"sec": 0, "nanosec": 0})
-        # The first observation of a goal may have the stamp of the last one before it: a STOP may take no time.
-        self.forget()
-        self.announced = Announced(
+        announced = Announced(
             content["run"],
             content["number"],
             content.get("goal_number", 0),
@@ -233,6 +227,9 @@ class AgentNode:
             stamp["sec"] * 10**9 + stamp["nanosec"],
             content.get("over", False),
         )
+        if announced.is_next_goal_of(self.announced):
+            self._readings.clear()  # a STOP may take no time: the stamp of the last observation may come again
+        self.announced = announced
 
     def _drive(self, message: Any) -> None:
         stamp, twist = _nanoseconds(message.header.stamp), message.twist.twist
