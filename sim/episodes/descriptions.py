@@ -23,6 +23,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import CameraModel
 from sim.core.wishes import MATERIALS, Beside, Place, Wish, parse_wish
 from sim.renderer.camera import Camera
+from sim.renderer.profiles import RenderProfile
 from sim.task.meaning import HouseObject
 from sim.task.objectnav import Task
 
@@ -96,7 +97,7 @@ class Descriptions:
         profile: rendering profile of the pictures.
     """
 
-    def __init__(self, task: Task, camera: CameraModel, profile: str = "good") -> None:
+    def __init__(self, task: Task, camera: CameraModel, profile: str | RenderProfile = "good") -> None:
         self._task, self._meaning = task, task.truth.meaning
         self._camera = Camera(task.world.model, task.world.labels, camera=camera, profile=profile)
         self._model = camera

@@ -37,6 +37,8 @@ COMMANDS_KEPT = 10_000
 """Number of velocities or actions that wait to be read."""
 ACKNOWLEDGED_S = 1.0
 """Longest time in which subscribers may confirm that an episode begins or ends."""
+ACKNOWLEDGED_STEPPED_S = 10.0
+"""The same in stepped mode, where an agent that learned of a goal after its observation would act for the last goal."""
 
 
 class RobotNode:
@@ -96,7 +98,8 @@ class RobotNode:
 
     def await_readers(self, topic: str) -> None:
         """Waits until all subscribers have the last message of a topic, for a short time at most."""
-        duration = importlib.import_module("rclpy.duration").Duration(seconds=ACKNOWLEDGED_S)
+        longest_s = ACKNOWLEDGED_STEPPED_S if self._stepped else ACKNOWLEDGED_S
+        duration = importlib.import_module("rclpy.duration").Duration(seconds=longest_s)
         self._publisher(topic).wait_for_all_acked(duration)
 
     def close(self) -> None:

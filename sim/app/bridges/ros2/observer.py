@@ -218,7 +218,7 @@ class AgentNode:
     def _announce(self, message: Any) -> None:
         content = json.loads(message.data)
         stamp = content.get("stamp", {"sec": 0, "nanosec": 0})
-        announced = Announced(
+        self.announced = Announced(
             content["run"],
             content["number"],
             content.get("goal_number", 0),
@@ -227,9 +227,6 @@ class AgentNode:
             stamp["sec"] * 10**9 + stamp["nanosec"],
             content.get("over", False),
         )
-        if announced.is_next_goal_of(self.announced):
-            self._readings.clear()  # a STOP may take no time: the stamp of the last observation may come again
-        self.announced = announced
 
     def _drive(self, message: Any) -> None:
         stamp, twist = _nanoseconds(message.header.stamp), message.twist.twist

@@ -35,6 +35,8 @@ SENSORS = ("rgb", "depth", "scan", "imu", "bumper", "odometry")
 PUBLISHED = tuple(name for name in TOPICS if name != "/cmd_vel")
 BETWEEN_EPISODES_S = 1.0
 """Simulated time between the last message of an episode and the first of the next one."""
+BETWEEN_GOALS_S = 0.1
+"""Simulated time between the last message for a goal of a chain and the first one for the next: their stamps differ."""
 CLOCK_S = 0.1
 """Interval at which `/clock` is repeated while simulated time stands still."""
 
@@ -133,6 +135,7 @@ class LiveRobot:
     def next_goal(self, goal: str) -> None:
         """Announces the next goal of a chain, before the first observation of it."""
         self._goal_number += 1
+        self._offset_s += BETWEEN_GOALS_S
         self.node.requests.stop_target = self.node.requests.stop_confidence = None
         self._announce(goal)
 
