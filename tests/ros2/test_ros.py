@@ -5,6 +5,7 @@ import math
 import os
 import subprocess
 import sys
+import threading
 import time
 from collections import defaultdict
 from collections.abc import Iterator
@@ -21,6 +22,7 @@ from rosbags.highlevel import AnyReader  # noqa: E402
 from rosbags.typesys import Stores, get_typestore  # noqa: E402
 
 from sim.app.bridges.ros2.loading import has_frames  # noqa: E402
+from sim.app.bridges.ros2.node import RobotNode  # noqa: E402
 from sim.app.viewers.ros.topics import COLOUR, DEPTH, TOPICS  # noqa: E402
 from sim.core.geometry.pose import Pose  # noqa: E402
 from sim.core.goals import GoalSpec  # noqa: E402
@@ -331,6 +333,36 @@ def test_each_goal_of_a_chain_is_announced_and_the_agent_keeps_its_memory(
     assert {name: value for name, value in line.items() if name not in other} == {
         name: value for name, value in expected.items() if name not in other
     }
+
+
+def test_place_and_confidence_of_a_stop_are_read_before_its_action(monkeypatch: pytest.MonkeyPatch) -> None:
+    from std_msgs.msg import Float64, UInt8
+    from std_srvs.srv import SetBool
+
+    domain = next(_domains)
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    node, peer = RobotNode(stepped=True), Peer(domain)
+    try:
+        entered, gate, read = threading.Event(), threading.Event(), list[float | None]()
+        monkeypatch.setattr(node.requests, "pause", lambda _: entered.set() or gate.wait(20.0))
+        monkeypatch.setattr(node.requests, "act", lambda _: read.append(node.requests.stop_confidence))
+        kept = rclpy.qos.QoSProfile(depth=5)
+        confidence = peer.node.create_publisher(Float64, "/stop_confidence", kept)
+        action = peer.node.create_publisher(UInt8, "/action", kept)
+        client = peer.node.create_client(SetBool, "/stubborn/pause")
+        peer.spin_until(lambda: client.service_is_ready() and node.drivers() == 1)
+        peer.spin_until(lambda: confidence.get_subscription_count() and action.get_subscription_count())
+        client.call_async(SetBool.Request())
+        peer.spin_until(entered.is_set)  # the robot's thread is busy, so that both messages wait
+        for publisher, message in ((confidence, Float64(data=0.5)), (action, UInt8(data=0))):
+            publisher.publish(message)
+            assert publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=20.0))
+        gate.set()
+        peer.spin_until(lambda: bool(read), within_s=20.0)
+        assert read == [0.5]
+    finally:
+        peer.close()
+        node.close()
 
 
 def test_rough_peers_stop_nothing_and_no_command_is_lost(robots: Robots, peer: Peer) -> None:

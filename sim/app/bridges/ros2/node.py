@@ -158,12 +158,13 @@ class RobotNode:
         def sure(message: Any) -> None:
             requests.stop_confidence = message.data if 0.0 <= message.data <= 1.0 else None
 
+        # Place and confidence first: where they and the action of their STOP wait together, they are read first.
         for kind, topic, call in (
+            ("geometry_msgs/PointStamped", "/stop_target", aimed),
+            ("std_msgs/Float64", "/stop_confidence", sure),
             ("geometry_msgs/Twist", "/cmd_vel", moved),
             ("geometry_msgs/TwistStamped", "/cmd_vel_stamped", lambda message: moved(message.twist)),
             ("std_msgs/UInt8", "/action", lambda message: requests.act(message.data)),
-            ("geometry_msgs/PointStamped", "/stop_target", aimed),
-            ("std_msgs/Float64", "/stop_confidence", sure),
         ):
             self._subscribe(kind, topic, call)
         services = importlib.import_module("std_srvs.srv")
