@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.core.colours import COLOUR_NAMES, ColourName, colour_numbers
 from sim.core.errors import ConfigError, EpisodeError
@@ -102,6 +103,8 @@ class Descriptions:
         self._camera = Camera(task.world.model, task.world.labels, camera=camera, profile=profile)
         self._model = camera
         self._seen_colours: dict[str, ColourName | None] = {}
+        self._places: dict[float, NDArray[np.float64]] = {}
+        """Places where the robot may stand, (n, 2) metres, by floor."""
 
     def close(self) -> None:
         """Frees the renderer."""
@@ -110,14 +113,22 @@ class Descriptions:
     def of(self, item: HouseObject, rng: np.random.Generator) -> Iterator[Description]:
         """Yields descriptions of an object, the shortest first, each with random words of several that say the same."""
         base = Wish(item.name, frozenset((item.name,)), item.name)
-        conditions = self._conditions(item, base)
-        for level in (1, 2, 3):
+        conditions = list[Wish]()
+        for condition in self._conditions(item, base):  # later ones take longer, and often the first ones suffice
+            conditions.append(condition)
+            yield from self._proved(_joined(base, (condition,)), 1, item, rng)
+        for level in (2, 3):
             for chosen in itertools.combinations(conditions, level):
-                wish = _joined(base, chosen)
-                if wish is not None and self.proves(wish, item):
-                    text = _text(wish, rng)
-                    if self._reads_as(text, item):
-                        yield Description(text, level, item.instance.name)
+                yield from self._proved(_joined(base, chosen), level, item, rng)
+
+    def _proved(
+        self, wish: Wish | None, level: int, item: HouseObject, rng: np.random.Generator
+    ) -> Iterator[Description]:
+        """Yields the description of an object by a wish, if there is a wish and it is proved."""
+        if wish is not None and self.proves(wish, item):
+            text = _text(wish, rng)
+            if self._reads_as(text, item):
+                yield Description(text, level, item.instance.name)
 
     def proves(self, wish: Wish, item: HouseObject) -> bool:
         """Returns whether an object satisfies a wish clearly, and every other one clearly does not."""
@@ -144,25 +155,24 @@ class Descriptions:
             self._seen_colours[name] = self._measured_colour(item)
         return self._seen_colours[name]
 
-    def _conditions(self, item: HouseObject, base: Wish) -> list[Wish]:
-        """Returns wishes with one condition each that an object satisfies."""
-        conditions = []
+    def _conditions(self, item: HouseObject, base: Wish) -> Iterator[Wish]:
+        """Yields wishes with one condition each that an object satisfies."""
         colour, material = item.facts.colour, item.facts.material
         said = colour is not None and item.name not in _UNCOLOURED and item.name not in _OF_COURSE.get(colour, ())
         if said and self.seen_colour(item) == colour:
-            conditions.append(replace(base, colour=colour))
+            yield replace(base, colour=colour)
         if item.room_kind and item.name not in _NAMED_BY_ROOM:
-            conditions.append(replace(base, rooms=(item.room_kind,)))
+            yield replace(base, rooms=(item.room_kind,))
         if material in _SAID_MATERIALS and item.name not in _OF_COURSE.get(material, ()):
-            conditions.append(replace(base, material=material))
-        conditions += [replace(base, size=size) for size in ("largest", "smallest")]
+            yield replace(base, material=material)
+        yield replace(base, size="largest")
+        yield replace(base, size="smallest")
         for name in sorted(_LANDMARKS - {item.name}):
             for place in ("next to", "on", "under"):
                 beside = Beside(place, frozenset((name,)), name)
                 if self._is_clearly_at(item, beside) and not (place == "next to" and item.name == "place setting"):
-                    conditions.append(replace(base, beside=(beside,)))
+                    yield replace(base, beside=(beside,))
                     break
-        return conditions
 
     def _clearly_fits(self, wish: Wish, item: HouseObject) -> bool:
         return (
@@ -221,8 +231,9 @@ class Descriptions:
         x_m, y_m = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
         space = self._task.truth.space(footprint.floor_z_m)
         region = self._task.truth.region(item.instance.name, footprint.floor_z_m)
-        cells = np.argwhere(space.largest_part())
-        places = space.frame.to_metres(cells)
+        if footprint.floor_z_m not in self._places:
+            self._places[footprint.floor_z_m] = space.frame.to_metres(np.argwhere(space.largest_part()))
+        places = self._places[footprint.floor_z_m]
         away = np.hypot(places[:, 0] - x_m, places[:, 1] - y_m)
         for least, most in ((1.3, 2.2), (0.7, 3.0)):
             near = places[(away >= least) & (away <= most)]

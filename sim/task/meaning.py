@@ -6,8 +6,8 @@ places are computed from the geometry. An object without a name has the name of 
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -147,8 +147,7 @@ class Meaning:
 
     def named(self, names: Iterable[str]) -> tuple[HouseObject, ...]:
         """Returns the objects with one of some names that a robot can be sent to."""
-        wanted = frozenset(names)
-        return tuple(item for item in self.objects if item.name in wanted and item.is_goal)
+        return tuple(item for item in self._of_names(names) if item.is_goal)
 
     def gap_m(self, item: HouseObject, names: frozenset[str]) -> float:
         """Returns the gap in plan between an object and the nearest other one with one of some names; inf: none.
@@ -179,6 +178,19 @@ class Meaning:
     def _house(self) -> str:
         return f"House '{self._world.house.name}'"
 
+    @cached_property
+    def _by_name(self) -> Mapping[str, Sequence[tuple[int, HouseObject]]]:
+        """The objects by name, with their places among all objects."""
+        objects = defaultdict[str, list[tuple[int, HouseObject]]](list)
+        for place, item in enumerate(self.objects):
+            objects[item.name].append((place, item))
+        return objects
+
+    def _of_names(self, names: Iterable[str]) -> list[HouseObject]:
+        """Returns the objects with one of some names, in the order of the house."""
+        by_name = self._by_name
+        return [item for _, item in sorted(pair for name in set(names) for pair in by_name.get(name, ()))]
+
     def _fits(self, item: HouseObject, wish: Wish) -> bool:
         return (
             wish.colour in (None, item.facts.colour)
@@ -190,9 +202,8 @@ class Meaning:
     def _others(self, item: HouseObject, names: frozenset[str]) -> list[HouseObject]:
         return [
             other
-            for other in self.objects
+            for other in self._of_names(names)
             if other is not item
-            and other.name in names
             and other.outline is not None
             and (other.room == item.room or other.instance.category in NO_OBJECTS)
             and abs(other.footprint.floor_z_m - item.footprint.floor_z_m) < 1.0

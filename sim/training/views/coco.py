@@ -18,6 +18,8 @@ from sim.houses.labels import Instance
 
 STUFF: tuple[str, ...] = ("void", "wall", "floor", "ceiling")
 """Categories that are surfaces and not objects: they have pixels in the image of instances, but no annotation."""
+DESCRIBED_SHARE = 0.01
+"""Share of the pixels from which an object is described."""
 CATEGORIES: tuple[dict[str, object], ...] = tuple(
     {"id": i, "name": name} for i, name in enumerate(MPCAT40) if name not in STUFF
 )
@@ -47,8 +49,8 @@ def annotate(
 
     Returns:
         For each object `id` (its number), `name`, `category_id` (mpcat40), `bbox` (x, y, width and height in pixels),
-        `area` (visible pixels), `iscrowd` 0 and `segmentation`, a run-length encoded mask; `style` and `description`
-        where they are known.
+        `area` (visible pixels), `iscrowd` 0 and `segmentation`, a run-length encoded mask; `style` and, of an object
+        with `DESCRIBED_SHARE` of the pixels, `description` where they are known.
     """
     annotations = []
     for number in np.unique(instance_ids[instance_ids > 0]).tolist():
@@ -56,14 +58,15 @@ def annotate(
         if instance.category in STUFF:
             continue
         mask = instance_ids == number
-        text = describe(instance.name) if describe else None
+        area = int(mask.sum())
+        text = describe(instance.name) if describe and area >= DESCRIBED_SHARE * mask.size else None
         annotations.append(
             {
                 "id": number,
                 "name": instance.name,
                 "category_id": MPCAT40_ID[instance.category],
                 "bbox": bounding_box(mask),
-                "area": int(mask.sum()),
+                "area": area,
                 "iscrowd": 0,
                 "segmentation": encode_mask(mask),
             }

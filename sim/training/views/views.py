@@ -37,6 +37,8 @@ EXTRAS: tuple[str, ...] = ("instances", "normals", "poses")
 """Members of a view in addition to colour, depth and categories."""
 _COLOUR_CAMERA = CameraModel(width_px=160, height_px=120)
 """Camera of the pictures in which the colours of descriptions are measured; small, because they cost the most time."""
+_VIEWS_PER_OBJECT = 12
+"""Views for each object that is described: the proof of a description takes about as long as half a view."""
 _STRUCTURE = np.isin(np.arange(256), [MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling")])
 
 
@@ -104,7 +106,7 @@ def sample_views(
         poses = sequence_poses(space, cells, rng, sequence, name)
     else:
         poses = mixed_poses(space, cells, rng)
-    describe = _Describer(scene) if "instances" in extras else None
+    describe = _Describer(scene, -(-count // _VIEWS_PER_OBJECT)) if "instances" in extras else None
     labels = ("depth", "semantic", *(("geom",) if aim or {"instances", "normals"} & set(extras) else ()))
     taken = tries = 0
     while taken < count:
@@ -128,22 +130,26 @@ def sample_views(
 class _Describer:
     """Describes objects of a house by texts that fit no other one; each object is described once, when it is seen.
 
-    It is closed when it is collected, too, as its camera is.
+    Args:
+        scene: the house.
+        most: number of objects that are described, the first ones that are asked for.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, most: int) -> None:
+        self._left = most
         self._descriptions = Descriptions(scene.task, _COLOUR_CAMERA, scene.camera.profile)
         self._objects = {item.instance.name: item for item in scene.task.truth.meaning.objects if item.facts.name}
         self._texts: dict[str, str | None] = {}
 
     def __call__(self, name: str) -> str | None:
         """Returns the shortest text that fits the instance with a name, always the same; None: none is proved."""
-        if name not in self._texts:
-            item = self._objects.get(name)
-            rng = np.random.default_rng(zlib.crc32(name.encode()))
-            described = None if item is None or not item.is_goal else next(self._descriptions.of(item, rng), None)
+        if self._left and name not in self._texts:
+            item, rng = self._objects.get(name), np.random.default_rng(zlib.crc32(name.encode()))
+            is_goal = item is not None and item.is_goal
+            described = next(self._descriptions.of(item, rng), None) if is_goal else None
             self._texts[name] = None if described is None else described.text
-        return self._texts[name]
+            self._left -= is_goal
+        return self._texts.get(name)
 
     def close(self) -> None:
         """Frees the renderer."""

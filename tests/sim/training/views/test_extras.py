@@ -76,13 +76,13 @@ def test_objects_are_described_by_texts_that_fit_no_other_one() -> None:
     house = with_box(house, "table_00", centre_m=(1.5, 0.6, 0.4), half_m=(0.3, 0.3, 0.4))
     stated = {"chair_00": "name: armchair", "chair_01": "name: armchair", "table_00": "name: desk"}
     scene = Scene(with_facts(house, **stated), robot=RobotConfig(), camera=SMALL, profile="fast")
-    rich, plain = (views_of(scene, count=12, extras=extras) for extras in (("instances",), ()))
+    rich, plain = (views_of(scene, count=36, extras=extras) for extras in (("instances",), ()))
     truth = scene.task.truth
     texts = {
         (annotation["name"], annotation.get("description"))
         for view in rich
         for annotation in view.annotations or ()
-        if annotation["name"] in places or annotation["name"] == "table_00"
+        if annotation["area"] >= 0.01 * 160 * 120 and annotation["name"] in {*places, "table_00"}
     }
     found = {text: [instance.name for instance in truth.instances(text)] for _, text in texts if text}
     assert dict(texts).keys() == {"chair_00", "chair_01", "sofa_00", "table_00"}
@@ -93,6 +93,9 @@ def test_objects_are_described_by_texts_that_fit_no_other_one() -> None:
     assert dict(texts)["sofa_00"] is None  # the house file does not state its name
     for one, other in zip(rich, plain, strict=True):
         np.testing.assert_array_equal(one.rgb, other.rgb)
+    few = views_of(scene, count=12, extras=("instances",))  # which is enough for one object
+    described = {note["name"] for view in few for note in view.annotations or () if "description" in note}
+    assert len(described) <= 1 < len([text for _, text in texts if text])
     scene.close()
 
 
