@@ -41,11 +41,15 @@ _SIZE_RATIO = 1.25
 """Sizes that differ by this factor are clearly different."""
 _LEAST_PIXELS, _LEAST_SHARE = 400, 0.4
 """Pixels of an object from which its colour is measured, and share of them that its colour must have."""
+_ROUND, _NOT_ROUND = 0.95, 0.8
+"""Roundness (`HouseObject.roundness`) from which an object is clearly round, and up to which it is clearly not."""
+_SHAPED = frozenset({"coffee table", "dining table", "side table", "stool", "pouf", "ottoman", "floor cushion"})
+"""Objects of which it is said that they are round."""
 _LANDMARKS = frozenset(
     {
         "bed", "four-poster bed", "sofa", "corner sofa", "desk", "dining table", "coffee table", "television", "fridge",
         "cooker", "wardrobe", "toilet", "bathtub", "shower", "washbasin", "fireplace", "bookcase", "window",
-        "washing machine", "chest of drawers", "nightstand", "armchair", "kitchen sink", "sideboard", "mirror",
+        "washing machine", "chest of drawers", "nightstand", "armchair", "kitchen sink", "sideboard", "mirror", "rug",
     }
 )  # fmt: skip
 """Objects that descriptions name as places."""
@@ -165,10 +169,12 @@ class Descriptions:
             yield replace(base, rooms=(item.room_kind,))
         if material in _SAID_MATERIALS and item.name not in _OF_COURSE.get(material, ()):
             yield replace(base, material=material)
+        if item.name in _SHAPED and item.roundness >= _ROUND:
+            yield replace(base, shape="round")
         yield replace(base, size="largest")
         yield replace(base, size="smallest")
         for name in sorted(_LANDMARKS - {item.name}):
-            for place in ("next to", "on", "under"):
+            for place in ("on",) if name == "rug" else ("next to", "on", "under"):
                 beside = Beside(place, frozenset((name,)), name)
                 if self._is_clearly_at(item, beside) and not (place == "next to" and item.name == "place setting"):
                     yield replace(base, beside=(beside,))
@@ -179,6 +185,7 @@ class Descriptions:
             (wish.colour is None or (item.facts.colour == wish.colour == self.seen_colour(item)))
             and wish.material in ("", item.facts.material)
             and (not wish.rooms or item.room_kind in wish.rooms)
+            and (wish.shape is None or item.roundness >= _ROUND)
             and all(self._is_clearly_at(item, beside) for beside in wish.beside)
         )
 
@@ -188,6 +195,8 @@ class Descriptions:
         if wish.material and item.facts.material is not None and item.facts.material != wish.material:
             return True
         if wish.rooms and item.room_kind and item.room_kind not in wish.rooms:
+            return True
+        if wish.shape is not None and item.roundness <= _NOT_ROUND:
             return True
         return any(self._is_clearly_not_at(item, beside) for beside in wish.beside)
 
@@ -200,7 +209,15 @@ class Descriptions:
     def _is_clearly_at(self, item: HouseObject, beside: Beside) -> bool:
         if beside.place == "next to":
             return 0.0 < self._meaning.gap_m(item, beside.names) <= _NEAR_M
+        if beside.names == {"rug"} and not self._is_middle_on_rug(item):
+            return False  # one leg on it is not enough
         return self._meaning.is_at(item, beside)
+
+    def _is_middle_on_rug(self, item: HouseObject) -> bool:
+        x0, y0, x1, y1 = item.footprint.bounds_m
+        middle = np.array([[0.5 * (x0 + x1), 0.5 * (y0 + y1)]])
+        rugs = (other.outline for other in self._meaning.objects if other.name == "rug")
+        return any(rug is not None and bool(rug.contains(middle).all()) for rug in rugs)
 
     def _is_clearly_not_at(self, item: HouseObject, beside: Beside) -> bool:
         return self._meaning.gap_m(item, beside.names) >= (_FAR_M if beside.place == "next to" else _NEAR_M)
@@ -253,13 +270,14 @@ def _joined(base: Wish, chosen: Sequence[Wish]) -> Wish | None:
     colour = [wish.colour for wish in chosen if wish.colour]
     material = [wish.material for wish in chosen if wish.material]
     size = [wish.size for wish in chosen if wish.size]
+    shape = [wish.shape for wish in chosen if wish.shape]
     rooms = [wish.rooms for wish in chosen if wish.rooms]
     beside = [wish.beside for wish in chosen if wish.beside]
     if max(map(len, (colour, material, size, rooms, beside))) > 1:
         return None
     return replace(
         base, colour=next(iter(colour), None), material=next(iter(material), ""), size=next(iter(size), None),
-        rooms=next(iter(rooms), ()), beside=next(iter(beside), ()),
+        rooms=next(iter(rooms), ()), beside=next(iter(beside), ()), shape=next(iter(shape), None),
     )  # fmt: skip
 
 
@@ -279,6 +297,8 @@ def _text(wish: Wish, rng: np.random.Generator) -> str:
     words = [one(_BEGINNINGS) + "the"]
     if wish.size is not None:
         words.append(one(_SIZE_WORDS[wish.size]))
+    if wish.shape is not None:
+        words.append(wish.shape)
     if wish.colour is not None:
         words.append(wish.colour)
     if wish.material:

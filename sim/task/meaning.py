@@ -10,6 +10,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 
+import cv2
 import numpy as np
 
 from sim.core.errors import EpisodeError
@@ -23,6 +24,8 @@ from sim.world.world import World
 
 NEXT_TO_M = 0.6
 """Objects with at most this gap in plan are next to each other."""
+ROUND = 0.9
+"""Roundness from which an object is round."""
 _ON_M = 0.08
 """Largest gap between the top of an object and the bottom of one that lies on it."""
 _OVERHEAD_M = 1.8
@@ -87,6 +90,13 @@ class HouseObject:
         x0, y0, x1, y1 = self.footprint.bounds_m
         z0, z1 = self.footprint.z_m
         return float(np.cbrt(max(x1 - x0, 0.05) * max(y1 - y0, 0.05) * max(z1 - z0, 0.05)))
+
+    @cached_property
+    def roundness(self) -> float:
+        """The area of the hull of its outline from above, as a share of the smallest circle around it; 1: a circle."""
+        hull = cv2.convexHull(self.footprint.boundary_points_m.astype(np.float32))
+        _, radius_m = cv2.minEnclosingCircle(hull)
+        return cv2.contourArea(hull) / (np.pi * max(radius_m, 1e-6) ** 2)
 
     @cached_property
     def is_goal(self) -> bool:
@@ -196,6 +206,7 @@ class Meaning:
             wish.colour in (None, item.facts.colour)
             and wish.material in ("", item.facts.material)
             and (not wish.rooms or item.room_kind in wish.rooms)
+            and (wish.shape is None or item.roundness >= ROUND)
             and all(self.is_at(item, beside) for beside in wish.beside)
         )
 

@@ -47,7 +47,8 @@ _COLOURS = ("white", "grey", "black", "beige", "brown", "red", "orange", "yellow
 _ROOMS = {"laundry room": ("laundry",), "hallway": ("hallway", "stair_hall"), "bedroom": ("bedroom", "studio"),
           "living room": ("living_room", "studio")}  # fmt: skip
 _GRAMMAR = (
-    r"^(?:find |go to |look for )?the (?:(?P<size>largest|biggest|smallest) )?(?:(?P<colour>{colours}) )?"
+    r"^(?:find |go to |look for )?the (?:(?P<size>largest|biggest|smallest) )?(?:(?P<shape>round) )?"
+    r"(?:(?P<colour>{colours}) )?"
     r"(?:(?P<material>wooden|{materials}) )?(?P<name>{names})"
     r"(?: (?P<place>next to|beside|near|on|under) the (?P<other>{names}|window))?(?: in the (?P<room>[a-z ]+))?$"
 )
@@ -191,6 +192,8 @@ class _Judge:
         if said["material"]:
             material = "wood" if said["material"] == "wooden" else said["material"]
             results.append(seen.material == material if seen.material else None)
+        if said["shape"]:
+            results.append(_is_round(seen.plan))
         if said["room"]:
             results.append(seen.room[1] in _ROOMS.get(said["room"], (said["room"].replace(" ", "_"),)))
         if said["place"]:
@@ -316,6 +319,13 @@ class _Judge:
                 renderer.update_scene(self._data, camera)
                 colours.update(_rough_colours(renderer.render()[mask]))
         return shown, colours.most_common(1)[0][0] if colours else ""
+
+
+def _is_round(plan: np.ndarray) -> bool:
+    """Returns whether an outline fills the disc around its middle that just holds it, but for coarse pixels."""
+    rows, cols = np.nonzero(plan)
+    radius = np.hypot(rows - rows.mean(), cols - cols.mean()).max() + 0.5
+    return len(rows) >= 0.88 * np.pi * radius**2
 
 
 def _holds(box: np.ndarray, xy: np.ndarray) -> bool:
