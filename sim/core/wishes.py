@@ -180,7 +180,7 @@ def _noun_phrase(text: str, phrase: str, beside: tuple[Beside, ...]) -> Wish:
         size, phrase = _SIZES[match[1]], normal_form(match[3])
         count = None if match[2] is None else _NUMBERS.get(match[2]) or int(match[2])
     *adjectives, last = phrase.split() or [""]
-    shape = next((_SHAPES[word] for word in adjectives if word in _SHAPES), None)
+    shape: Shape | None = next((_SHAPES[word] for word in adjectives if word in _SHAPES), None)
     # Before the compounds are read: a "round table" is also a conference.
     phrase = " ".join([word for word in adjectives if word not in _SHAPES] + [last])
     found = vocabulary().find(phrase)

@@ -200,9 +200,12 @@ def test_goat_subtask_goal_shows_the_present_task_of_goat_bench(tmp_path: Path) 
     cache = str(tmp_path / "goals.npz")
     assert [vector.tolist() for vector in seen("GoatGoalSensor", cache)] == [[1, 0], [2, 0], [3, 0], [0, 0]]
     assert [vector.tolist() for vector in seen("ClipObjectGoalSensor", cache)] == [[1, 0], [0, 0], [0, 0], [0, 0]]
-    (tmp_path / "bad.npz").write_bytes(b"no zip")
-    with pytest.raises(ConfigError, match="cannot be read as"):
-        seen("GoatGoalSensor", str(tmp_path / "bad.npz"))
+    for broken in (b"no zip", (tmp_path / "goals.npz").read_bytes()[:200]):
+        (tmp_path / "bad.npz").write_bytes(broken)
+        with pytest.raises(ConfigError, match="cannot be read as"):
+            seen("GoatGoalSensor", str(tmp_path / "bad.npz"))
+    with pytest.raises(ConfigError, match="missing"):
+        seen("GoatGoalSensor", str(tmp_path / "missing.npz"))
 
 
 def test_the_top_down_map_shows_rooms_and_the_path() -> None:

@@ -44,7 +44,7 @@ class Remembering(Witness):
 
     def act(self, observation: Observation) -> Action:
         super().act(observation)
-        self._sum = zlib.crc32(observation["goal"].encode(), self._sum)
+        self._sum = zlib.crc32(str(observation["goal"]).encode(), self._sum)
         return Action.STOP if self._steps == 2 else Action.TURN_LEFT
 
 

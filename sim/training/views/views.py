@@ -145,10 +145,11 @@ class _Describer:
         """Returns the shortest text that fits the instance with a name, always the same; None: none is proved."""
         if self._left and name not in self._texts:
             item, rng = self._objects.get(name), np.random.default_rng(zlib.crc32(name.encode()))
-            is_goal = item is not None and item.is_goal
-            described = next(self._descriptions.of(item, rng), None) if is_goal else None
-            self._texts[name] = None if described is None else described.text
-            self._left -= is_goal
+            self._texts[name] = None
+            if item is not None and item.is_goal:
+                described = next(self._descriptions.of(item, rng), None)
+                self._texts[name] = None if described is None else described.text
+                self._left -= 1
         return self._texts.get(name)
 
     def close(self) -> None:

@@ -14,6 +14,8 @@ observation is the text; it is "" for a picture, and without a goal.
 
 from __future__ import annotations
 
+import zipfile
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +30,7 @@ from hydra.core.config_store import ConfigStore
 from numpy.typing import NDArray
 
 from sim.core.errors import ConfigError
+from sim.core.reading import open_plain
 
 
 @dataclass
@@ -133,9 +136,9 @@ def read_vectors(file: Path) -> Mapping[str, NDArray[np.float32]]:
         ConfigError: the file cannot be read, is empty, or its vectors have different lengths.
     """
     try:
-        with np.load(file, allow_pickle=False) as content:
+        with open_plain(file, what="Cache of goals") as stream, np.load(stream, allow_pickle=False) as content:
             vectors = {key: np.asarray(content[key], np.float32) for key in content.files}
-    except (OSError, ValueError, AttributeError) as error:
+    except (OSError, EOFError, ValueError, AttributeError, TypeError, zipfile.BadZipFile, zlib.error) as error:
         raise ConfigError(f"The cache '{file}' cannot be read as .npz: {error}.") from None
     shapes = {vector.shape for vector in vectors.values()}
     if len(shapes) != 1 or len(next(iter(shapes))) != 1:
