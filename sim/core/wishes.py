@@ -19,6 +19,7 @@ from sim.core.reading import printable
 from sim.core.vocabulary import normal_form, vocabulary
 
 Size = Literal["largest", "smallest"]
+Shape = Literal["round"]
 Place = Literal["next to", "on", "under"]
 
 _COLOURS: Mapping[str, ColourName] = MappingProxyType(
@@ -52,6 +53,7 @@ _SIZES: Mapping[str, Size] = MappingProxyType(
     {word: "largest" for word in ("largest", "biggest", "larger", "bigger")}
     | {word: "smallest" for word in ("smallest", "smaller")}
 )  # type: ignore[assignment]
+_SHAPES: Mapping[str, Shape] = MappingProxyType({"round": "round", "circular": "round"})
 _PLACES: Mapping[str, Place] = MappingProxyType(
     {word: "next to" for word in ("next to", "beside", "near", "by", "close to", "at")}
     | {word: "on" for word in ("on top of", "on")}
@@ -105,6 +107,8 @@ class Wish:
     rooms: tuple[str, ...] = ()
     """Kinds of rooms of which the object is in one."""
     beside: tuple[Beside, ...] = ()
+    shape: Shape | None = None
+    """The outline of the object from above."""
 
     @property
     def categories(self) -> tuple[str, ...]:
@@ -114,7 +118,8 @@ class Wish:
     @property
     def is_plain(self) -> bool:
         """True: only the names count."""
-        return not (self.colour or self.material or self.size or self.count or self.rooms or self.beside)
+        conditions = self.colour, self.material, self.size, self.count, self.rooms, self.beside, self.shape
+        return not any(conditions)
 
 
 class WishError(ConfigError):
@@ -174,6 +179,10 @@ def _noun_phrase(text: str, phrase: str, beside: tuple[Beside, ...]) -> Wish:
     if (match := _OF_N.match(phrase)) and match[1] in _SIZES:
         size, phrase = _SIZES[match[1]], normal_form(match[3])
         count = None if match[2] is None else _NUMBERS.get(match[2]) or int(match[2])
+    *adjectives, last = phrase.split() or [""]
+    shape: Shape | None = next((_SHAPES[word] for word in adjectives if word in _SHAPES), None)
+    # Before the compounds are read: a "round table" is also a conference.
+    phrase = " ".join([word for word in adjectives if word not in _SHAPES] + [last])
     found = vocabulary().find(phrase)
     if found is None:
         raise _unknown(phrase)
@@ -189,15 +198,15 @@ def _noun_phrase(text: str, phrase: str, beside: tuple[Beside, ...]) -> Wish:
             rooms = ROOMS[word]
         elif word not in ("the", "and"):
             raise _unknown(word, before=found.word)
-    return Wish(normal_form(text), found.names, found.word, colour, material, size, count, rooms, beside)
+    return Wish(normal_form(text), found.names, found.word, colour, material, size, count, rooms, beside, shape)
 
 
 def _unknown(word: str, before: str = "") -> WishError:
     if before:
-        hint = did_you_mean(word, [*_COLOURS, *MATERIALS, *_SIZES, *ROOMS])
+        hint = did_you_mean(word, [*_COLOURS, *MATERIALS, *_SIZES, *_SHAPES, *ROOMS])
         return WishError(
             f"The word '{word}' before '{before}' is not known.{hint} Known are colours "
-            f"({', '.join(get_args(ColourName))}), materials, 'largest' and 'smallest', and rooms."
+            f"({', '.join(get_args(ColourName))}), materials, 'round', 'largest' and 'smallest', and rooms."
         )
     objects = [known for known, (relation, _) in vocabulary().words.items() if relation != "other"]
     return WishError(f"No object is known as '{word}'.{did_you_mean(word, objects)}")

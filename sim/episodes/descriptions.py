@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.core.colours import COLOUR_NAMES, ColourName, colour_numbers
 from sim.core.errors import ConfigError, EpisodeError
@@ -23,6 +24,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import CameraModel
 from sim.core.wishes import MATERIALS, Beside, Place, Wish, parse_wish
 from sim.renderer.camera import Camera
+from sim.renderer.profiles import RenderProfile
 from sim.task.meaning import HouseObject
 from sim.task.objectnav import Task
 
@@ -39,11 +41,15 @@ _SIZE_RATIO = 1.25
 """Sizes that differ by this factor are clearly different."""
 _LEAST_PIXELS, _LEAST_SHARE = 400, 0.4
 """Pixels of an object from which its colour is measured, and share of them that its colour must have."""
+_ROUND, _NOT_ROUND = 0.95, 0.8
+"""Roundness (`HouseObject.roundness`) from which an object is clearly round, and up to which it is clearly not."""
+_SHAPED = frozenset({"coffee table", "dining table", "side table", "stool", "pouf", "ottoman", "floor cushion"})
+"""Objects of which it is said that they are round."""
 _LANDMARKS = frozenset(
     {
         "bed", "four-poster bed", "sofa", "corner sofa", "desk", "dining table", "coffee table", "television", "fridge",
         "cooker", "wardrobe", "toilet", "bathtub", "shower", "washbasin", "fireplace", "bookcase", "window",
-        "washing machine", "chest of drawers", "nightstand", "armchair", "kitchen sink", "sideboard", "mirror",
+        "washing machine", "chest of drawers", "nightstand", "armchair", "kitchen sink", "sideboard", "mirror", "rug",
     }
 )  # fmt: skip
 """Objects that descriptions name as places."""
@@ -96,11 +102,13 @@ class Descriptions:
         profile: rendering profile of the pictures.
     """
 
-    def __init__(self, task: Task, camera: CameraModel, profile: str = "good") -> None:
+    def __init__(self, task: Task, camera: CameraModel, profile: str | RenderProfile = "good") -> None:
         self._task, self._meaning = task, task.truth.meaning
         self._camera = Camera(task.world.model, task.world.labels, camera=camera, profile=profile)
         self._model = camera
         self._seen_colours: dict[str, ColourName | None] = {}
+        self._places: dict[float, NDArray[np.float64]] = {}
+        """Places where the robot may stand, (n, 2) metres, by floor."""
 
     def close(self) -> None:
         """Frees the renderer."""
@@ -109,14 +117,22 @@ class Descriptions:
     def of(self, item: HouseObject, rng: np.random.Generator) -> Iterator[Description]:
         """Yields descriptions of an object, the shortest first, each with random words of several that say the same."""
         base = Wish(item.name, frozenset((item.name,)), item.name)
-        conditions = self._conditions(item, base)
-        for level in (1, 2, 3):
+        conditions = list[Wish]()
+        for condition in self._conditions(item, base):  # later ones take longer, and often the first ones suffice
+            conditions.append(condition)
+            yield from self._proved(_joined(base, (condition,)), 1, item, rng)
+        for level in (2, 3):
             for chosen in itertools.combinations(conditions, level):
-                wish = _joined(base, chosen)
-                if wish is not None and self.proves(wish, item):
-                    text = _text(wish, rng)
-                    if self._reads_as(text, item):
-                        yield Description(text, level, item.instance.name)
+                yield from self._proved(_joined(base, chosen), level, item, rng)
+
+    def _proved(
+        self, wish: Wish | None, level: int, item: HouseObject, rng: np.random.Generator
+    ) -> Iterator[Description]:
+        """Yields the description of an object by a wish, if there is a wish and it is proved."""
+        if wish is not None and self.proves(wish, item):
+            text = _text(wish, rng)
+            if self._reads_as(text, item):
+                yield Description(text, level, item.instance.name)
 
     def proves(self, wish: Wish, item: HouseObject) -> bool:
         """Returns whether an object satisfies a wish clearly, and every other one clearly does not."""
@@ -143,31 +159,33 @@ class Descriptions:
             self._seen_colours[name] = self._measured_colour(item)
         return self._seen_colours[name]
 
-    def _conditions(self, item: HouseObject, base: Wish) -> list[Wish]:
-        """Returns wishes with one condition each that an object satisfies."""
-        conditions = []
+    def _conditions(self, item: HouseObject, base: Wish) -> Iterator[Wish]:
+        """Yields wishes with one condition each that an object satisfies."""
         colour, material = item.facts.colour, item.facts.material
         said = colour is not None and item.name not in _UNCOLOURED and item.name not in _OF_COURSE.get(colour, ())
         if said and self.seen_colour(item) == colour:
-            conditions.append(replace(base, colour=colour))
+            yield replace(base, colour=colour)
         if item.room_kind and item.name not in _NAMED_BY_ROOM:
-            conditions.append(replace(base, rooms=(item.room_kind,)))
+            yield replace(base, rooms=(item.room_kind,))
         if material in _SAID_MATERIALS and item.name not in _OF_COURSE.get(material, ()):
-            conditions.append(replace(base, material=material))
-        conditions += [replace(base, size=size) for size in ("largest", "smallest")]
+            yield replace(base, material=material)
+        if item.name in _SHAPED and item.roundness >= _ROUND:
+            yield replace(base, shape="round")
+        yield replace(base, size="largest")
+        yield replace(base, size="smallest")
         for name in sorted(_LANDMARKS - {item.name}):
-            for place in ("next to", "on", "under"):
+            for place in ("on",) if name == "rug" else ("next to", "on", "under"):
                 beside = Beside(place, frozenset((name,)), name)
                 if self._is_clearly_at(item, beside) and not (place == "next to" and item.name == "place setting"):
-                    conditions.append(replace(base, beside=(beside,)))
+                    yield replace(base, beside=(beside,))
                     break
-        return conditions
 
     def _clearly_fits(self, wish: Wish, item: HouseObject) -> bool:
         return (
             (wish.colour is None or (item.facts.colour == wish.colour == self.seen_colour(item)))
             and wish.material in ("", item.facts.material)
             and (not wish.rooms or item.room_kind in wish.rooms)
+            and (wish.shape is None or item.roundness >= _ROUND)
             and all(self._is_clearly_at(item, beside) for beside in wish.beside)
         )
 
@@ -177,6 +195,8 @@ class Descriptions:
         if wish.material and item.facts.material is not None and item.facts.material != wish.material:
             return True
         if wish.rooms and item.room_kind and item.room_kind not in wish.rooms:
+            return True
+        if wish.shape is not None and item.roundness <= _NOT_ROUND:
             return True
         return any(self._is_clearly_not_at(item, beside) for beside in wish.beside)
 
@@ -189,7 +209,15 @@ class Descriptions:
     def _is_clearly_at(self, item: HouseObject, beside: Beside) -> bool:
         if beside.place == "next to":
             return 0.0 < self._meaning.gap_m(item, beside.names) <= _NEAR_M
+        if beside.names == {"rug"} and not self._is_middle_on_rug(item):
+            return False  # one leg on it is not enough
         return self._meaning.is_at(item, beside)
+
+    def _is_middle_on_rug(self, item: HouseObject) -> bool:
+        x0, y0, x1, y1 = item.footprint.bounds_m
+        middle = np.array([[0.5 * (x0 + x1), 0.5 * (y0 + y1)]])
+        rugs = (other.outline for other in self._meaning.objects if other.name == "rug")
+        return any(rug is not None and bool(rug.contains(middle).all()) for rug in rugs)
 
     def _is_clearly_not_at(self, item: HouseObject, beside: Beside) -> bool:
         return self._meaning.gap_m(item, beside.names) >= (_FAR_M if beside.place == "next to" else _NEAR_M)
@@ -220,8 +248,9 @@ class Descriptions:
         x_m, y_m = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
         space = self._task.truth.space(footprint.floor_z_m)
         region = self._task.truth.region(item.instance.name, footprint.floor_z_m)
-        cells = np.argwhere(space.largest_part())
-        places = space.frame.to_metres(cells)
+        if footprint.floor_z_m not in self._places:
+            self._places[footprint.floor_z_m] = space.frame.to_metres(np.argwhere(space.largest_part()))
+        places = self._places[footprint.floor_z_m]
         away = np.hypot(places[:, 0] - x_m, places[:, 1] - y_m)
         for least, most in ((1.3, 2.2), (0.7, 3.0)):
             near = places[(away >= least) & (away <= most)]
@@ -241,13 +270,14 @@ def _joined(base: Wish, chosen: Sequence[Wish]) -> Wish | None:
     colour = [wish.colour for wish in chosen if wish.colour]
     material = [wish.material for wish in chosen if wish.material]
     size = [wish.size for wish in chosen if wish.size]
+    shape = [wish.shape for wish in chosen if wish.shape]
     rooms = [wish.rooms for wish in chosen if wish.rooms]
     beside = [wish.beside for wish in chosen if wish.beside]
     if max(map(len, (colour, material, size, rooms, beside))) > 1:
         return None
     return replace(
         base, colour=next(iter(colour), None), material=next(iter(material), ""), size=next(iter(size), None),
-        rooms=next(iter(rooms), ()), beside=next(iter(beside), ()),
+        rooms=next(iter(rooms), ()), beside=next(iter(beside), ()), shape=next(iter(shape), None),
     )  # fmt: skip
 
 
@@ -267,6 +297,8 @@ def _text(wish: Wish, rng: np.random.Generator) -> str:
     words = [one(_BEGINNINGS) + "the"]
     if wish.size is not None:
         words.append(one(_SIZE_WORDS[wish.size]))
+    if wish.shape is not None:
+        words.append(wish.shape)
     if wish.colour is not None:
         words.append(wish.colour)
     if wish.material:

@@ -1,4 +1,4 @@
-"""Chains as files of GOAT-Bench, and goals in words as files of HM3D-OVON: written, and those of GOAT-Bench read.
+"""Writes chains as files of GOAT-Bench, and goals in words as files of HM3D-OVON; `other_files` reads them.
 
 GOAT-Bench (Khanna et al. 2024) lists goals by category, each object with `lang_desc` and `image_goals`; an episode has
 `tasks`, `[category, "object" | "description" | "image", object_id, number of the image]`. A goal in words is a category
@@ -9,18 +9,16 @@ HM3D-OVON (Yokoyama et al. 2024) has the files of ObjectNav with any words as ca
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Any
+from typing import Any
 
 import msgspec
 
-from sim.core.errors import EpisodeError
-from sim.core.goals import MAX_GOALS, GoalKind, GoalSpec
-from sim.core.reading import Count, Metres, Name, Number, read_gzip_json
+from sim.core.goals import GoalKind, GoalSpec
 from sim.episodes import habitat
 from sim.episodes.episode import Episode
+from sim.episodes.other_files import TWICE
 from sim.episodes.reachable_goals import GoalLister
 from sim.task.objectnav import Task
 
@@ -29,8 +27,6 @@ _TASK_KINDS: Mapping[GoalKind, str] = MappingProxyType(
         "category": "object", "words": "object", "description": "description", "instance": "image", "picture": "image",
     }
 )  # fmt: skip
-TWICE = "__"
-"""Separates the label of an object and the number of its description, from the second on."""
 
 
 def goat_house(task: Task, episodes: Sequence[Episode], scene_id: str, *, step_cells: int, most: int) -> dict[str, Any]:
@@ -71,43 +67,6 @@ def ovon_house(task: Task, episodes: Sequence[Episode], scene_id: str, *, step_c
         for episode in episodes
     ]
     return {"goals_by_category": listed, "episodes": entries}
-
-
-def read_goat(file: Path) -> list[Episode]:
-    """Returns the chains in GOAT-Bench's file of a house.
-
-    Raises:
-        ConfigError: the file has another format.
-        EpisodeError: a goal is not known here, or a picture is not listed.
-    """
-    content = read_gzip_json(file, _GoatFile, what="File of GOAT-Bench")
-    listed = {(of.object_category, of.object_id): of for goals in content.goals.values() for of in goals}
-    episodes = []
-    for entry in content.episodes:
-        goals: list[GoalSpec] = []
-        asked: dict[frozenset[str], int] = {}
-        for category, kind, object_id, number in entry.tasks:
-            of, objects = listed.get((category, object_id or "")), _objects_of(content, category, kind, object_id)
-            if kind == "image":
-                if of is None or number is None or number >= len(of.image_goals):
-                    raise EpisodeError(f"File of GOAT-Bench '{file}': '{object_id}' has no picture {number}.")
-                goal = GoalSpec(next(iter(objects)), "picture", of.image_goals[number].camera)
-            else:
-                goal = GoalSpec.of(category if kind == "object" else (of and of.lang_desc) or "")
-            goals.append(replace(goal, repeats=asked.get(objects)))
-            asked.setdefault(objects, len(goals) - 1)
-        start = habitat.from_agent_state(entry.start_position, entry.start_rotation)
-        name, house = entry.info.stubborn_id or str(entry.episode_id), Path(entry.scene_id).stem
-        episodes.append(Episode(name, house, goals[0].text, start, entry.info.geodesic_distance, tuple(goals)))
-    return episodes
-
-
-def _objects_of(content: _GoatFile, category: str, kind: str, object_id: str | None) -> frozenset[str]:
-    """Returns the labels of the objects that a task asks for."""
-    if kind != "object":
-        return frozenset(((object_id or "").partition(TWICE)[0],))
-    same = (of for goals in content.goals.values() for of in goals if of.object_category == category)
-    return frozenset(of.object_id.partition(TWICE)[0] for of in same)
 
 
 class _GoatGoals:
@@ -178,34 +137,3 @@ def _entry(episode: Episode, scene_id: str) -> dict[str, Any]:
         "info": {"geodesic_distance": episode.shortest_path_m, "stubborn_id": episode.episode_id},
         "goals": [],
     }
-
-
-_GoatTask = tuple[Name, Name, Name | None, Count | None]
-
-
-class _GoatGoal(msgspec.Struct):
-    object_id: Name
-    object_category: Name
-    lang_desc: str | None = None
-    image_goals: list[habitat.ImageGoal] = msgspec.field(default_factory=list)
-
-
-class _GoatInfo(msgspec.Struct):
-    geodesic_distance: Number | None = None
-    stubborn_id: str = ""
-
-
-class _GoatEpisode(msgspec.Struct):
-    episode_id: Name | int
-    scene_id: Name
-    start_position: tuple[Metres, Metres, Metres]
-    start_rotation: tuple[Number, Number, Number, Number]
-    tasks: Annotated[
-        list[tuple[Name, Name, Name | None, Count | None]], msgspec.Meta(min_length=1, max_length=MAX_GOALS)
-    ]
-    info: _GoatInfo = msgspec.field(default_factory=_GoatInfo)
-
-
-class _GoatFile(msgspec.Struct):
-    goals: dict[str, list[_GoatGoal]]
-    episodes: list[_GoatEpisode]

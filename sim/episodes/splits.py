@@ -5,6 +5,9 @@ A split is a folder of house files with its episodes next to them in Habitat's O
 may have a list of recipes, `train/houses.json` (see `sim.episodes.house_list`), whose houses are generated on
 first use.
 
+A folder of files of HM3D-OVON or GOAT-Bench without houses (`stubborn habitat dataset`) is a split too; its scenes name
+the houses.
+
 `labels.json` in the folder holds label rules for its houses (docs/worlds.md).
 `val/unreachable.json` names the objects that no episode asks for, because no place of the free space reaches them.
 """
@@ -18,6 +21,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import msgspec
+
 from sim.core.errors import EpisodeError, HouseError, did_you_mean
 from sim.core.files import inside, write_together
 from sim.core.interface import ConfigError
@@ -27,6 +32,7 @@ from sim.core.reading import Name, first_unprintable, printable, read_bytes, rea
 from sim.episodes import habitat
 from sim.episodes.episode import Episode
 from sim.episodes.house_list import HouseList, has_house_list, read_house_list
+from sim.episodes.other_files import read_others
 from sim.episodes.replicates import find_episode
 from sim.houses.house import House
 from sim.houses.load import load_house
@@ -166,8 +172,14 @@ def load_split(name_or_path: str | Path) -> Split:
 
 def read_index(name_or_path: str | Path) -> habitat.IndexFile:
     """Returns the index of a split, which says of which kinds its goals are; an empty one: there is no such split."""
-    index = _index_of(_folder_of(name_or_path).resolve())
-    return habitat.read_index(index) if index.is_file() else habitat.IndexFile()
+    folder = _folder_of(name_or_path).resolve()
+    if not _index_of(folder).is_file():
+        return habitat.IndexFile()
+    index = habitat.read_index(_index_of(folder))
+    if index.order is not None:
+        return index
+    kinds = {goal.kind for episode in _read_split(folder).episodes for goal in episode.specs}
+    return msgspec.structs.replace(index, in_words=bool(kinds - {"category", "picture"}), pictures="picture" in kinds)
 
 
 def _folder_of(name_or_path: str | Path) -> Path:
@@ -336,8 +348,10 @@ def _read_split(folder: Path) -> Split:
     index_file = _index_of(folder)
     index = habitat.read_index(index_file)
     episodes: dict[str, Episode] = {}
+    home = folder if not index.houses_of else inside(folder.parent, index.houses_of, what="folder of the houses")
+    is_own, scenes = index.order is not None or has_house_list(home) or bool(house_files(home)), set[Path]()
     for file in sorted((folder / "content").glob("*.json.gz")):
-        for episode in _episodes_of(file):
+        for episode in _episodes_of(file) if is_own else _others_of(file, scenes):
             if episode.episode_id in episodes:
                 raise ConfigError(f"Episode file '{file}': there are two episodes '{episode.episode_id}'.")
             episodes[episode.episode_id] = episode
@@ -348,7 +362,8 @@ def _read_split(folder: Path) -> Split:
     if len(set(order)) < len(order):
         raise ConfigError(f"Episode file '{index_file}', field 'order': an episode is listed twice.")
     ordered = tuple(episodes[episode_id] for episode_id in order)
-    home = folder if not index.houses_of else inside(folder.parent, index.houses_of, what="folder of the houses")
+    if scenes:
+        home = _home_of(folder, scenes)
     house_list = read_house_list(home) if has_house_list(home) else None
     houses = house_list.paths if house_list else house_files(home)
     if (bad := first_unprintable(houses)) is not None:
@@ -357,7 +372,7 @@ def _read_split(folder: Path) -> Split:
     if missing:
         where = "no such house in its list" if house_list else f"no {missing[0]}.xml"
         raise ConfigError(f"Split '{folder}' has episodes in '{missing[0]}' but {where}.")
-    version = index.version
+    version = index.version if is_own or house_list is None else house_list.version
     if house_list and house_list.version != version:
         raise ConfigError(
             f"Split '{folder}' has episodes of version {version} but a list of houses of version {house_list.version}: "
@@ -381,6 +396,27 @@ def _episodes_of(file: Path) -> list[Episode]:
         except EpisodeError as error:
             raise ConfigError(f"Episode file '{file}', field 'episodes[{number}]': {error}") from None
     return episodes
+
+
+def _others_of(file: Path, scenes: set[Path]) -> list[Episode]:
+    """Returns the episodes of a file of HM3D-OVON or GOAT-Bench, and adds their scenes; errors as `_episodes_of`."""
+    try:
+        episodes, of_file = read_others(file)
+    except EpisodeError as error:
+        raise ConfigError(f"Episode file '{file}': {error}") from None
+    scenes |= of_file
+    return episodes
+
+
+def _home_of(folder: Path, scenes: set[Path]) -> Path:
+    """Returns the folder of the houses of scenes: that of a shipped split (`stubborn/val/val_02.xml`), or their own."""
+    homes = {
+        assets_dir() / scene.parent.name if scene.parent.name in shipped_splits() else scene.parent for scene in scenes
+    }
+    if len(homes) > 1:
+        named = ", ".join(sorted(f"'{home}'" for home in homes))
+        raise ConfigError(f"Split '{folder}': its houses must be in one folder, not in {named}.")
+    return homes.pop()
 
 
 def _sha256(sums: Mapping[str, str], episodes: Sequence[Episode]) -> str:

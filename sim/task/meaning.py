@@ -6,10 +6,11 @@ places are computed from the geometry. An object without a name has the name of 
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 
+import cv2
 import numpy as np
 
 from sim.core.errors import EpisodeError
@@ -23,6 +24,8 @@ from sim.world.world import World
 
 NEXT_TO_M = 0.6
 """Objects with at most this gap in plan are next to each other."""
+ROUND = 0.9
+"""Roundness from which an object is round."""
 _ON_M = 0.08
 """Largest gap between the top of an object and the bottom of one that lies on it."""
 _OVERHEAD_M = 1.8
@@ -89,6 +92,13 @@ class HouseObject:
         return float(np.cbrt(max(x1 - x0, 0.05) * max(y1 - y0, 0.05) * max(z1 - z0, 0.05)))
 
     @cached_property
+    def roundness(self) -> float:
+        """The area of the hull of its outline from above, as a share of the smallest circle around it; 1: a circle."""
+        hull = cv2.convexHull(self.footprint.boundary_points_m.astype(np.float32))
+        _, radius_m = cv2.minEnclosingCircle(hull)
+        return cv2.contourArea(hull) / (np.pi * max(radius_m, 1e-6) ** 2)
+
+    @cached_property
     def is_goal(self) -> bool:
         """Whether a robot can be sent to it: rendered, not a part of the building, and not overhead."""
         if self.instance.category in NO_OBJECTS or self.outline is None:
@@ -147,8 +157,7 @@ class Meaning:
 
     def named(self, names: Iterable[str]) -> tuple[HouseObject, ...]:
         """Returns the objects with one of some names that a robot can be sent to."""
-        wanted = frozenset(names)
-        return tuple(item for item in self.objects if item.name in wanted and item.is_goal)
+        return tuple(item for item in self._of_names(names) if item.is_goal)
 
     def gap_m(self, item: HouseObject, names: frozenset[str]) -> float:
         """Returns the gap in plan between an object and the nearest other one with one of some names; inf: none.
@@ -179,20 +188,33 @@ class Meaning:
     def _house(self) -> str:
         return f"House '{self._world.house.name}'"
 
+    @cached_property
+    def _by_name(self) -> Mapping[str, Sequence[tuple[int, HouseObject]]]:
+        """The objects by name, with their places among all objects."""
+        objects = defaultdict[str, list[tuple[int, HouseObject]]](list)
+        for place, item in enumerate(self.objects):
+            objects[item.name].append((place, item))
+        return objects
+
+    def _of_names(self, names: Iterable[str]) -> list[HouseObject]:
+        """Returns the objects with one of some names, in the order of the house."""
+        by_name = self._by_name
+        return [item for _, item in sorted(pair for name in set(names) for pair in by_name.get(name, ()))]
+
     def _fits(self, item: HouseObject, wish: Wish) -> bool:
         return (
             wish.colour in (None, item.facts.colour)
             and wish.material in ("", item.facts.material)
             and (not wish.rooms or item.room_kind in wish.rooms)
+            and (wish.shape is None or item.roundness >= ROUND)
             and all(self.is_at(item, beside) for beside in wish.beside)
         )
 
     def _others(self, item: HouseObject, names: frozenset[str]) -> list[HouseObject]:
         return [
             other
-            for other in self.objects
+            for other in self._of_names(names)
             if other is not item
-            and other.name in names
             and other.outline is not None
             and (other.room == item.room or other.instance.category in NO_OBJECTS)
             and abs(other.footprint.floor_z_m - item.footprint.floor_z_m) < 1.0

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 habitat = pytest.importorskip("habitat")
 
 import stubborn_habitat  # noqa: E402
+from sim.core.errors import ConfigError  # noqa: E402
 from sim.env.objectnav import ObjectNavEnv  # noqa: E402
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -138,6 +140,72 @@ def test_users_register_sensors_measures_actions_and_data_sets() -> None:
         turned = abs(float(after["compass"][0] - before["compass"][0]))
         assert turned == pytest.approx(np.pi, abs=0.05)
         assert env.get_metrics()["turns"] == 1
+
+
+def test_goals_in_words_are_seen_as_clip_objectgoal_and_judged(tmp_path: Path) -> None:
+    few = ["habitat.environment.iterator_options.shuffle=False", "habitat.dataset.content_scenes=['val_00']"]
+    with habitat.Env(stubborn_habitat.get_config("words-seen", few)) as env:
+        observations = env.reset()
+        words = env.current_episode.object_category
+        assert (observations["clip_objectgoal"], "objectgoal" in observations) == (words, False)
+        assert env.observation_space.contains(dict(observations))
+        ours = ObjectNavEnv(split="words-seen", sensors=())
+        info = ours.reset(options={"episode_id": env.current_episode.info["stubborn_id"]})[1]
+        assert (info["goal"], info["distance_to_goal"]) == (words, pytest.approx(env.get_metrics()["distance_to_goal"]))
+        ours.close()
+        env.step("stop")
+        assert (env.get_metrics()["success"], env.get_metrics()["spl"]) == (0.0, 0.0)
+        texts = sorted({episode.object_category for episode in env.episodes})
+    vectors = {text: np.full(8, number, np.float32) for number, text in enumerate(texts)}
+    np.savez(tmp_path / "goals.npz", **vectors)
+    with habitat.Env(stubborn_habitat.get_config("words-seen", few, cache=str(tmp_path / "goals.npz"))) as env:
+        for _ in range(2):
+            observations = env.reset()
+            assert env.observation_space.contains(dict(observations))
+            np.testing.assert_array_equal(observations["clip_objectgoal"], vectors[env.current_episode.object_category])
+    np.savez(tmp_path / "goals.npz", **{"a unicorn": np.zeros(8)})
+    env = habitat.Env(stubborn_habitat.get_config("words-seen", few, cache=str(tmp_path / "goals.npz")))
+    with env, pytest.raises(ConfigError, match=f"no vector of '{words}'"):
+        env.reset()
+    with pytest.raises(ConfigError, match="no episodes with a single goal in words"):
+        habitat.Env(stubborn_habitat.get_config("chains-val"))
+    with pytest.raises(ConfigError, match="lists no view points"):
+        stubborn_habitat.get_config("words-seen", rule="view_points")
+
+
+def test_goat_subtask_goal_shows_the_present_task_of_goat_bench(tmp_path: Path) -> None:
+    from habitat.core.registry import registry
+
+    stubborn_habitat.get_config("val")  # registers the sensors
+    described = {"object_id": "chair_02", "lang_desc": "The red chair"}
+    episode = SimpleNamespace(
+        scene_id="stubborn/val/val_02.xml",
+        goals=[[], [{"object_id": "chair_01", "lang_desc": "other"}, described], []],
+        tasks=[
+            ["sofa", "object", None, None],
+            ["chair", "description", "chair_02", None],
+            ["bed", "image", "bed_00", 1],
+        ],
+    )
+    kept = {"sofa": [1, 0], "the red chair": [2, 0], "val_02_bed_00_1": [3, 0]}
+    np.savez(tmp_path / "goals.npz", **{key: np.array(vector, np.float32) for key, vector in kept.items()})
+
+    def seen(name: str, cache: str) -> list[Any]:
+        sensor = registry.get_sensor(name)(config=SimpleNamespace(cache=cache))
+        tasks = [SimpleNamespace(active_subtask_idx=number) for number in range(4)]
+        return [sensor.get_observation(observations={}, episode=episode, task=task) for task in tasks]
+
+    assert seen("GoatGoalSensor", "") == ["sofa", "the red chair", "", ""]
+    assert seen("ClipObjectGoalSensor", "") == ["sofa", "", "", ""]
+    cache = str(tmp_path / "goals.npz")
+    assert [vector.tolist() for vector in seen("GoatGoalSensor", cache)] == [[1, 0], [2, 0], [3, 0], [0, 0]]
+    assert [vector.tolist() for vector in seen("ClipObjectGoalSensor", cache)] == [[1, 0], [0, 0], [0, 0], [0, 0]]
+    for broken in (b"no zip", (tmp_path / "goals.npz").read_bytes()[:200]):
+        (tmp_path / "bad.npz").write_bytes(broken)
+        with pytest.raises(ConfigError, match="cannot be read as"):
+            seen("GoatGoalSensor", str(tmp_path / "bad.npz"))
+    with pytest.raises(ConfigError, match="missing"):
+        seen("GoatGoalSensor", str(tmp_path / "missing.npz"))
 
 
 def test_the_top_down_map_shows_rooms_and_the_path() -> None:

@@ -5,6 +5,7 @@ import math
 import os
 import subprocess
 import sys
+import threading
 import time
 from collections import defaultdict
 from collections.abc import Iterator
@@ -21,14 +22,19 @@ from rosbags.highlevel import AnyReader  # noqa: E402
 from rosbags.typesys import Stores, get_typestore  # noqa: E402
 
 from sim.app.bridges.ros2.loading import has_frames  # noqa: E402
+from sim.app.bridges.ros2.node import RobotNode  # noqa: E402
 from sim.app.viewers.ros.topics import COLOUR, DEPTH, TOPICS  # noqa: E402
+from sim.core.geometry.pose import Pose  # noqa: E402
+from sim.core.goals import GoalSpec  # noqa: E402
+from sim.episodes.episode import Episode  # noqa: E402
+from sim.episodes.splits import write_split  # noqa: E402
 from tests.helpers.worlds import sofa_room  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
 STORE = get_typestore(Stores.ROS2_JAZZY)
 SMALL = ("camera.width_px=160", "camera.height_px=120")
 WITHIN_S = 300.0
-_domains = iter(range(40 + os.getpid() % 60, 230))
+_domains = iter(range(int(os.environ.get("ROS_DOMAIN_ID", 40 + os.getpid() % 60)), 230))
 
 
 class Robots:
@@ -264,6 +270,99 @@ def test_an_agent_drives_a_robot_in_real_time_by_velocities(robots: Robots) -> N
         assert line["simulated_s"] < 40.0
         assert line["stop_confidence"] > 0.0
         assert line["stop_target_xy_m"] == pytest.approx([x_m, y_m], abs=0.1)
+
+
+CHAIN = ("sofa", "the couch", "sofa")
+
+
+def write_chain(robots: Robots) -> str:
+    """Writes a split with a chain of three goals; returns its folder."""
+    folder = robots.folder / "chains"
+    folder.mkdir()
+    robots.house.rename(folder / "home.xml")
+    goals = tuple(GoalSpec.of(goal) for goal in CHAIN)
+    episode = Episode("chain", "home", "sofa", Pose(-1.5, 1.0, 0.5), None, goals)
+    write_split(folder, [episode], {"home": {}}, version="1")
+    return str(folder)
+
+
+@pytest.mark.parametrize("mode", [("--stepped", "--depth", "32FC1"), ("--rate", "25", "--time-limit", "60", "--wait")])
+def test_each_goal_of_a_chain_is_announced_and_the_agent_keeps_its_memory(
+    robots: Robots, peer: Peer, mode: tuple[str, ...]
+) -> None:
+    from std_msgs.msg import String
+
+    split, agent = write_chain(robots), "tests.helpers.ros_agents:REMEMBERING"
+    common = ("--split", split, "--episodes", "1", "--seed-key", "k")
+    for topic in ("/goal", "/episode"):
+        peer.hear(topic, String, latched=True)
+    robot = robots.start("-m", "sim.app.commands.main", "ros", *common, "--out", "run", *mode, "--config", *SMALL)
+    stepped = mode[:1] if mode[0] == "--stepped" else ()
+    driver = robots.start(
+        "-m",
+        "sim.app.commands.main",
+        "ros",
+        "agent",
+        "--agent",
+        agent,
+        "--words",
+        "--once",
+        *stepped,
+        "--config",
+        *SMALL,
+    )
+    peer.spin_until(lambda: robot.poll() is not None)
+    assert robots.wait(robot) == 0, robots.said(0)
+    assert robots.wait(driver) == 0, robots.said(1)
+    assert "drove in 1 episodes" in robots.said(1)
+    assert [message.data for message in peer.heard["/goal"]] == [*CHAIN]
+    announced = [json.loads(message.data) for message in peer.heard["/episode"]]
+    told = [(about["number"], about["goal_number"], about["goal"]) for about in announced if "over" not in about]
+    assert told == [(1, 0, CHAIN[0]), (1, 1, CHAIN[1]), (1, 2, CHAIN[2])]
+    (line,) = robots.lines()
+    assert [goal["end_reason"] for goal in line["goals"]] == ["stop"] * 3
+    if not stepped:
+        return
+    inside = robots.start(
+        "-m", "sim.app.commands.main", "run", "--agent", agent, *common, "--out", "inside", "--step-timeout", "0",
+        "--config", *SMALL,
+    )  # fmt: skip
+    assert robots.wait(inside) == 0, robots.said(2)
+    (expected,) = robots.lines("inside")
+    other = {"agent", "wall_time_s", "steps_per_s"}
+    assert {name: value for name, value in line.items() if name not in other} == {
+        name: value for name, value in expected.items() if name not in other
+    }
+
+
+def test_place_and_confidence_of_a_stop_are_read_before_its_action(monkeypatch: pytest.MonkeyPatch) -> None:
+    from std_msgs.msg import Float64, UInt8
+    from std_srvs.srv import SetBool
+
+    domain = next(_domains)
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    node, peer = RobotNode(stepped=True), Peer(domain)
+    try:
+        entered, gate, read = threading.Event(), threading.Event(), list[float | None]()
+        monkeypatch.setattr(node.requests, "pause", lambda _: entered.set() or gate.wait(20.0))
+        monkeypatch.setattr(node.requests, "act", lambda _: read.append(node.requests.stop_confidence))
+        kept = rclpy.qos.QoSProfile(depth=5)
+        confidence = peer.node.create_publisher(Float64, "/stop_confidence", kept)
+        action = peer.node.create_publisher(UInt8, "/action", kept)
+        client = peer.node.create_client(SetBool, "/stubborn/pause")
+        peer.spin_until(lambda: client.service_is_ready() and node.drivers() == 1)
+        peer.spin_until(lambda: confidence.get_subscription_count() and action.get_subscription_count())
+        client.call_async(SetBool.Request())
+        peer.spin_until(entered.is_set)  # the robot's thread is busy, so that both messages wait
+        for publisher, message in ((confidence, Float64(data=0.5)), (action, UInt8(data=0))):
+            publisher.publish(message)
+            assert publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=20.0))
+        gate.set()
+        peer.spin_until(lambda: bool(read), within_s=20.0)
+        assert read == [0.5]
+    finally:
+        peer.close()
+        node.close()
 
 
 def test_rough_peers_stop_nothing_and_no_command_is_lost(robots: Robots, peer: Peer) -> None:

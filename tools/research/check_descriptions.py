@@ -50,7 +50,8 @@ _COLOURS = ("white", "grey", "black", "beige", "brown", "red", "orange", "yellow
 _ROOMS = {"laundry room": ("laundry",), "hallway": ("hallway", "stair_hall"), "bedroom": ("bedroom", "studio"),
           "living room": ("living_room", "studio")}  # fmt: skip
 _GRAMMAR = (
-    r"^(?:find |go to |look for )?the (?:(?P<size>largest|biggest|smallest) )?(?:(?P<colour>{colours}) )?"
+    r"^(?:find |go to |look for )?the (?:(?P<size>largest|biggest|smallest) )?(?:(?P<shape>round) )?"
+    r"(?:(?P<colour>{colours}) )?"
     r"(?:(?P<material>wooden|{materials}) )?(?P<name>{names})"
     r"(?: (?P<place>next to|beside|near|on|under) the (?P<other>{names}|window))?(?: in the (?P<room>[a-z ]+))?$"
 )
@@ -218,6 +219,8 @@ class _Judge:
         if said["material"]:
             material = "wood" if said["material"] == "wooden" else said["material"]
             results.append(seen.material == material if seen.material else None)
+        if said["shape"]:
+            results.append(_is_round(seen.plan))
         if said["room"]:
             results.append(seen.room[1] in _ROOMS.get(said["room"], (said["room"].replace(" ", "_"),)))
         if said["place"]:
@@ -360,6 +363,13 @@ class _Judge:
         renderer.update_scene(self._data, camera)
         mask = np.isin(ids[..., 0], self._geoms[name]) & (ids[..., 1] == mujoco.mjtObj.mjOBJ_GEOM)
         return renderer.render(), mask
+
+
+def _is_round(plan: np.ndarray) -> bool:
+    """Returns whether an outline fills the disc around its middle that just holds it, but for coarse pixels."""
+    rows, cols = np.nonzero(plan)
+    radius = np.hypot(rows - rows.mean(), cols - cols.mean()).max() + 0.5
+    return len(rows) >= 0.88 * np.pi * radius**2
 
 
 def _holds(box: np.ndarray, xy: np.ndarray) -> bool:

@@ -52,6 +52,7 @@ _Text = Annotated[str, Meta(max_length=MAX_HEADER_BYTES)]
 class _Ready(msgspec.Struct, tag_field="type", tag="ready"):
     shares_memory: bool = False
     draws_map: bool = False
+    keeps_memory: bool = False
     interface: str = "stubborn"
 
 
@@ -92,6 +93,8 @@ def process_spec(name: str) -> AgentSpec:
         description="your agent in a process of its own",
         config=ProcessConfig(),
         uses_segmentation=False,
+        words=(),
+        pictures=("goal_picture",),
         painter=_painter_of,
         goals=_goals,
     )
@@ -146,7 +149,7 @@ class ProcessAgent:
             self._setup |= {"interface": config.interface, "goals": goals, "config": of_the_run}
         self._process: AgentProcess | None = None
         self._chosen = _Chosen(action=0)
-        self._shares_memory = True
+        self._shares_memory, self._keeps_memory, self._seed = True, False, 0
         self.draws_map = False
         """Whether the agent draws a map."""
         try:
@@ -164,7 +167,21 @@ class ProcessAgent:
             self._conversion.goal_number(goal)
         process = self._process or self._start()
         process.new_episode()
+        self._seed = seed
         self._ask({"type": "reset", "goal": goal, "seed": seed}, _Done)
+
+    def next_goal(self, goal: str) -> None:
+        """Gives the agent the next goal of a chain; an agent without a method `next_goal` is reset.
+
+        Raises:
+            AgentError: as `reset`.
+        """
+        if not self._keeps_memory:
+            self.reset(goal, self._seed)
+            return
+        if self._conversion is not None:
+            self._conversion.goal_number(goal)
+        self._ask({"type": "next_goal", "goal": goal}, _Done)
 
     def act(self, observation: Observation) -> Action:
         """Returns the action that the agent chooses."""
@@ -214,7 +231,7 @@ class ProcessAgent:
             raise self._failure(AgentError(reason))
         if not (ready.shares_memory and self._shares_memory):
             process.share_no_memory()
-        self.draws_map = ready.draws_map
+        self.draws_map, self._keeps_memory = ready.draws_map, ready.keeps_memory
         return process
 
     def _ask(

@@ -112,6 +112,11 @@ def is_bounded(config: object) -> bool:
     return not fault
 
 
+def takes_words(config: object) -> bool:
+    """Returns whether the agent with this configuration gets the goal itself; Habitat's agents get its number only."""
+    return not isinstance(config, ProcessConfig) or config.interface == "stubborn"
+
+
 def files_of(name: str) -> list[Path]:
     """Returns the plain files that the command of an agent names, and those of modules: `-m MODULE`, `MODULE:CLASS`.
 

@@ -17,13 +17,16 @@ An agent has two methods. `reset(goal, seed)` starts an episode; `goal` is a cat
 `act(observation)` returns the next action: 0 STOP, 1 MOVE_FORWARD, 2 TURN_LEFT or 3 TURN_RIGHT; with `--config
 agent.looks=true` also 4 LOOK_UP or 5 LOOK_DOWN, which tilt the camera by 30 degrees. The observation is a dict of
 arrays: `rgb` uint8 (h, w, 3), `depth` float32 (h, w) in metres, `gps` float32 (2,), `compass` float32 (1,) and
-`objectgoal` int64 (1,).
+`objectgoal` int64 (1,). With goals in words, `goal` is the words, such as "the red chair". With pictures it is "", and
+the observation has the picture, `goal_picture` uint8 (h, w, 3). `objectgoal` is -1 in both cases.
 
 An agent with Habitat's interface may also be served: `reset()` and `act(observations)`, whose observations and actions
 are Habitat's. The generators of `random`, NumPy and PyTorch are seeded before each episode.
 
-Further methods are optional. `stop_confidence()` and `stop_target_xy_m()` are called after STOP. `map_image()` returns
-the agent's map for videos, uint8 RGB (h, w, 3), and `state()` returns a few words on what the agent is doing.
+Further methods are optional. `next_goal(goal)` is called in place of `reset` for each goal of a chain after the first
+one, so that the agent keeps its memory. `stop_confidence()` and `stop_target_xy_m()` are called after STOP.
+`map_image()` returns the agent's map for videos, uint8 RGB (h, w, 3), and `state()` returns a few words on what the
+agent is doing.
 
 `serve` also takes a class or a function that gets the description of the task and returns the agent:
 `make(setup)` with `setup.camera.width_px`, `height_px`, `hfov_rad`, `height_m`, `min_depth_m`, `max_depth_m`,
@@ -209,6 +212,9 @@ class _Client:
         if kind == "reset":
             self.reset(request["goal"], request["seed"])
             return {"type": "done"}, {}
+        if kind == "next_goal":
+            self.agent.next_goal(request["goal"])
+            return {"type": "done"}, {}
         if kind == "act":
             described = request["arrays"]
             content = self.shared.read(described) if request["shared"] else content
@@ -227,8 +233,8 @@ class _Client:
             if not callable(getattr(self.agent, method, None)):
                 raise TypeError(f"the agent {self.agent!r} has no method '{method}'")
         python = ".".join(str(part) for part in sys.version_info[:3])
-        draws_map = hasattr(self.agent, "map_image")
-        ready = {"type": "ready", "python": python, "shares_memory": shared, "draws_map": draws_map}
+        has = {"draws_map": hasattr(self.agent, "map_image"), "keeps_memory": hasattr(self.agent, "next_goal")}
+        ready = dict(has, type="ready", python=python, shares_memory=shared)
         return dict(ready, interface=self.interface)
 
     def reset(self, goal, seed):

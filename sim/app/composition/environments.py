@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from sim.app.bridges.process_command import takes_words
 from sim.app.composition.setup import Setup
 from sim.app.options import RunOptions
 from sim.core.errors import ConfigError, did_you_mean
@@ -96,12 +97,12 @@ def known_goals(setup: Setup) -> tuple[str, ...]:
 
 def takes(setup: Setup, episode: Episode) -> bool:
     """Returns whether the agent of a run takes all goals of an episode; only one that knows the truth takes labels."""
-    spec, known = setup.spec, known_goals(setup)
+    spec, known, others = setup.spec, known_goals(setup), takes_words(setup.config.agent)
     taken = {
-        "words": spec.words is not None,
-        "description": spec.words is not None,
-        "instance": spec.words is not None and spec.uses_ground_truth,
-        "picture": spec.pictures is not None,
+        "words": others and spec.words is not None,
+        "description": others and spec.words is not None,
+        "instance": others and spec.words is not None and spec.uses_ground_truth,
+        "picture": others and spec.pictures is not None,
     }
     return all(taken.get(goal.kind, goal.text in known) for goal in episode.specs)
 

@@ -34,6 +34,7 @@ def specification(config: RosConfig) -> AgentSpec:
         config=config,
         sensors=SENSORS,
         uses_segmentation=False,
+        words=(),
         uses_ground_truth=config.uses_ground_truth,
     )
 

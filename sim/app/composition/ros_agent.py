@@ -9,9 +9,9 @@ from sim.app.bridges.ros2.observer import AgentNode, Announced, Wheels
 from sim.app.composition.agents import build_agent
 from sim.app.composition.segmenters import NoSegmentation
 from sim.app.composition.setup import Setup
-from sim.app.evaluation.rollout import ask, confidence_of, next_action, target_of
-from sim.core.errors import ConfigError
-from sim.core.interface import Action, Agent, CameraModel, Observation, RobotModel, SuccessRule
+from sim.app.evaluation.rollout import ask, confidence_of, give_next_goal, next_action, target_of
+from sim.core.errors import AgentError, ConfigError
+from sim.core.interface import GOAL_CATEGORIES, Action, Agent, CameraModel, Observation, RobotModel, SuccessRule
 from sim.env.discrete import ActionController, Limits
 from sim.robot.config import RobotConfig
 from sim.task.config import TaskConfig
@@ -67,10 +67,11 @@ class RobotAgent:
         setup: of the agent.
         node: its node.
         stepped: whether the robot waits for an action after each observation.
+        words: whether the agent takes goals in words; other goals are categories.
     """
 
-    def __init__(self, setup: Setup, node: AgentNode, *, stepped: bool) -> None:
-        self._name, self._node, self._stepped = setup.options.agent, node, stepped
+    def __init__(self, setup: Setup, node: AgentNode, *, stepped: bool, words: bool = False) -> None:
+        self._name, self._node, self._stepped, self._words = setup.options.agent, node, stepped, words
         self._agent = build_apart(setup)
         drive = setup.config.robot.drive
         self._limits = Limits(
@@ -82,6 +83,9 @@ class RobotAgent:
 
         Args:
             once: end when the robot says that its last episode is over; False: wait for others.
+
+        Raises:
+            AgentError: the agent failed, or does not take a goal.
         """
         episodes, last = 0, None
         while True:
@@ -91,13 +95,23 @@ class RobotAgent:
             if announced is None or announced.over or announced == last:
                 self._node.spin(WAIT_S)
                 continue
+            if announced.goal not in GOAL_CATEGORIES and not self._words:
+                raise AgentError(f"The robot's goal '{announced.goal}' is in words: give --words.")
+            if announced.is_next_goal_of(last):
+                where = f"Agent '{self._name}', goal {announced.goal_number + 1}"
+                give_next_goal(self._agent, announced.goal, announced.seed, where)
+            else:
+                episodes += 1
+                self._reset(announced)
             last = announced
-            episodes += 1
-            self._run_episode(announced)
+            self._pursue(announced)
 
-    def _run_episode(self, announced: Announced) -> None:
+    def _reset(self, announced: Announced) -> None:
+        ask(f"Agent '{self._name}', reset", lambda: self._agent.reset(announced.goal, announced.seed))
+
+    def _pursue(self, announced: Announced) -> None:
+        """Drives until the episode, or the goal of a chain, is over."""
         agent = self._agent
-        ask(f"Agent '{self._name}', reset", lambda: agent.reset(announced.goal, announced.seed))
         driver = None if self._stepped else _Driver(self._node, announced, self._limits)
         seen_ns, step = announced.stamp_ns - 1, 0
         while (observed := self._next(announced, seen_ns)) is not None:
@@ -115,7 +129,7 @@ class RobotAgent:
         return None
 
     def _next(self, announced: Announced, after_ns: int) -> tuple[int, Observation] | None:
-        """Returns the first complete observation after a stamp; None: the episode is over."""
+        """Returns the first complete observation after a stamp; None: the goal is over."""
         while self._node.announced == announced:
             if (observed := self._node.observation(after_ns)) is not None:
                 return observed

@@ -5,7 +5,7 @@ The format is that of `pycocotools` and of the libraries that read its files (ht
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import msgspec
 import numpy as np
@@ -18,6 +18,8 @@ from sim.houses.labels import Instance
 
 STUFF: tuple[str, ...] = ("void", "wall", "floor", "ceiling")
 """Categories that are surfaces and not objects: they have pixels in the image of instances, but no annotation."""
+DESCRIBED_SHARE = 0.01
+"""Share of the pixels from which an object is described."""
 CATEGORIES: tuple[dict[str, object], ...] = tuple(
     {"id": i, "name": name} for i, name in enumerate(MPCAT40) if name not in STUFF
 )
@@ -32,7 +34,10 @@ class _Runs(msgspec.Struct):
 
 
 def annotate(
-    instance_ids: NDArray[np.uint16], instances: Sequence[Instance], styles: Mapping[str, str] | None = None
+    instance_ids: NDArray[np.uint16],
+    instances: Sequence[Instance],
+    styles: Mapping[str, str] | None = None,
+    describe: Callable[[str], str | None] | None = None,
 ) -> list[dict[str, object]]:
     """Returns an annotation for each visible object of a view, without the id of the image.
 
@@ -40,10 +45,12 @@ def annotate(
         instance_ids: (h, w) number of the instance of each pixel, from 1; 0: none.
         instances: the instances of the house; number `n` is `instances[n - 1]`.
         styles: style of each instance by its name; None: they are not known.
+        describe: returns a text that fits only the instance with a name, or None; None: there are no texts.
 
     Returns:
         For each object `id` (its number), `name`, `category_id` (mpcat40), `bbox` (x, y, width and height in pixels),
-        `area` (visible pixels), `iscrowd` 0 and `segmentation`, a run-length encoded mask; `style` where it is known.
+        `area` (visible pixels), `iscrowd` 0 and `segmentation`, a run-length encoded mask; `style` and, of an object
+        with `DESCRIBED_SHARE` of the pixels, `description` where they are known.
     """
     annotations = []
     for number in np.unique(instance_ids[instance_ids > 0]).tolist():
@@ -51,17 +58,20 @@ def annotate(
         if instance.category in STUFF:
             continue
         mask = instance_ids == number
+        area = int(mask.sum())
+        text = describe(instance.name) if describe and area >= DESCRIBED_SHARE * mask.size else None
         annotations.append(
             {
                 "id": number,
                 "name": instance.name,
                 "category_id": MPCAT40_ID[instance.category],
                 "bbox": bounding_box(mask),
-                "area": int(mask.sum()),
+                "area": area,
                 "iscrowd": 0,
                 "segmentation": encode_mask(mask),
             }
             | ({"style": styles[instance.name]} if styles and instance.name in styles else {})
+            | ({} if text is None else {"description": text})
         )
     return annotations
 

@@ -8,7 +8,8 @@ path, in their order. `EXTRAS` are members that a view has only where they are a
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
+import zlib
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -20,6 +21,7 @@ from sim.core.errors import EpisodeError, HouseError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40_ID, CameraModel
 from sim.env.scene import Scene
+from sim.episodes.descriptions import Descriptions
 from sim.houses.labels import Labels
 from sim.training.views.aimed import AIMS, aimed_poses, shows
 from sim.training.views.coco import annotate
@@ -33,6 +35,10 @@ BARE_DEPTH_M = 1.2
 """Median depth below which such a view is rejected: a near wall holds no information."""
 EXTRAS: tuple[str, ...] = ("instances", "normals", "poses")
 """Members of a view in addition to colour, depth and categories."""
+_COLOUR_CAMERA = CameraModel(width_px=160, height_px=120)
+"""Camera of the pictures in which the colours of descriptions are measured; small, because they cost the most time."""
+_VIEWS_PER_OBJECT = 12
+"""Views for each object that is described: the proof of a description takes about as long as half a view."""
 _STRUCTURE = np.isin(np.arange(256), [MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling")])
 
 
@@ -100,6 +106,7 @@ def sample_views(
         poses = sequence_poses(space, cells, rng, sequence, name)
     else:
         poses = mixed_poses(space, cells, rng)
+    describe = _Describer(scene, -(-count // _VIEWS_PER_OBJECT)) if "instances" in extras else None
     labels = ("depth", "semantic", *(("geom",) if aim or {"instances", "normals"} & set(extras) else ()))
     taken = tries = 0
     while taken < count:
@@ -114,8 +121,40 @@ def sample_views(
         if aim is not None and not shows(images["geom"], scene.world.labels, how["aim"]["instance"], camera):
             continue
         images |= scene.camera.render(scene.world.data, pose, ("rgb",))
-        yield _view(f"{stem}_{taken:05d}", images, pose, scene, block_px, record | how, extras, styles)
+        yield _view(f"{stem}_{taken:05d}", images, pose, scene, block_px, record | how, extras, styles, describe)
         taken += 1
+    if describe is not None:
+        describe.close()
+
+
+class _Describer:
+    """Describes objects of a house by texts that fit no other one; each object is described once, when it is seen.
+
+    Args:
+        scene: the house.
+        most: number of objects that are described, the first ones that are asked for.
+    """
+
+    def __init__(self, scene: Scene, most: int) -> None:
+        self._left = most
+        self._descriptions = Descriptions(scene.task, _COLOUR_CAMERA, scene.camera.profile)
+        self._objects = {item.instance.name: item for item in scene.task.truth.meaning.objects if item.facts.name}
+        self._texts: dict[str, str | None] = {}
+
+    def __call__(self, name: str) -> str | None:
+        """Returns the shortest text that fits the instance with a name, always the same; None: none is proved."""
+        if self._left and name not in self._texts:
+            item, rng = self._objects.get(name), np.random.default_rng(zlib.crc32(name.encode()))
+            self._texts[name] = None
+            if item is not None and item.is_goal:
+                described = next(self._descriptions.of(item, rng), None)
+                self._texts[name] = None if described is None else described.text
+                self._left -= 1
+        return self._texts.get(name)
+
+    def close(self) -> None:
+        """Frees the renderer."""
+        self._descriptions.close()
 
 
 def is_bare(semantic: NDArray[np.uint8], depth: NDArray[np.float32]) -> bool:
@@ -181,6 +220,7 @@ def _view(
     record: dict[str, Any],
     extras: Collection[str],
     styles: Mapping[str, str] | None,
+    describe: Callable[[str], str | None] | None,
 ) -> View:
     camera = scene.camera.camera
     depth_mm = np.rint(reduce_image(images["depth"], block_px) * 1000.0).astype(np.uint16)
@@ -201,7 +241,7 @@ def _view(
     if "instances" in extras:
         labels = scene.world.labels
         ids = _instance_ids(_middle_pixels(images["geom"], block_px), labels)
-        view = replace(view, instances=ids, annotations=annotate(ids, labels.instances, styles))
+        view = replace(view, instances=ids, annotations=annotate(ids, labels.instances, styles, describe))
     return view
 
 

@@ -52,6 +52,17 @@ def test_all_conditions_of_a_wish():
     assert not wish.is_plain
 
 
+def test_a_shape_is_read_although_both_words_mean_something_else_together():
+    wish = parse_wish("the largest of the two red circular tables on the rug")
+    assert (wish.shape, wish.colour, wish.size, wish.count) == ("round", "red", "largest", 2)
+    assert wish.names == names("table")
+    assert [(beside.place, beside.names) for beside in wish.beside] == [("on", frozenset({"rug"}))]
+    assert parse_wish("round table").shape == "round"
+    assert not parse_wish("round table").is_plain
+    with pytest.raises(WishError, match="'round'"):
+        parse_wish("the round")
+
+
 def test_the_smaller_of_two():
     wish = parse_wish("the smaller of the two beds")
     assert (wish.size, wish.count) == ("smallest", 2)

@@ -11,7 +11,7 @@ from sim.episodes.descriptions import Description, Descriptions
 from sim.episodes.splits import load_split
 from sim.task.objectnav import Task
 from sim.world.world import World
-from tests.helpers.worlds import room, with_box, with_facts
+from tests.helpers.worlds import room, with_box, with_facts, with_post
 
 SMALL = CameraModel(width_px=160, height_px=120)
 
@@ -73,6 +73,28 @@ def test_a_colour_that_is_not_seen_is_not_said():
     texts = written(type(grey)(grey.name, spec))[1]
     assert parse_wish("red armchair").colour == "red"
     assert not any("red" in one.text.split() for one in texts)
+
+
+def test_round_and_on_the_rug_are_said_where_they_are_clear():
+    house = room(10, 6)
+    for name, x_m in {"table_00": -3.0, "table_01": 0.0, "table_02": 3.0}.items():
+        half_m = (0.5, 0.5, 0.2)
+        house = with_box(house, name, centre_m=(x_m, 0.0, 0.2), half_m=half_m) if name != "table_00" else house
+    house = with_post(house, "table_00", xy_m=(-3.0, 0.0), radius_m=0.5, height_m=0.4)
+    house = with_box(house, "floor_01", centre_m=(3.0, 0.0, 0.004), half_m=(0.9, 0.9, 0.004))
+    facts = dict.fromkeys(("table_00", "table_01", "table_02"), "name: coffee table") | {"floor_01": "name: rug"}
+    task, texts = written(with_facts(house, **facts))
+    told = {one.instance: one.text for one in texts if one.level == 1}
+    assert told["table_00"].endswith("the round coffee table")
+    assert told["table_02"].endswith("the coffee table on the rug")
+    assert "table_01" not in told  # square, as the third one
+    assert [instance.name for instance in task.truth.instances("round coffee table")] == ["table_00"]
+    assert [instance.name for instance in task.truth.instances("the table on the rug")] == ["table_02"]
+
+
+def test_an_object_with_its_edge_on_the_rug_is_not_said_to_be_on_it():
+    house = with_box(chairs(0.3, 0.3), "floor_01", centre_m=(-2.4, 2.0, 0.004), half_m=(0.5, 0.5, 0.004))
+    assert not any("rug" in one.text for one in written(with_facts(house, floor_01="name: rug"))[1])
 
 
 @pytest.mark.parametrize("house", ["val_03", "val_17"])

@@ -7,12 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from sim.core.errors import EpisodeError
+from sim.core.errors import ConfigError, EpisodeError
 from sim.core.geometry.pose import Pose
 from sim.core.goals import GoalSpec, PictureCamera
 from sim.episodes import habitat
 from sim.episodes.episode import Episode
-from sim.episodes.goat import goat_house, ovon_house, read_goat
+from sim.episodes.goat import goat_house, ovon_house
+from sim.episodes.other_files import read_goat, read_ovon
+from sim.episodes.splits import load_split, read_index
 from sim.task.objectnav import Task
 from sim.world.world import World
 from tests.helpers.worlds import room, with_box, with_facts
@@ -91,3 +93,49 @@ def test_a_goal_in_words_is_a_category_of_ovon(task: Task) -> None:
     assert {entry["object_category"] for entry in objects} == {"a seat"}
     assert content["episodes"][0]["object_category"] == "a seat"
     assert all(int(entry["object_id"].split("_")[-1]) >= 0 for entry in objects)  # as in ovon_dataset.py
+
+
+@pytest.mark.parametrize(("kind", "index"), [("goat", {"goals": {}, "episodes": []}), ("ovon", {"episodes": []})])
+def test_a_folder_of_either_format_is_a_split_in_the_houses_of_its_scenes(
+    kind: str, index: dict[str, object], task: Task, tmp_path: Path
+) -> None:
+    home, folder = tmp_path / "mine" / "home.xml", tmp_path / "val_seen"
+    home.parent.mkdir()
+    home.write_text(room(4, 4).spec.to_xml())
+    (folder / "content").mkdir(parents=True)
+    (folder / "val_seen.json.gz").write_bytes(habitat.zipped_json(index))
+    asked = CHAIN if kind == "goat" else Episode("one", "home", "a seat", Pose(0.5, 0.25, 1.0), 1.5)
+    write = goat_house if kind == "goat" else ovon_house
+    content = write(task, [asked], str(home), step_cells=4, most=50)
+    (folder / "content" / "home.json.gz").write_bytes(habitat.zipped_json(content))
+    split = load_split(folder)
+    assert split.house_paths == {"home": home}
+    assert [replace(episode, start=asked.start) for episode in split.episodes] == [asked]
+    assert read_index(folder).in_words
+    assert not read_index(folder).pictures
+    del content["episodes"][0]["info"]  # as other programs write them
+    (folder / "content" / "home.json.gz").write_bytes(habitat.zipped_json(content))
+    assert [episode.episode_id for episode in load_split(folder).episodes] == [f"home_{asked.episode_id}"]
+    content["episodes"] += [{**content["episodes"][0], "scene_id": "elsewhere/other.xml"}]
+    (folder / "content" / "home.json.gz").write_bytes(habitat.zipped_json(content))
+    with pytest.raises(ConfigError, match="in one folder, not in"):
+        load_split(folder)
+
+
+def test_shipped_houses_are_found_and_a_wider_goal_of_ovon_is_refused(task: Task, tmp_path: Path) -> None:
+    folder = tmp_path / "val_unseen"
+    (folder / "content").mkdir(parents=True)
+    (folder / "val_unseen.json.gz").write_bytes(habitat.zipped_json({"episodes": []}))
+    episode = Episode("one", "val_02", "a seat", Pose(0.5, 0.25, 1.0), 1.5)
+    content = ovon_house(task, [episode], "stubborn/val/val_02.xml", step_cells=4, most=50)
+    file = folder / "content" / "val_02.json.gz"
+    file.write_bytes(habitat.zipped_json(content))
+    split = load_split(folder)
+    assert split.house_file("val_02") == load_split("val").house_file("val_02")
+    assert split.episodes[0].specs == (GoalSpec("a seat", "words"),)
+    content["episodes"][0]["children_object_categories"] = ["armchair"]
+    file.write_bytes(habitat.zipped_json(content))
+    with pytest.raises(EpisodeError, match="children_object_categories must be empty"):
+        read_ovon(file)
+    with pytest.raises(ConfigError, match="children_object_categories must be empty"):
+        load_split(folder)

@@ -25,7 +25,7 @@ from sim.app.bridges.habitat.conversions import Conversion, to_action
 from sim.app.bridges.habitat_client import OF_THE_RUN, Config, called, takes_config
 from sim.app.bridges.process_command import BridgeConfig
 from sim.core.errors import ConfigError
-from sim.core.interface import Action, AgentSpec, CameraModel, Observation, RobotModel, SuccessRule
+from sim.core.interface import Action, AgentSpec, CameraModel, KeepsMemory, Observation, RobotModel, SuccessRule
 
 Json = bool | int | float | str | list | dict | None
 """Allowed values of an argument whose annotation is not in `_PLAIN`."""
@@ -46,7 +46,7 @@ class HabitatAgent:
     """
 
     def __init__(self, agent: Any, conversion: Conversion) -> None:
-        self.agent, self._conversion = agent, conversion
+        self.agent, self._conversion, self._seed = agent, conversion, 0
 
     def reset(self, goal: str, seed: int) -> None:
         """Starts an episode. Habitat's agents get no seed; therefore this method seeds the global generators.
@@ -55,11 +55,24 @@ class HabitatAgent:
             AgentError: the agent's data set has no such goal category.
         """
         self._conversion.goal_number(goal)
+        self._seed = seed
         random.seed(seed)
         np.random.seed(seed % 2**32)  # noqa: NPY002 - agents draw from it
         if "torch" in sys.modules:
             sys.modules["torch"].manual_seed(seed)
         self.agent.reset()
+
+    def next_goal(self, goal: str) -> None:
+        """Gives the agent the next goal of a chain; an agent without a method `next_goal` is reset.
+
+        Raises:
+            AgentError: as `reset`.
+        """
+        if isinstance(self.agent, KeepsMemory):
+            self._conversion.goal_number(goal)
+            self.agent.next_goal(goal)
+        else:
+            self.reset(goal, self._seed)
 
     def act(self, observation: Observation) -> Action:
         """Returns the next action.

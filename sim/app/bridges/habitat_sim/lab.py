@@ -1,6 +1,8 @@
-"""Registers with habitat-lab when it is imported: the shipped splits as data sets, and this project's measures.
+"""Registers with habitat-lab when it is imported: the shipped splits as data sets, this project's measures, and the
+sensors of goals in words (`sim.app.bridges.habitat_sim.goal_sensors`).
 
-A data set `stubborn-val` has the goals of MP3D in their order, `stubborn-val-hm3d` only the six of HM3D. The measures
+A data set `stubborn-val` has the goals of MP3D in their order, `stubborn-val-hm3d` only the six of HM3D. In a data set
+of a split in words, `stubborn-words-seen`, the category of an episode is its words. The measures
 `StubbornDistanceToGoal` and `StubbornSuccess` take the place of Habitat's `distance_to_goal` and `success`: the
 distance is that to the nearest place where a STOP succeeds, by the rule of docs/task.md, in place of that to a listed
 view point.
@@ -18,14 +20,16 @@ from habitat.config.read_write import read_write
 from habitat.core.registry import registry
 from habitat.datasets.object_nav.object_nav_dataset import ObjectNavDatasetV1
 from habitat.tasks.nav.nav import DistanceToGoal, Success
+from habitat.tasks.nav.object_nav_task import ObjectGoalNavEpisode
 
 from sim.app.bridges.habitat.conversions import CATEGORIES
+from sim.app.bridges.habitat_sim import goal_sensors
 from sim.app.bridges.habitat_sim.scenes import shipped_split
 from sim.core.errors import ConfigError
 from sim.core.interface import MPCAT40_ID
 from sim.core.paths import assets_dir
-from sim.episodes.habitat import read_episodes
-from sim.episodes.splits import load_split, shipped_splits
+from sim.episodes.habitat import read_episodes, to_position, to_rotation
+from sim.episodes.splits import Split, load_split, read_index, shipped_splits
 
 ALL = "*"
 NUMBERINGS = {"": "mp3d", "-hm3d": "hm3d"}
@@ -37,6 +41,7 @@ def register() -> None:
     for split in shipped_splits():
         for ending in NUMBERINGS:
             _register(split, ending)
+    goal_sensors.register()
     if registry.get_measure("StubbornSuccess") is None:
         registry.register_measure(_StubbornDistanceToGoal, name="StubbornDistanceToGoal")
         registry.register_measure(_StubbornSuccess, name="StubbornSuccess")
@@ -56,8 +61,9 @@ def get_config(
     *,
     base: str = "benchmark/nav/objectnav/objectnav_hm3d.yaml",
     rule: str = "stubborn",
+    cache: str = "",
 ) -> Any:
-    """Returns habitat-lab's configuration for a split.
+    """Returns habitat-lab's configuration for a split; one in words has the sensor `clip_objectgoal`.
 
     Args:
         split: name of a shipped split, or the folder of another one; with `-hm3d` at the end, only the six goals of
@@ -66,21 +72,33 @@ def get_config(
         base: habitat-lab's configuration of the benchmark.
         rule: `stubborn`: distance and success by this project's rule; `view_points`: Habitat's, within 0.1 m of a
             listed view point.
+        cache: for a split in words: file of the vectors of `clip_objectgoal`; "": its observation is the text.
 
     Raises:
-        ConfigError: there is no such split or rule.
+        ConfigError: there is no such split or rule, or it has no cache or view points.
     """
     ending = max((end for end in NUMBERINGS if split.endswith(end)), key=len)
     name = split.removesuffix(ending)
     load_split(name)
     if rule not in ("stubborn", "view_points"):
         raise ConfigError(f"rule must be stubborn or view_points, got '{rule}'.")
+    in_words = read_index(name).in_words
+    if in_words and rule == "view_points":
+        raise ConfigError(
+            f"Split '{name}' lists no view points: use rule='stubborn', or `habitat dataset --format ovon`."
+        )
+    if cache and not in_words:
+        raise ConfigError(f"Split '{name}' has no goals in words: leave `cache` away.")
     config = lab_config(base, list(overrides))
     with read_write(config):
         config.habitat.dataset.type = _register(name, ending)
         if rule == "stubborn":
             config.habitat.task.measurements.distance_to_goal.type = "StubbornDistanceToGoal"
             config.habitat.task.measurements.success.type = "StubbornSuccess"
+        if in_words:
+            sensors = config.habitat.task.lab_sensors
+            sensors.pop("objectgoal_sensor", None)  # words have no number
+            sensors.clip_objectgoal_sensor = goal_sensors.ClipObjectGoalSensorConfig(cache=cache)
     return config
 
 
@@ -98,6 +116,9 @@ def _dataset(split_name: str, numbering: str) -> type[ObjectNavDatasetV1]:
             split, goals = (shipped_split if shipped else load_split)(split_name), CATEGORIES[numbering]
             folder = assets_dir() / split_name if shipped else Path(split_name)
             chosen = [str(house) for house in config.content_scenes]
+            if read_index(split_name).in_words:
+                self.episodes = _in_words(split, split.houses if ALL in chosen else chosen)
+                return
             own_ids = []
             for house in split.houses if ALL in chosen else chosen:
                 file = folder / "content" / f"{house}.json.gz"
@@ -135,6 +156,30 @@ def _dataset(split_name: str, numbering: str) -> type[ObjectNavDatasetV1]:
     StubbornDataset.__name__ = f"Stubborn{Path(split_name).name.title().replace('-', '')}{numbering.title()}"
     StubbornDataset.__doc__ = f"The split '{split_name}' with the goals of {numbering}."
     return StubbornDataset
+
+
+def _in_words(split: Split, houses: Sequence[str]) -> list[ObjectGoalNavEpisode]:
+    """Returns the episodes with a single goal in words; the words are their category, and no view points are listed.
+
+    Raises:
+        ConfigError: there is none in these houses.
+    """
+    episodes = [
+        ObjectGoalNavEpisode(
+            episode_id=str(place),
+            scene_id=str(split.house_paths[episode.house]),
+            start_position=to_position(episode.start.x_m, episode.start.y_m, episode.start.floor_z_m),
+            start_rotation=to_rotation(episode.start.yaw_rad),
+            object_category=episode.goal,
+            info={"geodesic_distance": episode.shortest_path_m, "stubborn_id": episode.episode_id},
+            goals=[],
+        )
+        for place, episode in enumerate(split.episodes)
+        if episode.house in houses and not episode.goals
+    ]
+    if not episodes:
+        raise ConfigError(f"Split '{split.name}' has no episodes with a single goal in words in these houses.")
+    return episodes
 
 
 class _StubbornDistanceToGoal(DistanceToGoal):

@@ -37,6 +37,8 @@ COMMANDS_KEPT = 10_000
 """Number of velocities or actions that wait to be read."""
 ACKNOWLEDGED_S = 1.0
 """Longest time in which subscribers may confirm that an episode begins or ends."""
+ACKNOWLEDGED_STEPPED_S = 10.0
+"""The same in stepped mode, where an agent that learned of a goal after its observation would act for the last goal."""
 
 
 class RobotNode:
@@ -96,7 +98,8 @@ class RobotNode:
 
     def await_readers(self, topic: str) -> None:
         """Waits until all subscribers have the last message of a topic, for a short time at most."""
-        duration = importlib.import_module("rclpy.duration").Duration(seconds=ACKNOWLEDGED_S)
+        longest_s = ACKNOWLEDGED_STEPPED_S if self._stepped else ACKNOWLEDGED_S
+        duration = importlib.import_module("rclpy.duration").Duration(seconds=longest_s)
         self._publisher(topic).wait_for_all_acked(duration)
 
     def close(self) -> None:
@@ -155,12 +158,13 @@ class RobotNode:
         def sure(message: Any) -> None:
             requests.stop_confidence = message.data if 0.0 <= message.data <= 1.0 else None
 
+        # Place and confidence first: where they and the action of their STOP wait together, they are read first.
         for kind, topic, call in (
+            ("geometry_msgs/PointStamped", "/stop_target", aimed),
+            ("std_msgs/Float64", "/stop_confidence", sure),
             ("geometry_msgs/Twist", "/cmd_vel", moved),
             ("geometry_msgs/TwistStamped", "/cmd_vel_stamped", lambda message: moved(message.twist)),
             ("std_msgs/UInt8", "/action", lambda message: requests.act(message.data)),
-            ("geometry_msgs/PointStamped", "/stop_target", aimed),
-            ("std_msgs/Float64", "/stop_confidence", sure),
         ):
             self._subscribe(kind, topic, call)
         services = importlib.import_module("std_srvs.srv")

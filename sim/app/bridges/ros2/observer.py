@@ -32,14 +32,19 @@ STOP = "/stubborn/stop"
 
 
 class Announced(NamedTuple):
-    """An episode as the robot announces it on `/episode`."""
+    """An episode, or one goal of a chain, as the robot announces it on `/episode`."""
 
     run: str
     number: int
+    goal_number: int
     goal: str
     seed: int
     stamp_ns: int
     over: bool
+
+    def is_next_goal_of(self, last: Announced | None) -> bool:
+        """Returns whether this is a further goal of the episode that was announced last."""
+        return last is not None and (last.run, last.number) == (self.run, self.number)
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,8 @@ class AgentNode:
     ) -> None:
         self._camera = camera
         inputs = self._inputs(pose)
+        self._shows_goal = "goal" in sensors
+        sensors = [name for name in sensors if name != "goal"]
         missing = [name for name in sensors if name not in inputs]
         if missing:
             raise ConfigError(f"The sensor '{missing[0]}' has no topic; topics have {', '.join(inputs)}.")
@@ -106,15 +113,14 @@ class AgentNode:
         ]
         if not complete or self.announced is None:
             return None
-        readings: dict[str, NDArray] = {}
+        readings: dict[str, Any] = {}
         for of_topic in self._readings[max(complete)].values():
             readings |= of_topic
-        readings["objectgoal"] = np.array([GOAL_CATEGORIES.index(self.announced.goal)], np.int64)
+        goal = self.announced.goal
+        readings["objectgoal"] = np.array([GOAL_CATEGORIES.index(goal) if goal in GOAL_CATEGORIES else -1], np.int64)
+        if self._shows_goal:
+            readings["goal"] = goal
         return max(complete), readings
-
-    def forget(self) -> None:
-        """Forgets all readings."""
-        self._readings.clear()
 
     def act(self, action: Action) -> None:
         """Publishes a discrete action, for a robot in stepped mode; waits for the robot if it is not known yet."""
@@ -215,6 +221,7 @@ class AgentNode:
         self.announced = Announced(
             content["run"],
             content["number"],
+            content.get("goal_number", 0),
             content.get("goal", ""),
             content.get("seed", 0),
             stamp["sec"] * 10**9 + stamp["nanosec"],

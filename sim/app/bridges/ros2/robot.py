@@ -35,6 +35,8 @@ SENSORS = ("rgb", "depth", "scan", "imu", "bumper", "odometry")
 PUBLISHED = tuple(name for name in TOPICS if name != "/cmd_vel")
 BETWEEN_EPISODES_S = 1.0
 """Simulated time between the last message of an episode and the first of the next one."""
+BETWEEN_GOALS_S = 0.1
+"""Simulated time between the last message for a goal of a chain and the first one for the next: their stamps differ."""
 CLOCK_S = 0.1
 """Interval at which `/clock` is repeated while simulated time stands still."""
 
@@ -108,7 +110,7 @@ class LiveRobot:
         node.advertise([name for name in PUBLISHED if name != "/map" or config.map])
         self._run = secrets.token_hex(4)
         """Tells the episodes of this run from those of another one."""
-        self._number, self._offset_s = 0, 0.0
+        self._number, self._goal_number, self._seed, self._offset_s = 0, 0, 0, 0.0
         self._floor_z_m: float | None = None
         self._before: tuple[float, NDArray] | None = None
         self._stream: IO[bytes] | None = None
@@ -117,7 +119,7 @@ class LiveRobot:
     def begin(self, goal: str, seed: int) -> None:
         """Starts an episode, after `env.reset`: its number, goal and the fixed frames are published."""
         self.node.requests.begin()
-        self._number += 1
+        self._number, self._goal_number, self._seed = self._number + 1, 0, seed
         self._begin_recording()
         start_s = self._simulated_s()
         if self._number > 1:
@@ -125,14 +127,24 @@ class LiveRobot:
         self._floor_z_m, self._before = None, None
         if self.config.wait:
             self._wait_for_driver()
-        time_s = self.time_s
-        about = {"run": self._run, "number": self._number, "goal": goal, "seed": seed, "stamp": messages.stamp(time_s)}
+        self._announce(goal)
+        self._send("/tf_static", self.time_s, self._topics.at_start(self.time_s))
+        if self.config.paused and self._number == 1:
+            self.node.requests.pause(True)
+
+    def next_goal(self, goal: str) -> None:
+        """Announces the next goal of a chain, before the first observation of it."""
+        self._goal_number += 1
+        self._offset_s += BETWEEN_GOALS_S
+        self.node.requests.stop_target = self.node.requests.stop_confidence = None
+        self._announce(goal)
+
+    def _announce(self, goal: str) -> None:
+        time_s, about = self.time_s, {"run": self._run, "number": self._number, "goal_number": self._goal_number}
+        about |= {"goal": goal, "seed": self._seed, "stamp": messages.stamp(time_s)}
         self._send("/episode", time_s, messages.text(json.dumps(about)))
         self.node.await_readers("/episode")
         self._send("/goal", time_s, messages.text(goal))
-        self._send("/tf_static", time_s, self._topics.at_start(time_s))
-        if self.config.paused and self._number == 1:
-            self.node.requests.pause(True)
 
     def publish(self, observation: Observation) -> None:
         """Publishes an observation, and the map of a storey that the robot enters."""
@@ -232,6 +244,10 @@ class NodeDriver:
         self.given_up = ""
         self.robot.begin(goal, seed)
 
+    def next_goal(self, goal: str) -> None:
+        """Announces the next goal of a chain."""
+        self.robot.next_goal(goal)
+
     def act(self, observation: Observation) -> Action:
         """Publishes the observation and waits for an action.
 
@@ -319,7 +335,7 @@ def run_driven(
     robot, was_reset = agent.robot, False
     while True:
         observation, _ = env.reset(seed=seed, options={"episode": episode})
-        robot.begin(episode.goal, seed if seed_of_agent is None else seed_of_agent)
+        robot.begin(episode.specs[0].told, seed if seed_of_agent is None else seed_of_agent)
         begin_s = time.monotonic()
         error = _drive(robot, env, observation)
         wall_s = time.monotonic() - begin_s
@@ -335,7 +351,7 @@ def run_driven(
 
 def _drive(robot: LiveRobot, env: ObjectNavVelocityEnv, observation: Observation) -> str | None:
     """Drives until the episode is over; returns the error that ended it, or None."""
-    requests, config = robot.node.requests, robot.config
+    requests, config, task = robot.node.requests, robot.config, env.scene.task
     pace, done, stopped = Pace(env.period_s, config.speed), False, False
     robot.publish(observation)
     while not done:
@@ -355,6 +371,7 @@ def _drive(robot: LiveRobot, env: ObjectNavVelocityEnv, observation: Observation
         requests.counts.late_periods += pace.begin()
         if stop:
             record_target(env, observation, requests.stop_target)
+        goal_number = task.goal_number
         try:
             speed, rate = requests.velocity(robot.node.now_s, config.command_timeout_s)
             observation, _, stopped, out_of_time, _ = env.step((speed, rate, float(stop)))
@@ -362,6 +379,8 @@ def _drive(robot: LiveRobot, env: ObjectNavVelocityEnv, observation: Observation
             return str(failure)
         count_steps(requests.counts.periods)
         done = stopped or out_of_time
+        if task.goal_number != goal_number:
+            robot.next_goal(task.goals[task.goal_number].told)
         robot.publish(observation)
     return None
 

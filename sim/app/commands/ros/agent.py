@@ -14,6 +14,7 @@ from typing import Literal
 
 from sim.app.bridges.ros2.loading import require_ros
 from sim.app.options import RunOptions
+from sim.core.errors import ConfigError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +26,8 @@ class Args:
     action by velocities on /cmd_vel, and reads /odom."""
     pose: Literal["/pose", "/odom"] = "/pose"
     """Topic of the robot's pose: that of ObjectNav's sensors or of a localisation, or the robot's odometry."""
+    words: bool = False
+    """The robot's goals are in words: the agent gets the sensors that it reads for them in addition."""
     once: bool = False
     """End after the last episode of the robot, in place of waiting for others."""
     ros_args: str = ""
@@ -58,11 +61,12 @@ def main(args: Args) -> int:
 
     names = {field.name for field in fields(RunOptions)}
     setup = resolve(RunOptions(**{name: value for name, value in vars(args).items() if name in names}))
-    node = AgentNode(
-        setup.config.camera, setup.config.sensors, stepped=args.stepped, pose=args.pose, ros_args=args.ros_args
-    )
+    if args.words and setup.spec.words is None:
+        raise ConfigError(f"--words: agent '{args.agent}' takes categories only.")
+    sensors = dict.fromkeys((*setup.config.sensors, *((setup.spec.words or ()) if args.words else ())))
+    node = AgentNode(setup.config.camera, (*sensors,), stepped=args.stepped, pose=args.pose, ros_args=args.ros_args)
     try:
-        agent = RobotAgent(setup, node, stepped=args.stepped)
+        agent = RobotAgent(setup, node, stepped=args.stepped, words=args.words)
         print(f"{args.agent} waits for a robot.", flush=True)
         episodes = agent.run(once=args.once)
     finally:

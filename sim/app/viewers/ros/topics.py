@@ -16,7 +16,7 @@ topic                                         type                       content
 /map                                          nav_msgs/OccupancyGrid     the true floor plan of the storey
 /cmd_vel                                      geometry_msgs/Twist        the velocity that the robot is to have
 /clock                                        rosgraph_msgs/Clock        simulated time
-/goal                                         std_msgs/String            the category that the episode asks for
+/goal                                         std_msgs/String            the goal, and each further one of a chain
 /episode                                      std_msgs/String            JSON: number, goal and seed of the episode
 /result                                       std_msgs/String            JSON: the result of the last episode
 ============================================  =========================  ==============================================

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import random
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -219,6 +220,29 @@ def test_the_seed_fixes_the_draws_of_the_global_generators() -> None:
         actions.append([agent.act(frame) for frame in frames])
     assert actions[0] == actions[1]
     assert len(set(actions[0])) == 2
+
+
+@pytest.mark.parametrize("keeps", [False, True])
+def test_the_next_goal_of_a_chain_is_given_or_the_agent_is_reset(keeps: bool) -> None:
+    class Noted(Wanderer):
+        calls: tuple[object, ...] = ()
+
+        def reset(self) -> None:
+            super().reset()
+            self.calls = (*self.calls, random.random())
+
+    class Remembering(Noted):
+        def next_goal(self, goal: str) -> None:
+            self.calls = (*self.calls, goal)
+
+    inner = Remembering() if keeps else Noted()
+    agent = HabitatAgent(inner, Conversion(camera=CameraModel(), categories="hm3d"))
+    agent.reset("chair", 7)
+    agent.next_goal("bed")
+    first = inner.calls[0]
+    assert inner.calls == (first, "bed" if keeps else first)
+    with pytest.raises(AgentError, match="'table'"):
+        agent.next_goal("table")
 
 
 def test_the_stand_in_has_the_names_and_goes_away(published: str) -> None:

@@ -16,10 +16,14 @@ from sim.app.bridges.process_command import ProcessConfig
 from sim.app.bridges.stubborn_client import from_habitat
 from sim.app.commands.agent_client import client_file
 from sim.app.commands.run import entry
+from sim.app.composition.environments import takes
 from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
 from sim.core.errors import AgentError, ConfigError
+from sim.core.geometry.pose import Pose
+from sim.core.goals import GoalSpec
 from sim.core.interface import CameraModel, RobotModel, SuccessRule
+from sim.episodes.episode import Episode
 from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.results import lines_of
 
@@ -102,6 +106,15 @@ def test_options_of_habitat_need_its_interface_and_choose_the_goals() -> None:
     setup = resolve(RunOptions(agent="process:true", config=("agent.interface=habitat", "agent.categories=hm3d")))
     assert setup.spec.goals is not None
     assert len(setup.spec.goals(setup.config.agent)) == 6
+
+
+def test_an_agent_with_habitats_interface_gets_no_goals_in_words() -> None:
+    episode = Episode("one", "home", "couch", Pose(0.0, 0.0, 0.0), None, (GoalSpec("couch", "words"),))
+    takes_words = [
+        takes(resolve(RunOptions(agent="process:true", config=(f"agent.interface={interface}",))), episode)
+        for interface in ("stubborn", "habitat")
+    ]
+    assert takes_words == [True, False]
 
 
 def test_a_client_file_that_does_not_know_the_interface_is_named(tmp_path: Path) -> None:

@@ -15,7 +15,12 @@ import pytest
 
 from sim.app.commands.run import entry
 from sim.app.viewers.video import video_file
+from sim.core.geometry.pose import Pose
+from sim.core.goals import GoalSpec, PictureCamera
+from sim.episodes.episode import Episode
+from sim.episodes.splits import write_split
 from tests.helpers.results import lines_of
+from tests.helpers.worlds import sofa_room
 
 ROOT = Path(__file__).parents[4]
 CLIENT_AGENT = ROOT / "tests" / "helpers" / "client_agent.py"
@@ -99,6 +104,42 @@ serve(Agent())
     assert lines_of(tmp_path / "slow")[0]["error"].endswith("step 1: no answer within 0.5 s")
     assert keys("plain") == ("compass depth gps objectgoal rgb", False)
     assert keys("truth", 'sensors=["rgb", "depth", "semantic"]') == ("compass depth gps objectgoal rgb semantic", True)
+
+
+CHAINED = """
+import json, sys
+from stubborn_client import serve
+class Agent:
+    def note(self, *words):
+        with open(sys.argv[1], "a") as stream:
+            stream.write(json.dumps(words) + "\\n")
+    def reset(self, goal, seed):
+        self.note("reset", goal, seed > 0)
+    def act(self, observation):
+        self.note(int(observation["objectgoal"][0]), bool(observation["goal_picture"].any()))
+        return 0
+class Remembering(Agent):
+    def next_goal(self, goal):
+        self.note("next", goal, True)
+serve(KIND())
+"""
+
+
+@pytest.mark.parametrize(("kind", "call"), [("Agent", "reset"), ("Remembering", "next")])
+def test_an_agent_gets_the_goals_of_a_chain_by_next_goal_or_is_reset(kind: str, call: str, tmp_path: Path) -> None:
+    split, own, calls = tmp_path / "tiny", tmp_path / "agent.py", tmp_path / "calls"
+    split.mkdir()
+    (split / "home.xml").write_text(sofa_room().spec.to_xml())
+    camera = PictureCamera(x_m=0.0, y_m=0.0, z_m=1.0, yaw_rad=0.0)
+    goals = GoalSpec("sofa", "category"), GoalSpec("couch", "words", None, 0), GoalSpec("sofa_00", "picture", camera, 0)
+    write_split(split, [Episode("one", "home", "sofa", Pose(0.0, 0.0, 0.0), None, goals)], {"home": {}}, version="1")
+    shutil.copy(ROOT / "sim" / "app" / "bridges" / "stubborn_client.py", tmp_path)
+    own.write_text(CHAINED.replace("KIND", kind))
+    options = ["--split", str(split), "--episodes", "1", "--out", str(tmp_path / "run"), "--config", *SMALL]
+    assert entry([*options, "--agent", command(own, calls)]) == 0
+    assert [json.loads(line) for line in calls.read_text().splitlines()] == [
+        ["reset", "sofa", True], [5, False], [call, "couch", True], [-1, False], [call, "", True], [-1, True],
+    ]  # fmt: skip
 
 
 @pytest.mark.slow

@@ -30,7 +30,7 @@ from sim.training.views.normals import surface_normals
 from sim.training.views.shards import write_shard
 from sim.training.views.views import EXTRAS, View, camera_to_world, sample_views
 from tests.helpers import wording
-from tests.helpers.worlds import room, with_box
+from tests.helpers.worlds import room, with_box, with_facts
 
 SMALL = CameraModel(width_px=160, height_px=120)
 
@@ -67,6 +67,36 @@ def test_extras_do_not_change_the_other_arrays_of_a_view(scene: Scene, views: li
         for name in ("rgb", "depth_mm", "semantic"):
             np.testing.assert_array_equal(getattr(plain, name), getattr(rich, name))
         assert set(rich.record) - set(plain.record) == {"T_world_cam"}
+
+
+def test_objects_are_described_by_texts_that_fit_no_other_one() -> None:
+    house, places = room(6, 5), {"chair_00": (1.5, 1.5), "chair_01": (1.5, -1.5), "sofa_00": (-2.0, 0.0)}
+    for name, (x_m, y_m) in places.items():
+        house = with_box(house, name, centre_m=(x_m, y_m, 0.4), half_m=(0.3, 0.3, 0.4))
+    house = with_box(house, "table_00", centre_m=(1.5, 0.6, 0.4), half_m=(0.3, 0.3, 0.4))
+    stated = {"chair_00": "name: armchair", "chair_01": "name: armchair", "table_00": "name: desk"}
+    scene = Scene(with_facts(house, **stated), robot=RobotConfig(), camera=SMALL, profile="fast")
+    rich, plain = (views_of(scene, count=36, extras=extras) for extras in (("instances",), ()))
+    truth = scene.task.truth
+    texts = {
+        (annotation["name"], annotation.get("description"))
+        for view in rich
+        for annotation in view.annotations or ()
+        if annotation["area"] >= 0.01 * 160 * 120 and annotation["name"] in {*places, "table_00"}
+    }
+    found = {text: [instance.name for instance in truth.instances(text)] for _, text in texts if text}
+    assert dict(texts).keys() == {"chair_00", "chair_01", "sofa_00", "table_00"}
+    assert len(texts) == 4  # an object has the same text in all views
+    assert all(found[text] == [name] for name, text in texts if text)
+    assert "the armchair" in str(dict(texts)["chair_00"])
+    assert dict(texts)["chair_01"] is None  # nothing tells it apart
+    assert dict(texts)["sofa_00"] is None  # the house file does not state its name
+    for one, other in zip(rich, plain, strict=True):
+        np.testing.assert_array_equal(one.rgb, other.rgb)
+    few = views_of(scene, count=12, extras=("instances",))  # which is enough for one object
+    described = {note["name"] for view in few for note in view.annotations or () if "description" in note}
+    assert len(described) <= 1 < len([text for _, text in texts if text])
+    scene.close()
 
 
 def test_a_shard_without_extras_has_its_four_standard_members(scene: Scene, tmp_path: Path) -> None:
