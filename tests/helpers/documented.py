@@ -474,7 +474,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn merge runs/big": (*_SHARDS, "stubborn merge {tmp}/big"),
     # docs/segmentation.md
     "stubborn views --split train --views 100000 --extras instances --out views --workers 2": (
-        "stubborn views --split train --views 1 --out {tmp}/views --workers 1",
+        "stubborn views --split train --views 1 --extras instances --out {tmp}/views --workers 1",
     ),
     "stubborn train segmentation --furniture runs/models --hours 1.5 --out runs/rednet": Only(
         "renders 800 views at least; test_views_mix.py and test_train_segmentation.py try its parts"
