@@ -130,7 +130,7 @@ def _write_pictures(
 ) -> None:
     """Writes pictures, texts and right pixels of two objects of a house."""
     (folder / "answers").mkdir(parents=True, exist_ok=True)
-    good = [verdict for verdict in rng.permutation(verdicts).tolist() if verdict["verdict"] == "good"]
+    good = [verdicts[i] for i in rng.permutation(len(verdicts)) if verdicts[i]["verdict"] == "good"]
     by_object = {verdict["object"]: verdict["text"] for verdict in good if verdict["object"] in judge.pictures}
     texts = {f"{house}_{number}.png": chosen for number, chosen in enumerate(list(by_object.items())[:2])}
     for name, (instance, _) in texts.items():
