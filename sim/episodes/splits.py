@@ -409,9 +409,11 @@ def _others_of(file: Path, scenes: set[Path]) -> list[Episode]:
 
 
 def _home_of(folder: Path, scenes: set[Path]) -> Path:
-    """Returns the folder of the houses of scenes: that of a shipped split (`stubborn/val/val_02.xml`), or their own."""
+    """Returns the folder of the houses of scenes: their own, or that of a shipped split (`stubborn/val/val_02.xml`)."""
+    shipped = shipped_splits()
     homes = {
-        assets_dir() / scene.parent.name if scene.parent.name in shipped_splits() else scene.parent for scene in scenes
+        assets_dir() / scene.parent.name if scene.parent.name in shipped and not scene.is_file() else scene.parent
+        for scene in scenes
     }
     if len(homes) > 1:
         named = ", ".join(sorted(f"'{home}'" for home in homes))

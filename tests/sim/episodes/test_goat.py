@@ -95,11 +95,12 @@ def test_a_goal_in_words_is_a_category_of_ovon(task: Task) -> None:
     assert all(int(entry["object_id"].split("_")[-1]) >= 0 for entry in objects)  # as in ovon_dataset.py
 
 
+@pytest.mark.parametrize("of_houses", ["mine", "val"])
 @pytest.mark.parametrize(("kind", "index"), [("goat", {"goals": {}, "episodes": []}), ("ovon", {"episodes": []})])
 def test_a_folder_of_either_format_is_a_split_in_the_houses_of_its_scenes(
-    kind: str, index: dict[str, object], task: Task, tmp_path: Path
+    kind: str, index: dict[str, object], of_houses: str, task: Task, tmp_path: Path
 ) -> None:
-    home, folder = tmp_path / "mine" / "home.xml", tmp_path / "val_seen"
+    home, folder = tmp_path / of_houses / "home.xml", tmp_path / "val_seen"
     home.parent.mkdir()
     home.write_text(room(4, 4).spec.to_xml())
     (folder / "content").mkdir(parents=True)
