@@ -26,6 +26,7 @@ from sim.core.reading import (  # fmt: skip
     Name,
     Seed,
     convert,
+    printable,
     read_bytes,
     read_json,
     read_lines,
@@ -370,15 +371,13 @@ def segmentation_of(record: RunRecord) -> str:
 
     "none" is the segmentation of an agent that the simulator gave none, and that names none of its own.
     """
-    declared = record.get("segmentation")
-    if declared is None:  # a run of an older version
-        return record.get("semantics") or "unknown"
-    name, weights = declared.get("name"), (record.get("files_sha256") or {}).get("weights")
-    if not name:
-        return "none"
-    if weights is None or name != record.get("semantics"):  # no network, or a segmentation of the agent's own
-        return str(name)
-    return f"{name}, {own_weights(record) or 'shipped weights'} ({weights[:8]})"
+    declared, semantics = record.get("segmentation"), record.get("semantics")
+    # A run of an older version declares nothing.
+    text = str((semantics or "unknown") if declared is None else (declared.get("name") or "none"))
+    weights = (record.get("files_sha256") or {}).get("weights")
+    if declared is not None and weights is not None and text == semantics:  # a network, not the agent's own
+        text += f", {own_weights(record) or 'shipped weights'} ({weights[:8]})"
+    return " ".join(printable(text).split())  # the record of a submission may have any characters
 
 
 def own_weights(record: RunRecord) -> str | None:

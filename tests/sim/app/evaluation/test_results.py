@@ -10,11 +10,11 @@ import re
 import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
-from sim.app.evaluation.results import RunDirectory, read_results, segmentation_of
+from sim.app.evaluation.results import RunDirectory, RunRecord, read_results, segmentation_of
 from sim.app.evaluation.summary import summarise
 from sim.core.interface import ConfigError
 from sim.task.result import METRICS, EpisodeResult
@@ -428,3 +428,10 @@ SEGMENTATIONS = {
 def test_a_run_names_the_segmentation_that_acted_and_its_weights(text: str) -> None:
     record: Any = {"semantics": "rednet", "weights": None, "files_sha256": {"weights": "0123456789"}}
     assert segmentation_of(record | SEGMENTATIONS[text]) == text
+
+
+def test_the_segmentation_of_a_foreign_record_is_one_line_without_escapes() -> None:
+    for record in ({"segmentation": {"name": "a\x1b[2J\nb"}}, {"semantics": "a\x1b[2J\nb"}):
+        text = segmentation_of(cast(RunRecord, record))
+        assert text.isprintable()
+        assert text.endswith(" b")
