@@ -233,7 +233,8 @@ class _Client:
             if not callable(getattr(self.agent, method, None)):
                 raise TypeError(f"the agent {self.agent!r} has no method '{method}'")
         python = ".".join(str(part) for part in sys.version_info[:3])
-        has = {"draws_map": hasattr(self.agent, "map_image"), "keeps_memory": hasattr(self.agent, "next_goal")}
+        keeps_memory = callable(getattr(self.agent, "next_goal", None))
+        has = {"draws_map": hasattr(self.agent, "map_image"), "keeps_memory": keeps_memory}
         ready = dict(has, type="ready", python=python, shares_memory=shared)
         return dict(ready, interface=self.interface)
 

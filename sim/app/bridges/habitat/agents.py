@@ -25,7 +25,7 @@ from sim.app.bridges.habitat.conversions import Conversion, to_action
 from sim.app.bridges.habitat_client import OF_THE_RUN, Config, called, takes_config
 from sim.app.bridges.process_command import BridgeConfig
 from sim.core.errors import ConfigError
-from sim.core.interface import Action, AgentSpec, CameraModel, KeepsMemory, Observation, RobotModel, SuccessRule
+from sim.core.interface import Action, AgentSpec, CameraModel, Observation, RobotModel, SuccessRule
 
 Json = bool | int | float | str | list | dict | None
 """Allowed values of an argument whose annotation is not in `_PLAIN`."""
@@ -68,7 +68,7 @@ class HabitatAgent:
         Raises:
             AgentError: as `reset`.
         """
-        if isinstance(self.agent, KeepsMemory):
+        if callable(getattr(self.agent, "next_goal", None)):
             self._conversion.goal_number(goal)
             self.agent.next_goal(goal)
         else:

@@ -236,6 +236,8 @@ def test_the_next_goal_of_a_chain_is_given_or_the_agent_is_reset(keeps: bool) ->
             self.calls = (*self.calls, goal)
 
     inner = Remembering() if keeps else Noted()
+    if not keeps:
+        vars(inner)["next_goal"] = (1.0, 2.0)  # a place on the agent's map
     agent = HabitatAgent(inner, Conversion(camera=CameraModel(), categories="hm3d"))
     agent.reset("chair", 7)
     agent.next_goal("bed")

@@ -110,6 +110,7 @@ CHAINED = """
 import json, sys
 from stubborn_client import serve
 class Agent:
+    next_goal = (1.0, 2.0)  # a place on the agent's map
     def note(self, *words):
         with open(sys.argv[1], "a") as stream:
             stream.write(json.dumps(words) + "\\n")
