@@ -132,24 +132,24 @@ class _Describer:
 
     Args:
         scene: the house.
-        most: number of objects that are described, the first ones that are asked for.
+        limit: number of objects that are described, the first ones that are asked for.
     """
 
-    def __init__(self, scene: Scene, most: int) -> None:
-        self._left = most
+    def __init__(self, scene: Scene, limit: int) -> None:
+        self._remaining = limit
         self._descriptions = Descriptions(scene.task, _COLOUR_CAMERA, scene.camera.profile)
         self._objects = {item.instance.name: item for item in scene.task.truth.meaning.objects if item.facts.name}
         self._texts: dict[str, str | None] = {}
 
     def __call__(self, name: str) -> str | None:
         """Returns the shortest text that fits the instance with a name, always the same; None: none is proved."""
-        if self._left and name not in self._texts:
+        if self._remaining and name not in self._texts:
             item, rng = self._objects.get(name), np.random.default_rng(zlib.crc32(name.encode()))
             self._texts[name] = None
             if item is not None and item.is_goal:
                 described = next(self._descriptions.of(item, rng), None)
                 self._texts[name] = None if described is None else described.text
-                self._left -= 1
+                self._remaining -= 1
         return self._texts.get(name)
 
     def close(self) -> None:

@@ -88,7 +88,7 @@ def get_config(
             f"Split '{name}' lists no view points: use rule='stubborn', or `habitat dataset --format ovon`."
         )
     if cache and not in_words:
-        raise ConfigError(f"Split '{name}' has no goals in words: leave `cache` away.")
+        raise ConfigError(f"Split '{name}' has no goals in words: leave out `cache`.")
     config = lab_config(base, list(overrides))
     with read_write(config):
         config.habitat.dataset.type = _register(name, ending)
