@@ -606,6 +606,13 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f'{PYTHON} -c \'from pathlib import Path; Path("{{tmp}}/my.toml").write_text("[task]\\nmax_steps = 3\\n")\'',
         f"{_RUN} --config-file {{tmp}}/my.toml --semantics gt --episodes 1 {_SMALL} --out {{tmp}}/run",
     ),
+    f"{_RUN} --agent stubborn-plus --split val --episodes 100 --out runs/plus_val": (
+        f"{_RUN} --agent stubborn-plus --split val --episodes 1 --config task.max_steps=3 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --agent stubborn-plus --semantics gt --split hazards --episodes 75 --out runs/plus_hazards": (
+        f"{_RUN} --agent stubborn-plus --semantics gt --split hazards --episodes 1 --config task.max_steps=3"
+        " --out {tmp}/run",
+    ),
     f"{_RUN} --semantics gt --episodes 100 --out runs/before": (
         f"{_RUN} --semantics gt {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/before",
     ),

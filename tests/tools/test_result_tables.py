@@ -27,6 +27,7 @@ from sim.app.options import RunOptions
 from sim.core.configuration import as_json, leaves_of
 from sim.core.errors import ConfigError
 from sim.episodes.splits import load_split
+from sim.homes.housegen.splits.recipes import SPLIT_VERSION
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 from tests.helpers import documented, wording
 from tests.helpers.results import ENTRIES
@@ -84,10 +85,13 @@ def test_the_tables_of_the_page_are_rows_of_the_shipped_csv_file() -> None:
     assert unknown_quantities(page, results, compared) == []
 
 
-def test_runs_with_a_network_are_of_the_network_that_ships(runs: Mapping[RunKey, ArchivedRun]) -> None:
+def test_runs_with_a_network_are_of_one_network_and_of_the_shipped_one_in_todays_homes(
+    runs: Mapping[RunKey, ArchivedRun],
+) -> None:
     shipped = hashlib.sha256(SHIPPED_REDNET.read_bytes()).hexdigest()[:CHECKSUM_DIGITS]
     of_network = {run.network for key, run in runs.items() if key.setup.semantics == "rednet"}
-    assert of_network == {shipped}
+    assert len(of_network) == 1
+    assert (of_network == {shipped}) == (VERSION == SPLIT_VERSION)
 
 
 def test_the_shipped_csv_files_are_those_of_the_archive(runs: Mapping[RunKey, ArchivedRun]) -> None:
