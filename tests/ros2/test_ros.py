@@ -406,7 +406,7 @@ def test_rough_peers_stop_nothing_and_no_command_is_lost(robots: Robots, peer: P
     assert robots.wait(robot) == 0, robots.said(0)
     peer.spin_until(lambda: peer.heard["/result"])
     result = json.loads(peer.heard["/result"][0].data)
-    assert result["result"]["end_reason"] == "max_steps"
+    assert result["result"]["end_reason"] == "time_limit"
     assert result["node"]["refused_commands"] == 1
     assert result["node"]["failed_messages"] == 0
     assert result["node"]["commands"] == sent
