@@ -29,7 +29,7 @@ Rows = Mapping[str, Mapping[str, Sequence[EpisodeResult]]]
 
 
 def motions(lines: Mapping[AgentSetup, Sequence[EpisodeResult]], setups: Sequence[AgentSetup]) -> list[ResultTable]:
-    """Returns the tables: means, the change by contacts, the orders of agents, and what measures are worth."""
+    """Returns the tables: means, what the first motion changes, the orders of agents, and what measures are worth."""
     rows = _by_agent(lines, setups)
     shown = [motion for motion in MOTIONS if all(motion in of for of in rows.values())]
     columns = [(metric, motion) for metric in (SUCCESS, SPL, COLLISIONS) for motion in shown]
@@ -57,20 +57,21 @@ def motions(lines: Mapping[AgentSetup, Sequence[EpisodeResult]], setups: Sequenc
 def _by_agent(lines: Mapping[AgentSetup, Sequence[EpisodeResult]], setups: Sequence[AgentSetup]) -> Rows:
     rows: dict[str, dict[str, Sequence[EpisodeResult]]] = {}
     for setup in setups:
-        agent, _, motion = setup.name.partition(" --motion ")
-        rows.setdefault(agent, {})[motion or MOTIONS[0]] = lines[setup]
+        agent, _, words = setup.name.partition(" --motion ")
+        motion, _, further = words.partition(" ")
+        rows.setdefault(f"{agent} {further}".strip(), {})[motion or MOTIONS[0]] = lines[setup]
     return rows
 
 
 def _changes(rows: Rows, shown: Sequence[str]) -> ResultTable:
-    """Returns the differences of contacts to each other motion, paired by episode."""
+    """Returns the differences of the first motion, contacts if they were run, to each other one."""
     columns = [(metric, motion) for metric in (SUCCESS, SPL) for motion in shown[1:]]
     return ResultTable(
         "motions_differences",
-        "Contacts minus kinematic motion, paired by episode",
-        ("agent", *(f"{metric.title}: contacts - {motion}" for metric, motion in columns)),
+        "Differences between motions, paired by episode",
+        ("agent", *(f"{metric.title}: {shown[0]} - {motion}" for metric, motion in columns)),
         [
-            (agent, [difference_cell(metric, of[motion], of[MOTIONS[0]]) for metric, motion in columns])
+            (agent, [difference_cell(metric, of[motion], of[shown[0]]) for metric, motion in columns])
             for agent, of in rows.items()
         ],
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sim.app.analysis.tables import Cell, ResultTable
+from sim.app.commands.reproduce.motion_tables import MOTIONS
 from sim.app.commands.reproduce.paper_tables import ABLATION, TABLES, ablation_rows, table_named
 from sim.app.commands.reproduce.runs import AgentSetup
 from sim.core.interface import ConfigError
@@ -127,6 +128,17 @@ def test_motions_have_a_column_each_and_the_orders_of_agents_are_compared() -> N
     order = cell(orders, "contacts, sliding", "success %").estimate
     assert order.mean == pytest.approx(1 / 3)  # two of the three pairs of agents have the same order
     assert order.ends[0] <= 1 / 3 <= order.ends[1]
+
+
+def test_motions_are_compared_without_contacts_and_with_further_options() -> None:
+    agents = ("stubborn", "stubborn --config agent.planning.dilation_m=0.1")
+    named = [
+        agent.replace(" --config", f" --motion {motion} --config") for agent in agents[1:] for motion in MOTIONS[1:]
+    ]
+    setups = TABLES["motions"].setups((*(f"stubborn --motion {motion}" for motion in MOTIONS[1:]), *named))
+    means, changes, *_ = TABLES["motions"].build(lines_of(setups, failed=(5, 4, 3, 2)), setups)
+    assert [row for row, _ in means.rows] == list(agents)
+    assert cell(changes, agents[1], "success %: no-sliding - sliding").estimate.mean == pytest.approx(-1 / 40)
 
 
 def test_tables_share_their_runs_and_the_oracle_runs_once() -> None:
