@@ -191,7 +191,8 @@ class Catalogue:
         bench = Workbench(rng, pool, hints, functools.partial(self.make_item, reshape=reshape))
         chosen.build(bench)
         item = bench.finish(category, chosen.name, chosen.mount, walk_over=chosen.walk_over)
-        item = replace(item, name=name_of_style(category, chosen.name, chosen.uses))
+        uses = chosen.uses if use is None else (use, *chosen.uses)
+        item = replace(item, name=name_of_style(category, chosen.name, uses))
         if reshape and rng.random() < RESHAPED_SHARE and may_reshape(item):
             return reshaped(item, rng, hints)
         return item

@@ -34,6 +34,13 @@ def test_a_style_from_outside_is_in_a_house_and_the_shipped_catalogue_is_unchang
     assert CATALOGUE.styles("stool") == shipped
 
 
+@pytest.mark.parametrize(("use", "name"), [("dining", "dining table"), ("desk", "desk")])
+def test_a_style_with_two_uses_has_the_name_of_the_one_that_was_asked_for(use, name):
+    both = Style("table", "plank", "train", build_block, uses=("dining", "desk"))
+    catalogue = CATALOGUE.replacing("table", both)
+    assert catalogue.make_item("table", np.random.default_rng(0), pool="train", use=use).name == name
+
+
 def test_an_added_style_comes_last_and_only_in_the_new_catalogue():
     block = stool("block")
     assert CATALOGUE.with_styles(block).styles("stool") == (*CATALOGUE.styles("stool"), block)
