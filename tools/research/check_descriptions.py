@@ -42,7 +42,7 @@ from sim.houses.house import House
 from sim.robot.config import RobotConfig
 
 _PX_M = 0.02
-_EYE_M, _SIDE_PX, _LEAST_PIXELS = 0.88, 480, 400
+_EYE_M, _SIDE_PX, _LEAST_PIXELS, _ENOUGH_VIEWS = 0.88, 480, 400, 3
 _NEXT_TO_M, _ON_M, _OVERHEAD_M, _LEAST_SIZE_M = 0.6, 0.08, 1.8, 0.15
 _LABEL = re.compile(r"[a-z_]+_\d+")
 _STRUCTURES = ("wall", "door", "window")
@@ -318,7 +318,7 @@ class _Judge:
 
     def _take_pictures(self, name: str) -> tuple[bool, str]:
         """Returns whether a picture shows an object, and the rough colour of most of its pixels."""
-        seen, colours, shown = self.objects[name], Counter[str](), False
+        seen, colours, shown = self.objects[name], Counter[str](), 0
         rows, cols = np.nonzero(seen.plan)
         middle = self._origin + _PX_M * np.array([cols.mean(), rows.mean()])
         reach = 0.5 * _PX_M * max(np.ptp(rows), np.ptp(cols))
@@ -336,11 +336,13 @@ class _Judge:
             camera.distance = float(np.linalg.norm(ahead))
             camera.azimuth = float(np.degrees(np.arctan2(ahead[1], ahead[0])))
             camera.elevation = float(np.degrees(np.arcsin(ahead[2] / camera.distance)))
-            rgb, mask = self._render(camera, name)
+            mask = self._mask(camera, name)
             if np.count_nonzero(mask) < _LEAST_PIXELS:
                 continue
-            shown = True
-            colours.update(_rough_colours(rgb[mask]))
+            shown += 1
+            colours.update(_rough_colours(self._render(camera)[mask]))
+            if self.turns is None and shown == _ENOUGH_VIEWS:
+                break
             # More is seen from farther away.
             if self.turns is not None and (number >= 8 or name not in self.pictures):
                 camera.azimuth += self.turns.uniform(-18.0, 18.0)
@@ -348,21 +350,24 @@ class _Judge:
                 yaw, rise = np.radians((camera.azimuth, camera.elevation))
                 gaze = np.array([np.cos(rise) * np.cos(yaw), np.cos(rise) * np.sin(yaw), np.sin(rise)])
                 camera.lookat[:] = eye + camera.distance * gaze
-                rgb, mask = self._render(camera, name)
+                mask = self._mask(camera, name)
                 if np.count_nonzero(mask) >= _LEAST_PIXELS:
-                    self.pictures[name] = rgb, mask
-        return shown, colours.most_common(1)[0][0] if colours else ""
+                    self.pictures[name] = self._render(camera), mask
+        return shown > 0, colours.most_common(1)[0][0] if colours else ""
 
-    def _render(self, camera: mujoco.MjvCamera, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Returns a picture (rows, cols, 3) and the pixels (rows, cols) of an object."""
-        renderer = self._renderer
-        renderer.enable_segmentation_rendering()
-        renderer.update_scene(self._data, camera)
-        ids = renderer.render()
-        renderer.disable_segmentation_rendering()
-        renderer.update_scene(self._data, camera)
-        mask = np.isin(ids[..., 0], self._geoms[name]) & (ids[..., 1] == mujoco.mjtObj.mjOBJ_GEOM)
-        return renderer.render(), mask
+    def _render(self, camera: mujoco.MjvCamera) -> np.ndarray:
+        """Returns a picture (rows, cols, 3); only those for a reader have shadows and reflections, which take time."""
+        self._renderer.update_scene(self._data, camera)
+        for effect in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
+            self._renderer.scene.flags[effect] = self.turns is not None
+        return self._renderer.render()
+
+    def _mask(self, camera: mujoco.MjvCamera, name: str) -> np.ndarray:
+        """Returns the pixels (rows, cols) of an object."""
+        self._renderer.enable_segmentation_rendering()
+        ids = self._render(camera)
+        self._renderer.disable_segmentation_rendering()
+        return np.isin(ids[..., 0], self._geoms[name]) & (ids[..., 1] == mujoco.mjtObj.mjOBJ_GEOM)
 
 
 def _is_round(plan: np.ndarray) -> bool:
