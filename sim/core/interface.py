@@ -27,8 +27,8 @@ from sim.core.geometry.pose import wrap_angle
 
 __all__ = [
     "CLIMB_M", "CONTEXT_FIELDS", "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS",
-    "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "KeepsMemory",
-    "Observation", "Perceived", "RobotModel", "Scores", "SeesObjects", "SegmentationSpec", "Segmenter",
+    "SENSORS", "TURN_RAD", "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "GuessesNames",
+    "KeepsMemory", "Observation", "Perceived", "RobotModel", "Scores", "SeesObjects", "SegmentationSpec", "Segmenter",
     "SegmenterFactory", "SegmenterSpec", "StatesConfidence", "StatesModelUse", "StatesSegmentation", "StatesTarget",
     "SuccessRule", "TakesWords", "category_id", "scores_of", "wrap_angle",
 ]  # fmt: skip
@@ -365,6 +365,19 @@ class SeesObjects(Protocol):
         """Returns the number of the object at each pixel (h, w), -1: none, and the name of each object.
 
         None: it does not tell them apart after all.
+        """
+        ...
+
+
+@runtime_checkable
+class GuessesNames(Protocol):
+    """A segmenter that says how probable each everyday name is; agents ask it where goals are in words."""
+
+    def named(self, observation: Observation) -> tuple[NDArray[np.float32], Sequence[str]] | None:
+        """Returns the probability that a pixel shows an object of each name, (names, h, w), and the names.
+
+        The resolution is a whole fraction of that of the posteriors. Other objects may have names that are not among
+        these. None: it does not know names after all.
         """
         ...
 

@@ -115,6 +115,10 @@ class TimedTraining(ABC):
     def about(self) -> Mapping[str, object]:
         """Returns the description of the data in the file of weights."""
 
+    def save(self, file: Path, model: Any, card: Mapping[str, object]) -> None:
+        """Writes the averaged network, with a description of its training in the file's header."""
+        self.family.save(file, model, card)
+
     def run(self) -> None:
         """Trains until the time is up."""
         progress, limit_s = self.progress, 60.0 * self.args.minutes
@@ -176,7 +180,7 @@ class TimedTraining(ABC):
             progress.best = loss
             options = {key: str(value) for key, value in asdict(self.args).items()}
             card = {"val": row, "options": options, "torch": torch.__version__, **self.about()}
-            self.family.save(self.out / f"{self.family.name}.safetensors", model, card)
+            self.save(self.out / f"{self.family.name}.safetensors", model, card)
             self._save_state()  # so that a continued run knows the best
         self._evaluation_s = time.perf_counter() - began_s
 

@@ -45,6 +45,8 @@ _NEXT_TO_M, _SAME_ROOM_M = 0.75, 4.5
 _TOUCHING_M, _TOP_M = 0.15, 0.25
 """An object lies on another one if their boxes are at most this far apart in plan, and its bottom is at most this far
 below the other one's top: boxes consist of voxels of 10 cm."""
+_LEAST_SHARE = 0.02
+"""Names that are less probable than this, on average over the pixels of a track in a frame, are not counted."""
 _CERTAIN = 0.5
 """Probability of a category from which a track counts as an object of it."""
 _STRUCTURES = ("wall", "window", "door")
@@ -102,7 +104,10 @@ class Attributes:
     def __init__(self, frame: GridFrame, most_tracks: int) -> None:
         self._frame = frame
         self._colours = np.zeros((most_tracks, len(COLOUR_NAMES)), np.float64)
-        self._names: dict[int, dict[str, int]] = {}
+        self._names: dict[int, dict[str, float]] = {}
+        """How many pixels of each track were seen with each name: a whole number, or a sum of probabilities."""
+        self._guessed: frozenset[str] | None = None
+        """The names that the segmentation has probabilities of; None: it has none."""
         self._marks = {name: np.zeros(frame.shape, np.bool_) for name in _STRUCTURES}
 
     def add(
@@ -111,6 +116,7 @@ class Attributes:
         posteriors: Float32[np.ndarray, "classes h w"],
         rgb: UInt8[np.ndarray, "h w 3"] | None,
         objects: tuple[Int[np.ndarray, "h w"], Sequence[str]] | None,
+        named: tuple[Float32[np.ndarray, "names rows cols"], Sequence[str]] | None = None,
     ) -> None:
         """Enters one frame.
 
@@ -119,6 +125,7 @@ class Attributes:
             posteriors: at the same resolution.
             rgb: the image at the same resolution; None: it is not known.
             objects: the object of each pixel and the names of all, if the segmentation tells objects apart.
+            named: the probability of each name, and the names, if it does not but guesses names.
         """
         high = (pixels.row >= 0) & (pixels.height_m > _WALL_LOW_M) & (pixels.height_m < _WALL_HIGH_M)
         for name, marks in self._marks.items():
@@ -133,21 +140,49 @@ class Attributes:
             pairs, counts = np.unique(np.stack([tracks, image[seen]]), axis=1, return_counts=True)
             for (track, number), count in zip(pairs.T.tolist(), counts.tolist(), strict=True):
                 if number >= 0:
-                    name, of_track = str(every_name[int(number)]), self._names.setdefault(track, {})
-                    of_track[name] = of_track.get(name, 0) + count
+                    self._count(track, str(every_name[int(number)]), count)
+        elif named is not None:
+            self._guess(pixels.track, *named)
+
+    def _count(self, track: int, name: str, count: float) -> None:
+        of_track = self._names.setdefault(track, {})
+        of_track[name] = of_track.get(name, 0) + count
+
+    def _guess(
+        self,
+        track: Int[np.ndarray, "h w"],
+        image: Float32[np.ndarray, "names rows cols"],
+        names: Sequence[str],
+    ) -> None:
+        """Counts the pixels of each track by the probability of each name."""
+        self._guessed = frozenset(names)
+        every = track.shape[0] // image.shape[1]
+        cells = np.arange(image[0].size).reshape(image[0].shape).repeat(every, axis=0).repeat(every, axis=1)
+        for number in np.unique(track[track > 0]).tolist():
+            pixels = np.bincount(cells[track == number], minlength=image[0].size)
+            counts = image.reshape(len(names), -1) @ pixels.astype(np.float32)
+            for index in np.flatnonzero(counts > _LEAST_SHARE * pixels.sum()).tolist():
+                self._count(number, names[index], float(counts[index]))
 
     def name_shares(
         self, tracks: Tracks, candidates: Int[np.ndarray, " n"], names: frozenset[str]
     ) -> Float32[np.ndarray, " n"]:
         """Returns the share of the pixels of each candidate that have one of some names.
 
-        It is 1 if the segmentation knows no names, and 0 for a track that was not seen with its name yet.
+        It is 1 if the segmentation knows no names, or guesses names and has not learned all of these, and 0 for a track
+        that was not seen with its name yet.
         """
         self._follow_merges(tracks.now())
-        if not self._names:
+        if not self._names or (self._guessed is not None and not names <= self._guessed):
             return np.ones(len(candidates), np.float32)
         counts = [self._names.get(track, {}) for track in candidates.tolist()]
-        right = [sum(of_track.get(name, 0) for name in names) / max(sum(of_track.values()), 1) for of_track in counts]
+        if self._guessed is not None:  # among the names of their categories: those have a probability of their own
+            categories = set(vocabulary().categories_of(names))
+            alike = [name for name in self._guessed if not categories.isdisjoint(vocabulary().categories[name])]
+            counts = [{name: of_track.get(name, 0.0) for name in alike} for of_track in counts]
+        right = [
+            sum(of_track.get(name, 0) for name in names) / max(sum(of_track.values()), 1e-6) for of_track in counts
+        ]
         return np.array(right, np.float32)
 
     def factors(
@@ -188,9 +223,8 @@ class Attributes:
         """Moves the evidence on tracks that were merged to the track that they are a part of."""
         follow_merges(now, self._colours)
         for track in [track for track in self._names if now[track] != track]:
-            of_track = self._names.setdefault(int(now[track]), {})
             for name, count in self._names.pop(track).items():
-                of_track[name] = of_track.get(name, 0) + count
+                self._count(int(now[track]), name, count)
 
     def _colour_factor(self, track: int, colour: str, undecided: float) -> float:
         counts = self._colours[track]

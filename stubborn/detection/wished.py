@@ -19,6 +19,7 @@ from sim.core.interface import (
     GOAL_CATEGORIES,
     MPCAT40_ID,
     CameraModel,
+    GuessesNames,
     Observation,
     Scores,
     SeesObjects,
@@ -27,6 +28,7 @@ from sim.core.interface import (
     SegmentsPictures,
     TakesWords,
 )
+from sim.core.vocabulary import vocabulary
 from sim.core.wishes import Wish, parse_wish
 from stubborn.detection.pictured import PictureGoal, one_hot
 
@@ -93,7 +95,7 @@ class WishedSegmenter:
             return self._segmenter.scores(observation, goal)
         posteriors = np.array(self._segmenter.posteriors(observation))
         meant = posteriors[self._channels]
-        matching = meant * self._named(observation, posteriors.shape[1:])
+        matching = meant * self._right_names(observation, posteriors.shape[1:])
         posteriors[self._channels] = 0.0
         posteriors[_OTHER] += (meant - matching).sum(axis=0)
         return Scores(matching.sum(axis=0), posteriors.max(axis=0))
@@ -108,6 +110,10 @@ class WishedSegmenter:
         """Returns the object of each pixel of the posteriors, -1: none, and the names; None: they look alike."""
         seen = self._segmenter.objects(observation) if isinstance(self._segmenter, SeesObjects) else None
         return None if seen is None else (_reduced(seen[0], shape), seen[1])
+
+    def named(self, observation: Observation) -> tuple[Float32[np.ndarray, "names h w"], Sequence[str]] | None:
+        """Returns the probability of each everyday name, and the names; None: they are not known."""
+        return self._segmenter.named(observation) if isinstance(self._segmenter, GuessesNames) else None
 
     def _seen_by_robot(self, picture: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "classes rows cols"]:
         """Returns the posteriors of a picture that is shown to the segmenter as an image of the robot's camera."""
@@ -125,13 +131,27 @@ class WishedSegmenter:
         inside = slice(top // block, (top + rows) // block), slice(left // block, (left + cols) // block)
         return np.array(posteriors[:, *inside])
 
-    def _named(self, observation: Observation, shape: tuple[int, ...]) -> Float32[np.ndarray, "h w"] | np.float32:
-        """Returns the probability that the object at a pixel has the right name if its category is right."""
+    def _right_names(
+        self, observation: Observation, shape: tuple[int, ...]
+    ) -> Float32[np.ndarray, "#categories h w"] | np.float32:
+        """Returns the probability that the object at a pixel has a right name if it is of each category of the wish."""
         seen = self.objects(observation, shape)
-        if seen is None or self.wish is None:
+        if self.wish is None:
             return np.float32(1.0)
-        right = np.array([name in self.wish.names for name in seen[1]] + [False], np.float32)
-        return right[seen[0]]
+        if seen is not None:
+            right = np.array([name in self.wish.names for name in seen[1]] + [False], np.float32)
+            return right[seen[0]][None]
+        guessed = self.named(observation)
+        if guessed is None or not self.wish.names <= set(guessed[1]):
+            return np.float32(1.0)
+        image, names = guessed
+        shares = np.ones((len(self.wish.categories), *image.shape[1:]), np.float32)
+        for number, category in enumerate(self.wish.categories):
+            of_category = [category in vocabulary().categories[name] for name in names]
+            meant = [is_so and name in self.wish.names for is_so, name in zip(of_category, names, strict=True)]
+            shares[number] = image[meant].sum(axis=0) / np.maximum(image[of_category].sum(axis=0), 1e-9)
+        every = shape[0] // image.shape[1]
+        return shares.repeat(every, axis=1).repeat(every, axis=2)
 
 
 def _reduced(image: Int32[np.ndarray, "height width"], shape: tuple[int, ...]) -> Int32[np.ndarray, "h w"]:

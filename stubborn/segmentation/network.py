@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,6 +15,7 @@ from sim.core.interface import CameraModel, ConfigError, Observation, Scores, Se
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.inputs import INPUTS
+from stubborn.segmentation.names import NameGroups
 from stubborn.segmentation.networks import Network
 from stubborn.segmentation.preprocess import normalise_rgb, padding, shrink
 from stubborn.segmentation.processor import computes_bf16
@@ -21,10 +23,12 @@ from stubborn.segmentation.rednet import RedNet, folded
 
 
 class _Frame(NamedTuple):
-    """The posteriors of the last frame; with them scores and posteriors of one frame cost one pass of the network."""
+    """The results of the last frame: whatever is asked of one frame costs one pass of the network."""
 
     rgb: UInt8[np.ndarray, "h w 3"]
     posteriors: Float32[np.ndarray, "classes rows cols"]
+    stages: list[Tensor]
+    """What the head for names takes; empty without such a head."""
 
 
 class NetworkSegmenter:
@@ -78,6 +82,8 @@ class NetworkSegmenter:
         every = score_block_px // finest_px
         self._middle = slice(every // 2, None, every)
         self._last: _Frame | None = None
+        names = model.config.names if isinstance(model, RedNet) else ()
+        self._names = NameGroups.of(names) if names else None
 
     @classmethod
     def from_file(
@@ -134,11 +140,28 @@ class NetworkSegmenter:
 
         The array must not be changed: the scores of the same frame are read from it.
         """
+        return self._seen(observation).posteriors
+
+    def named(self, observation: Observation) -> tuple[Float32[np.ndarray, "names h w"], Sequence[str]] | None:
+        """Returns the probability of each everyday name, and the names; see `sim.core.interface.GuessesNames`.
+
+        A probability is for 4 x 4 pixels of the network's input. None: the network has no head for names.
+        """
+        if self._names is None:
+            return None
+        frame = self._seen(observation)
+        with torch.inference_mode(), torch.autocast("cpu", torch.bfloat16, enabled=self.bf16):
+            logits = self.model.names_head(frame.stages)[0].float()  # pyright: ignore[reportCallIssue]
+        size = (observation["depth"].shape[0] // self.block_px, observation["depth"].shape[1] // self.block_px)
+        image = logits[:, *padding(*size).quarter(*size)]
+        return self._names.probabilities(image.numpy(), frame.posteriors), self._names.names
+
+    def _seen(self, observation: Observation) -> _Frame:
         if self._last is None or self._last.rgb is not observation["rgb"]:
-            logits = self.logits(observation["rgb"], observation["depth"])[:, self._middle, self._middle]
-            probabilities = torch.softmax(self.calibration.applied(logits), dim=0).numpy()
-            self._last = _Frame(observation["rgb"], probabilities)
-        return self._last.posteriors
+            logits, stages = self._pass(observation["rgb"], observation["depth"])
+            calibrated = self.calibration.applied(logits[:, self._middle, self._middle])
+            self._last = _Frame(observation["rgb"], torch.softmax(calibrated, dim=0).numpy(), stages)
+        return self._last
 
     def categories(self, observation: Observation) -> UInt8[np.ndarray, "rows cols"]:
         """Returns the most probable mpcat40 id of each pixel, never void, at the resolution of `scores`."""
@@ -148,6 +171,12 @@ class NetworkSegmenter:
         self, rgb: UInt8[np.ndarray, "h w 3"], depth_m: Float32[np.ndarray, "h w"]
     ) -> Float[Tensor, "classes rows cols"]:
         """Returns the logits of one frame; each is for a square of `block_px` times the network's stride."""
+        return self._pass(rgb, depth_m)[0]
+
+    def _pass(
+        self, rgb: UInt8[np.ndarray, "h w 3"], depth_m: Float32[np.ndarray, "h w"]
+    ) -> tuple[Float[Tensor, "classes rows cols"], list[Tensor]]:
+        """Returns the logits of one frame and, of the image that is not mirrored, what the head for names takes."""
         small_rgb, small_depth = shrink(rgb, self.block_px), shrink(depth_m, self.block_px)
         channels = self.second.of(small_depth, self.camera)
         images, seconds = [small_rgb], [channels]
@@ -159,7 +188,12 @@ class NetworkSegmenter:
         with torch.inference_mode(), torch.autocast("cpu", torch.bfloat16, enabled=self.bf16):
             colour = colour.to(memory_format=torch.channels_last)
             second = second.to(memory_format=torch.channels_last)
-            out = self.model.pyramid(colour, second, sides=False)[0].float()  # pyright: ignore[reportCallIssue]
+            stages = list[Tensor]()
+            if self._names is None:
+                out = self.model.pyramid(colour, second, sides=False)[0].float()  # pyright: ignore[reportCallIssue]
+            else:
+                stages, last = self.model.features(colour, second)  # pyright: ignore[reportCallIssue]
+                out = self.model.final_deconv_custom(last).float()  # pyright: ignore[reportCallIssue]
         pad = padding(*small_depth.shape)
         own = out[:, :, *(pad.inner if self.stride_px == 1 else pad.inner_half)]
-        return 0.5 * (own[0] + own[1].flip(-1)) if self.mirrored else own[0]
+        return 0.5 * (own[0] + own[1].flip(-1)) if self.mirrored else own[0], [stage[:1] for stage in stages]

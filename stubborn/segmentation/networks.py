@@ -54,6 +54,13 @@ def with_geometry(network: RedNet) -> RedNet:
     return wider.train(network.training)
 
 
+def without_names(network: RedNet) -> RedNet:
+    """Returns a network without its head for names, which fits the network's features as they are now."""
+    bare = RedNet(replace(network.config, names=()))
+    bare.load_state_dict({key: value for key, value in network.state_dict().items() if "names_head" not in key})
+    return bare.train(network.training)
+
+
 def family(network: Network) -> str:
     """Returns the name of a network's family."""
     return next(name for name, (_, made) in FAMILIES.items() if isinstance(network, made))

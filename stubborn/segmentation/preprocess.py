@@ -32,6 +32,11 @@ class Padding(NamedTuple):
         """Rows and columns of the image in the padded image."""
         return slice(self.top, -self.bottom or None), slice(self.left, -self.right or None)
 
+    def quarter(self, height_px: int, width_px: int) -> tuple[slice, slice]:
+        """Returns rows and columns of an image of this size in the padded image, at a quarter of the size of both."""
+        top, left = self.top // 4, self.left // 4
+        return slice(top, top + height_px // 4), slice(left, left + width_px // 4)
+
     @property
     def inner_half(self) -> tuple[slice, slice]:
         """Rows and columns of the image in the padded image at half its size."""

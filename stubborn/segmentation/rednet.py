@@ -14,6 +14,7 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 from torch.nn import functional
@@ -44,6 +45,8 @@ class RedNetConfig:
     classes: int = CLASSES
     second: InputKind = "depth"
     """Kind of the second input; the published network takes depth."""
+    names: tuple[str, ...] = ()
+    """The everyday names that a second head tells apart (`NamesHead`); none: there is no such head."""
 
     def __post_init__(self) -> None:
         counts = (self.width, self.classes, self.final_blocks, *self.encoder_blocks, *self.decoder_blocks)
@@ -132,6 +135,30 @@ class DecoderBlock(nn.Module):
         return self.relu(y + (x if self.upsample is None else self.upsample(x)))
 
 
+class NamesHead(nn.Module):
+    """Computes logits of everyday names from the features of all decoder stages, at a quarter of the input's size.
+
+    Args:
+        channels: channels of the stages, from the coarsest.
+        names: number of names.
+    """
+
+    def __init__(self, channels: Sequence[int], names: int) -> None:
+        super().__init__()
+        width = 4 * channels[-1]
+        self.layers = nn.Sequential(
+            nn.Conv2d(sum(channels), width, 1, bias=False), nn.BatchNorm2d(width), nn.ReLU(inplace=True),
+            _conv3x3(width, width), nn.BatchNorm2d(width), nn.ReLU(inplace=True),
+            nn.Conv2d(width, names, 1),
+        )  # fmt: skip
+
+    def forward(self, stages: Sequence[Float[Tensor, "n _ _ _"]]) -> Float[Tensor, "n names rows cols"]:
+        """Returns the logits; `stages` are the outputs of the decoder at 1/16, 1/8, 1/4 and 1/2 of the input's size."""
+        size = stages[2].shape[-2:]
+        coarse = [functional.interpolate(x, size, mode="bilinear", align_corners=False) for x in stages[:2]]
+        return self.layers(torch.cat([*coarse, stages[2], functional.avg_pool2d(stages[3], 2)], dim=1))
+
+
 class RedNet(nn.Module):
     """A network that computes class logits from colour and depth (or geometric channels), normalised."""
 
@@ -168,6 +195,7 @@ class RedNet(nn.Module):
         self.out4_conv_custom = nn.Conv2d(ends[1], config.classes, 1)
         self.out3_conv_custom = nn.Conv2d(ends[2], config.classes, 1)
         self.out2_conv_custom = nn.Conv2d(ends[3], config.classes, 1)
+        self.names_head = NamesHead(ends, len(config.names)) if config.names else None
         self._initialise()
 
     def forward(self, rgb: Float[Tensor, "n 3 h w"], depth: Float[Tensor, "n c h w"]) -> Float[Tensor, "n classes h w"]:
@@ -190,18 +218,28 @@ class RedNet(nn.Module):
         Raises:
             ConfigError: height or width is not a multiple of 32.
         """
-        require_whole_strides(*rgb.shape[-2:])
-        skips = self._encode(rgb, depth)
-        stages = (self.deconv1, self.deconv2, self.deconv3, self.deconv4)
+        stages, x = self.features(rgb, depth)
         heads = (self.out5_conv_custom, self.out4_conv_custom, self.out3_conv_custom, self.out2_conv_custom)
-        x = skips[-1]
-        outputs: list[Tensor] = []
-        for stage, head, skip in zip(stages, heads, reversed(skips[:-1]), strict=True):
-            x = stage(x)
-            if sides:
-                outputs.append(head(x))
-            x = x + skip
-        return (self._finest(self.final_conv(x), subpixel), *reversed(outputs))
+        outputs = [head(stage) for head, stage in zip(heads, stages, strict=True)] if sides else []
+        return (self._finest(x, subpixel), *reversed(outputs))
+
+    def features(
+        self, rgb: Float[Tensor, "n 3 h w"], depth: Float[Tensor, "n c h w"]
+    ) -> tuple[list[Tensor], Float[Tensor, "n width _ _"]]:
+        """Returns the output of each decoder stage, from 1/16 to 1/2 of the input's size, and the last features.
+
+        `names_head` takes the former, `final_deconv_custom` the latter.
+
+        Raises:
+            ConfigError: height or width is not a multiple of 32.
+        """
+        require_whole_strides(*rgb.shape[-2:])
+        *skips, x = self._encode(rgb, depth)
+        outputs = list[Tensor]()
+        for stage, skip in zip((self.deconv1, self.deconv2, self.deconv3, self.deconv4), reversed(skips), strict=True):
+            outputs.append(stage(x))
+            x = outputs[-1] + skip
+        return outputs, self.final_conv(x)
 
     def _finest(self, x: Tensor, subpixel: tuple[int, int] | None) -> Tensor:
         """Returns the logits at full size, or those of one pixel of every 2 x 2 block."""

@@ -78,6 +78,7 @@ COMMANDS: Mapping[str, Command] = {
     "train segmentation": Command("sim.app.commands.train.segmentation", "Train a segmentation network on views"),
     "train verifier": Command("sim.app.commands.train.verifier", "Fit the verifier of a segmentation"),
     "train fusion": Command("sim.app.commands.train.fusion", "Fit the fusion of views to a segmentation"),
+    "train names": Command("sim.app.commands.train.names", "Train a network's head for the everyday names of objects"),
     "train context": Command("sim.app.commands.train.context", "Fit which objects are near objects of each category"),
     "train semexp": Command("sim.app.commands.train.semexp", "Train the explorer `semexp` in plans"),
     "train poni": Command("sim.app.commands.train.poni", "Train the explorer `poni` on plans"),

@@ -143,6 +143,16 @@ class OwnSegmenter:
             return None
         return self._once(observation, "objects", self._objects)
 
+    def named(self, observation: Observation) -> tuple[NDArray[np.float32], Sequence[str]] | None:
+        """Returns the probabilities of everyday names; None: the user's segmenter has no such method, or knows none.
+
+        Raises:
+            AgentError: the user's code failed, or returned another type, shape or range.
+        """
+        if not callable(getattr(self.inner, "named", None)):
+            return None
+        return self._once(observation, "named", self._named)
+
     def ask(self, word: str, names: frozenset[str]) -> None:
         """Gives the words of the goal to a segmenter that takes them; see `sim.core.interface.TakesWords`.
 
@@ -203,6 +213,13 @@ class OwnSegmenter:
         if image.dtype.kind not in "iu" or not -1 <= int(image.min()) <= int(image.max()) < len(names):
             self._refuse("objects", f"an array of {image.dtype}; it holds numbers of the {len(names)} names, -1: none")
         return image.astype(np.int32), names
+
+    def _named(self, seen: Observation) -> tuple[NDArray[np.float32], Sequence[str]] | None:
+        found = self._ask("named", lambda: self.inner.named(seen))
+        if found is None:
+            return None
+        image, names = self._ask("named", lambda: (np.asarray(found[0]), [str(name) for name in found[1]]))
+        return self._checked("named", image, (len(names),)), names
 
     def _checked(self, method: str, array: NDArray, before: tuple[int, ...]) -> NDArray[np.float32]:
         """Returns an array (*before, h, w) as float32 after a check of shape and range."""

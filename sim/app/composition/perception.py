@@ -14,6 +14,7 @@ from sim.app.viewers.viewer import SeesFrames
 from sim.core.interface import (
     MPCAT40,
     Agent,
+    GuessesNames,
     NamesCategories,
     Observation,
     Perceived,
@@ -63,6 +64,10 @@ class AskedSegmenter:
     def objects(self, observation: Observation) -> tuple[NDArray[np.int32], Sequence[str]] | None:
         """Returns the segmenter's objects; None if it does not tell objects apart."""
         return self._inner.objects(observation) if isinstance(self._inner, SeesObjects) else None
+
+    def named(self, observation: Observation) -> tuple[NDArray[np.float32], Sequence[str]] | None:
+        """Returns the probabilities of everyday names; None if the segmenter does not know them."""
+        return self._inner.named(observation) if isinstance(self._inner, GuessesNames) else None
 
     def picture_categories(self) -> NDArray[np.uint8] | None:
         """Returns what the picture of the goal shows; None: the segmenter does not know it."""

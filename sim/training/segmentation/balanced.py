@@ -7,7 +7,7 @@ files.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
@@ -68,24 +68,37 @@ class _Annotation(msgspec.Struct):
     style: str = ""
 
 
+LabelOf = Callable[[str, str], str | None]
+
+
+def _goal_category(category: str, style: str) -> str | None:
+    del style
+    return category if category in GOAL_CATEGORIES else None
+
+
 @dataclass(frozen=True)
 class ViewIndex:
     """All views of some shards, and the goal objects in them by category and style."""
 
     views: tuple[StoredView, ...]
     objects: dict[str, dict[str, list[ShownObject]]]
-    """Objects by category, then by style; "" if the style is not known."""
+    """Objects by category (or another label), then by style; "" if the style is not known."""
 
     @classmethod
-    def of(cls, shards: Sequence[Path], *, workers: int = 0) -> ViewIndex:
+    def of(cls, shards: Sequence[Path], *, workers: int = 0, label_of: LabelOf = _goal_category) -> ViewIndex:
         """Returns the index of some shards, which `workers` processes read.
+
+        Args:
+            shards: the files.
+            workers: number of processes.
+            label_of: returns what an object is sampled by, from its category and its style; None: it is not sampled.
 
         Raises:
             ConfigError: a shard is broken or has no objects (`stubborn views --extras instances`).
         """
         views: list[StoredView] = []
         objects: dict[str, dict[str, list[ShownObject]]] = {}
-        for own, shown in DataLoader(_ShardIndex(shards), batch_size=None, num_workers=workers):
+        for own, shown in DataLoader(_ShardIndex(shards, label_of), batch_size=None, num_workers=workers):
             for category, style, view, number in shown:
                 of_style = objects.setdefault(category, {}).setdefault(style, [])
                 of_style.append(ShownObject(len(views) + view, number))
@@ -108,10 +121,10 @@ class ViewIndex:
 
 
 class _ShardIndex(Dataset):
-    """The views of each shard, and their goal objects: category, style, index of the view in the shard, number."""
+    """The views of each shard, and their objects: label, style, index of the view in the shard, number."""
 
-    def __init__(self, shards: Sequence[Path]) -> None:
-        self._shards = shards
+    def __init__(self, shards: Sequence[Path], label_of: LabelOf) -> None:
+        self._shards, self._label_of = shards, label_of
 
     def __len__(self) -> int:
         return len(self._shards)
@@ -123,9 +136,9 @@ class _ShardIndex(Dataset):
         with open_plain(shard, what="Shard") as stream:
             for key, members in read_members(shard):
                 for annotation in _annotations(decoder, shard, key, members, stream):
-                    category = MPCAT40[annotation.category_id]
-                    if category in GOAL_CATEGORIES and annotation.area >= SMALLEST_PX:
-                        objects.append((category, annotation.style, len(views), annotation.id))
+                    label = self._label_of(MPCAT40[annotation.category_id], annotation.style)
+                    if label is not None and annotation.area >= SMALLEST_PX:
+                        objects.append((label, annotation.style, len(views), annotation.id))
                 views.append(StoredView(shard, key, tuple((name, *place) for name, place in members.items())))
         return views, objects
 

@@ -8,7 +8,7 @@ import torch
 
 from sim.core.interface import ConfigError
 from stubborn.segmentation.checkpoints import load_network
-from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet, with_geometry
+from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet, with_geometry, without_names
 from stubborn.segmentation.processor import computes_bf16
 from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.shipped import SHIPPED_REDNET
@@ -39,6 +39,8 @@ def start_network(size: str | None, init: Path | None, *, imagenet: bool) -> tup
             load_imagenet(network)
         return size, network, {}
     model, metadata = load_network(SHIPPED_REDNET if init == Path("shipped") else init)
+    if isinstance(model, RedNet):
+        model = without_names(model)
     if size == "compact-both" and isinstance(model, RedNet) and model.config == NETWORKS["compact"]:
         model = with_geometry(model)
     known = next((name for name, config in NETWORKS.items() if config == model.config), None)

@@ -69,8 +69,10 @@ def test_scores_and_posteriors_of_one_frame_take_one_pass_of_the_network(
     model: RedNet, frame: dict[str, np.ndarray], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     segmenter, passes = NetworkSegmenter(model), []
-    compute = segmenter.logits
-    monkeypatch.setattr(segmenter, "logits", lambda rgb, depth_m: passes.append(1) or compute(rgb, depth_m))
+    compute = segmenter.model.pyramid
+    monkeypatch.setattr(
+        segmenter.model, "pyramid", lambda *seen, **options: passes.append(1) or compute(*seen, **options)
+    )
     bed, posteriors = segmenter.scores(frame, "bed"), segmenter.posteriors(frame)
     np.testing.assert_array_equal(bed.target, posteriors[MPCAT40_ID["bed"] - 1])
     assert len(passes) == 1

@@ -167,6 +167,11 @@ _BY_USE: Mapping[str, str] = MappingProxyType({
 })  # fmt: skip
 
 
+def listed_name(category: str, style: str) -> str | None:
+    """Returns the everyday name of a style of our own; None: the style is of an imported model or of a user."""
+    return _BY_STYLE.get((category, style))
+
+
 def name_of_style(category: str, style: str, uses: tuple[str, ...] = ()) -> str:
     """Returns the everyday name of a style.
 
@@ -178,7 +183,7 @@ def name_of_style(category: str, style: str, uses: tuple[str, ...] = ()) -> str:
         style: name of the style.
         uses: the uses that it satisfies, as `sim.homes.housegen.furniture.uses` lists them.
     """
-    known = _BY_STYLE.get((category, style))
+    known = listed_name(category, style)
     if known is not None:
         return known
     of_use = {"dining": "dining table"} if category == "table" else {}

@@ -187,3 +187,16 @@ def test_the_words_of_the_goal_and_named_objects_pass_a_segmentation_of_ones_own
 def test_objects_in_another_form_are_named_with_the_segmentation(returned: object) -> None:
     with pytest.raises(AgentError, match=r"Segmentation 'mine:SEG'.*objects"):
         own_of(Named(returned)).objects(FRAME)
+
+
+@pytest.mark.parametrize("returned", [(np.zeros((2, 5, 5)), ["a", "b"]), (np.zeros((1, 12, 16)), ["a", "b"]), 7])
+def test_guessed_names_in_another_form_are_named_with_the_segmentation(returned: object) -> None:
+    class Guesses(Named):
+        def named(self, observation: Observation) -> object:
+            return self.returned
+
+    with pytest.raises(AgentError, match=r"Segmentation 'mine:SEG'.*named"):
+        own_of(Guesses(returned)).named(FRAME)
+    image, names = own_of(Guesses((np.full((2, 12, 16), 0.5), ["fridge", "hob"]))).named(FRAME)
+    assert (image.shape, image.dtype, names) == ((2, 12, 16), np.float32, ["fridge", "hob"])
+    assert own_of(Guesses(None)).named(FRAME) is None

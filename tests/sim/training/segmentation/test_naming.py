@@ -1,0 +1,75 @@
+"""Training of the head for names: what is a label, and that it learns without changing the network."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from sim.core.interface import MPCAT40_ID, ConfigError
+from sim.houses.labels import Instance
+from sim.training.segmentation import naming
+from sim.training.segmentation.naming import Args, Trainer, known_name
+from sim.training.views.coco import annotate
+from sim.training.views.shards import write_shard
+from sim.training.views.views import View
+from stubborn.segmentation.checkpoints import load_network
+from stubborn.segmentation.networks import without_names
+from stubborn.segmentation.shipped import SHIPPED_REDNET
+
+STYLES = {"appliances_00": "retro_fridge", "appliances_01": "stove", "appliances_02": "dishwasher"}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Views of a bright fridge, a dark cooker and a dishwasher, which no training may use."""
+    rng, views = np.random.default_rng(0), []
+    for number in range(24):
+        ids = np.repeat(1 + rng.permutation(3), 100)[:, None].repeat(240, axis=1).T.astype(np.uint16)
+        ids = np.pad(ids, ((0, 0), (0, 20)))
+        rgb = np.array([120, 250, 10, 120], np.uint8)[ids][..., None].repeat(3, axis=2)
+        semantic = np.where(ids > 0, MPCAT40_ID["appliances"], MPCAT40_ID["wall"]).astype(np.uint8)
+        objects = [Instance(name, "appliances", (i,)) for i, name in enumerate(STYLES)]
+        depth, record = np.full(ids.shape, 2000, np.uint16), {"house": "h"}
+        views.append(View(f"v{number:05d}", rgb, depth, semantic, record, ids, annotate(ids, objects, STYLES)))
+    write_shard(tmp_path / "views", "views-000000", views, house="h", config={"shrink": 2})
+    return tmp_path
+
+
+def args_of(folder: Path, **changes: object) -> Args:
+    views = (folder / "views",)
+    return Args(views=views, val_views=views, out=folder / "out", batch=4, **changes)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("category", "style", "name"),
+    [
+        ("appliances", "retro_fridge", "fridge"),
+        ("appliances", "dishwasher", None),  # UNSEEN
+        ("table", "wooden_table_ic0", None),  # of an imported model: its style says nothing
+        ("window", "pane", None),
+    ],
+)
+def test_labels_are_the_listed_names_that_training_may_use(category, style, name):
+    assert known_name(category, style) == name
+
+
+@pytest.mark.costly
+def test_the_head_learns_to_tell_names_apart_and_the_network_stays(folder: Path):
+    trainer = Trainer(args_of(folder, minutes=0.2))
+    trainer.run()
+    network, metadata = load_network(folder / "out/rednet.safetensors")
+    shipped, of_shipped = load_network(SHIPPED_REDNET)
+    assert network.config.names == ("cooker", "fridge")
+    state = network.state_dict()
+    assert all(torch.equal(state[name], tensor) for name, tensor in without_names(shipped).state_dict().items())
+    assert metadata["calibration"] == of_shipped["calibration"]
+    assert metadata["names"]["val"]["right"] > 0.9
+
+
+def test_views_with_one_name_cannot_train_it(folder: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(naming, "LEAST_OBJECTS", 25)
+    with pytest.raises(ConfigError, match="0 names with 25 objects"):
+        Trainer(args_of(folder))
