@@ -59,20 +59,21 @@ class ShownObject(NamedTuple):
     """Its number in the instance image."""
 
 
-class _Annotation(msgspec.Struct):
+class Annotation(msgspec.Struct):
     """The part of an annotation that holds the category and the size of an object."""
 
     id: Annotated[int, msgspec.Meta(ge=0, le=65535)]
     category_id: Annotated[int, msgspec.Meta(ge=0, lt=len(MPCAT40))]
     area: Count
     style: str = ""
+    everyday_name: str = ""
 
 
-LabelOf = Callable[[str, str], str | None]
+LabelOf = Callable[[str, Annotation], str | None]
 
 
-def _goal_category(category: str, style: str) -> str | None:
-    del style
+def _goal_category(category: str, annotation: Annotation) -> str | None:
+    del annotation
     return category if category in GOAL_CATEGORIES else None
 
 
@@ -91,7 +92,7 @@ class ViewIndex:
         Args:
             shards: the files.
             workers: number of processes.
-            label_of: returns what an object is sampled by, from its category and its style; None: it is not sampled.
+            label_of: returns what an object is sampled by, from category and annotation; None: it is not sampled.
 
         Raises:
             ConfigError: a shard is broken or has no objects (`stubborn views --extras instances`).
@@ -130,13 +131,13 @@ class _ShardIndex(Dataset):
         return len(self._shards)
 
     def __getitem__(self, i: int) -> tuple[list[StoredView], list[tuple[str, str, int, int]]]:
-        shard, decoder = self._shards[i], msgspec.json.Decoder(list[_Annotation])
+        shard, decoder = self._shards[i], msgspec.json.Decoder(list[Annotation])
         views: list[StoredView] = []
         objects: list[tuple[str, str, int, int]] = []
         with open_plain(shard, what="Shard") as stream:
             for key, members in read_members(shard):
                 for annotation in _annotations(decoder, shard, key, members, stream):
-                    label = self._label_of(MPCAT40[annotation.category_id], annotation.style)
+                    label = self._label_of(MPCAT40[annotation.category_id], annotation)
                     if label is not None and annotation.area >= SMALLEST_PX:
                         objects.append((label, annotation.style, len(views), annotation.id))
                 views.append(StoredView(shard, key, tuple((name, *place) for name, place in members.items())))
@@ -182,9 +183,9 @@ class Batches(Dataset):
 
 
 def _annotations(
-    decoder: msgspec.json.Decoder[list[_Annotation]], shard: Path, key: str, members: dict[str, tuple[int, int]],
+    decoder: msgspec.json.Decoder[list[Annotation]], shard: Path, key: str, members: dict[str, tuple[int, int]],
     stream: Any,
-) -> list[_Annotation]:  # fmt: skip
+) -> list[Annotation]:  # fmt: skip
     """Returns the objects of a view; raises ConfigError if the shard has no objects or they are broken."""
     if "coco" not in members:
         raise ConfigError(f"Shard '{shard}': view '{key}' has no objects; make it with --extras instances.")

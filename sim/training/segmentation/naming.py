@@ -17,9 +17,9 @@ from torch import Tensor, nn
 
 from sim.core.interface import CameraModel, ConfigError
 from sim.core.option_types import Count, NotNegative, OutFolder, Positive, Seed
-from sim.core.vocabulary import NO_OBJECTS, UNSEEN
+from sim.core.vocabulary import NO_OBJECTS, UNSEEN, vocabulary
 from sim.homes.housegen.furniture.names import listed_name
-from sim.training.segmentation.balanced import ShownObject, ViewIndex
+from sim.training.segmentation.balanced import Annotation, ShownObject, ViewIndex
 from sim.training.segmentation.dataset import list_shards, stored_block_px
 from sim.training.segmentation.samples import IGNORED, NONE, Augmentation, Sampler
 from sim.training.timed_training import TimedTraining, stride
@@ -64,10 +64,14 @@ class Args:
     """Seed of the initial weights, the order and the augmentation."""
 
 
-def known_name(category: str, style: str) -> str | None:
-    """Returns the name that is learned for objects of a style; None: it has none, or no training may use it."""
-    name = listed_name(category, style)
-    return None if name is None or name in UNSEEN or category in NO_OBJECTS else name
+def known_name(category: str, annotation: Annotation) -> str | None:
+    """Returns the name that is learned for an object; None: it has none, or no training may use it.
+
+    Views of earlier versions have no names; there it is that of the style.
+    """
+    name = annotation.everyday_name or listed_name(category, annotation.style) or ""
+    is_known = name in vocabulary().categories and category in vocabulary().categories[name]
+    return name if is_known and name not in UNSEEN and category not in NO_OBJECTS else None
 
 
 class NamedViews:

@@ -37,6 +37,7 @@ def annotate(
     instance_ids: NDArray[np.uint16],
     instances: Sequence[Instance],
     styles: Mapping[str, str] | None = None,
+    names: Mapping[str, str] | None = None,
     describe: Callable[[str], str | None] | None = None,
 ) -> list[dict[str, object]]:
     """Returns an annotation for each visible object of a view, without the id of the image.
@@ -45,12 +46,13 @@ def annotate(
         instance_ids: (h, w) number of the instance of each pixel, from 1; 0: none.
         instances: the instances of the house; number `n` is `instances[n - 1]`.
         styles: style of each instance by its name; None: they are not known.
+        names: everyday name of each instance by its name, where the house file says it.
         describe: returns a text that fits only the instance with a name, or None; None: there are no texts.
 
     Returns:
         For each object `id` (its number), `name`, `category_id` (mpcat40), `bbox` (x, y, width and height in pixels),
-        `area` (visible pixels), `iscrowd` 0 and `segmentation`, a run-length encoded mask; `style` and, of an object
-        with `DESCRIBED_SHARE` of the pixels, `description` where they are known.
+        `area` (visible pixels), `iscrowd` 0 and `segmentation`, a run-length encoded mask. Where they are known, it has
+        `style`, `everyday_name` and, with `DESCRIBED_SHARE` of the pixels, `description`.
     """
     annotations = []
     for number in np.unique(instance_ids[instance_ids > 0]).tolist():
@@ -71,6 +73,7 @@ def annotate(
                 "segmentation": encode_mask(mask),
             }
             | ({"style": styles[instance.name]} if styles and instance.name in styles else {})
+            | ({"everyday_name": names[instance.name]} if names and instance.name in names else {})
             | ({} if text is None else {"description": text})
         )
     return annotations

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -140,6 +140,8 @@ class _Describer:
         self._descriptions = Descriptions(scene.task, _COLOUR_CAMERA, scene.camera.profile)
         self._objects = {item.instance.name: item for item in scene.task.truth.meaning.objects if item.facts.name}
         self._texts: dict[str, str | None] = {}
+        self.names = {name: item.facts.name for name, item in self._objects.items()}
+        """The everyday names that the house file says."""
 
     def __call__(self, name: str) -> str | None:
         """Returns the shortest text that fits the instance with a name, always the same; None: none is proved."""
@@ -220,7 +222,7 @@ def _view(
     record: dict[str, Any],
     extras: Collection[str],
     styles: Mapping[str, str] | None,
-    describe: Callable[[str], str | None] | None,
+    describe: _Describer | None,
 ) -> View:
     camera = scene.camera.camera
     depth_mm = np.rint(reduce_image(images["depth"], block_px) * 1000.0).astype(np.uint16)
@@ -241,7 +243,8 @@ def _view(
     if "instances" in extras:
         labels = scene.world.labels
         ids = _instance_ids(_middle_pixels(images["geom"], block_px), labels)
-        view = replace(view, instances=ids, annotations=annotate(ids, labels.instances, styles, describe))
+        names = None if describe is None else describe.names
+        view = replace(view, instances=ids, annotations=annotate(ids, labels.instances, styles, names, describe))
     return view
 
 

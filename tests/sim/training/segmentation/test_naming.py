@@ -11,6 +11,7 @@ import torch
 from sim.core.interface import MPCAT40_ID, ConfigError
 from sim.houses.labels import Instance
 from sim.training.segmentation import naming
+from sim.training.segmentation.balanced import Annotation
 from sim.training.segmentation.naming import Args, Trainer, known_name
 from sim.training.views.coco import annotate
 from sim.training.views.shards import write_shard
@@ -44,16 +45,20 @@ def args_of(folder: Path, **changes: object) -> Args:
 
 
 @pytest.mark.parametrize(
-    ("category", "style", "name"),
+    ("category", "style", "everyday_name", "name"),
     [
-        ("appliances", "retro_fridge", "fridge"),
-        ("appliances", "dishwasher", None),  # UNSEEN
-        ("table", "wooden_table_ic0", None),  # of an imported model: its style says nothing
-        ("window", "pane", None),
+        ("appliances", "retro_fridge", "", "fridge"),
+        ("appliances", "dishwasher", "", None),  # UNSEEN
+        ("table", "wooden_table_ic0", "", None),  # of an imported model: its style says nothing
+        ("table", "wooden_table_ic0", "desk", "desk"),
+        ("table", "", "washing machine", None),
+        ("table", "", "spaceship", None),
+        ("window", "pane", "", None),
     ],
 )
-def test_labels_are_the_listed_names_that_training_may_use(category, style, name):
-    assert known_name(category, style) == name
+def test_labels_are_the_listed_names_that_training_may_use(category, style, everyday_name, name):
+    annotation = Annotation(id=1, category_id=1, area=100, style=style, everyday_name=everyday_name)
+    assert known_name(category, annotation) == name
 
 
 @pytest.mark.costly

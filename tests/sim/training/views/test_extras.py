@@ -91,6 +91,10 @@ def test_objects_are_described_by_texts_that_fit_no_other_one() -> None:
     assert "the armchair" in str(dict(texts)["chair_00"])
     assert dict(texts)["chair_01"] is None  # nothing tells it apart
     assert dict(texts)["sofa_00"] is None  # the house file does not state its name
+    named = {note["name"]: note.get("everyday_name") for view in rich for note in view.annotations or ()}
+    assert {name: named[name] for name in (*places, "table_00")} == {
+        "chair_00": "armchair", "chair_01": "armchair", "sofa_00": None, "table_00": "desk",
+    }  # fmt: skip
     for one, other in zip(rich, plain, strict=True):
         np.testing.assert_array_equal(one.rgb, other.rgb)
     few = views_of(scene, count=12, extras=("instances",))  # which is enough for one object
