@@ -186,7 +186,7 @@ class Trainer(TimedTraining):
             logits, names = self._logits(model, rgb, second, target)
             if len(names):
                 judged = logits + self._apart[names]
-                losses.append(float(nn.functional.cross_entropy(judged, names)))
+                losses.append(float(nn.functional.cross_entropy(judged, names).detach()))
                 right[number] += float((judged.argmax(dim=1) == names).float().mean())
                 count[number] += 1
         alone = self.groups.members.sum(axis=1) > 1
