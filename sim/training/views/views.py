@@ -7,7 +7,6 @@ path, in their order. `EXTRAS` are members that a view has only where they are a
 
 from __future__ import annotations
 
-import math
 import zlib
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
@@ -18,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.core.errors import EpisodeError, HouseError
-from sim.core.geometry.pose import Pose
+from sim.core.geometry.pose import Pose, as_body_pose
 from sim.core.interface import MPCAT40_ID, CameraModel
 from sim.env.scene import Scene
 from sim.episodes.descriptions import Descriptions
@@ -27,6 +26,7 @@ from sim.training.views.aimed import AIMS, aimed_poses, shows
 from sim.training.views.coco import annotate
 from sim.training.views.normals import encode_normals, surface_normals
 from sim.training.views.poses import MAX_TRIES, any_pose, mixed_poses, sequence_poses
+from sim.training.views.variation import leaning
 from sim.world.freespace import FreeSpace
 
 BARE_SHARE = 0.97
@@ -75,6 +75,7 @@ def sample_views(
     sequence: int | None = None,
     aim: str | None = None,
     styles: Mapping[str, str] | None = None,
+    lean: bool = False,
 ) -> Iterator[View]:
     """Yields views of one house; the same generator state gives the same views.
 
@@ -89,6 +90,7 @@ def sample_views(
         sequence: number of views of a sequence along one path; bare walls in it are not rejected. None: no sequences.
         aim: name of `AIMS`: the camera is aimed at objects that are rare in other views. None: it is not.
         styles: style of each instance of the house by its name, for the annotations; None: they are not known.
+        lean: in a share of the views, the body and its camera lean (`sim.training.views.variation`).
 
     Raises:
         HouseError: the house has no free position, shows only bare walls, has no path of that many views, or no object
@@ -114,6 +116,7 @@ def sample_views(
             raise HouseError(f"House '{name}': {taken} of {count} views after {tries} tries; it shows too little.")
         tries += 1
         pose, how = next(poses)
+        pose = leaning(pose, rng) if lean else pose
         images = scene.camera.render(scene.world.data, pose, labels)
         if sequence is None and is_bare(images["semantic"], images["depth"]):
             continue
@@ -196,15 +199,10 @@ def camera_to_world(pose: Pose, camera: CameraModel) -> NDArray[np.float64]:
 
     The camera's axes are those of OpenCV: x to the right, y down, z along the optical axis.
     """
-    c, s = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
-    return np.array(
-        [
-            [s, 0.0, c, pose.x_m],
-            [-c, 0.0, s, pose.y_m],
-            [0.0, -1.0, 0.0, pose.floor_z_m + camera.height_m],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
+    body = as_body_pose(pose)
+    ahead, left, up = body.axes
+    view = np.column_stack([-left, -up, ahead, body.point(0.0, 0.0, camera.height_m)])
+    return np.vstack([view, [0.0, 0.0, 0.0, 1.0]])
 
 
 def _middle_pixels(image: NDArray, block_px: int) -> NDArray:
@@ -229,7 +227,7 @@ def _view(
     camera_entry = {"intrinsics": intrinsics(camera, block_px), "camera_height_m": camera.height_m}
     pose_entry: dict[str, Any] = {name: round(value, 4) for name, value in asdict(pose).items()}
     if "poses" in extras:
-        record = record | {"T_world_cam": camera_to_world(Pose(**pose_entry), camera).round(6).tolist()}
+        record = record | {"T_world_cam": camera_to_world(type(pose)(**pose_entry), camera).round(6).tolist()}
     view = View(
         key,
         reduce_image(images["rgb"], block_px),

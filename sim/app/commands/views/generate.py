@@ -51,6 +51,7 @@ from sim.renderer.profiles import get_profile
 from sim.robot.config import RobotConfig
 from sim.training.views.aimed import AIMS
 from sim.training.views.shards import ShardNote, read_note, shard_name, write_index, write_shard
+from sim.training.views.variation import with_other_light
 from sim.training.views.views import EXTRAS, sample_views
 
 FRESH_SEEDS_FROM = 1_000_000
@@ -77,6 +78,8 @@ class Args(HouseFile):
     """With --pool or --furniture: about half of the items get other proportions than those of their styles."""
     furniture: Path | None = None
     """Folder of imported models (`stubborn import furniture`): new houses only, with models of the split train."""
+    vary: bool = False
+    """Other light in each house (lamps off, dimmed or warmer, another sun), and a body that leans in some views."""
     withheld: str | None = None
     """With --pool or --furniture, for selecting a network: without leaves a fifth of the styles and models out of the
     houses; only prefers these."""
@@ -201,6 +204,8 @@ def _shard_of(args: Args, config: Mapping[str, object], task: ShardTask, fresh_s
     """Generates the shard of the house of a seed; None: of a house of the split."""
     began = time.perf_counter()
     house, styles = _house(args, task, fresh_seed)
+    if args.vary:
+        house = with_other_light(house, np.random.default_rng([args.seed, 2, task.number]))
     scene = Scene(house, robot=RobotConfig(), camera=CameraModel(), profile=args.profile)
     house_s = time.perf_counter() - began
     try:
@@ -210,7 +215,7 @@ def _shard_of(args: Args, config: Mapping[str, object], task: ShardTask, fresh_s
         record = {"house": shown, "seed": args.seed, "profile": args.profile, "versions": config["versions"]}
         views = sample_views(
             scene, rng, task.views, stem=name, record=record, block_px=args.shrink, extras=args.extras,
-            sequence=args.sequence, aim=args.aim, styles=styles,
+            sequence=args.sequence, aim=args.aim, styles=styles, lean=args.vary,
         )  # fmt: skip
         note = write_shard(args.out, name, views, house=task.house, config=config, rgb_format=args.rgb)
     finally:
@@ -272,6 +277,7 @@ def _config(args: Args, split: Split) -> dict[str, object]:
         "split": split.name,
         "pool": args.pool,
         **({"reshape": True} if args.reshape else {}),
+        **({"vary": True} if args.vary else {}),
         **({"furniture_sha256": sha256_of_models(args.furniture)} if args.furniture is not None else {}),
         **({"withheld": args.withheld} if args.withheld is not None else {}),
         "split_version": split.version,
@@ -321,7 +327,8 @@ def _command(args: Args) -> str:
     """Returns the options that generate the same shards."""
     source = ("split",) if args.house is None else ("house", "labels", "root")
     keys = (
-        *source, "pool", "reshape", "furniture", "withheld", "views", "profile", "seed", "views_per_shard", "shrink",
+        *source, "pool", "reshape", "vary", "furniture", "withheld", "views", "profile", "seed", "views_per_shard",
+        "shrink",
         "rgb", "sequence", "aim",
     )  # fmt: skip
     values = {key: getattr(args, key) for key in keys}

@@ -13,6 +13,7 @@ stubborn train segmentation --views runs/views/{reshaped,models,train,aimed} --v
 | aimed | 15 % | as `models`, cameras aimed at rare goals from 1 to 3.5 m |
 | selection | | `--selection` views of houses that prefer the withheld styles and models; no other part shows these |
 
+All but those of `train` and `selection` have other light, and a body that leans in some views (`views --vary`).
 Parts grow in turns, so that a stopped run has views in these proportions and training can begin. The same command
 continues: complete shards are kept, and a shard has the same bytes in every run.
 """
@@ -80,7 +81,8 @@ def parts(args: Args, turns: int) -> Iterator[generate.Args]:
     for name, count in houses.items():
         train = _options(args, name, views=VIEWS_PER_HOUSE * count * turns, per_house=VIEWS_PER_HOUSE)
         furniture, aim = args.furniture if name in ("models", "aimed") else None, "rare" if name == "aimed" else None
-        yield replace(train, withheld="without", reshape=name != "train", furniture=furniture, aim=aim)
+        own = name != "train"
+        yield replace(train, withheld="without", reshape=own, vary=own, furniture=furniture, aim=aim)
 
 
 def selection(args: Args) -> generate.Args:
