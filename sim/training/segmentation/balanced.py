@@ -117,8 +117,8 @@ class ViewIndex:
         """
         if rng.random() >= object_share:
             return ShownObject(int(rng.integers(len(self.views))), 0)
-        styles = self.objects[_one_of(list(self.objects), rng)]
-        return _one_of(styles[_one_of(list(styles), rng)], rng)
+        styles = self.objects[one_of(list(self.objects), rng)]
+        return one_of(styles[one_of(list(styles), rng)], rng)
 
 
 class _ShardIndex(Dataset):
@@ -197,5 +197,6 @@ def _annotations(
         raise ConfigError(f"Shard '{shard}': the objects of view '{key}' cannot be read: {error}.") from None
 
 
-def _one_of(choices: Sequence[Any], rng: np.random.Generator) -> Any:
+def one_of(choices: Sequence[Any], rng: np.random.Generator) -> Any:
+    """Returns one of some choices, each equally often."""
     return choices[int(rng.integers(len(choices)))]

@@ -19,7 +19,7 @@ from sim.core.interface import CameraModel, ConfigError
 from sim.core.option_types import Count, NotNegative, OutFolder, Positive, Seed
 from sim.core.vocabulary import NO_OBJECTS, UNSEEN, vocabulary
 from sim.homes.housegen.furniture.names import listed_name
-from sim.training.segmentation.balanced import Annotation, ShownObject, ViewIndex
+from sim.training.segmentation.balanced import Annotation, ShownObject, ViewIndex, one_of
 from sim.training.segmentation.dataset import list_shards, stored_block_px
 from sim.training.segmentation.samples import IGNORED, NONE, Augmentation, Sampler
 from sim.training.timed_training import TimedTraining, stride
@@ -47,7 +47,7 @@ class Args:
     out: OutFolder
     """Folder of the run; an existing run is continued."""
     weights: Path | None = None
-    """The network, a RedNet; None: the shipped one."""
+    """The network, a RedNet; None: the shipped one. A head that it has is trained further, with the same names."""
     minutes: Positive = 30.0
     """Time of the training, to which the learning rate is fitted."""
     batch: Count = 16
@@ -118,10 +118,12 @@ class Trainer(TimedTraining):
             raise ConfigError(f"--weights '{args.weights}' are not of a RedNet, which can have a head for names.")
         index, val_index = (ViewIndex.of(files, label_of=known_name) for files in (shards, val_shards))
         counts = {name: sum(map(len, styles.values())) for name, styles in index.objects.items()}
-        self.names = tuple(sorted(name for name, count in counts.items() if count >= LEAST_OBJECTS))
-        if len(self.names) < 2:
+        often = tuple(sorted(name for name, count in counts.items() if count >= LEAST_OBJECTS))
+        self.names = network.config.names or often
+        self._sampled = [name for name in self.names if index.objects.get(name)]
+        if len(self._sampled) < 2:
             raise ConfigError(
-                f"The views show {len(self.names)} names with {LEAST_OBJECTS} objects; at least 2 are needed."
+                f"The views show {len(self._sampled)} names with {LEAST_OBJECTS} objects; at least 2 are needed."
             )
         torch.manual_seed(args.seed)
         self.network = RedNet(replace(network.config, names=self.names))
@@ -149,17 +151,14 @@ class Trainer(TimedTraining):
     def losses(self) -> tuple[Tensor, Mapping[str, Tensor]]:
         """See `TimedTraining.losses`; the samples of a step depend on seed and step only."""
         rng = np.random.default_rng([self.args.seed, self.progress.step])
-        every = [one for styles in (self.train.index.objects[name] for name in self._drawn(rng)) for one in
-                 [_one_of(_one_of(list(styles.values()), rng), rng)]]  # fmt: skip
+        names = [self._sampled[number] for number in rng.integers(len(self._sampled), size=self.args.batch)]
+        drawn = [one_of(one_of(list(self.train.index.objects[name].values()), rng), rng) for name in names]
         rgb, second, target = (
-            torch.stack(part) for part in zip(*(self.train.sample(one, rng) for one in every), strict=True)
+            torch.stack(part) for part in zip(*(self.train.sample(one, rng) for one in drawn), strict=True)
         )
         logits, target = self._logits(self.model, rgb, second, target)
         loss = nn.functional.cross_entropy(logits + self._apart[target], target)
         return loss, {"loss": loss}
-
-    def _drawn(self, rng: np.random.Generator) -> list[str]:
-        return [self.names[number] for number in rng.integers(len(self.names), size=self.args.batch)]
 
     def _logits(
         self, head: nn.Module, rgb: Tensor, second: Tensor, target: Int64[Tensor, "n h w"]
@@ -210,7 +209,3 @@ class Trainer(TimedTraining):
         tensors = {f"names_head.{name}": tensor for name, tensor in model.state_dict().items()}
         self.network.load_state_dict(self.network.state_dict() | tensors)
         save_network(file, self.network, self._metadata | {"names": card})
-
-
-def _one_of(choices: Sequence, rng: np.random.Generator):
-    return choices[int(rng.integers(len(choices)))]

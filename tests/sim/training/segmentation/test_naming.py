@@ -78,6 +78,18 @@ def test_the_head_learns_to_tell_names_apart_and_the_network_stays(folder: Path)
     assert metadata["names"]["val"]["right"] == right
 
 
+@pytest.mark.costly
+def test_a_head_is_trained_further_with_its_own_names(folder: Path):
+    first = Trainer(args_of(folder))
+    file = folder / "w.safetensors"
+    first.save(file, first.model, {})
+    (folder / "out").rename(folder / "first")
+    more = Trainer(args_of(folder, weights=file))
+    assert more.names == first.names
+    for one, other in zip(first.model.parameters(), more.model.parameters(), strict=True):
+        torch.testing.assert_close(one, other, atol=1e-3, rtol=1e-2)  # files have 16 bits
+
+
 def test_views_with_one_name_cannot_train_it(folder: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(naming, "LEAST_OBJECTS", 25)
     with pytest.raises(ConfigError, match="0 names with 25 objects"):
