@@ -174,12 +174,12 @@ def import_all(
         else:
             reports[work.name] = {**made.report, "key": key, "rules": dict(made.rules)}
             rules.update(made.rules)
-        if time.monotonic() - said_s > PROGRESS_S:
+        done = len(reports) + failed
+        share = max(work.share, done / total if total else 0.0)
+        if share < 1.0 and time.monotonic() - said_s > PROGRESS_S:
             said_s = time.monotonic()
-            done = len(reports) + failed
-            share = max(work.share, done / total if total else 0.0)
             left_s = round((said_s - began_s) * (1.0 / max(share, 1e-6) - 1.0))
-            print(f"{done} houses, about {left_s // 60} min {left_s % 60} s left.", flush=True)
+            print(f"{counted(done, 'house')}, about {left_s // 60} min {left_s % 60} s left.", flush=True)
     if not reports and not failed:
         raise ConfigError("There is no house to import.")
     _write(out, before, reports, rules)
