@@ -299,10 +299,14 @@ def _print_any_text() -> None:
 
 
 def _message_in_box(box: str) -> str:
-    """Returns the message inside the frame that tyro prints around it."""
-    lines = [re.sub(r"^\W*│|│\W*$", "", line).strip() for line in box.splitlines()]
-    body = [
-        line for line in lines if line and not line.startswith(("╭", "╰", "For full helptext", "Argument helptext"))
-    ]
-    rule = next((i for i, line in enumerate(body) if set(line) <= {"─"}), len(body))
-    return " ".join(body[:rule]) or "The command line could not be read. Try --help."
+    """Returns the message inside the frame that tyro prints around it, and the names of similar options.
+
+    Rules separate the message from help texts, which are left out. Without UTF-8, tyro draws the title as a first part.
+    """
+    lines = [line.strip().strip("│").strip() for line in box.splitlines() if not line.startswith(("╭", "╰"))]
+    parts = re.split(r"\n[─-]+\n", "\n".join(line for line in lines if line))
+    blocks = [part.split("\n") for part in parts[len(parts) > 1 and "╭" not in box :]]
+    message = " ".join(blocks[0]) or "The command line could not be read. Try --help."
+    similar = [line for block in blocks if block[0].startswith("Perhaps you meant") for line in block[1:]]
+    names = " or ".join(line.split()[0] for line in similar if line.startswith("--"))
+    return f"{message}. Did you mean {names}?" if names else message

@@ -265,18 +265,22 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         reward = float(scene.task.success)
         return observation, reward, scene.task.terminated, scene.task.truncated, self._info(motion.collided)
 
-    def draw_episode(self, rng: np.random.Generator, *, episode_id: str = "drawn") -> Episode:
-        """Returns a new episode in a house of this environment, which has no episodes of a split.
+    def draw_episode(
+        self, rng: np.random.Generator, *, episode_id: str = "drawn", house: str | None = None, goal: str | None = None
+    ) -> Episode:
+        """Returns a new episode in a house of this environment.
 
-        Goal and start are those of the environment, otherwise those of the house's sidecar, otherwise random.
+        A goal or start that is not given is that of the environment, otherwise that of the house's sidecar, otherwise
+        random; a house that is not given is random.
 
         Raises:
             EpisodeError: the goal is not in the house or cannot be reached, or the robot does not fit at the start.
         """
         houses = self.split.houses
-        house = houses[0] if len(houses) == 1 else houses[rng.integers(len(houses))]
+        if house is None:
+            house = houses[0] if len(houses) == 1 else houses[rng.integers(len(houses))]
         fixed = self.split.sidecar(house)
-        goal, start = self.goal or fixed.goal, self.start or fixed.start
+        goal, start = goal or self.goal or fixed.goal, self.start or fixed.start
         return sample_episode(self._scenes.get(house).task, house, rng, goal=goal, start=start, episode_id=episode_id)
 
     def draw_drive(self, rng: np.random.Generator, *, episode_id: str) -> Episode:

@@ -310,7 +310,8 @@ def _report(episodes: Sequence[Episode], goals: Mapping[str, HouseAsks], took_s:
     """Prints statistics of the episodes."""
     distances = np.array([episode.shortest_path_m for episode in episodes], dtype=np.float64)
     print(
-        f"{len(episodes)} episodes in {len(goals)} houses, made in {took_s:.1f} s, {len(goals) / took_s:.2f} houses/s"
+        f"{display.counted(len(episodes), 'episode')} in {display.counted(len(goals), 'house')}, "
+        f"made in {took_s:.1f} s, {len(goals) / took_s:.2f} houses/s"
     )
     print(f"geodesic distance: {distances.min():.1f} to {distances.max():.1f} m, median {np.median(distances):.1f} m")
     asked = collections.Counter(episode.goal for episode in episodes)

@@ -193,7 +193,8 @@ class Setup:
             return ""
         return (
             f"No parameters are fitted to segmentation of kind '{spec.kind}': verification and fusion use those of "
-            f"'{DEFAULT_KIND}' (`{command('train', 'verifier')}` and `{command('train', 'fusion')}` fit your own)."
+            f"'{DEFAULT_KIND}' (`{command('train', 'verifier')}` and `{command('train', 'fusion')}` fit your own). "
+            f"If `stubborn` rejects what it should not, `--verification {ACCEPT_ALL}` accepts every candidate."
         )
 
     @property

@@ -22,10 +22,10 @@ _WAITING_ACTIONS = 4
 released."""
 
 
-class Interrupted(BaseException):
+class Interrupted(KeyboardInterrupt):
     """The episode must end without a result: a user has requested another one or ended it, or the server stops.
 
-    Like KeyboardInterrupt, this class is not an Exception, which `play_episode` would count as a failure of the agent.
+    Any error but a KeyboardInterrupt would count as a failure of the agent (`sim.app.evaluation.rollout.ask`).
     """
 
 

@@ -331,10 +331,9 @@ def choose_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int, setup:
 
 
 def _wished_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int) -> Episode:
-    """Returns an episode with a goal in words, from the start of one of the episodes of its house in turn."""
-    of_house = [episode for episode in env.split.episodes if episode.house == request.house]
-    start = of_house[turn % len(of_house)].start
-    return Episode(f"{request.house}_wish_{turn:04d}", request.house, request.goal, start)
+    """Returns a new episode with a goal in words; its start differs from turn to turn and is not at the goal."""
+    rng, episode_id = drawing_generator(request.options.seed, turn), f"{request.house}_wish_{turn:04d}"
+    return env.draw_episode(rng, episode_id=episode_id, house=request.house, goal=request.goal)
 
 
 def _draw_episode(env: ObjectNavEnv, request: EpisodeRequest, turn: int) -> Episode:

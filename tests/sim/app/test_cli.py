@@ -85,6 +85,17 @@ def test_a_command_line_that_cannot_be_read_is_one_line(
     assert "│" not in message
 
 
+def test_an_unknown_option_is_answered_with_the_similar_one_alone(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A long path of the program wraps the lines of help around the message, which must not become part of it."""
+    monkeypatch.setattr(cli.invocation, "program", lambda: f"/home/{'folder/' * 9}python -m sim.app.commands.main run")
+    assert cli.run(Args, lambda args: 0, ["--epsodes", "3"]) == 2
+    assert capsys.readouterr().err == "error: Unrecognized options: --epsodes, 3. Did you mean --episodes?\n"
+    assert cli.run(Args, lambda args: 0, ["--episodes", "3", "4"]) == 2
+    assert capsys.readouterr().err == "error: Unrecognized options: 4\n"
+
+
 @dataclass(frozen=True)
 class Ranges:
     """Arguments with ranges."""

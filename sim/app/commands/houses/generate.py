@@ -30,6 +30,7 @@ from pathlib import Path
 from typing import Literal
 
 from sim.app import cli
+from sim.app.analysis import display
 from sim.app.commands.houses.area import Area
 from sim.app.evaluation.parallel import ordered_map
 from sim.core.errors import HouseError
@@ -234,7 +235,7 @@ def _generate(
     plan = house.plan
     below = " below" if config.storeys == 2 else ""
     size = f"{plan.area_m2:.0f} m2{below}, {len(plan.rooms)} rooms{below}"
-    summary = f"{plan.kind}, {size}, {house.geoms} geoms, {house.tries} tries"
+    summary = f"{plan.kind}, {size}, {house.geoms} geoms" + f", {house.tries} tries" * (house.tries > 1)
     return Made(name, house_text(house.spec, textures), "", summary, house.rejects, seconds)
 
 
@@ -254,7 +255,7 @@ def _print_summary(made: list[Made], took_s: float) -> None:
     if good:
         seconds = [house.seconds for house in good]
         print(
-            f"{len(good)} houses, median {statistics.median(seconds):.2f} s each on one core, "
+            f"{display.counted(len(good), 'house')}, median {statistics.median(seconds):.2f} s each on one core, "
             f"{len(good) / sum(seconds):.2f} houses/s of one core, {len(good) / took_s:.2f} houses/s in total; "
             f"{sum(len(house.rejects) for house in good)} tries rejected, {len(made) - len(good)} seeds without a house"
         )

@@ -19,6 +19,7 @@ from msgspec import Meta
 from rich.console import Console
 
 from sim.app import cli
+from sim.app.analysis.display import counted
 from sim.app.evaluation.own_code import one_line
 from sim.app.evaluation.parallel import ordered_map
 from sim.app.viewers.house_pictures import draw_top, draw_views, titled
@@ -173,12 +174,12 @@ def import_all(
         else:
             reports[work.name] = {**made.report, "key": key, "rules": dict(made.rules)}
             rules.update(made.rules)
-        if time.monotonic() - said_s > PROGRESS_S:
+        done = len(reports) + failed
+        share = max(work.share, done / total if total else 0.0)
+        if share < 1.0 and time.monotonic() - said_s > PROGRESS_S:
             said_s = time.monotonic()
-            done = len(reports) + failed
-            share = max(work.share, done / total if total else 0.0)
             left_s = round((said_s - began_s) * (1.0 / max(share, 1e-6) - 1.0))
-            print(f"{done} houses, about {left_s // 60} min {left_s % 60} s left.", flush=True)
+            print(f"{counted(done, 'house')}, about {left_s // 60} min {left_s % 60} s left.", flush=True)
     if not reports and not failed:
         raise ConfigError("There is no house to import.")
     _write(out, before, reports, rules)
@@ -275,13 +276,14 @@ def _print_result(console: Console, reports: Sequence[Mapping[str, object]], fai
     """Prints the sizes of the houses, and how they differ from their sources."""
     total, read = added(reports), [HouseReport.of(report) for report in reports]
     rooms, area_m2 = sum(report.rooms for report in read), sum(report.area_m2 for report in read)
-    lines = [f"{len(reports)} houses with {rooms} rooms, {area_m2:.0f} m2, in {out}; {failed} could not be imported."]
+    sizes = f"{counted(len(reports), 'house')} with {counted(rooms, 'room')}"
+    lines = [f"{sizes}, {area_m2:.0f} m2, in {out}; {failed} could not be imported."]
     kept = "furniture" if total.boxes else "objects with a category"
     for title, counts in ((kept, total.furniture), ("labelled boxes", total.boxes), ("left out", total.left_out)):
         most = ", ".join(f"{name} {count}" for name, count in counts.most_common(MAX_TYPES))
         more = f" and {len(counts) - MAX_TYPES} more" if len(counts) > MAX_TYPES else ""
         if counts:
-            lines.append(f"{title}: {sum(counts.values())} objects ({most}{more})")
+            lines.append(f"{title}: {counted(sum(counts.values()), 'object')} ({most}{more})")
     lines += [f"{sentence} ({count} x)" for sentence, count in total.changes.most_common()]
     if total.moved_m > 0.0:
         lines.append(f"Objects were moved by at most {total.moved_m:.2f} m.")

@@ -263,7 +263,8 @@ def notes_of(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequ
     errors = sum(of.results[i].is_error for of in runs.values() for i in common)
     codes = Counter(code_of(of, i) for of in runs.values() for i in common)
     notes = [
-        f"{len(common)} episodes in {houses} houses of {split['name']} {split['version']} ({split['sha256'][:8]}), "
+        f"{display.counted(len(common), 'episode')} in {display.counted(houses, 'house')} of "
+        f"{split['name']} {split['version']} ({split['sha256'][:8]}), "
         f"sensor noise {config['noise']}, seed {config['seed']}, mujoco {versions['mujoco']}.",
         "Mean [95 % interval over houses]. Differences are paired by episode; not significant: the p-value is at least "
         f"{SIGNIFICANCE} after Holm's correction for the differences of the same table, or there are fewer than "

@@ -247,7 +247,9 @@ let above = null;  // the house that is shown: its picture, the place in its mid
 
 // Shows the house in place of the last episode's pictures; a running episode goes on.
 function showAbove() {
-  if (!["running", "loading"].includes(state.phase)) delete document.body.dataset.step;
+  if (["running", "loading"].includes(state.phase)) return;
+  delete document.body.dataset.step;
+  closeOutcome();
 }
 
 async function showHouse() {

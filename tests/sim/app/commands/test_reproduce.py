@@ -74,7 +74,7 @@ def test_the_agents_of_a_table_run_once_and_the_table_is_written(
     page = (args.out / "tables" / f"{stem(args)}.md").read_text()
     assert "| goal (episodes) | oracle | examples.my_agent:make | oracle - examples.my_agent:make |" in page
     assert "| all (2) | 100.0" in page
-    assert "2 episodes in 1 houses of tiny 1" in page
+    assert "2 episodes in 1 house of tiny 1" in page
     assert (args.out / "tables" / f"{stem(args)}.csv").is_file()
     assert len(list((args.out / ORACLE / FOLDER).glob("*.npz"))) == 2
     before = (args.out / MINE / "results.jsonl").read_bytes()

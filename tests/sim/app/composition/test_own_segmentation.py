@@ -40,6 +40,7 @@ def test_a_segmentation_of_ones_own_is_run_recorded_and_named(
     printed = " ".join(capsys.readouterr().out.split())
     assert f"segmentation: {FLAT};" in printed
     assert "No parameters are fitted to segmentation of kind 'flat'" in printed
+    assert "`--verification none` accepts every candidate" in printed
     record = json.loads((tmp_path / "config.json").read_text())
     assert record["config"]["detector"] == {"level": 0.125}
     assert record["segmentation"]["kind"] == "flat"

@@ -313,6 +313,20 @@ def test_an_episode_begins_at_the_chosen_start(
     assert (shown[0].x_m, shown[0].y_m, math.degrees(shown[0].yaw_rad)) == pytest.approx((x, y, 90.0), abs=0.001)
 
 
+def test_an_episode_with_a_goal_in_words_does_not_begin_at_the_goal(choices: Choices, tmp_path: Path) -> None:
+    request = choices.request(START | {"split": "val", "house": "val_02", "goal": "the chair in the living room"})
+    session = Session(Display(), DrivenRuns(tmp_path))
+    made = session._made_for(request)
+    try:
+        env = made.parts.env
+        for turn in range(6):
+            episode = choose_episode(env, request, turn, made.setup)
+            env.reset(options={"episode": episode})
+            assert (env.scene.task.goal_metrics().distance_to_goal or 0.0) > 0.5
+    finally:
+        session._free()
+
+
 @pytest.mark.parametrize("start", [[1.0, 2.0], [1e9, 0.0, 0.0], ["1", 2.0, 0.0], "1 2 0", [float("nan"), 0.0, 0.0]])
 def test_a_start_is_three_numbers(start: object, choices: Choices) -> None:
     with pytest.raises(ConfigError):

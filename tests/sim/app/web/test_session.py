@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
-from sim.app.web.controls import Choice
+from sim.app.evaluation.rollout import next_action
+from sim.app.web.controls import Choice, Controls, Interrupted
 from sim.app.web.session import Frame, SharedAgent
 from sim.core.goals import GoalSpec
 from sim.core.interface import Action, StatesTarget
@@ -47,6 +48,15 @@ def test_the_place_is_that_of_the_agents_own_stop(
     assert shared.act({}) is Action.STOP  # pyright: ignore[reportArgumentType] - nothing reads the observation
     assert isinstance(shared, StatesTarget)
     assert shared.stop_target_xy_m() == place
+
+
+def test_the_end_that_a_user_asks_for_is_no_error_of_the_agent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(SharedAgent, "_show", lambda *_: None)
+    controls, unused = Controls(), cast(Any, None)
+    shared = SharedAgent(SimpleNamespace(agent=Stops()), unused, controls, unused)  # pyright: ignore[reportArgumentType]
+    controls.close()
+    with pytest.raises(Interrupted):
+        next_action(shared, {}, "Agent 'stops', step 1")
 
 
 def test_the_world_can_be_shown_before_the_first_action() -> None:

@@ -322,17 +322,18 @@ def frame_now(browser: Browser) -> int:
     return int(browser.run("return document.body.dataset.step ?? -1"))
 
 
-def test_escape_closes_the_outcome_of_each_episode(server: Server, browser: Browser) -> None:
+def test_escape_and_another_house_close_the_outcome_of_each_episode(server: Server, browser: Browser) -> None:
     browser.visit(server.address)
     hidden = "return document.getElementById('outcome').hidden"
+    choose = "document.getElementById('house').dispatchEvent(new Event('change'))"
     with server.connect() as second:
-        for _ in range(2):
+        for close in (lambda: browser.keys("body", ESCAPE), lambda: browser.run(choose)):
             second.send(json.dumps({"do": "speed", "per_s": 60}))
             second.send(json.dumps({"do": "start", **WISH, "agent": "random"}))
             state_of(second, "running")
             second.send(json.dumps({"do": "act", "action": 0}))
             wait_for(lambda: browser.run(hidden) is False)
-            browser.keys("body", ESCAPE)
+            close()
             assert browser.run(hidden)
             state_of(second, "ended")
 

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 from sim.app import cli
 from sim.app.commands import episodes
+from sim.app.commands.importing import folder
 from sim.app.commands.importing import mesh as command
 from sim.app.commands.importing.folder import Made, Work, file_works, import_all
 from sim.core.errors import ConfigError, EpisodeError, HouseError
@@ -298,6 +299,17 @@ def test_an_error_that_nobody_expected_is_named_and_the_other_homes_are_imported
     printed = capsys.readouterr()
     assert "b: left out: it cannot be imported (RecursionError: maximum recursion depth exceeded in a" in printed.err
     assert "2 houses with 2 rooms" in printed.out
+
+
+def test_the_time_left_is_said_while_homes_are_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(folder, "PROGRESS_S", -1.0)
+    works = [Work(name, b"", Path(name)) for name in ("a", "c")]
+    import_all(works, _made, tmp_path, total=2, options="", pictures=0, workers=1)
+    assert [line for line in capsys.readouterr().out.splitlines() if "left." in line] == [
+        "1 house, about 0 min 0 s left."
+    ]
 
 
 @pytest.mark.parametrize(("given", "works"), [("auto", True), ("z", True), ("y", False)])
