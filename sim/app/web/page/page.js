@@ -86,6 +86,8 @@ function showState(news) {
   if (following && news.phase === "loading") follow(news.request);
   if (news.phase === "loading") {
     document.body.dataset.step = "-1";
+    for (const id of ["facts", "doing", "sight"]) fill($(id), []);  // those of the last episode
+    document.body.classList.remove("hit");
     for (const figure of figures.values()) figure.classList.replace("absent", "empty") || figure.classList.add("empty");
   }
   $("message").textContent = news.message;
@@ -164,7 +166,7 @@ function facts(frame) {
   if (!state.episode_id) words.shift();
   if (frame.last) words.push(frame.last);
   words.push(`driven ${frame.driven_m.toFixed(1)} m`);
-  if (state.request?.goal) words.push(frame.left_m === null ? "no path to the goal" : `${frame.left_m.toFixed(1)} m to go`);
+  if (state.request?.goal) words.push(frame.left_m === null ? "no path to the goal" : `${frame.left_m.toFixed(frame.left_m < 1 ? 2 : 1)} m to go`);
   if (frame.shortest_m !== null) words.push(`shortest path ${frame.shortest_m.toFixed(1)} m`);
   const hits = document.createElement(frame.collided ? "b" : "span");
   hits.textContent = `${frame.collisions} collision${frame.collisions === 1 ? "" : "s"}`;
