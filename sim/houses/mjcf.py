@@ -22,6 +22,7 @@ from sim.core.pictures import image_size_px
 from sim.core.reading import MAX_BYTES, open_plain, printable, read_bytes, reason_of
 from sim.gl import mujoco
 from sim.houses.attachments import Attachment, attach, attachment_of, use_absolute_paths
+from sim.houses.geoms import data_at_rest
 from sim.houses.mjcf_text import Composition, as_utf8
 from sim.houses.references import Allowed, Reference, asset_path, asset_references, path_as_read
 
@@ -192,8 +193,7 @@ def require_few_contacts(model: mujoco.MjModel, *, error: type[ObjectNavError] =
         )
     if model.nv == 0:
         return
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     mujoco.mj_comPos(model, data)
     mujoco.mj_collision(model, data)
     if data.ncon > MAX_CONTACTS:

@@ -14,6 +14,7 @@ from sim.core.files import inside, write_atomically
 from sim.core.reading import reason_of
 from sim.gl import mujoco
 from sim.homes.housegen.floor_plan.rectangles import Rect
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import House
 from sim.houses.load import validate_house
 from sim.houses.mjcf import read_spec
@@ -74,7 +75,7 @@ def floor_height(model: mujoco.MjModel, name: str = "floor") -> float:
     geom = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, name)
     if geom < 0:
         return 0.0
-    data = posed(model)
+    data = data_at_rest(model)
     plane = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE
     top = float(data.geom_xpos[geom, 2]) if plane else float(geom_box(model, data, geom)[1][2])
     return top if abs(top) > 1e-3 else 0.0
@@ -95,13 +96,6 @@ def add_room(spec: mujoco.MjSpec, name: str, rect: Rect, top_m: float) -> None:
         name=name, type=mujoco.mjtGeom.mjGEOM_BOX, group=4, pos=[x, y, top_m / 2],
         size=[rect.width_m / 2, rect.depth_m / 2, top_m / 2],
     )  # fmt: skip
-
-
-def posed(model: mujoco.MjModel) -> mujoco.MjData:
-    """Returns the initial state of a model, kinematics computed."""
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    return data
 
 
 def box_of(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Rect:

@@ -15,7 +15,7 @@ from sim.gl import mujoco
 from sim.homes.plans.gap_kernels import lower_to_gap
 from sim.homes.plans.plan import CELL_M, Plan, storey_name
 from sim.homes.plans.surfaces import TOP_M, occupied_spans
-from sim.houses.geoms import geom_polytope
+from sim.houses.geoms import data_at_rest, geom_polytope
 from sim.houses.house import House
 from sim.houses.labels import Labels
 from sim.task.ground_truth import GroundTruth
@@ -45,8 +45,7 @@ def export_plans(house: House, source: Mapping[str, object]) -> Iterator[Plan]:
     """
     world = World(house)
     truth = GroundTruth(world)
-    at_rest = mujoco.MjData(world.model)
-    mujoco.mj_kinematics(world.model, at_rest)
+    at_rest = data_at_rest(world.model)
     levels_m = sorted({round(level, 3) for level in floor_levels(world.model, world.labels)})
     storeys = [level for i, level in enumerate(levels_m) if i == 0 or level - levels_m[i - 1] >= 1.0]
     for number, floor_z_m in enumerate(storeys):

@@ -19,7 +19,7 @@ from sim.core.geometry.convex import polygon_from_above
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import GOAL_CATEGORIES
 from sim.gl import mujoco
-from sim.houses.geoms import geom_polytope, mesh_is_convex, mesh_triangles
+from sim.houses.geoms import data_at_rest, geom_polytope, mesh_is_convex, mesh_triangles
 from sim.houses.house import Room
 from sim.houses.labels import rendered_geoms
 from sim.task.ground_truth import GroundTruth
@@ -98,7 +98,7 @@ def draw_area(space: FreeSpace, mask: NDArray[np.bool_]) -> str:
 def _objects(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[list[str]]:
     """Returns the shapes of the objects on this storey."""
     model, labels = truth.world.model, truth.world.labels
-    data, rendered = _at_rest(model), rendered_geoms(model)
+    data, rendered = data_at_rest(model), rendered_geoms(model)
     shapes: list[tuple[float, list[str]]] = []
     for instance in labels.instances:
         geoms = [geom for geom in instance.geom_ids if rendered[geom]]
@@ -116,7 +116,7 @@ def _objects(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[lis
 def _structure(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[list[str]]:
     """Yields the cut walls, doors, windows and columns; each category is one SVG path."""
     model, labels = truth.world.model, truth.world.labels
-    data, rendered = _at_rest(model), rendered_geoms(model)
+    data, rendered = data_at_rest(model), rendered_geoms(model)
     low_m, high_m = floor_z_m + CUT_M[0], floor_z_m + CUT_M[1]
     for category in CUT:
         polygons = [
@@ -184,9 +184,3 @@ def _label_place(sheet: Sheet, room: Room) -> list[int]:
     """Returns [x, y, width]: the middle of the largest box of a room, and its width."""
     (x, y, _), (half_m, _, _) = max(room.boxes, key=lambda box: box[1][0] * box[1][1])
     return [*sheet.place([(x, y)])[0].tolist(), round(2.0 * half_m * PX_M)]
-
-
-def _at_rest(model: mujoco.MjModel) -> mujoco.MjData:
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    return data

@@ -13,6 +13,7 @@ from sim.core.geometry.fast_marching import distances
 from sim.core.interface import MPCAT40_ID, RobotModel
 from sim.gl import mujoco
 from sim.homes.housegen.structure.openings import Opening
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import collidable_geoms, read_labels
 from sim.world.check import STRUCTURE
@@ -48,8 +49,7 @@ class FloorMap:
         """Measures the free floor of a house without hazards."""
         self.openings = tuple(openings)
         model = spec.compile()
-        data = mujoco.MjData(model)
-        mujoco.mj_kinematics(model, data)
+        data = data_at_rest(model)
         labels, self.rooms = read_labels(model, ignore_prefix=""), read_rooms(model)
         low, high = (
             FreeSpace(
