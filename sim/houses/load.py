@@ -90,7 +90,7 @@ def _read(path: Path, rules: dict[str, str] | None, root: Path | None) -> House:
     try:
         spec = read_spec(path, root=root)
         notes = () if rules is None else remove_unsupported(spec)
-        model = _compiled(spec)
+        model = compiled(spec)
         require_sizes(model)
         require_few_contacts(model)
         house = House(path.stem, spec, rules, path)
@@ -205,7 +205,12 @@ def _quote(name: str) -> str:
     return f"'{name}'" if name else "without a name"
 
 
-def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Returns the model of a specification.
+
+    Raises:
+        HouseError: MuJoCo refuses it.
+    """
     try:
         return spec.compile()
     except (ValueError, OSError, MemoryError) as error:

@@ -242,13 +242,13 @@ def _free_cells(
     radius_m: float,
 ) -> NDArray[np.bool_]:
     """Returns the mask (rows, cols) of free cells; with rooms, only those connected to the inside of a room."""
-    free = _covered(frame, extent)
+    free = covered(frame, extent)
     if floors is not None:
-        free &= _away_from_edges(frame, _covered(frame, floors), radius_m)
+        free &= _away_from_edges(frame, covered(frame, floors), radius_m)
     _clear_near(frame, free, obstacles, radius_m)
     if not rooms:
         return free
-    inside = _covered(frame, [rectangle for room in rooms for rectangle in room_rectangles(room)])
+    inside = covered(frame, [rectangle for room in rooms for rectangle in room_rectangles(room)])
     return connected_to(free, free & inside)
 
 
@@ -270,7 +270,7 @@ def _away_from_edges(frame: GridFrame, floor: NDArray[np.bool_], radius_m: float
     return floor & (cv2.erode(whole, disc, borderType=cv2.BORDER_CONSTANT, borderValue=1) > 0)
 
 
-def _covered(frame: GridFrame, polygons: Iterable[ConvexPolygon]) -> NDArray[np.bool_]:
+def covered(frame: GridFrame, polygons: Iterable[ConvexPolygon]) -> NDArray[np.bool_]:
     """Returns the mask (rows, cols) of cells with their centre in a polygon."""
     covered = np.zeros(frame.shape, dtype=np.bool_)
     for polygon in polygons:

@@ -22,10 +22,11 @@ from sim.core.errors import ConfigError, HouseError
 from sim.core.reading import Name, read_json
 from sim.gl import mujoco
 from sim.homes.importers.rectilinear import rectangles_of_triangles
-from sim.homes.importers.scenes import Scene, add_room, compiled, floor_height, lower
+from sim.homes.importers.scenes import Scene, add_room, floor_height, lower
 from sim.houses.foreign import remove_unsupported
 from sim.houses.geoms import data_at_rest
 from sim.houses.labels import read_labels
+from sim.houses.load import compiled
 from sim.houses.mjcf import read_spec
 from sim.houses.packing import gather_files, text_of
 from sim.houses.proposals import category_of_name, geom_box, void_objects

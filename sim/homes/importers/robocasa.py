@@ -23,7 +23,7 @@ from sim.core.errors import ConfigError, HouseError
 from sim.core.interface import MPCAT40_ID
 from sim.gl import mujoco
 from sim.homes.housegen.floor_plan.rectangles import Rect
-from sim.homes.importers.scenes import Scene, add_room, box_of, compiled
+from sim.homes.importers.scenes import Scene, add_room, box_of
 from sim.houses.foreign import remove_unsupported
 from sim.houses.geoms import data_at_rest
 from sim.houses.labels import (
@@ -36,6 +36,7 @@ from sim.houses.labels import (
     read_labels,
     rendered_geoms,
 )
+from sim.houses.load import compiled
 from sim.houses.mjcf import read_spec, require_sizes
 from sim.houses.packing import gather_files, text_of
 from sim.houses.proposals import category_of_name, propose, rules_of

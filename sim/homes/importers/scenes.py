@@ -11,12 +11,11 @@ import numpy as np
 
 from sim.core.errors import HouseError
 from sim.core.files import inside, write_atomically
-from sim.core.reading import reason_of
 from sim.gl import mujoco
 from sim.homes.housegen.floor_plan.rectangles import Rect
 from sim.houses.geoms import data_at_rest
 from sim.houses.house import House
-from sim.houses.load import validate_house
+from sim.houses.load import compiled, validate_house
 from sim.houses.mjcf import read_spec
 from sim.houses.packing import PackedFile, write_files
 from sim.houses.proposals import geom_box
@@ -33,18 +32,6 @@ class Scene:
     rules: Mapping[str, str]
     """Label rules."""
     report: Mapping[str, Any]
-
-
-def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    """Returns the model of a specification.
-
-    Raises:
-        HouseError: MuJoCo refuses it.
-    """
-    try:
-        return spec.compile()
-    except (ValueError, OSError, MemoryError) as error:
-        raise HouseError(f"it is not an MJCF file that MuJoCo can read: {reason_of(error)}") from None
 
 
 def write_scene(out: Path, scene: Scene, *, pack: bool) -> None:

@@ -19,7 +19,7 @@ from sim.houses.geoms import data_at_rest, geom_polytope
 from sim.houses.house import House
 from sim.houses.labels import Labels
 from sim.task.ground_truth import GroundTruth
-from sim.world.freespace import FreeSpace
+from sim.world.freespace import FreeSpace, covered
 from sim.world.obstacles import obstacle_polygons
 from sim.world.plan import floor_polygons
 from sim.world.storeys import floor_levels
@@ -135,15 +135,7 @@ def _floor(
 ) -> NDArray[np.bool_]:
     """Returns the cells with their centre on a floor of the storey."""
     outlines = floor_polygons(model, data, labels, floor_z_m)
-    if outlines is None:
-        return np.ones(frame.shape, np.bool_)
-    floor = np.zeros(frame.shape, np.bool_)
-    for outline in outlines:
-        window = frame.index_of(outline.bounds_m)
-        x_m, y_m = frame.axes(window)
-        centres = np.stack(np.broadcast_arrays(x_m[None, :], y_m[:, None]), axis=-1).reshape(-1, 2)
-        floor[window] |= outline.contains(centres).reshape(len(y_m), len(x_m))
-    return floor
+    return np.ones(frame.shape, np.bool_) if outlines is None else covered(frame, outlines)
 
 
 def _rooms(world: World, floor_z_m: float, frame: GridFrame) -> NDArray[np.int8]:
