@@ -86,8 +86,6 @@ EXCEPTIONS = {
     ("sim/homes/housegen/imported/infinigen_worker.py", "open"): "runs in the user's Python; a new part file",
     ("sim/app/commands/habitat/setup.py", "distribution.read_text"): "a file of the installed package",
     ("tools/research/habitat_names.py", "file.read_text"): "sources of a checkout that a maintainer reads",
-    ("tools/research/habitat_names.py", "args.out.open"): "the maintainers' own table",
-    ("tools/research/habitat_parity.py", "args.out.open"): "the maintainers' own table",
     ("sim/app/bridges/habitat_client.py", "open"): "runs in the agent's process; a file that the agent's code names",
 }
 

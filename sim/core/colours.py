@@ -68,11 +68,6 @@ def colour_numbers(rgb: ArrayLike) -> NDArray[np.intp]:
     return number.reshape(colours.shape[:-1]).astype(np.intp)
 
 
-def colour_name(rgb: ArrayLike) -> ColourName:
-    """Returns the name of one sRGB colour (3,) in [0, 1]."""
-    return COLOUR_NAMES[int(colour_numbers(rgb))]
-
-
 def clear_colour_name(rgb: ArrayLike) -> ColourName | None:
     """Returns the name of one sRGB colour (3,) in [0, 1], or None if a slightly different colour has another name.
 

@@ -236,9 +236,7 @@ def read_gzip_json(
     return parse_json(content, kind, where=f"{what} '{file}'", error=error, strict=strict)
 
 
-def read_lines(
-    file: Path, kind: type[T], *, what: str, older: str = "", error: type[ObjectNavError] = ConfigError
-) -> Lines[T]:
+def read_lines(file: Path, kind: type[T], *, what: str, older: str = "") -> Lines[T]:
     """Returns the JSON objects of a file with one per line as the declared type.
 
     A process that is killed can leave a last line without its end; some file systems leave a last line of zero bytes
@@ -249,24 +247,23 @@ def read_lines(
         kind: the type of a line.
         what: kind of the file for the error message.
         older: what the error message says where a line lacks a field, as in files of an older format.
-        error: class of the error.
 
     Raises:
-        ObjectNavError: of class `error`; the file cannot be read, or a line before the last is broken.
+        ConfigError: the file cannot be read, or a line before the last is broken.
     """
     if not file.exists():
         return Lines([], 0, "")
-    content = read_bytes(file, what=what, error=error, most=MAX_LINES_BYTES)
+    content = read_bytes(file, what=what, most=MAX_LINES_BYTES)
     whole = content[: content.rfind(b"\n") + 1]
     rest = content[len(whole) :]
     values: list[T] = []
     for number, line in enumerate(whole.splitlines(), start=1):
         try:
             where = f"{what} '{file}', line {number}"
-            values.append(parse_json(line, kind, where=where, error=error))
-        except error as fault:
+            values.append(parse_json(line, kind, where=where))
+        except ConfigError as fault:
             if older and "missing required field" in str(fault):
-                raise error(f"{str(fault).rstrip('.')}: {older}.") from None
+                raise ConfigError(f"{str(fault).rstrip('.')}: {older}.") from None
             raise
     torn = f"{what} '{file}': the incomplete line {len(values) + 1} was dropped ({len(rest)} bytes)." if rest else ""
     return Lines(values, len(whole), torn)
@@ -282,16 +279,16 @@ class TextLine(NamedTuple):
     """Share of the file, as it lies on the disk, that has been read up to here, in (0, 1]."""
 
 
-def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> Iterator[TextLine]:
+def json_lines(file: Path, *, what: str) -> Iterator[TextLine]:
     """Yields the lines of a file, which may be gzipped; empty lines are left out.
 
     The file is read line by line, so that it may be of any size; a line has at most `MAX_BYTES`, and at most
     `MAX_EMPTY_LINES` lines are empty.
 
     Raises:
-        ObjectNavError: of class `error`; the file cannot be read, or a line is too long.
+        ConfigError: the file cannot be read, or a line is too long.
     """
-    with open_plain(file, what=what, error=error) as packed:
+    with open_plain(file, what=what) as packed:
         zipped = packed.read(2) == b"\x1f\x8b"
         size = max(1, packed.seek(0, os.SEEK_END))
         packed.seek(0)
@@ -301,14 +298,14 @@ def json_lines(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErr
             try:
                 line = stream.readline(MAX_BYTES + 1)
             except (OSError, EOFError, zlib.error, struct.error, ValueError) as fault:
-                raise error(f"{what} '{file}', line {number} cannot be read: {reason_of(fault)}.") from None
+                raise ConfigError(f"{what} '{file}', line {number} cannot be read: {reason_of(fault)}.") from None
             if len(line) > MAX_BYTES:
-                raise error(f"{what} '{file}', line {number} is longer than {MAX_BYTES >> 20} MB.")
+                raise ConfigError(f"{what} '{file}', line {number} is longer than {MAX_BYTES >> 20} MB.")
             if not line:
                 return
             empty += not line.strip()
             if empty > MAX_EMPTY_LINES:
-                raise error(f"{what} '{file}', line {number}: more than {MAX_EMPTY_LINES:,} lines are empty.")
+                raise ConfigError(f"{what} '{file}', line {number}: more than {MAX_EMPTY_LINES:,} lines are empty.")
             if line.strip():
                 yield TextLine(number, line, min(1.0, packed.tell() / size))
 
@@ -369,15 +366,15 @@ def convert(
         raise error(f"{where} is nested too deeply.") from None
 
 
-def require_small_zip(file: Path, *, what: str, most: int, error: type[ObjectNavError] = ConfigError) -> None:
-    """Raises an error if a file is not a zip file (`.npz`, a PyTorch file), or expands to more than `most` bytes."""
-    with open_plain(file, what=what, error=error) as stream:
+def require_small_zip(file: Path, *, what: str, most: int) -> None:
+    """Raises ConfigError if a file is not a zip file (`.npz`, a PyTorch file), or expands to more than `most` bytes."""
+    with open_plain(file, what=what) as stream:
         try:
             size = sum(member.file_size for member in zipfile.ZipFile(stream).infolist())
         except (OSError, ValueError, zipfile.BadZipFile, NotImplementedError, struct.error) as fault:
-            raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+            raise ConfigError(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
     if size > most:
-        raise error(f"{what} '{file}' expands to {size >> 20} MB; at most {most >> 20} MB are read.")
+        raise ConfigError(f"{what} '{file}' expands to {size >> 20} MB; at most {most >> 20} MB are read.")
 
 
 def read_npz(

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from sim.core.interface import MPCAT40, MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec, category_id
 from sim.detectors.confusions import CONFUSIONS
 from sim.env.scene import Scene
-from sim.gl import mujoco
+from sim.houses.geoms import data_at_rest
 from sim.world.world import World
 
 
@@ -289,8 +289,7 @@ class LabelledObjects:
     @classmethod
     def of(cls, world: World) -> LabelledObjects:
         """Returns the objects of a compiled world."""
-        at_rest = mujoco.MjData(world.model)
-        mujoco.mj_kinematics(world.model, at_rest)
+        at_rest = data_at_rest(world.model)
         instances = world.labels.instances
         return cls.named(
             [instance.name for instance in instances],

@@ -27,6 +27,13 @@ _CONVEX_SHARE = 0.995
 _GEOM = mujoco.mjtGeom
 
 
+def data_at_rest(model: mujoco.MjModel) -> mujoco.MjData:
+    """Returns the initial state of a model, kinematics computed."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    return data
+
+
 def geom_polytope(model: mujoco.MjModel, data: mujoco.MjData, geom: int, *, rendered: bool = False) -> Polytope:
     """Returns the convex polytope of a geom in the world.
 

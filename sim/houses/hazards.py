@@ -1,4 +1,4 @@
-"""Reads the hazards that sites of a house declare, and measures how near a path comes to them.
+"""Reads the hazards that sites of a house declare.
 
 A hazard is an obstacle that depth cannot see, sees too late or takes for passable, placed by
 `sim.homes.housegen.hazards` where paths lead. Its site is a box of the world body named `hazard_<kind>_<number>` around
@@ -8,13 +8,11 @@ its geoms. Sites are never rendered.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.core.geometry.descent_kernels import descend
 from sim.gl import mujoco
 
 _HAZARD = re.compile(r"hazard_(?P<kind>[a-z][a-z_]*)_\d+")
@@ -52,16 +50,3 @@ def read_hazards(model: mujoco.MjModel) -> tuple[Hazard, ...]:
         x1, y1, z1 = (model.site_pos[site] + half).tolist()
         hazards.append(Hazard(match[0], match["kind"], (x0, y0, z0), (x1, y1, z1)))
     return tuple(hazards)
-
-
-def nearest_hazard_m(hazards: Sequence[Hazard], path_m: NDArray[np.float64]) -> float:
-    """Returns the smallest distance in plan between any hazard and a path (n, 2); inf without a hazard."""
-    return min((float(hazard.distance_m(path_m).min()) for hazard in hazards), default=np.inf)
-
-
-def steepest_path(field_m: NDArray[np.float32], begin: tuple[int, int]) -> NDArray[np.int64]:
-    """Returns the cells (n, 2) of a shortest path from a cell to the source of a field of geodesic distances.
-
-    The path goes from each cell to its neighbour with the smallest distance, and ends where no neighbour is nearer.
-    """
-    return descend(field_m, *begin)

@@ -17,6 +17,7 @@ from sim.core.reading import MAX_BYTES, read_bytes, read_json, reason_of
 from sim.core.store import kept, key_of
 from sim.gl import mujoco
 from sim.houses.foreign import make_walls_solid, remove_unsupported, void_notes
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import House
 from sim.houses.labels import ROBOT_PREFIX, Labels, collidable_geoms, describe_geom, read_labels
 from sim.houses.light import add_light
@@ -89,7 +90,7 @@ def _read(path: Path, rules: dict[str, str] | None, root: Path | None) -> House:
     try:
         spec = read_spec(path, root=root)
         notes = () if rules is None else remove_unsupported(spec)
-        model = _compiled(spec)
+        model = compiled(spec)
         require_sizes(model)
         require_few_contacts(model)
         house = House(path.stem, spec, rules, path)
@@ -162,8 +163,7 @@ def validate_house(house: House, model: mujoco.MjModel) -> Labels:
 
 def _require_low_planes(model: mujoco.MjModel) -> None:
     """Raises a HouseError if a plane faces up above the ground: everything below it is inside of it."""
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     planes = np.flatnonzero((model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE) & collidable_geoms(model))
     for geom in planes.tolist():
         z_m = float(data.geom_xpos[geom, 2])
@@ -182,8 +182,7 @@ def _require_floor(model: mujoco.MjModel, labels: Labels, *, has_rules: bool) ->
         raise HouseError(
             f"it has no floor: at least one collision geom (a plane or a box) must {remedy}, with its top at z = 0."
         )
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     tops = {int(geom): _top_z_m(model, data, int(geom)) for geom in floors if model.geom_type[geom] in _FLOOR_SHAPES}
     if not any(abs(top) <= FLOOR_TOLERANCE_M for top in tops.values()):
         geom = min(tops, key=lambda g: abs(tops[g])) if tops else int(floors[0])
@@ -206,7 +205,12 @@ def _quote(name: str) -> str:
     return f"'{name}'" if name else "without a name"
 
 
-def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Returns the model of a specification.
+
+    Raises:
+        HouseError: MuJoCo refuses it.
+    """
     try:
         return spec.compile()
     except (ValueError, OSError, MemoryError) as error:

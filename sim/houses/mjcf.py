@@ -22,6 +22,7 @@ from sim.core.pictures import image_size_px
 from sim.core.reading import MAX_BYTES, open_plain, printable, read_bytes, reason_of
 from sim.gl import mujoco
 from sim.houses.attachments import Attachment, attach, attachment_of, use_absolute_paths
+from sim.houses.geoms import data_at_rest
 from sim.houses.mjcf_text import Composition, as_utf8
 from sim.houses.references import Allowed, Reference, asset_path, asset_references, path_as_read
 
@@ -180,24 +181,23 @@ def require_sizes(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseE
         raise error(f"a mesh has a vertex that is not finite or beyond {FARTHEST_M:g} m.")
 
 
-def require_few_contacts(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseError) -> None:
-    """Raises an error if a compiled model has too many moving bodies or contacts for the memory of the physics.
+def require_few_contacts(model: mujoco.MjModel) -> None:
+    """Raises HouseError if a compiled model has too many moving bodies or contacts for the memory of the physics.
 
     The memory of MuJoCo grows with the square of the number of moving bodies.
     """
     if model.narena > MAX_PHYSICS_BYTES:
-        raise error(
+        raise HouseError(
             f"its {model.njnt} joints need {model.narena >> 20} MB, at most {MAX_PHYSICS_BYTES >> 20} MB are "
             "allowed; let fewer bodies move."
         )
     if model.nv == 0:
         return
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     mujoco.mj_comPos(model, data)
     mujoco.mj_collision(model, data)
     if data.ncon > MAX_CONTACTS:
-        raise error(
+        raise HouseError(
             f"its moving bodies overlap in {data.ncon} contacts at the start; at most {MAX_CONTACTS} are allowed."
         )
 
@@ -354,7 +354,7 @@ class _Scan:
     def _found(self, path: Path, name: str) -> Path:
         """Returns the path of a named file: in the folder of the house file, as in MuJoCo, else in that of `path`.
 
-        Raises an error if it does not exist or must not be read.
+        Raises HouseError if it does not exist or must not be read.
         """
         for folder in dict.fromkeys((self.allowed.file.parent, path.parent)):
             file = path_as_read(folder, name)

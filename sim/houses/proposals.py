@@ -9,7 +9,7 @@ name are judged by their size: large flat ones at z = 0 are floor, large thin up
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from sim.core.interface import MPCAT40
 from sim.gl import mujoco
+from sim.houses.geoms import data_at_rest
 from sim.houses.labels import VOID, Labels, collidable_geoms, names_of_geom, rendered_geoms
 from sim.houses.taxonomies import category_of_ending, words_of
 
@@ -98,8 +99,7 @@ def propose(model: mujoco.MjModel) -> tuple[Proposal, ...]:
     Args:
         model: a scene without its robot, compiled; `sim.houses.foreign.remove_unsupported` has been applied.
     """
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     visible, collides = rendered_geoms(model), collidable_geoms(model)
     accepted: dict[str, Proposal] = {}
     unknown: list[list[str]] = []
@@ -190,6 +190,14 @@ def geom_box(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> tuple[NDA
     rotation = data.geom_xmat[geom].reshape(3, 3)
     middle, reach = data.geom_xpos[geom] + rotation @ centre, np.abs(rotation) @ half
     return middle - reach, middle + reach
+
+
+def box_around(
+    model: mujoco.MjModel, data: mujoco.MjData, geoms: Iterable[int]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Returns the lowest and the highest corner (3,) of the box around geoms in the world, metres."""
+    boxes = [geom_box(model, data, geom) for geom in geoms]
+    return np.min([low for low, _ in boxes], axis=0), np.max([high for _, high in boxes], axis=0)
 
 
 def _by_name(names: list[str]) -> Iterator[Proposal]:

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from sim.core.interface import CameraModel
 from sim.gl import mujoco
+from sim.houses.geoms import data_at_rest
 from sim.renderer.occlusion_kernels import hidden_by_strip, may_be_seen, nearest_walls, open_past_slabs
 from sim.renderer.upright_boxes import UprightBoxes
 
@@ -93,8 +94,7 @@ class Visibility:
         self._up_max = 0.5 * camera.height_px / camera.focal_px
         self._slack = _SLACK_PX / camera.focal_px
         self._strip = STRIP_PX / camera.focal_px
-        data = mujoco.MjData(model)
-        mujoco.mj_kinematics(model, data)
+        data = data_at_rest(model)
         static = model.body_weldid[model.geom_bodyid] == 0
         self._movable = np.flatnonzero(~static[self._ids])  # indices into `_ids`
         self._bounded = ~np.isin(model.geom_type[self._ids], _UNBOUNDED)

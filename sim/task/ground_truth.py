@@ -20,6 +20,7 @@ from sim.core.invocation import command
 from sim.core.store import kept, key_of
 from sim.core.wishes import parse_wish, require_goal
 from sim.gl import mujoco
+from sim.houses.geoms import data_at_rest
 from sim.houses.labels import Instance, rendered_geoms
 from sim.task.footprints import Footprint
 from sim.task.meaning import Meaning
@@ -65,8 +66,7 @@ class GroundTruth:
         self.success = success or SuccessRule()
         self.camera = camera or CameraModel()
         self._sight_height_m = self.success.sight_height_with(self.camera)
-        self._at_rest = mujoco.MjData(world.model)
-        mujoco.mj_kinematics(world.model, self._at_rest)
+        self._at_rest = data_at_rest(world.model)
         self._leaves = hinged_leaves(world.model, self._at_rest, world.labels)
         self._spaces: dict[float, FreeSpace] = {}
         self._floors: dict[float, tuple[GridFrame, NDArray[np.bool_]]] = {}

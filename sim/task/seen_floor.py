@@ -18,6 +18,7 @@ from sim.core.geometry.convex import ConvexPolygon
 from sim.core.geometry.grid import GridFrame
 from sim.core.geometry.pose import Pose, as_body_pose
 from sim.core.interface import MPCAT40_ID, CameraModel
+from sim.world.freespace import covered
 
 CELL_M = 0.1
 """Edge of a cell of the floor."""
@@ -103,12 +104,4 @@ def floor_cells(frame: GridFrame, floors: Sequence[ConvexPolygon] | None) -> tup
     """
     rows, cols = (math.ceil(size * frame.cell_m / CELL_M) for size in frame.shape)
     coarse = GridFrame(origin_xy_m=frame.origin_xy_m, shape=(rows, cols), cell_m=CELL_M)
-    if floors is None:
-        return coarse, np.ones(coarse.shape, dtype=np.bool_)
-    floor = np.zeros(coarse.shape, dtype=np.bool_)
-    for polygon in floors:
-        window = coarse.index_of(polygon.bounds_m)
-        x, y = coarse.axes(window)
-        centres = np.stack(np.broadcast_arrays(x[None, :], y[:, None]), axis=-1).reshape(-1, 2)
-        floor[window] |= polygon.contains(centres).reshape(len(y), len(x))
-    return coarse, floor
+    return coarse, np.ones(coarse.shape, dtype=np.bool_) if floors is None else covered(coarse, floors)

@@ -19,7 +19,7 @@ from sim.core.errors import HouseError
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import GOAL_CATEGORIES, RobotModel, SuccessRule
 from sim.gl import mujoco
-from sim.houses.geoms import world_boxes
+from sim.houses.geoms import data_at_rest, world_boxes
 from sim.houses.hazards import Hazard, read_hazards
 from sim.houses.house import House, Room, read_rooms
 from sim.houses.labels import Instance, Labels, collidable_geoms, cover_geoms, describe_geom, read_labels
@@ -102,8 +102,7 @@ def _compiled(spec: mujoco.MjSpec, rules: Mapping[str, str] | None) -> _Compiled
     """
     model = spec.compile()
     labels = read_labels(model, rules=rules, ignore_prefix="")
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     return _CompiledHouse(model, data, labels, read_rooms(model))
 
 

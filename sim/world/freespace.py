@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from sim.core.errors import HouseError
 from sim.core.geometry.convex import ConvexPolygon, PolygonTable
 from sim.core.geometry.convex_kernels import clear_near, mark_inside
+from sim.core.geometry.descent_kernels import descend
 from sim.core.geometry.fast_marching import distances
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import RobotModel, SuccessRule
@@ -200,6 +201,37 @@ class FreeSpace:
                 return float(total.min())
         return math.inf
 
+    def path(self, field: NDArray[np.float32], x_m: float, y_m: float) -> NDArray[np.float64] | None:
+        """Returns the corners (k, 2) of the shortest path from a position to the sources of a geodesic field, metres.
+
+        The path follows the field downhill from the nearest cell within `NEAREST_FREE_M` that has a path, and is then
+        straightened within the free cells. None: no such cell.
+        """
+        window = self.frame.index_of((x_m, y_m, x_m, y_m), NEAREST_FREE_M)
+        x, y = self.frame.axes(window)
+        away_m = np.where(np.isfinite(field[window]), np.hypot(x[None, :] - x_m, y[:, None] - y_m), math.inf)
+        if not math.isfinite(away_m.min(initial=math.inf)):
+            return None
+        row, col = np.unravel_index(int(away_m.argmin()), away_m.shape)
+        cells = descend(field, int(row) + window[0].start, int(col) + window[1].start)
+        places_m = np.vstack([(x_m, y_m), self.frame.to_metres(cells[1:])])
+        kept, here = [0], 0
+        while here < len(places_m) - 1:
+            ahead = len(places_m) - 1
+            while ahead > here + 1 and not self._is_straight(places_m[here], places_m[ahead]):
+                ahead = here + max(1, (ahead - here) // 2)
+            while ahead + 1 < len(places_m) and self._is_straight(places_m[here], places_m[ahead + 1]):
+                ahead += 1
+            kept.append(ahead)
+            here = ahead
+        return places_m[kept]
+
+    def _is_straight(self, begin_m: NDArray[np.float64], end_m: NDArray[np.float64]) -> bool:
+        """Returns whether the cells on the straight line between two positions are free."""
+        count = max(2, math.ceil(math.dist(begin_m, end_m) / (0.5 * self.frame.cell_m)))
+        cells = self.frame.to_cells(np.linspace(begin_m, end_m, count))[1:]  # the start may lie next to a free cell
+        return bool(self.free[cells[:, 0], cells[:, 1]].all())
+
 
 def _free_cells(
     frame: GridFrame,
@@ -210,13 +242,13 @@ def _free_cells(
     radius_m: float,
 ) -> NDArray[np.bool_]:
     """Returns the mask (rows, cols) of free cells; with rooms, only those connected to the inside of a room."""
-    free = _covered(frame, extent)
+    free = covered(frame, extent)
     if floors is not None:
-        free &= _away_from_edges(frame, _covered(frame, floors), radius_m)
+        free &= _away_from_edges(frame, covered(frame, floors), radius_m)
     _clear_near(frame, free, obstacles, radius_m)
     if not rooms:
         return free
-    inside = _covered(frame, [rectangle for room in rooms for rectangle in room_rectangles(room)])
+    inside = covered(frame, [rectangle for room in rooms for rectangle in room_rectangles(room)])
     return connected_to(free, free & inside)
 
 
@@ -238,7 +270,7 @@ def _away_from_edges(frame: GridFrame, floor: NDArray[np.bool_], radius_m: float
     return floor & (cv2.erode(whole, disc, borderType=cv2.BORDER_CONSTANT, borderValue=1) > 0)
 
 
-def _covered(frame: GridFrame, polygons: Iterable[ConvexPolygon]) -> NDArray[np.bool_]:
+def covered(frame: GridFrame, polygons: Iterable[ConvexPolygon]) -> NDArray[np.bool_]:
     """Returns the mask (rows, cols) of cells with their centre in a polygon."""
     covered = np.zeros(frame.shape, dtype=np.bool_)
     for polygon in polygons:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sim.core.interface import MPCAT40_ID
 from sim.gl import mujoco
+from sim.houses.geoms import data_at_rest
 from sim.houses.labels import Labels
 from sim.robot.body import FLOOR_MASK
 
@@ -33,8 +34,7 @@ def floor_levels(model: mujoco.MjModel, labels: Labels) -> tuple[float, ...]:
 
 def _floor_tops(model: mujoco.MjModel, labels: Labels) -> NDArray[np.float64]:
     """Returns the heights of the tops of all static floors, metres."""
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     floors = floor_geoms(model, labels)
     ids = floors[model.geom_bodyid[floors] == 0]
     rise = np.abs(data.geom_xmat[ids, 6:9] * model.geom_size[ids]).sum(axis=1)

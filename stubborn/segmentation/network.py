@@ -92,8 +92,6 @@ class NetworkSegmenter:
         *,
         temperature: float | None = None,
         camera: CameraModel | None = None,
-        block_px: int | None = None,
-        score_block_px: int | None = None,
         threads: int | None = None,
         mirrored: bool = False,
     ) -> NetworkSegmenter:
@@ -103,8 +101,6 @@ class NetworkSegmenter:
             file: weights; see `load_network`.
             temperature: temperature of the softmax, in place of the stored calibration.
             camera: see the class.
-            block_px: see the class; in place of the stored value.
-            score_block_px: see the class.
             threads: see the class.
             mirrored: see the class.
 
@@ -113,15 +109,13 @@ class NetworkSegmenter:
         """
         model, metadata = load_network(file)
         whole = isinstance(model, RedNet) and model.config.bottleneck  # the published network saw whole images
-        stored_px = int(metadata.get("block_px", 1 if whole else 2))
         calibration = (
             Calibration.from_metadata(metadata) if temperature is None else Calibration.of_temperature(temperature)
         )
         return cls(
             model,
             camera=camera,
-            block_px=block_px or stored_px,
-            score_block_px=score_block_px,
+            block_px=int(metadata.get("block_px", 1 if whole else 2)),
             calibration=calibration,
             threads=threads,
             mirrored=mirrored,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from pathlib import Path
 from typing import Any
@@ -57,3 +58,9 @@ def lines_of(out: Path) -> list[dict[str, Any]]:
 def entries_of(result: RolloutResult) -> dict[str, Any]:
     """Returns the entries of a result without its times."""
     return msgspec.to_builtins(result.without_times())
+
+
+def rows(file: Path) -> list[dict[str, str]]:
+    """Returns the rows of a CSV file."""
+    with file.open(newline="") as stream:
+        return list(csv.DictReader(stream))

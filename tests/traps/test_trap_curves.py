@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sim.app.commands.traps.curves import MAX_BINS, QUANTITIES, bin_edges, curve
-from sim.app.commands.traps.family_report import as_csv, draw_curves, draw_families, family_grid
+from sim.app.commands.traps.family_report import as_csv, draw_curves, draw_families, family_table
 from sim.app.commands.traps.report import Args, main
 from sim.app.commands.traps.trial import TrapResult
 from sim.core.interface import ConfigError
@@ -70,11 +70,11 @@ def test_traps_without_panes_are_in_no_curve_over_panes():
 
 
 def test_the_table_has_a_line_for_each_family_and_difficulty():
-    header, lines = family_grid(ROWS, TRAPS)
-    assert header == ["family", "a", "b"]
-    assert [line[0] for line in lines] == ["pane_gap", "all, easy", "all, medium", "all, hard", "**all**"]
-    assert lines[-1][1].startswith("15/20 (51-90 %), 0.9 collisions, 5 fell")
-    assert lines[2][1] == "-"
+    table = family_table(ROWS, TRAPS)
+    assert table.header == ("family", "a", "b")
+    assert [label for label, _ in table.rows] == ["pane_gap", "all, easy", "all, medium", "all, hard", "all"]
+    assert str(table.rows[-1][1][0]).startswith("15/20 (51-90 %), 0.9 collisions, 5 fell")
+    assert table.rows[2][1][0] == "-"
 
 
 def test_the_figures_have_an_axis_for_each_quantity_and_the_csv_a_line_for_each_point():

@@ -16,13 +16,12 @@ from sim.core.interface import Action
 from sim.core.paths import assets_dir
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import load_split
-from sim.gl import mujoco
 from sim.homes.housegen.splits.recipes import SPLIT_VERSION
 from sim.homes.housegen.traps.families.catalogue import FAMILIES, HELD_OUT
 from sim.homes.housegen.traps.families.contact_splits import CONTACT_SPLITS, TrapKey
 from sim.homes.housegen.traps.families.draw import DETOUR_M, MARGIN_M, draw_trap
 from sim.homes.housegen.traps.families.family import BLOCKING_M, CLIMBED_M, DIFFICULTIES, ROBOT_M, SPARE_M, Chance
-from sim.houses.geoms import geom_polytope
+from sim.houses.geoms import data_at_rest, geom_polytope
 from sim.houses.labels import collidable_geoms, read_labels
 from sim.task.objectnav import Task
 from sim.world.world import World
@@ -99,8 +98,7 @@ def test_the_paths_in_a_sidecar_are_those_of_the_scene(split: str, key: TrapKey)
 def test_no_solid_of_a_trap_is_between_what_is_climbed_and_what_blocks(split: str, key: TrapKey):
     shipped = load_split(split)
     model, goal = shipped.load_house(name_of(key)).spec.compile(), shipped.sidecar(name_of(key)).goal
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     labels = read_labels(model, ignore_prefix="")
     for geom in np.flatnonzero(collidable_geoms(model)).tolist():
         if labels.instances[labels.geom_instance[geom]].category == goal:

@@ -10,7 +10,6 @@ checkout are not looked at.
 from __future__ import annotations
 
 import ast
-import csv
 import importlib
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -20,6 +19,7 @@ import tyro
 
 from sim.app import cli
 from sim.app.bridges.habitat_sim.finder import NotHere, is_placeholder
+from sim.core.files import csv_text, write_atomically
 
 COPIES = ("habitat-lab", "habitat_lab", "habitat-baselines", "habitat_baselines")
 """Folders of checkouts that hold a copy of habitat-lab."""
@@ -55,10 +55,7 @@ def main(args: Args) -> int:
         row["missing"] = " ".join(missing)
         rows.append(row)
         print(row)
-    with args.out.open("w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_atomically(args.out, csv_text(list(rows[0]), (row.values() for row in rows)))
     return 0
 
 

@@ -9,7 +9,6 @@ habitat-lab with Habitat's rule and view points of `stubborn habitat dataset` (`
 
 from __future__ import annotations
 
-import csv
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from sim.app import cli
+from sim.core.files import csv_text, write_atomically
 from sim.core.interface import Action
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.oracle import Oracle
@@ -74,10 +74,7 @@ def main(args: Args) -> int:
             seconds[label] += time.perf_counter() - begin
             row |= {f"{label}_{key}": env.get_metrics()[key] for key in NAMES}
         rows.append(row)
-    with args.out.open("w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_atomically(args.out, csv_text(list(rows[0]), (row.values() for row in rows)))
     for label in envs:
         worst = {key: max(abs(row[f"{label}_{key}"] - row[f"ours_{key}"]) for row in rows) for key in NAMES}
         other = [row["episode_id"] for row in rows if row[f"{label}_success"] != row["ours_success"]]

@@ -1,1 +1,1 @@
-"""Demonstrations for imitation, and the comparison of networks that train for the same time."""
+"""Demonstrations for imitation, and the fit of the appearance of colours and pictures."""

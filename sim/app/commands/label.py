@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,11 +29,12 @@ from sim.core.files import write_atomically, write_picture
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40
 from sim.gl import mujoco
 from sim.houses.foreign import remove_unsupported
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import House
 from sim.houses.labels import VOID, Labels, read_labels
 from sim.houses.load import load_house, read_rules, validate_house
 from sim.houses.mjcf import read_spec, require_sizes
-from sim.houses.proposals import geom_box, propose, rules_of, size_doubt, void_objects
+from sim.houses.proposals import box_around, propose, rules_of, size_doubt, void_objects
 from sim.houses.references import require_root
 
 TABLE_WIDTH = 120
@@ -105,15 +106,14 @@ def rows_of(model: mujoco.MjModel, labels: Labels) -> list[Row]:
 
 def table_of(model: mujoco.MjModel, rows: Sequence[Row]) -> Table:
     """Returns the table of names, categories and sizes."""
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     table = Table("name", "category", box=None)
     table.columns[0].overflow = "fold"
     for title in ("geoms", "size x y z (m)", "bottom, top (m)"):
         table.add_column(title, justify="right")
     table.add_column("doubt")
     for row in rows:
-        low, high = _box(model, data, row.geoms)
+        low, high = box_around(model, data, row.geoms)
         size = " ".join(f"{side:.2f}" for side in high - low)
         doubt = size_doubt(row.category, high - low) or ("no label" if row.category == VOID else "")
         table.add_row(row.name, row.category, str(len(row.geoms)), size, f"{low[2]:.2f}, {high[2]:.2f}", doubt)
@@ -164,8 +164,3 @@ def _read(args: Args) -> tuple[House, mujoco.MjModel]:
     except (HouseError, ValueError) as error:
         raise HouseError(f"House '{args.house}': {' '.join(str(error).split())}") from None
     return House(args.house.stem, spec, {}, args.house), model
-
-
-def _box(model: mujoco.MjModel, data: mujoco.MjData, geoms: Iterable[int]) -> tuple[np.ndarray, np.ndarray]:
-    boxes = [geom_box(model, data, geom) for geom in geoms]
-    return np.min([low for low, _ in boxes], axis=0), np.max([high for _, high in boxes], axis=0)

@@ -16,9 +16,10 @@ from sim.app.viewers.palette import PALETTE
 from sim.app.viewers.text import BOLD, text_width, write
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel
 from sim.gl import mujoco
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import House, Room, read_rooms
 from sim.houses.labels import VOID, Instance, Labels, read_labels, rendered_geoms
-from sim.houses.proposals import geom_box, void_objects
+from sim.houses.proposals import box_around, void_objects
 from sim.world.freespace import FreeSpace
 
 Picture = NDArray[np.uint8]
@@ -146,14 +147,13 @@ def _write_names(
     distance_m: float,
 ) -> None:
     """Writes texts onto a picture from above: on their geoms, below small ones, lower where another text is already."""
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     height, width = picture.shape[:2]
     focal_px = 0.5 * height / math.tan(math.radians(TOP_FOVY_DEG / 2))
     line_px = max(8, round(NAME_SHARE * height))
     taken: list[tuple[int, int, int]] = []  # left, right, base line
     for text, geoms in named:
-        low, high = _box(model, data, geoms)
+        low, high = box_around(model, data, geoms)
         x, y, z = (low + high) / 2
         scale = focal_px / (lookat[2] + distance_m - z)
         wide = text_width(text, line_px, BOLD)
@@ -188,8 +188,7 @@ def storeys(house: House) -> list[House]:
     """Returns each storey of a house alone, the lowest first."""
     spec = house.spec
     model = spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     floors_m = sorted({round(room.floor_z_m, 2) for room in read_rooms(model)})
     if len(floors_m) < 2:
         return [house]
@@ -225,8 +224,7 @@ def draw_views(house: House, columns: int = 3, *, least: int = 0) -> Picture | N
     seen = house.spec.copy()
     add_backdrop(seen)
     model = seen.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     rooms = read_rooms(model)
     labels = read_labels(model, rules=house.rules, ignore_prefix="")
     poses = list(_room_poses(model, data, labels, rooms) if rooms else _object_poses(model, data, labels))
@@ -278,7 +276,7 @@ def _look_at(
 
     The ray from the camera to the instance, at the camera's height where the instance has that height, hits it first.
     """
-    low, high = _box(model, data, instance.geom_ids)
+    low, high = box_around(model, data, instance.geom_ids)
     middle, eye_m = (low + high) / 2, CameraModel().height_m
     aim = np.array([middle[0], middle[1], np.clip(eye_m, low[2] + 0.02, high[2] - 0.02)])
     away_m = np.hypot(*(places_m - aim[:2]).T)
@@ -340,8 +338,7 @@ def _extent(model: mujoco.MjModel, labels: Labels) -> tuple[NDArray[np.float64],
     if boxes:
         centres, halves = np.array([box[0] for box in boxes]), np.array([box[1] for box in boxes])
         return (centres - halves).min(axis=0), (centres + halves).max(axis=0)
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     frame = FreeSpace(model, data, labels).frame
     low = np.array(frame.origin_xy_m)
     high = low + np.array(frame.shape)[::-1] * frame.cell_m
@@ -349,17 +346,9 @@ def _extent(model: mujoco.MjModel, labels: Labels) -> tuple[NDArray[np.float64],
     standing = visible & (labels.geom_category != MPCAT40_ID["floor"])
     shown = np.flatnonzero(standing if standing.any() else visible).tolist()
     if shown:
-        lowest, highest = _box(model, data, shown)
+        lowest, highest = box_around(model, data, shown)
         low, high = np.maximum(low, lowest[:2] - MARGIN_M), np.minimum(high, highest[:2] + MARGIN_M)
     return np.array([*low, 0.0]), np.array([*high, CEILING_M])
-
-
-def _box(
-    model: mujoco.MjModel, data: mujoco.MjData, geoms: Iterable[int]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns the lowest and the highest corner (3,) of the box around geoms."""
-    boxes = [geom_box(model, data, geom) for geom in geoms]
-    return np.min([low for low, _ in boxes], axis=0), np.max([high for _, high in boxes], axis=0)
 
 
 def add_backdrop(spec: mujoco.MjSpec) -> None:

@@ -35,7 +35,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.sensors.scan import ScanSensor
 from sim.sensors.sensor import SensorContext
 from sim.task.result import RolloutResult
-from sim.world.freespace import FreeSpace
+from sim.world.freespace import FreeSpace, covered
 
 FOLDER = "mcap"
 
@@ -212,12 +212,6 @@ def true_map(env: ObjectNavEnv, time_s: float) -> messages.Message:
 def _occupied_and_free(space: FreeSpace) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Returns the masks (rows, cols) of obstacles, and of the floor that the robot's body can cover."""
     frame = space.frame
-    occupied = np.zeros(frame.shape, np.bool_)
-    for polygon in space.obstacles:
-        window = frame.index_of(polygon.bounds_m)
-        x, y = frame.axes(window)
-        centres = np.stack(np.broadcast_arrays(x[None, :], y[:, None]), axis=-1).reshape(-1, 2)
-        occupied[window] |= polygon.contains(centres).reshape(len(y), len(x))
     radius = round(space.radius_m / frame.cell_m)
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))
-    return occupied, cv2.dilate(space.free.astype(np.uint8), disc).astype(np.bool_)
+    return covered(frame, space.obstacles), cv2.dilate(space.free.astype(np.uint8), disc).astype(np.bool_)

@@ -13,6 +13,8 @@ from sim.core.interface import MPCAT40, MPCAT40_ID
 _GREYS = {"void": 0, "wall": 200, "floor": 110, "ceiling": 235, "door": 150, "window": 175}
 """Structure is grey, so that furniture is easy to see."""
 _GOLDEN_RATIO = 0.618034
+MAX_NAMES, MIN_SHARE = 12, 0.002
+"""Number of names in a legend; categories that cover less of the image are not named."""
 
 
 def _make_palette() -> NDArray[np.uint8]:
@@ -36,17 +38,11 @@ def colour_segmentation(semantic: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return PALETTE[semantic]
 
 
-def with_legend(semantic: NDArray[np.uint8], *, most: int = 12, min_share: float = 0.002) -> NDArray[np.uint8]:
-    """Returns the coloured segmentation with the names of its largest categories in the upper left corner.
-
-    Args:
-        semantic: mpcat40 ids (h, w).
-        most: largest number of names.
-        min_share: categories that cover less of the image are not named.
-    """
+def with_legend(semantic: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Returns coloured mpcat40 ids (h, w) with the names of the largest categories in the upper left corner."""
     picture = np.ascontiguousarray(colour_segmentation(semantic))
     counts = np.bincount(semantic.ravel(), minlength=len(MPCAT40))
-    named = [int(i) for i in np.argsort(-counts)[:most] if counts[i] > min_share * semantic.size]
+    named = [int(i) for i in np.argsort(-counts)[:MAX_NAMES] if counts[i] > MIN_SHARE * semantic.size]
     scale = semantic.shape[0] / 480
     line_px = round(20 * scale)
     for row, category in enumerate(named):

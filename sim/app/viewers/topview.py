@@ -25,8 +25,6 @@ SHORTEST: Colour = (146, 64, 176)
 STOPPED: Colour = (204, 45, 37)
 ROBOT: Colour = (20, 20, 20)
 _MARGIN_M = 0.2
-_STEP_CELLS = np.array([[math.sqrt(2), 1, math.sqrt(2)], [1, np.inf, 1], [math.sqrt(2), 1, math.sqrt(2)]])
-"""Length of a step to each neighbour of a cell; infinite for the cell itself."""
 
 
 class TopView:
@@ -113,7 +111,8 @@ class TopView:
             for piece in footprint.parts:
                 cv2.fillConvexPoly(image, self._pixels(piece.vertices_m), INSTANCE, cv2.LINE_AA)
         if abs(start.floor_z_m - floor_z_m) < LEVEL_M:
-            path_px = self._pixels(shortest_path_m(space, target, (start.x_m, start.y_m)))
+            path_m = space.path(target.distance_m, start.x_m, start.y_m)
+            path_px = self._pixels(np.array([[start.x_m, start.y_m]]) if path_m is None else path_m)
             cv2.polylines(image, [path_px.reshape(-1, 1, 2)], False, SHORTEST, 2, cv2.LINE_AA)
             cv2.circle(image, path_px[0].tolist(), 4, SHORTEST, cv2.FILLED, cv2.LINE_AA)
         return image
@@ -156,48 +155,3 @@ def _fitted(points_m: NDArray[np.float64], turn_rad: float, size_px: tuple[int, 
     linear = scale * np.array([[c, -s], [-s, -c]])
     middle = scale * 0.5 * (low + high) * (1.0, -1.0)
     return np.column_stack([linear, 0.5 * np.array(size_px) - middle])
-
-
-def shortest_path_m(space: FreeSpace, target: Target, start_m: tuple[float, float]) -> NDArray[np.float64]:
-    """Returns points (n, 2) of the shortest path from a position to where a STOP succeeds; one point without a path."""
-    row, col = space.frame.to_cells(np.array(start_m)).tolist()
-    inside = 0 <= row < space.frame.shape[0] and 0 <= col < space.frame.shape[1]
-    if not inside or not np.isfinite(target.distance_m[row, col]):
-        return np.array([start_m])
-    cells = _descended(target.distance_m, row, col)
-    x_m, y_m = space.frame.centres(cells[:, 0], cells[:, 1])
-    return _pulled_taut(np.vstack([start_m, np.stack([x_m, y_m], axis=1)]), space)
-
-
-def _descended(field_m: NDArray[np.float32], row: int, col: int) -> NDArray[np.int64]:
-    """Returns the cells (n, 2) from one cell down a field of distances, always in the steepest of eight directions."""
-    padded = np.pad(field_m, 1, constant_values=np.inf)
-    cells = [(row, col)]
-    while True:
-        drop = (field_m[row, col] - padded[row : row + 3, col : col + 3]) / _STEP_CELLS
-        down, right = np.unravel_index(int(np.argmax(drop)), (3, 3))
-        if drop[down, right] <= 0.0:
-            return np.array(cells)
-        row, col = row + int(down) - 1, col + int(right) - 1
-        cells.append((row, col))
-
-
-def _pulled_taut(points_m: NDArray[np.float64], space: FreeSpace) -> NDArray[np.float64]:
-    """Returns those points of a path that are needed, because the straight line past them leaves the free space."""
-    kept, here = [0], 0
-    while here < len(points_m) - 1:
-        near, far = here + 1, len(points_m) - 1
-        while near < far:  # the farthest point in a straight line, by halving
-            middle = (near + far + 1) // 2
-            near, far = (middle, far) if _is_free(space, points_m[here], points_m[middle]) else (near, middle - 1)
-        kept.append(near)
-        here = near
-    return points_m[kept]
-
-
-def _is_free(space: FreeSpace, begin_m: NDArray[np.float64], end_m: NDArray[np.float64]) -> bool:
-    """Returns whether the robot can drive straight from one point to another."""
-    samples = max(2, math.ceil(float(np.hypot(*(end_m - begin_m))) / space.frame.cell_m) * 2)
-    along = np.linspace(0.0, 1.0, samples)[1:, None]  # the start itself may lie next to the free cells
-    cells = space.frame.to_cells(begin_m + along * (end_m - begin_m))
-    return bool(space.free[cells[:, 0], cells[:, 1]].all())

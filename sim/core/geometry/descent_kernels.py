@@ -1,4 +1,4 @@
-"""The compiled loop that follows a field of distances down to its source (`sim.houses.hazards.steepest_path`)."""
+"""The compiled loop that follows a field of distances down to its source."""
 
 import numpy as np
 

@@ -22,9 +22,11 @@ from sim.core.errors import ConfigError, HouseError
 from sim.core.reading import Name, read_json
 from sim.gl import mujoco
 from sim.homes.importers.rectilinear import rectangles_of_triangles
-from sim.homes.importers.scenes import Scene, add_room, compiled, floor_height, lower, posed
+from sim.homes.importers.scenes import Scene, add_room, floor_height, lower
 from sim.houses.foreign import remove_unsupported
+from sim.houses.geoms import data_at_rest
 from sim.houses.labels import read_labels
+from sim.houses.load import compiled
 from sim.houses.mjcf import read_spec
 from sim.houses.packing import gather_files, text_of
 from sim.houses.proposals import category_of_name, geom_box, void_objects
@@ -188,7 +190,7 @@ def _turn(body: mujoco.MjsBody, pivot: NDArray[np.float64], axis: NDArray[np.flo
 
 def _add_rooms(spec: mujoco.MjSpec, model: mujoco.MjModel) -> list[float]:
     """Adds the sites of the rooms, from the meshes of their floors; returns the area of each in m2."""
-    data = posed(model)
+    data = data_at_rest(model)
     walls = [geom for geom in range(model.ngeom) if _WALL_BODY.fullmatch(model.body(model.geom_bodyid[geom]).name)]
     top_m = max((float(geom_box(model, data, geom)[1][2]) for geom in walls), default=CEILING_M)
     areas = []

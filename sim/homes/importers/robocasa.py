@@ -23,8 +23,9 @@ from sim.core.errors import ConfigError, HouseError
 from sim.core.interface import MPCAT40_ID
 from sim.gl import mujoco
 from sim.homes.housegen.floor_plan.rectangles import Rect
-from sim.homes.importers.scenes import Scene, add_room, box_of, compiled, posed
+from sim.homes.importers.scenes import Scene, add_room, box_of
 from sim.houses.foreign import remove_unsupported
+from sim.houses.geoms import data_at_rest
 from sim.houses.labels import (
     RENDERED_GROUPS,
     VOID,
@@ -35,6 +36,7 @@ from sim.houses.labels import (
     read_labels,
     rendered_geoms,
 )
+from sim.houses.load import compiled
 from sim.houses.mjcf import read_spec, require_sizes
 from sim.houses.packing import gather_files, text_of
 from sim.houses.proposals import category_of_name, propose, rules_of
@@ -231,8 +233,7 @@ def _show_unseen_bodies(spec: mujoco.MjSpec, model: mujoco.MjModel, changes: Cou
 
     A file may hold a placeholder for a mesh: of a stove remain its window and its knobs, which float in the air.
     """
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     collides, visible = collidable_geoms(model), rendered_geoms(model)
     for body in range(1, model.nbody):
         unseen = np.flatnonzero(collides & ~visible & (model.geom_bodyid == body))
@@ -323,7 +324,7 @@ def _any_number(name: str) -> str:
 
 def _add_rooms(spec: mujoco.MjSpec, model: mujoco.MjModel, labels: Labels) -> tuple[list[_Room], float]:
     """Adds a site for each floor, up to its walls; returns the rooms and their height in metres."""
-    data = posed(model)
+    data = data_at_rest(model)
     solid = collidable_geoms(model)
     floors = [int(geom) for geom in np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & solid)]
     walls = [int(geom) for geom in np.flatnonzero((labels.geom_category == MPCAT40_ID["wall"]) & solid)]

@@ -11,11 +11,11 @@ import numpy as np
 
 from sim.core.errors import HouseError
 from sim.core.files import inside, write_atomically
-from sim.core.reading import reason_of
 from sim.gl import mujoco
 from sim.homes.housegen.floor_plan.rectangles import Rect
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import House
-from sim.houses.load import validate_house
+from sim.houses.load import compiled, validate_house
 from sim.houses.mjcf import read_spec
 from sim.houses.packing import PackedFile, write_files
 from sim.houses.proposals import geom_box
@@ -32,18 +32,6 @@ class Scene:
     rules: Mapping[str, str]
     """Label rules."""
     report: Mapping[str, Any]
-
-
-def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    """Returns the model of a specification.
-
-    Raises:
-        HouseError: MuJoCo refuses it.
-    """
-    try:
-        return spec.compile()
-    except (ValueError, OSError, MemoryError) as error:
-        raise HouseError(f"it is not an MJCF file that MuJoCo can read: {reason_of(error)}") from None
 
 
 def write_scene(out: Path, scene: Scene, *, pack: bool) -> None:
@@ -74,7 +62,7 @@ def floor_height(model: mujoco.MjModel, name: str = "floor") -> float:
     geom = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, name)
     if geom < 0:
         return 0.0
-    data = posed(model)
+    data = data_at_rest(model)
     plane = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE
     top = float(data.geom_xpos[geom, 2]) if plane else float(geom_box(model, data, geom)[1][2])
     return top if abs(top) > 1e-3 else 0.0
@@ -95,13 +83,6 @@ def add_room(spec: mujoco.MjSpec, name: str, rect: Rect, top_m: float) -> None:
         name=name, type=mujoco.mjtGeom.mjGEOM_BOX, group=4, pos=[x, y, top_m / 2],
         size=[rect.width_m / 2, rect.depth_m / 2, top_m / 2],
     )  # fmt: skip
-
-
-def posed(model: mujoco.MjModel) -> mujoco.MjData:
-    """Returns the initial state of a model, kinematics computed."""
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    return data
 
 
 def box_of(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Rect:

@@ -15,11 +15,11 @@ from sim.gl import mujoco
 from sim.homes.plans.gap_kernels import lower_to_gap
 from sim.homes.plans.plan import CELL_M, Plan, storey_name
 from sim.homes.plans.surfaces import TOP_M, occupied_spans
-from sim.houses.geoms import geom_polytope
+from sim.houses.geoms import data_at_rest, geom_polytope
 from sim.houses.house import House
 from sim.houses.labels import Labels
 from sim.task.ground_truth import GroundTruth
-from sim.world.freespace import FreeSpace
+from sim.world.freespace import FreeSpace, covered
 from sim.world.obstacles import obstacle_polygons
 from sim.world.plan import floor_polygons
 from sim.world.storeys import floor_levels
@@ -45,8 +45,7 @@ def export_plans(house: House, source: Mapping[str, object]) -> Iterator[Plan]:
     """
     world = World(house)
     truth = GroundTruth(world)
-    at_rest = mujoco.MjData(world.model)
-    mujoco.mj_kinematics(world.model, at_rest)
+    at_rest = data_at_rest(world.model)
     levels_m = sorted({round(level, 3) for level in floor_levels(world.model, world.labels)})
     storeys = [level for i, level in enumerate(levels_m) if i == 0 or level - levels_m[i - 1] >= 1.0]
     for number, floor_z_m in enumerate(storeys):
@@ -136,15 +135,7 @@ def _floor(
 ) -> NDArray[np.bool_]:
     """Returns the cells with their centre on a floor of the storey."""
     outlines = floor_polygons(model, data, labels, floor_z_m)
-    if outlines is None:
-        return np.ones(frame.shape, np.bool_)
-    floor = np.zeros(frame.shape, np.bool_)
-    for outline in outlines:
-        window = frame.index_of(outline.bounds_m)
-        x_m, y_m = frame.axes(window)
-        centres = np.stack(np.broadcast_arrays(x_m[None, :], y_m[:, None]), axis=-1).reshape(-1, 2)
-        floor[window] |= outline.contains(centres).reshape(len(y_m), len(x_m))
-    return floor
+    return np.ones(frame.shape, np.bool_) if outlines is None else covered(frame, outlines)
 
 
 def _rooms(world: World, floor_z_m: float, frame: GridFrame) -> NDArray[np.int8]:

@@ -101,12 +101,6 @@ class Plan:
         here = (self.span_low_m <= high_m) & (self.span_high_m >= low_m)
         return np.bincount(self.span_cell[here], minlength=self.floor.size).reshape(self.floor.shape) > 0
 
-    def instance_mask(self, instance: int) -> NDArray[np.bool_]:
-        """Returns the cells of one instance: its footprint."""
-        mask = np.zeros(self.floor.size, np.bool_)
-        mask[self.span_cell[self.span_instance == instance]] = True
-        return mask.reshape(self.floor.shape)
-
     @property
     def span_cell(self) -> NDArray[np.int64]:
         """(spans,) The row-major cell of each span."""

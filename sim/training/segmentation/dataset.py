@@ -8,12 +8,13 @@ millimetres), `key.semantic.png` (uint8 mpcat40 id), `key.json` and, if requeste
 
 from __future__ import annotations
 
+import contextlib
 import math
 import tarfile
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any, BinaryIO
+from typing import Annotated, Any
 
 import cv2
 import msgspec
@@ -168,31 +169,15 @@ def _members(file: Path, numbers: Collection[int] | None = None) -> Iterator[tup
     Raises:
         ConfigError: the file is not a tar file or truncated.
     """
-    parts: dict[str, bytes] = {}
-    key, number = "", -1
-    once = _Once(file)
-    try:
-        with (
-            open_plain(file, what="Shard") as stream,
-            _archive(stream) as archive,
-        ):
-            for member in archive:
-                _require_small_file(file, member)
-                name, _, suffix = member.name.partition(".")
-                once.require(name, suffix.split(".")[0])
-                if name != key or number < 0:
-                    if number >= 0:
-                        yield key, parts
-                    key, number, parts = name, number + 1, {}
-                if numbers is None or number in numbers:
-                    content = archive.extractfile(member)
-                    parts[suffix.split(".")[0]] = b"" if content is None else content.read()
-            if number >= 0:
-                yield key, parts
-    except _BROKEN_TAR as error:
-        if isinstance(error, ConfigError):
-            raise
-        raise ConfigError(f"Shard '{file}' is broken: {error}. `stubborn views` makes it again.") from None
+
+    def content(member: tarfile.TarInfo) -> bytes:
+        stream = archive.extractfile(member)
+        return b"" if stream is None else stream.read()
+
+    with _opened(file) as archive:
+        for number, (key, members) in enumerate(_views(file, archive)):
+            is_wanted = numbers is None or number in numbers
+            yield key, {kind: content(member) for kind, member in members.items()} if is_wanted else {}
 
 
 def read_members(file: Path) -> Iterator[tuple[str, dict[str, tuple[int, int]]]]:
@@ -201,50 +186,53 @@ def read_members(file: Path) -> Iterator[tuple[str, dict[str, tuple[int, int]]]]
     Raises:
         ConfigError: the file is not a tar file or truncated.
     """
-    key, places = "", {}
-    once = _Once(file)
+    with _opened(file) as archive:
+        for key, members in _views(file, archive):
+            yield key, {kind: (member.offset_data, member.size) for kind, member in members.items()}
+
+
+@contextlib.contextmanager
+def _opened(file: Path) -> Iterator[tarfile.TarFile]:
+    """Opens a shard as a tar file; a compressed one is refused, because it could expand without end.
+
+    Raises:
+        ConfigError: the file is not a tar file or truncated.
+    """
     try:
-        with open_plain(file, what="Shard") as stream, _archive(stream) as archive:
-            for member in archive:
-                _require_small_file(file, member)
-                name, _, suffix = member.name.partition(".")
-                once.require(name, suffix.split(".")[0])
-                if name != key and places:
-                    yield key, places
-                    places = {}
-                key = name
-                places[suffix.split(".")[0]] = member.offset_data, member.size
-            if places:
-                yield key, places
+        with (
+            open_plain(file, what="Shard") as stream,
+            tarfile.open(fileobj=stream, mode="r:", tarinfo=PlainMember) as archive,
+        ):
+            yield archive
     except _BROKEN_TAR as error:
         if isinstance(error, ConfigError):
             raise
         raise ConfigError(f"Shard '{file}' is broken: {error}. `stubborn views` makes it again.") from None
 
 
-def _archive(stream: BinaryIO) -> tarfile.TarFile:
-    """Returns an open shard as a tar file; a compressed one is refused, because it could expand without end."""
-    return tarfile.open(fileobj=stream, mode="r:", tarinfo=PlainMember)
+def _views(file: Path, archive: tarfile.TarFile) -> Iterator[tuple[str, dict[str, tarfile.TarInfo]]]:
+    """Yields the key of each view of an open shard with its members by kind.
 
-
-class _Once:
-    """Refuses a shard that holds a view twice, or one part of a view twice, such as `rgb.jpg` and `rgb.png`."""
-
-    def __init__(self, file: Path) -> None:
-        self._file = file
-        self._keys: set[str] = set()
-        self._key, self._parts = "", set[str]()
-
-    def require(self, key: str, part: str) -> None:
-        """Raises ConfigError if a member, which follows the earlier ones, is a second one of its kind."""
-        if key != self._key or not self._keys:
-            if key in self._keys:
-                raise ConfigError(f"Shard '{self._file}' holds the view '{key}' twice; a view is stored once.")
-            self._keys.add(key)
-            self._key, self._parts = key, set()
-        if part in self._parts:
-            raise ConfigError(f"Shard '{self._file}': view '{key}' has '{part}' twice; a view has one of each kind.")
-        self._parts.add(part)
+    Raises:
+        ConfigError: the shard holds a view twice, or one part of a view twice, such as `rgb.jpg` and `rgb.png`.
+    """
+    keys, key, members = set[str](), "", dict[str, tarfile.TarInfo]()
+    for member in archive:
+        _require_small_file(file, member)
+        name, _, suffix = member.name.partition(".")
+        if name != key or not keys:
+            if name in keys:
+                raise ConfigError(f"Shard '{file}' holds the view '{name}' twice; a view is stored once.")
+            if members:
+                yield key, members
+            keys.add(name)
+            key, members = name, {}
+        kind = suffix.split(".")[0]
+        if kind in members:
+            raise ConfigError(f"Shard '{file}': view '{key}' has '{kind}' twice; a view has one of each kind.")
+        members[kind] = member
+    if members:
+        yield key, members
 
 
 def _require_small_file(file: Path, member: tarfile.TarInfo) -> None:

@@ -9,11 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sim.core.geometry.descent_kernels import descend
 from sim.episodes.house_episodes import Ask, StartDrawer, find_house_asks
 from sim.episodes.recipes import EPISODE_RECIPES, EpisodeRecipe
 from sim.episodes.start_rules import Lookout, leads_past, quadrant_headings, start_cells
 from sim.gl import mujoco
-from sim.houses.hazards import nearest_hazard_m, read_hazards, steepest_path
+from sim.houses.hazards import read_hazards
 from sim.houses.house import House
 from sim.task.objectnav import Task
 from sim.world.world import World
@@ -81,7 +82,7 @@ def test_paths_past_a_marked_cell_are_those_that_following_the_field_finds(task)
     marked[np.hypot(x - 1.0, y - 2.2) < 0.3] = True  # east of the doorway
     past = leads_past(field_m, marked)
     cells = np.argwhere(np.isfinite(field_m))[::3001]
-    expected = [marked[tuple(steepest_path(field_m, tuple(cell.tolist())).T)].any() for cell in cells]
+    expected = [marked[tuple(descend(field_m, *cell.tolist()).T)].any() for cell in cells]
     assert past[tuple(cells.T)].tolist() == expected
     assert 0 < sum(expected) < len(expected)
 
@@ -97,8 +98,8 @@ def test_starts_near_hazards_lead_past_one_where_the_house_has_such_paths():
     for seed in range(8):
         start = drawer.draw(Ask("bed"), seed, np.random.default_rng(seed))
         cell = tuple(space.frame.to_cells((start.pose.x_m, start.pose.y_m)).tolist())
-        path_m = space.frame.to_metres(steepest_path(task.truth.target("bed").distance_m, cell))
-        assert nearest_hazard_m(read_hazards(task.world.model), path_m) <= 0.3
+        path_m = space.frame.to_metres(descend(task.truth.target("bed").distance_m, *cell))
+        assert read_hazards(task.world.model)[0].distance_m(path_m).min() <= 0.3
         assert start.meets_rule
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from sim.core.colours import COLOUR_NAMES, clear_colour_name, colour_name, colour_numbers
+from sim.core.colours import COLOUR_NAMES, clear_colour_name, colour_numbers
 from sim.core.errors import HouseError
 from sim.gl import mujoco
 from sim.houses.instance_facts import InstanceFacts, parse_facts, read_instance_facts
@@ -61,7 +61,7 @@ def test_a_text_of_another_form_is_refused_with_the_instance(text: str, part: st
      ((0.95, 0.85, 0.1), "yellow"), ((0.5, 0.1, 0.5), "purple"), ((0.95, 0.6, 0.7), "pink")],
 )  # fmt: skip
 def test_typical_colours_have_their_names(rgb: tuple[float, float, float], name: str) -> None:
-    assert colour_name(rgb) == name
+    assert COLOUR_NAMES[int(colour_numbers(rgb))] == name
 
 
 def test_a_colour_between_two_names_is_not_clear() -> None:

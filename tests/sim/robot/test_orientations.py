@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from sim.core.geometry.pose import Pose
 from sim.gl import mujoco
+from sim.houses.geoms import data_at_rest
 from sim.houses.load import load_house
 from sim.robot.foreign import load_robot
 from sim.world.world import World
@@ -93,8 +94,7 @@ def houses(draw: st.DrawFn) -> str:
 
 def _poses(model: mujoco.MjModel, names: list[str], base: str | None = None) -> np.ndarray:
     """Returns the rotation and position of geoms, relative to a body or to the world; (n, 12)."""
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     turn, origin = np.eye(3), np.zeros(3)
     if base is not None:
         turn, origin = data.body(base).xmat.reshape(3, 3).copy(), data.body(base).xpos.copy()

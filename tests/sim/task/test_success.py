@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from sim.core.geometry.convex import lines_blocked
 from sim.core.interface import CameraModel, SuccessRule
 from sim.gl import mujoco
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.task.ground_truth import GroundTruth
@@ -21,8 +22,7 @@ from tests.helpers.worlds import room, two_storeys, with_box, with_movable
 
 def compiled(house: House):
     model = house.spec.copy().compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     return model, data, read_labels(model)
 
 

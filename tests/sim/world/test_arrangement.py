@@ -9,6 +9,7 @@ import pytest
 
 from sim.gl import mujoco
 from sim.homes.housegen.generator import generate
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels
 from sim.world.arrangement import arrangement_faults
@@ -47,8 +48,7 @@ def faults(kind: str, *pieces: Piece) -> list[str]:
         if piece.name:
             spec.add_text(name=piece.label, data=f"name: {piece.name}")
     model = spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     return faults_of(model, data)
 
 
@@ -194,8 +194,7 @@ def swing(*pieces: Piece) -> list[str]:
         body = spec.worldbody.add_body(name=piece.label, pos=(piece.x_m, piece.y_m, half[2]))
         body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=half)
     model = spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     return faults_of(model, data)
 
 
@@ -376,8 +375,7 @@ def floors(kind: str, texture: str) -> list[str]:
         body.add_geom(type=box, size=(2.0, 2.0, 0.05), material=floor)
         spec.worldbody.add_site(name=f"room_{room_kind}_00", type=box, pos=(4.1 * n, 0, 1.25), size=(2.0, 2.0, 1.25))
     model = spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     found = faults_of(model, data)
     return [fault for fault in found if "sofa" not in fault]
 
@@ -398,7 +396,6 @@ def test_a_generated_house_follows_all_rules_until_a_chair_is_taken_away(seed: i
             for body in [body for body in spec.worldbody.bodies if body.name.startswith("chair_")]:
                 spec.delete(body)
         model = spec.compile()
-        data = mujoco.MjData(model)
-        mujoco.mj_kinematics(model, data)
+        data = data_at_rest(model)
         found = faults_of(model, data)
         assert (found == []) == kept

@@ -13,6 +13,7 @@ from sim.core.geometry.grid import GridFrame
 from sim.core.geometry.pose import Pose
 from sim.core.interface import CLIMB_M, RobotModel, SuccessRule
 from sim.gl import mujoco
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.world.freespace import FreeSpace
@@ -24,8 +25,7 @@ RADIUS_M = 0.18
 
 def free_space(house: House, **options) -> FreeSpace:
     model = house.spec.copy().compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     return FreeSpace(model, data, read_labels(model), rooms=read_rooms(model), **options)
 
 
@@ -224,8 +224,7 @@ def test_the_rule_says_which_rooms_belong_to_a_storey():
     spec = room(4, 4).spec
     spec.site("room_living_00").pos[2] += 0.5  # its floor is then at z = 0.5 m
     model = spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     spaces = [
         FreeSpace(model, data, read_labels(model), rooms=read_rooms(model), rule=SuccessRule(same_storey_m=same_m))
         for same_m in (1.0, 0.4)
@@ -265,8 +264,7 @@ def test_a_seam_between_two_floors_is_not_an_edge():
 
 def _space_of(world: str) -> FreeSpace:
     model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{world}</worldbody></mujoco>")
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     return FreeSpace(model, data, read_labels(model))
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from sim.gl import mujoco
 from sim.homes.housegen.generator import HouseConfig, generate_house
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import read_labels
 from sim.world.check import check_house
@@ -165,8 +166,7 @@ def test_one_bathroom_must_open_off_a_hallway() -> None:
 
 def doors_of(spec: mujoco.MjSpec) -> list[Doorway]:
     model = spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     return measured("door", model, data, read_labels(model), read_rooms(model))
 
 

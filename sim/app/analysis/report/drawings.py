@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.app.analysis.comparison import Run
-from sim.app.analysis.report.plans import PX_M, Plan, Sheet, draw_area, draw_plan, sheet_around, shortest_path
+from sim.app.analysis.report.plans import PX_M, Plan, Sheet, draw_area, draw_plan, sheet_around
 from sim.core.configuration import with_fields
 from sim.core.errors import EpisodeError, HouseError
 from sim.core.interface import CameraModel, ConfigError, RobotModel, SuccessRule
@@ -138,7 +138,7 @@ class Drawings:
         space, area = truth.space(floor_z_m), f"{plan}/{goal}"
         if area not in self.areas:
             self.areas[area] = draw_area(space, target.reached)
-        shortest = shortest_path(space, target, start_m)
+        shortest = space.path(target.distance_m, start_m[0], start_m[1])
         line = [] if shortest is None else Sheet(space.frame).place(shortest).reshape(-1).tolist()
         return {"goal": goal, "area": area, "shortest": line}
 

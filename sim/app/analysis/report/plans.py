@@ -1,4 +1,4 @@
-"""Draws floor plans for a page: outlines of the objects on a storey as SVG paths, and shortest paths.
+"""Draws floor plans for a page: outlines of the objects on a storey as SVG paths.
 
 Coordinates on a page are whole centimetres, x to the right and y down, from the upper left corner of the storey's grid
 (`sim.world.freespace`). So the plan of a house is drawn once, and the paths of all its episodes fit over it.
@@ -19,10 +19,10 @@ from sim.core.geometry.convex import polygon_from_above
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import GOAL_CATEGORIES
 from sim.gl import mujoco
-from sim.houses.geoms import geom_polytope, mesh_is_convex, mesh_triangles
+from sim.houses.geoms import data_at_rest, geom_polytope, mesh_is_convex, mesh_triangles
 from sim.houses.house import Room
 from sim.houses.labels import rendered_geoms
-from sim.task.ground_truth import GroundTruth, Target
+from sim.task.ground_truth import GroundTruth
 from sim.world.freespace import CELL_M, FreeSpace
 
 PX_M = 100.0
@@ -35,7 +35,6 @@ CUT = ("wall", "door", "window", "column")
 LEFT_OUT = frozenset({"floor", "ceiling", "beam", "lighting", "void", *CUT})
 SMOOTH_PX = 1.5
 """Largest distance of a simplified outline from the true one."""
-_NEIGHBOURS = np.array([(r, c) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c])
 
 
 class Plan(TypedDict):
@@ -96,28 +95,10 @@ def draw_area(space: FreeSpace, mask: NDArray[np.bool_]) -> str:
     return _outline(np.asarray(image, np.uint8), (0, 0), smooth_px=scale)
 
 
-def shortest_path(space: FreeSpace, target: Target, start_xy_m: Sequence[float]) -> NDArray[np.float64] | None:
-    """Returns (k, 2) corners of the shortest path from a point to where a STOP succeeds, metres; None: no path.
-
-    It descends the distance field cell by cell and then straightens the path within the free cells.
-    """
-    cell = _nearest_with_path(space, target, start_xy_m)
-    if cell is None:
-        return None
-    cells = [cell]
-    while target.distance_m[cells[-1]] > 0.0:
-        further = _descend(target.distance_m, cells[-1])
-        if further is None:
-            break
-        cells.append(further)
-    path = np.vstack([np.asarray(start_xy_m, np.float64), space.frame.to_metres(cells)])
-    return _straightened(space, path)
-
-
 def _objects(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[list[str]]:
     """Returns the shapes of the objects on this storey."""
     model, labels = truth.world.model, truth.world.labels
-    data, rendered = _at_rest(model), rendered_geoms(model)
+    data, rendered = data_at_rest(model), rendered_geoms(model)
     shapes: list[tuple[float, list[str]]] = []
     for instance in labels.instances:
         geoms = [geom for geom in instance.geom_ids if rendered[geom]]
@@ -135,7 +116,7 @@ def _objects(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[lis
 def _structure(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[list[str]]:
     """Yields the cut walls, doors, windows and columns; each category is one SVG path."""
     model, labels = truth.world.model, truth.world.labels
-    data, rendered = _at_rest(model), rendered_geoms(model)
+    data, rendered = data_at_rest(model), rendered_geoms(model)
     low_m, high_m = floor_z_m + CUT_M[0], floor_z_m + CUT_M[1]
     for category in CUT:
         polygons = [
@@ -203,53 +184,3 @@ def _label_place(sheet: Sheet, room: Room) -> list[int]:
     """Returns [x, y, width]: the middle of the largest box of a room, and its width."""
     (x, y, _), (half_m, _, _) = max(room.boxes, key=lambda box: box[1][0] * box[1][1])
     return [*sheet.place([(x, y)])[0].tolist(), round(2.0 * half_m * PX_M)]
-
-
-def _at_rest(model: mujoco.MjModel) -> mujoco.MjData:
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    return data
-
-
-def _nearest_with_path(space: FreeSpace, target: Target, xy_m: Sequence[float]) -> tuple[int, int] | None:
-    """Returns the nearest cell within 0.3 m from which there is a path; None if no cell has one."""
-    x_m, y_m = float(xy_m[0]), float(xy_m[1])
-    window = space.frame.index_of((x_m, y_m, x_m, y_m), 0.3)
-    x, y = space.frame.axes(window)
-    away = np.hypot(x[None, :] - x_m, y[:, None] - y_m)
-    away = np.where(np.isfinite(target.distance_m[window]), away, np.inf)
-    if not away.size or not np.isfinite(away.min()):
-        return None
-    row, col = np.unravel_index(int(away.argmin()), away.shape)
-    return int(row) + window[0].start, int(col) + window[1].start
-
-
-def _descend(distance_m: NDArray[np.float32], cell: tuple[int, int]) -> tuple[int, int] | None:
-    """Returns the neighbour with the steepest descent of the distance; None at a minimum."""
-    near = np.asarray(cell) + _NEIGHBOURS
-    near = near[np.all((near >= 0) & (near < distance_m.shape), axis=1)]
-    slope = (distance_m[tuple(near.T)] - distance_m[cell]) / np.hypot(*(near - cell).T)
-    best = int(slope.argmin())
-    return (int(near[best][0]), int(near[best][1])) if slope[best] < 0.0 else None
-
-
-def _straightened(space: FreeSpace, path_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the corners that remain when a path (n, 2) is straightened within the free cells."""
-    kept, here = [0], 0
-    while here < len(path_m) - 1:
-        ahead = here + 1
-        for further in range(here + 2, len(path_m)):
-            if _is_free_between(space, path_m[here], path_m[further]):
-                ahead = further
-            elif further - ahead > 20:  # half a metre further on, the line stays blocked by the corner
-                break
-        kept.append(ahead)
-        here = ahead
-    return path_m[kept]
-
-
-def _is_free_between(space: FreeSpace, begin_m: NDArray[np.float64], end_m: NDArray[np.float64]) -> bool:
-    count = 2 + int(np.hypot(*(end_m - begin_m)) / (0.5 * space.frame.cell_m))
-    cells = space.frame.to_cells(begin_m + np.linspace(0.0, 1.0, count)[:, None] * (end_m - begin_m))
-    cells = np.clip(cells, 0, np.array(space.frame.shape) - 1)
-    return bool(space.free[tuple(cells[1:].T)].all())  # the start may lie next to a free cell

@@ -18,7 +18,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim.app.bridges.habitat_sim.maths import Vector3
 from sim.app.bridges.habitat_sim.settings import NavMeshSettings
-from sim.core.geometry.descent_kernels import descend
 from sim.core.interface import Action
 from sim.env.oracle import Destination, Follower
 from sim.episodes.habitat import from_position, to_position
@@ -135,30 +134,6 @@ class Storey:
         row, col = np.unravel_index(int(away_m.argmin()), away_m.shape)
         return float(x[col]), float(y[row])
 
-    def path(self, distance_m: NDArray[np.float32], x_m: float, y_m: float) -> list[tuple[float, float]]:
-        """Returns the corners of the shortest path from a free place to the source of a field of distances."""
-        frame = self.space.frame
-        start = frame.cell(x_m, y_m)
-        cells = descend(distance_m, *start)
-        places = [(x_m, y_m), *map(tuple, frame.to_metres(cells[1:]).tolist())]
-        corners, at = [places[0]], 0
-        while at < len(places) - 1:
-            ahead = len(places) - 1
-            while ahead > at + 1 and not self._sees(places[at], places[ahead]):
-                ahead = at + max(1, (ahead - at) // 2)
-            while ahead + 1 < len(places) and self._sees(places[at], places[ahead + 1]):
-                ahead += 1
-            corners.append(places[ahead])
-            at = ahead
-        return corners
-
-    def _sees(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
-        """Returns whether the straight line between two places is free."""
-        frame, free = self.space.frame, self.space.free
-        count = max(2, math.ceil(math.dist(start, end) / (0.5 * frame.cell_m)))
-        cells = frame.to_cells(np.linspace(start, end, count))
-        return bool(free[cells[:, 0], cells[:, 1]].all())
-
 
 class PathFinder:
     """Free space of a house, as Habitat's class of this name offers it."""
@@ -272,9 +247,13 @@ class PathFinder:
         path.geodesic_distance = storey.space.distance_at(distance_m, *place)
         if not math.isfinite(path.geodesic_distance):
             return False
-        path.trace = lambda: [
-            Vector3(to_position(x_m, y_m, storey.floor_z_m)) for x_m, y_m in storey.path(distance_m, *place)
-        ]
+
+        def trace() -> list[Vector3]:
+            corners_m = storey.space.path(distance_m, *place)
+            corners_m = np.zeros((0, 2)) if corners_m is None else corners_m
+            return [Vector3(to_position(x_m, y_m, storey.floor_z_m)) for x_m, y_m in corners_m.tolist()]
+
+        path.trace = trace
         return True
 
     def distances(self, storey: Storey, ends: NDArray[np.float64]) -> NDArray[np.float32]:

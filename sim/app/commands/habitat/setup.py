@@ -50,11 +50,8 @@ class Args:
 
 def main(args: Args) -> int:
     """Makes the environment; returns the exit status."""
-    if args.out.exists():
-        raise ConfigError(f"'{args.out}' exists: remove it, or name another folder with --out.")
     begin = time.monotonic()
-    print(f"{args.out}: habitat-lab, habitat-baselines and this project; about two minutes and 2.5 GB.", flush=True)
-    venv.create(args.out, with_pip=True)
+    make_environment(args.out, "habitat-lab, habitat-baselines and this project; about two minutes and 2.5 GB.")
     install(args.out, *FIRST)
     install(args.out, "--no-build-isolation", GYM)
     install(args.out, *PINNED, *this_project())
@@ -65,6 +62,14 @@ def main(args: Args) -> int:
     _call([str(python), "-c", "import habitat"], "habitat-lab cannot be imported")
     print(f"Done in {time.monotonic() - begin:.0f} s: {python} SCRIPT runs scripts for Habitat (docs/habitat.md).")
     return 0
+
+
+def make_environment(folder: Path, content: str) -> None:
+    """Makes an empty environment and prints what it will hold; raises ConfigError if its folder exists."""
+    if folder.exists():
+        raise ConfigError(f"'{folder}' exists: remove it, or name another folder with --out.")
+    print(f"{folder}: {content}", flush=True)
+    venv.create(folder, with_pip=True)
 
 
 def this_project() -> list[str]:

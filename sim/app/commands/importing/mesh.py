@@ -22,10 +22,9 @@ import tyro
 from sim.app.commands.importing.folder import Made, MeshArgs, file_works, import_all
 from sim.core.files import inside, write_together
 from sim.homes.importers.mesh import Axis, files_of, find_files, import_mesh
-from sim.homes.importers.scenes import compiled
 from sim.homes.importers.surfaces import check_installed
 from sim.houses.house import House
-from sim.houses.load import read_rules, validate_house
+from sim.houses.load import compiled, read_rules, validate_house
 from sim.houses.mjcf import read_spec
 
 TABLES = "categories"

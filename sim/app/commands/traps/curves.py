@@ -85,7 +85,7 @@ def curve(rows: Rows, facts: Mapping[str, TrapFacts], quantity: Quantity) -> lis
                 if row.agent == agent and row.trap in known and low <= known[row.trap] < high
             ]  # fmt: skip
             if inside:
-                points.append(_point(agent, quantity.name, inside, [known[row.trap] for row in inside]))
+                points.append(point_of(agent, quantity.name, inside, [known[row.trap] for row in inside]))
     return points
 
 
@@ -95,7 +95,8 @@ def bin_edges(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.append(np.unique(quantiles), np.inf)
 
 
-def _point(agent: str, quantity: str, rows: Rows, values: Sequence[float]) -> Point:
+def point_of(agent: str, quantity: str, rows: Rows, values: Sequence[float] = (0.0,)) -> Point:
+    """Returns success and collisions of an agent over some rows, and the range of the values of their traps."""
     traps = [row.trap for row in rows]
     share = proportion([row.escaped for row in rows], traps)
     collisions = estimate([float(row.collisions) for row in rows], traps)

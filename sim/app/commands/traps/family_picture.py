@@ -10,7 +10,6 @@ from sim.app.commands.traps.picture import BOLD, END, HEIGHT_PX, INK, PAPER, STA
 from sim.app.viewers.text import write
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
-from sim.houses.hazards import steepest_path
 from sim.houses.sidecar import TrapFacts
 
 Picture = NDArray[np.uint8]
@@ -34,9 +33,9 @@ def _row(env: ObjectNavEnv, episode: Episode) -> Picture:
     target = task.truth.target(episode.goal, episode.start.floor_z_m)
     top = TopView(world.house, space.frame)
     top.invisible(world)
-    cells = steepest_path(target.distance_m, space.frame.cell(episode.start.x_m, episode.start.y_m))
-    places = [(float(x), float(y)) for x, y in space.frame.to_metres(cells)]
-    if places:
+    path_m = space.path(target.distance_m, episode.start.x_m, episode.start.y_m)
+    if path_m is not None:
+        places = [(float(x), float(y)) for x, y in path_m]
         top.path(places)
         top.dot(places[-1], END, 7)
     top.dot((episode.start.x_m, episode.start.y_m), START, 7)

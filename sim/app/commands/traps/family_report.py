@@ -15,11 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sim.app.analysis.report.figures import proportion
-from sim.app.commands.traps.curves import QUANTITIES, Point, Rows, curve
+from sim.app.analysis.tables import ResultTable, to_markdown
+from sim.app.commands.traps.curves import QUANTITIES, Point, Rows, curve, point_of
 from sim.app.commands.traps.family_picture import draw_family
-from sim.app.commands.traps.grid import markdown_of
 from sim.app.commands.traps.trial import TrapResult
-from sim.app.evaluation.intervals import estimate
 from sim.core.files import csv_text, write_picture, write_together
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Split
@@ -65,7 +64,7 @@ def write_family_report(
     if not ours:
         return
     points = [point for quantity in QUANTITIES for point in curve(ours, facts, quantity)]
-    table = markdown_of(*family_grid(ours, facts))
+    table = to_markdown([family_table(ours, facts)])
     write_together({folder / "families.md": table, folder / "curves.csv": as_csv(points)})
     draw_curves(points).savefig(folder / "curves.png", dpi=DPI)
     draw_families(ours, facts).savefig(folder / "families.png", dpi=DPI)
@@ -73,18 +72,16 @@ def write_family_report(
         draw_family_pictures(folder / "families", split, facts)
 
 
-def family_grid(rows: Rows, facts: Mapping[str, TrapFacts]) -> tuple[list[str], list[list[str]]]:
-    """Returns header and lines: successes and mean collisions of each agent, by family and by difficulty."""
+def family_table(rows: Rows, facts: Mapping[str, TrapFacts]) -> ResultTable:
+    """Returns the table of successes and mean collisions of each agent, by family and by difficulty."""
     agents = sorted({row.agent for row in rows})
     families = _families_of(rows, facts)
-    header = ["family", *agents]
-    lines = [[name, *(_cell(_of(rows, facts, agent, family=name)) for agent in agents)] for name in families]
-    lines += [
-        [f"all, {name}", *(_cell(_of(rows, facts, agent, difficulty=name)) for agent in agents)]
-        for name in DIFFICULTIES
+    parts = [(name, {"family": name}) for name in families]
+    parts += [(f"all, {name}", {"difficulty": name}) for name in DIFFICULTIES]
+    lines = [
+        (label, [_cell(_of(rows, facts, agent, **part)) for agent in agents]) for label, part in [*parts, ("all", {})]
     ]
-    lines.append(["**all**", *(_cell(_of(rows, facts, agent)) for agent in agents)])
-    return header, lines
+    return ResultTable("families", "successes (95 % interval)", ("family", *agents), lines)
 
 
 def as_csv(points: Sequence[Point]) -> str:
@@ -127,8 +124,8 @@ def draw_families(rows: Rows, facts: Mapping[str, TrapFacts]) -> Figure:
     figure = empty_figure(max(6.0, 1.1 * len(families) + 1.5), 6.6, what="The curves of traps")
     axes = figure.subplots(2, 1, sharex=True)
     for number, agent in enumerate(agents):
-        of = [_family_point(_of(rows, facts, agent, family=name), agent, name) for name in families]
-        known = [(i, point) for i, point in enumerate(of) if point is not None]
+        of = [_of(rows, facts, agent, family=name) for name in families]
+        known = [(i, point_of(agent, families[i], of_family)) for i, of_family in enumerate(of) if of_family]
         x = np.array([i for i, _ in known]) + 0.5 * (number + 1) / (len(agents) + 1) - 0.25
         for axis, name in zip(axes, ("success", "collisions"), strict=True):
             _bars(axis, x, [point for _, point in known], name, agent, number, line="")
@@ -182,17 +179,6 @@ def _cell(rows: Rows) -> str:
     falls = f", {fell} fell" if fell else ""
     collisions = np.mean([row.collisions for row in rows])
     return f"{share.count}/{share.of} ({low}-{high} %), {collisions:.1f} collisions{falls}"
-
-
-def _family_point(rows: Rows, agent: str, family: str) -> Point | None:
-    """Returns success and collisions of an agent in a family; None without episodes."""
-    if not rows:
-        return None
-    traps = [row.trap for row in rows]
-    share = proportion([row.escaped for row in rows], traps)
-    collisions = estimate([float(row.collisions) for row in rows], traps)
-    numbers = [collisions.mean or 0.0, *collisions.ends]
-    return Point(agent, family, 0.0, 0.0, 0.0, len(rows), share.mean, *share.interval, *numbers)
 
 
 def _bars(axes: Axes, x: np.ndarray, points: Sequence[Point], name: str, agent: str, number: int, *, line: str) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sim.app.commands.traps.trial import Trial
 from sim.app.viewers.chase import hidden_obstacles
+from sim.app.viewers.house_pictures import camera_at, render
 from sim.app.viewers.text import BOLD, text_width, write
 from sim.app.viewers.viewer import Colour
 from sim.core.geometry.grid import GridFrame
@@ -87,7 +88,10 @@ class TopView:
         half_x, half_y = 0.5 * size_m + MARGIN_M
         self._px_m = HEIGHT_PX / (2.0 * half_y)
         self._width_px = 2 * round(half_x * self._px_m)
-        self.image: Picture = self._render(_without_ceiling(house), half_y)
+        camera = camera_at(np.array([*self._middle_m, 0.0]), azimuth_deg=90.0, elevation_deg=-90.0)
+        camera.distance = half_y / math.tan(math.radians(0.5 * FOVY_DEG))
+        size_px = (self._width_px, HEIGHT_PX)
+        self.image: Picture = render(_without_ceiling(house), camera, size_px, fovy_deg=FOVY_DEG)
 
     def path(self, places_m: list[tuple[float, float]]) -> None:
         """Draws the path of the robot's centre."""
@@ -118,27 +122,6 @@ class TopView:
         x = 0.5 * self._width_px + (place_m[0] - self._middle_m[0]) * self._px_m
         y = 0.5 * HEIGHT_PX - (place_m[1] - self._middle_m[1]) * self._px_m
         return round(x), round(y)
-
-    def _render(self, model: mujoco.MjModel, half_y_m: float) -> Picture:
-        """Renders a model from above."""
-        vis = model.vis
-        vis.global_.offwidth, vis.global_.offheight, vis.global_.fovy = self._width_px, HEIGHT_PX, FOVY_DEG
-        model.stat.extent, vis.map.znear, vis.map.zfar = 10.0, 0.01, 10.0
-        data = mujoco.MjData(model)
-        mujoco.mj_forward(model, data)
-        camera = mujoco.MjvCamera()
-        camera.lookat[:] = (*self._middle_m, 0.0)
-        camera.distance = half_y_m / math.tan(math.radians(0.5 * FOVY_DEG))
-        camera.azimuth, camera.elevation = 90.0, -90.0
-        renderer = mujoco.Renderer(model, HEIGHT_PX, self._width_px)
-        try:
-            option = mujoco.MjvOption()
-            option.sitegroup[:] = 0
-            renderer.update_scene(data, camera, option)
-            renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
-            return np.asarray(renderer.render().copy(), np.uint8)
-        finally:
-            renderer.close()
 
 
 def _without_ceiling(house: House) -> mujoco.MjModel:

@@ -18,12 +18,13 @@ from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 from msgspec.structs import asdict
 
 from sim.app import cli
 from sim.app.analysis import display
-from sim.app.commands.traps.family_report import facts_of, family_grid, require_matplotlib, write_family_report
-from sim.app.commands.traps.grid import grid, markdown_of, table_of
+from sim.app.analysis.tables import Cell, ResultTable, to_markdown, to_rich
+from sim.app.commands.traps.family_report import facts_of, family_table, require_matplotlib, write_family_report
 from sim.app.commands.traps.picture import draw_trial
 from sim.app.commands.traps.trial import TrapResult, Trial, run_trial
 from sim.app.composition.agents import build_agent, find_agent
@@ -93,13 +94,10 @@ def main(args: Args) -> int:
                 file.write(json.dumps(asdict(rows[-1])) + "\n")
             outcome = "escaped" if trial.escaped else "stuck"
             console.print(f"{name} {trial.episode_id}: {outcome} after {len(trial.motions)} steps")
-    write_together({args.out / "traps.csv": as_csv(rows), args.out / "traps.md": markdown_of(*grid(rows))})
+    table = table_of(rows)
+    write_together({args.out / "traps.csv": as_csv(rows), args.out / "traps.md": to_markdown([table])})
     write_family_report(args.out, rows, args.split, facts, pictures=args.pictures)
-    if facts:
-        of_families = [row for row in rows if row.trap in facts]
-        console.print(table_of("successes (95 % interval)", *family_grid(of_families, facts)))
-    else:
-        console.print(table_of("successes (steps in the trap, collisions: medians)", *grid(rows)))
+    console.print(to_rich(family_table([row for row in rows if row.trap in facts], facts) if facts else table))
     return 0
 
 
@@ -181,7 +179,38 @@ def selected_episodes(split: Split, args: Args) -> list[Episode]:
     return [episode for episodes in of_trap.values() for episode in episodes[: args.headings]]
 
 
+def table_of(rows: Sequence[TrapResult]) -> ResultTable:
+    """Returns the table: a line for each trap, then the totals; a column for each agent."""
+    names = sorted({row.agent for row in rows})
+    lines: list[tuple[str, list[Cell | str]]] = []
+    for trap in dict.fromkeys(row.trap for row in rows):
+        cells = [[row for row in rows if (row.trap, row.agent) == (trap, name)] for name in names]
+        lines.append((trap, [_cell(cell) for cell in cells]))
+    every = [[row for row in rows if row.agent == name] for name in names]
+    lines.append(("success", [f"{sum(r.escaped for r in of)}/{len(of)}" for of in every]))
+    for label, key in (("steps in the trap, median", "steps_in_trap"), ("collisions, median", "collisions")):
+        lines.append((label, [f"{np.median([getattr(row, key) for row in of]):.0f}" for of in every]))
+    lines.append(("metres per forward, mean", [f"{_forward_m(of):.2f}" for of in every]))
+    lines.append(("deepest contact, mm", [f"{max(row.deepest_mm for row in of):.1f}" for of in every]))
+    return ResultTable("traps", "successes (steps in the trap, collisions: medians)", ("trap", *names), lines)
+
+
 def as_csv(rows: Sequence[TrapResult]) -> str:
     """Returns all rows as CSV text."""
     names = TrapResult.__struct_fields__
     return csv_text(names, (asdict(row).values() for row in rows), end="\r\n")
+
+
+def _cell(rows: Sequence[TrapResult]) -> str:
+    """Returns successes out of episodes, with medians of steps in the trap and of collisions."""
+    if not rows:
+        return "-"
+    steps = np.median([row.steps_in_trap for row in rows])
+    collisions = np.median([row.collisions for row in rows])
+    return f"{sum(row.escaped for row in rows)}/{len(rows)} ({steps:.0f}, {collisions:.0f})"
+
+
+def _forward_m(rows: Sequence[TrapResult]) -> float:
+    """Returns the mean displacement of a forward action."""
+    moved = [row.forward_mean_m for row in rows if row.forward_mean_m is not None]
+    return float(np.mean(moved)) if moved else 0.0

@@ -112,14 +112,14 @@ def hull_of(world: World) -> frozenset[int]:
     return frozenset(world.model.geom(f"{PREFIX}{part}_hull").id for part in ("lower", "upper"))
 
 
-def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode, *, seed: int = 0) -> Trial:
+def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode) -> Trial:
     """Runs one episode of a trap to its end.
 
     Raises:
         PhysicsError: the robot fell or tipped over, or the simulation diverged.
     """
     trial = Trial(episode.house, episode.episode_id, name)
-    seed = episode_seeds(seed, episode.episode_id).environment
+    seed = episode_seeds(0, episode.episode_id).environment
     observation, _ = env.reset(seed=seed, options={"episode": episode})
     agent.reset(episode.goal, seed)
     zone = env.split.sidecar(episode.house).zone_m

@@ -44,7 +44,7 @@ def _measure(w: Workbench, arm: tuple[float, float], height: tuple[float, float]
     return _Sofa(width, depth, w.length(*height), seat, w.length(*arm), w.length(0.16, 0.22))
 
 
-def _seat_cushions(w: Workbench, s: _Sofa, look: Look, thick: float, *, tufts: bool = False) -> None:
+def _seat_cushions(w: Workbench, s: _Sofa, look: Look, thick: float) -> None:
     """Adds a row of seat cushions in front of the back."""
     pitch = s.inner / s.seats
     shape = chamfered_box((s.depth - s.back, pitch - 0.006, thick), 0.03)

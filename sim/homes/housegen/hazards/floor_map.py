@@ -8,11 +8,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.geometry.descent_kernels import descend
 from sim.core.geometry.fast_marching import distances
 from sim.core.interface import MPCAT40_ID, RobotModel
 from sim.gl import mujoco
 from sim.homes.housegen.structure.openings import Opening
-from sim.houses.hazards import steepest_path
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import collidable_geoms, read_labels
 from sim.world.check import STRUCTURE
@@ -48,8 +49,7 @@ class FloorMap:
         """Measures the free floor of a house without hazards."""
         self.openings = tuple(openings)
         model = spec.compile()
-        data = mujoco.MjData(model)
-        mujoco.mj_kinematics(model, data)
+        data = data_at_rest(model)
         labels, self.rooms = read_labels(model, ignore_prefix=""), read_rooms(model)
         low, high = (
             FreeSpace(
@@ -85,7 +85,7 @@ class FloorMap:
         field = self._field_of(rng, self.rooms[int(order[1])])
         if begin is None or field is None or not np.isfinite(field[begin]):
             return None
-        return self.frame.to_metres(steepest_path(field, begin))
+        return self.frame.to_metres(descend(field, *begin))
 
     def free_length_m(self, x_m: float, y_m: float, yaw_rad: float, most_m: float = 4.0) -> float:
         """Returns how far a straight line from a position stays free up to the height of a pane, metres."""

@@ -20,7 +20,7 @@ from msgspec.structs import replace as changed
 from sim.app.analysis.comparison import Run, read_run
 from sim.app.analysis.report.drawings import ground_truth_of, path_on, split_of
 from sim.app.analysis.report.facts import command_of
-from sim.app.analysis.report.plans import PX_M, Sheet, draw_plan, sheet_around, shortest_path
+from sim.app.analysis.report.plans import PX_M, Sheet, draw_plan, sheet_around
 from sim.app.commands import run
 from sim.app.commands.report import Args, main
 from sim.app.evaluation.last_view import picture_file
@@ -118,7 +118,7 @@ def test_a_path_on_the_page_is_the_recorded_one(recorded_run: Path) -> None:
 def test_the_shortest_path_has_the_measured_length_and_goes_round_the_wall(recorded_run: Path) -> None:
     run_read = read_run(recorded_run / "found")
     truth = GroundTruth(World(split_of(run_read).load_house("lounge")))
-    corners = shortest_path(truth.space(), truth.target("sofa"), (-2.0, 1.0))
+    corners = truth.space().path(truth.target("sofa").distance_m, -2.0, 1.0)
     assert corners is not None
     length_m = float(np.hypot(*np.diff(corners, axis=0).T).sum())
     assert length_m == pytest.approx(next(iter(run_read.results.values())).shortest_path, rel=0.02)
@@ -130,7 +130,7 @@ def test_without_a_path_no_path_is_drawn() -> None:
     house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     house = with_box(house, "wall_10", centre_m=(0.5, 0, 1.25), half_m=(0.05, 2.0, 1.25))
     truth = GroundTruth(World(house))
-    assert shortest_path(truth.space(), truth.target("sofa"), (-2.0, 0.0)) is None
+    assert truth.space().path(truth.target("sofa").distance_m, -2.0, 0.0) is None
 
 
 def test_the_plan_shows_objects_at_their_positions_and_leaves_doorways_open() -> None:

@@ -105,10 +105,6 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--against HEAD --rounds 0", "--rounds must be at least 1"),
     ],
     "sim.app.commands.houses.check": [("--split nowhere", "Unknown split 'nowhere'"), ("--kind castle", "castle")],
-    "tools.training.compare_networks": [
-        ("--views nowhere --val-views nowhere --out OUT --networks vast", "No network 'vast'"),
-        ("--views nowhere --val-views nowhere --out OUT", "No shards"),
-    ],
     "sim.app.commands.compare": [("nowhere nowhere", "is not a run")],
     "tools.maintenance.describe_houses": [("--root nowhere --out OUT", "nowhere")],
     "sim.app.commands.evaluate.segmentation": [

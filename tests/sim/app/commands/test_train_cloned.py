@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,12 +20,8 @@ from sim.training.cloned.demonstrations import (
 )
 from stubborn.baselines.cloned_net import FILES
 from tests.helpers import wording
+from tests.helpers.results import rows
 from tools.training import plan_demonstrations, render_demonstrations
-
-
-def rows(file: Path) -> list[dict[str, str]]:
-    with file.open(newline="") as stream:
-        return list(csv.DictReader(stream))
 
 
 def rule(house: str, *, seed: int) -> Demonstration:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from sim.training.poni.potential_files import held_back
 from sim.training.poni.trainer import loss_of
 from stubborn.exploration.poni_net import CHANNELS, FILES, Predictor
 from tests.helpers import wording
+from tests.helpers.results import rows
 from tests.helpers.worlds import room, with_box
 
 
@@ -33,11 +33,6 @@ def plans(tmp_path: Path) -> Path:
     for name in chosen:
         write_plan(tmp_path / "plans" / f"{name}.npz", replace(plan, name=name))
     return tmp_path / "plans"
-
-
-def rows(file: Path) -> list[dict[str, str]]:
-    with file.open(newline="") as stream:
-        return list(csv.DictReader(stream))
 
 
 @pytest.mark.costly

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 import time
@@ -28,6 +27,7 @@ from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.networks import NETWORKS, build_network
 from stubborn.segmentation.rednet import COMPACT
 from tests.helpers import wording
+from tests.helpers.results import rows
 
 
 def write_views(folder: Path, count: int, rows_px: int = 48) -> None:
@@ -44,11 +44,6 @@ def write_views(folder: Path, count: int, rows_px: int = 48) -> None:
         annotations = annotate(ids, objects, {"sofa_00": f"style_{i % 2}"})
         views.append(View(f"v{i:05d}", rgb, depth, semantic, {"house": f"house_{i % 2}"}, ids, annotations))
     write_shard(folder, "views-000000", views, house="h", config={})
-
-
-def rows(file: Path) -> list[dict[str, str]]:
-    with file.open(newline="") as stream:
-        return list(csv.DictReader(stream))
 
 
 def options(tmp_path: Path, **changes: object) -> Args:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import shutil
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from stubborn.exploration.semexp import SemExpConfig
 from stubborn.exploration.semexp_net import FILES
 from tests.helpers import wording
 from tests.helpers.gridworld import SMALL_CAMERA
+from tests.helpers.results import rows
 from tests.helpers.worlds import room, with_box
 
 
@@ -32,11 +32,6 @@ def plans(tmp_path_factory: pytest.TempPathFactory) -> Path:
         write_plan(folder / f"flat_{number:02d}.npz", plan)
         write_plan(folder / f"flat_{number:02d}_storey_1.npz", plan)
     return folder
-
-
-def rows(file: Path) -> list[dict[str, str]]:
-    with file.open(newline="") as stream:
-        return list(csv.DictReader(stream))
 
 
 def options(plans: Path, out: Path, **changes: object) -> train_semexp.Args:

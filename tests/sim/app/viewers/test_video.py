@@ -31,7 +31,6 @@ from sim.app.viewers.topview import (
     SHORTEST,
     SUCCEEDS,
     TopView,
-    shortest_path_m,
     whole_storey_m,
 )
 from sim.app.viewers.video import FRAMES_PER_S, VideoRecorder, VideoWriter, video_file
@@ -457,18 +456,6 @@ def test_each_error_of_the_encoder_is_reported_and_leaves_no_file(
     with pytest.raises(ConfigError, match=r"a\.mp4.*\S.*films"):
         writer.finish()
     assert list(tmp_path.iterdir()) == []
-
-
-def test_the_shortest_path_of_the_plan_is_as_long_as_the_task_says_and_ends_where_a_stop_counts(
-    env: ObjectNavEnv,
-) -> None:
-    env.reset(options={"episode": EPISODE})
-    truth, start = env.scene.task.truth, EPISODE.start
-    target = truth.target("sofa")
-    path_m = shortest_path_m(truth.space(), target, (start.x_m, start.y_m))
-    length_m = float(np.hypot(*np.diff(path_m, axis=0).T).sum())
-    assert length_m == pytest.approx(env.scene.task.metrics().shortest_path, rel=0.05)
-    assert target.reached[tuple(truth.space().frame.to_cells(path_m[-1]))]
 
 
 @pytest.mark.parametrize(

@@ -11,15 +11,14 @@ from hypothesis import strategies as st
 
 from sim.core.geometry.convex import ConvexPolygon, lines_blocked, polygon_from_above
 from sim.gl import mujoco
-from sim.houses.geoms import CURVE_TOLERANCE_M, geom_polytope, mesh_triangles
+from sim.houses.geoms import CURVE_TOLERANCE_M, data_at_rest, geom_polytope, mesh_triangles
 
 
 def world(geoms: str, assets: str = ""):
     model = mujoco.MjModel.from_xml_string(
         f"<mujoco><compiler angle='degree'/><asset>{assets}</asset><worldbody>{geoms}</worldbody></mujoco>"
     )
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     return model, data
 
 

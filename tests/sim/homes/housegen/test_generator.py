@@ -36,7 +36,7 @@ from sim.homes.housegen.generator import (
 )
 from sim.homes.housegen.splits.recipes import SPLITS, Recipe
 from sim.homes.housegen.structure.openings import HALF_WALL_M, plan_rule_faults
-from sim.houses.geoms import world_boxes
+from sim.houses.geoms import data_at_rest, world_boxes
 from sim.houses.hazards import read_hazards
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
@@ -258,8 +258,7 @@ def test_all_goal_categories_appear_over_the_val_houses() -> None:
 
 def test_items_are_inside_rooms() -> None:
     model = small(4).spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     rooms = read_rooms(model)
     labels = read_labels(model)
     for instance in labels.instances:

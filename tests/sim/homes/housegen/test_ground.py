@@ -16,6 +16,7 @@ from sim.homes.housegen.ground import lay_ground
 from sim.homes.housegen.ground.draw import FRICTION, RUG_M, Ground, Piece, draw_ground, material_of
 from sim.homes.housegen.ground.lay import lay
 from sim.homes.housegen.ground.survey import Survey, survey
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import House
 from sim.houses.labels import cover_geoms, read_labels
 from sim.robot.conditions import Conditions
@@ -114,8 +115,7 @@ def test_the_friction_of_an_episode_is_the_drawn_one_times_its_scale_on_floors_a
 @pytest.mark.parametrize("seed", range(8))
 def test_the_robot_climbs_everything_and_only_floors_differ(seed):
     level, laid = house().compile(), house(seed).compile()
-    data = mujoco.MjData(laid)
-    mujoco.mj_kinematics(laid, data)
+    data = data_at_rest(laid)
     labels = read_labels(laid, ignore_prefix="")
     covers = np.flatnonzero(cover_geoms(laid))
     assert {labels.instances[labels.geom_instance[geom]].category for geom in covers} == {"floor"}

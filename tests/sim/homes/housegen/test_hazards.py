@@ -16,6 +16,7 @@ from sim.homes.housegen.hazards import FAMILIES, PlacedHazard, draw_hazards, sla
 from sim.homes.housegen.hazards.floor_map import SPARE_M, FloorMap
 from sim.homes.housegen.hazards.hazard import Sketch
 from sim.homes.housegen.structure.openings import Opening
+from sim.houses.geoms import data_at_rest
 from sim.houses.hazards import read_hazards
 from sim.houses.labels import collidable_geoms, read_labels, rendered_geoms
 from sim.world.check import check_house
@@ -69,8 +70,7 @@ def test_the_same_seed_gives_the_same_hazards(family: str) -> None:
 
 def test_glass_and_scan_artifacts_collide_and_are_not_rendered() -> None:
     model = small_house().compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     labels = read_labels(model, ignore_prefix="")
     invisible = collidable_geoms(model) & ~rendered_geoms(model)
     for hazard in read_hazards(model):

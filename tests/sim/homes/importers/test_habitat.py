@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 from sim.app.commands.importing import habitat as command
 from sim.core.errors import ConfigError, HouseError
 from sim.episodes.splits import load_split
-from sim.gl import mujoco
 from sim.homes.importers.habitat import find_sources, import_source
 from sim.homes.importers.habitat_episodes import read_scenes, scene_name
 from sim.homes.importers.habitat_files import ObjectInstance, SceneInstance, read_dataset
@@ -28,6 +27,7 @@ from sim.homes.importers.habitat_names import category_of
 from sim.homes.importers.habitat_scans import read_hm3d, read_hm3d_text, read_house_text
 from sim.homes.importers.losses import Losses
 from sim.homes.importers.mesh_house import MeshConfig
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
@@ -50,8 +50,7 @@ def imported(path: Path, out: Path, **options: Any) -> House:
 def ends_of(house: House, instance: str) -> NDArray[np.float64]:
     """Returns lowest and highest corner (6,) of the collision boxes of an instance, in the world."""
     model = house.spec.copy().compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     geoms = next(each.geom_ids for each in read_labels(model, ignore_prefix="").instances if each.name == instance)
     boxes = [geom_box(model, data, geom) for geom in geoms if model.geom_group[geom] == 3]
     return np.concatenate([np.min([low for low, _ in boxes], axis=0), np.max([high for _, high in boxes], axis=0)])
@@ -114,8 +113,7 @@ def test_a_dynamic_chair_is_turned_and_can_be_pushed(homes: dict[str, tuple[Path
     assert model.njnt == 1
     body = int(model.jnt_bodyid[0])
     assert model.body_mass[body] == pytest.approx(4.0)
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     geoms = np.flatnonzero((model.geom_bodyid == body) & (model.geom_group == 3))
     back = geoms[data.geom_xpos[geoms, 2].argmax()]
     # The back of the chair is at +y of its seat; turned by 90 degrees counter-clockwise it is at -x.

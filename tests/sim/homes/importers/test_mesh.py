@@ -20,13 +20,13 @@ from sim.app.commands.importing import folder
 from sim.app.commands.importing import mesh as command
 from sim.app.commands.importing.folder import Made, Work, file_works, import_all
 from sim.core.errors import ConfigError, EpisodeError, HouseError
-from sim.gl import mujoco
 from sim.homes.importers import mesh_house
 from sim.homes.importers.losses import Losses
 from sim.homes.importers.mesh import files_of, find_files, import_mesh
 from sim.homes.importers.mesh_house import MeshConfig, MeshObject, Shape, build_house
 from sim.homes.importers.obj import read_obj
 from sim.homes.importers.surfaces import Paint, Surface
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
@@ -66,8 +66,7 @@ def test_nodes_have_the_categories_of_their_names_and_places_of_the_source(split
     house = load_house(split / "flat.xml")
     assert categories(house) == ["bed", "ceiling", "chair", "floor", "picture", "plant", "table", "wall"]
     model = house.spec.copy().compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     (bed,) = read_labels(model, ignore_prefix="").of_category("bed")
     boxes = [geom for geom in bed.geom_ids if model.geom_group[geom] == 3]
     low = (data.geom_xpos[boxes] - model.geom_size[boxes]).min(axis=0)

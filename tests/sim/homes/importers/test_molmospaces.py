@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from sim.app.commands.importing import molmospaces as command
 from sim.core.errors import ConfigError, HouseError
 from sim.episodes.splits import labels_of
-from sim.gl import mujoco
 from sim.homes.importers.molmospaces import import_scene, rules_of
+from sim.houses.geoms import data_at_rest
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
@@ -49,8 +49,7 @@ def test_the_floor_is_at_zero_and_the_open_door_lets_the_robot_pass(split: Path)
     house = load_house(split / "train_1.xml", labels_path=labels_of(split))
     assert [room.floor_z_m for room in read_rooms(house.spec.copy().compile())] == pytest.approx([0.0, 0.0])
     model = house.spec.copy().compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     assert data.body("bed_0f3a_1_0_3").xpos == pytest.approx([7.0, 1.0, 0.3], abs=1e-6)
     leaf = data.geom_xpos[np.flatnonzero(model.geom_bodyid == model.body("doorway_d00d_1_1_2").id)]
     assert leaf == pytest.approx(np.tile([3.55, 1.5, 1.05], (2, 1)), abs=0.01)

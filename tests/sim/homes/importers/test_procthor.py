@@ -8,7 +8,6 @@ import math
 from pathlib import Path
 from typing import Any
 
-import mujoco
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -21,7 +20,7 @@ from sim.homes.importers.procthor import Imported, ProcthorConfig, import_house
 from sim.homes.importers.procthor_files import Asset, Source, find_assets, parse_house, read_assets, read_houses
 from sim.homes.importers.procthor_plan import lay_out
 from sim.homes.importers.rectilinear import Stretch, rectangles
-from sim.houses.geoms import world_boxes
+from sim.houses.geoms import data_at_rest, world_boxes
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.world.check import check_own_house
@@ -73,8 +72,7 @@ def test_the_house_is_not_mirrored(imported: Imported) -> None:
 
 def test_items_have_the_sizes_of_their_assets(imported: Imported) -> None:
     model = imported.spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    data = data_at_rest(model)
     labels = read_labels(model, ignore_prefix="")
     for category, size in (("sofa", (0.9, 2.0, 0.8)), ("bed", (2.1, 1.5, 0.9)), ("picture", (0.8, 0.03, 0.5))):
         (instance,) = labels.of_category(category)

@@ -84,10 +84,13 @@ def test_a_plan_read_from_its_file_is_the_plan_that_was_written(tmp_path):
 
 def test_the_masks_of_a_plan_are_where_the_house_has_its_objects():
     plan = plan_of(furnished(1.0))
-    bed = plan.instance_mask(plan.instances.index("bed_00"))
+    bed, cabinet = (
+        np.isin(np.arange(plan.floor.size), plan.span_cell[plan.span_instance == plan.instances.index(name)])
+        for name in ("bed_00", "cabinet_00")
+    )
     assert bed.sum() * plan.frame.cell_m**2 == pytest.approx(1.6 * 1.8, rel=0.05)
-    blocked = plan.occupied(0.9, 0.95)
-    assert blocked[plan.instance_mask(plan.instances.index("cabinet_00"))].all()
+    blocked = plan.occupied(0.9, 0.95).ravel()
+    assert blocked[cabinet].all()
     assert not blocked[bed].any()
     inside = (plan.room == plan.rooms.index("room_living_00")).sum() * plan.frame.cell_m**2
     assert inside == pytest.approx(7 * 4, rel=0.05)

@@ -65,14 +65,13 @@ def case(w: Workbench, depth: float, width: float, z: Range, look: Look, *, foot
     return x[1], y
 
 
-def open_case(w: Workbench, x: Range, y: Range, z: Range, board: float, look: Look, *, back: bool = True) -> None:
-    """Adds the boards of a box that is open in front, and also behind without `back`."""
+def open_case(w: Workbench, x: Range, y: Range, z: Range, board: float, look: Look) -> None:
+    """Adds the boards of a box that is open in front."""
     for edge in (y[0], y[1] - board):
         w.box(x, (edge, edge + board), z, look)
     for low in (z[0], z[1] - board):
         w.box(x, (y[0] + board, y[1] - board), (low, low + board), look)
-    if back:
-        w.box((x[0], x[0] + 0.012), (y[0] + board, y[1] - board), (z[0] + board, z[1] - board), look)
+    w.box((x[0], x[0] + 0.012), (y[0] + board, y[1] - board), (z[0] + board, z[1] - board), look)
 
 
 def prism(outline: Sequence[tuple[float, float]], height: float) -> MeshShape:
