@@ -230,7 +230,8 @@ class FreeSpace:
         """Returns whether the cells on the straight line between two positions are free."""
         count = max(2, math.ceil(math.dist(begin_m, end_m) / (0.5 * self.frame.cell_m)))
         cells = self.frame.to_cells(np.linspace(begin_m, end_m, count))[1:]  # the start may lie next to a free cell
-        return bool(self.free[cells[:, 0], cells[:, 1]].all())
+        rows, cols = np.clip(cells, 0, np.array(self.frame.shape) - 1).T  # nor on the grid
+        return bool(self.free[rows, cols].all())
 
 
 def _free_cells(

@@ -45,7 +45,7 @@ _NEXT_TO_M, _SAME_ROOM_M = 0.75, 4.5
 _TOUCHING_M, _TOP_M = 0.15, 0.25
 """An object lies on another one if their boxes are at most this far apart in plan, and its bottom is at most this far
 below the other one's top: boxes consist of voxels of 10 cm."""
-_LEAST_SHARE = 0.02
+_MIN_SHARE = 0.02
 """Names that are less probable than this, on average over the pixels of a track in a frame, are not counted."""
 _CERTAIN = 0.5
 """Probability of a category from which a track counts as an object of it."""
@@ -125,7 +125,8 @@ class Attributes:
             posteriors: at the same resolution.
             rgb: the image at the same resolution; None: it is not known.
             objects: the object of each pixel and the names of all, if the segmentation tells objects apart.
-            named: the probability of each name, and the names, if it does not but guesses names.
+            named: the probability of each name at a whole fraction of the resolution, and the names, if it does not
+                tell objects apart but guesses names.
         """
         high = (pixels.row >= 0) & (pixels.height_m > _WALL_LOW_M) & (pixels.height_m < _WALL_HIGH_M)
         for name, marks in self._marks.items():
@@ -161,7 +162,7 @@ class Attributes:
         for number in np.unique(track[track > 0]).tolist():
             pixels = np.bincount(cells[track == number], minlength=image[0].size)
             counts = image.reshape(len(names), -1) @ pixels.astype(np.float32)
-            for index in np.flatnonzero(counts > _LEAST_SHARE * pixels.sum()).tolist():
+            for index in np.flatnonzero(counts > _MIN_SHARE * pixels.sum()).tolist():
                 self._count(number, names[index], float(counts[index]))
 
     def name_shares(
@@ -178,7 +179,7 @@ class Attributes:
         counts = [self._names.get(track, {}) for track in candidates.tolist()]
         if self._guessed is not None:  # among the names of their categories: those have a probability of their own
             categories = set(vocabulary().categories_of(names))
-            alike = [name for name in self._guessed if not categories.isdisjoint(vocabulary().categories[name])]
+            alike = [name for name in self._guessed if not categories.isdisjoint(vocabulary().categories.get(name, ()))]
             counts = [{name: of_track.get(name, 0.0) for name in alike} for of_track in counts]
         right = [
             sum(of_track.get(name, 0) for name in names) / max(sum(of_track.values()), 1e-6) for of_track in counts

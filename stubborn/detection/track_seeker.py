@@ -203,10 +203,10 @@ class TrackSeeker:
             rgb = rgb[block // 2 :: block, block // 2 :: block]
         pixels = self._of_episode().pixels(observation["depth"], pose, columns)
         if self.attributes is not None:
-            guesses = objects is None and self.wished is not None and rgb is not None
-            self.attributes.add(
-                pixels, posteriors, rgb, objects, self.wished.named(observation) if guesses and self.wished else None
-            )
+            named = None
+            if objects is None and self.wished is not None and rgb is not None:
+                named = self.wished.named(observation, posteriors.shape[1:])
+            self.attributes.add(pixels, posteriors, rgb, objects, named)
         if self.pictured is not None and rgb is not None:
             self.pictured.add(pixels, rgb)
 

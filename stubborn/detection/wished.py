@@ -111,9 +111,22 @@ class WishedSegmenter:
         seen = self._segmenter.objects(observation) if isinstance(self._segmenter, SeesObjects) else None
         return None if seen is None else (_reduced(seen[0], shape), seen[1])
 
-    def named(self, observation: Observation) -> tuple[Float32[np.ndarray, "names h w"], Sequence[str]] | None:
-        """Returns the probability of each everyday name, and the names; None: they are not known."""
-        return self._segmenter.named(observation) if isinstance(self._segmenter, GuessesNames) else None
+    def named(
+        self, observation: Observation, shape: tuple[int, ...]
+    ) -> tuple[Float32[np.ndarray, "names rows cols"], Sequence[str]] | None:
+        """Returns the probability of each everyday name at a whole fraction of the resolution `shape` (h, w).
+
+        The names follow. None: they are not known.
+        """
+        guessed = self._segmenter.named(observation) if isinstance(self._segmenter, GuessesNames) else None
+        if guessed is None:
+            return None
+        image, names = guessed
+        every = shape[0] // image.shape[1]
+        if (every * image.shape[1], every * image.shape[2]) != tuple(shape):  # as of a camera of 640 x 500 pixels
+            row, col = (np.arange(own) * size // own for own, size in zip(shape, image.shape[1:], strict=True))
+            image = np.ascontiguousarray(image[:, row[:, None], col])
+        return image, names
 
     def _seen_by_robot(self, picture: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "classes rows cols"]:
         """Returns the posteriors of a picture that is shown to the segmenter as an image of the robot's camera."""
@@ -141,13 +154,13 @@ class WishedSegmenter:
         if seen is not None:
             right = np.array([name in self.wish.names for name in seen[1]] + [False], np.float32)
             return right[seen[0]][None]
-        guessed = self.named(observation)
+        guessed = self.named(observation, shape)
         if guessed is None or not self.wish.names <= set(guessed[1]):
             return np.float32(1.0)
         image, names = guessed
         shares = np.ones((len(self.wish.categories), *image.shape[1:]), np.float32)
         for number, category in enumerate(self.wish.categories):
-            of_category = [category in vocabulary().categories[name] for name in names]
+            of_category = [category in vocabulary().categories.get(name, ()) for name in names]
             meant = [is_so and name in self.wish.names for is_so, name in zip(of_category, names, strict=True)]
             shares[number] = image[meant].sum(axis=0) / np.maximum(image[of_category].sum(axis=0), 1e-9)
         every = shape[0] // image.shape[1]

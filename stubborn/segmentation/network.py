@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import torch
@@ -29,6 +29,12 @@ class _Frame(NamedTuple):
     posteriors: Float32[np.ndarray, "classes rows cols"]
     stages: list[Tensor]
     """What the head for names takes; empty without such a head."""
+
+
+def block_px_of(model: Network, metadata: Mapping[str, Any]) -> int:
+    """Returns the edge of the block of camera pixels that one input pixel of a stored network stands for."""
+    whole = isinstance(model, RedNet) and model.config.bottleneck  # the published network saw whole images
+    return int(metadata.get("block_px", 1 if whole else 2))
 
 
 class NetworkSegmenter:
@@ -108,14 +114,13 @@ class NetworkSegmenter:
             ConfigError: see `load_network`, `Calibration` and the class.
         """
         model, metadata = load_network(file)
-        whole = isinstance(model, RedNet) and model.config.bottleneck  # the published network saw whole images
         calibration = (
             Calibration.from_metadata(metadata) if temperature is None else Calibration.of_temperature(temperature)
         )
         return cls(
             model,
             camera=camera,
-            block_px=int(metadata.get("block_px", 1 if whole else 2)),
+            block_px=block_px_of(model, metadata),
             calibration=calibration,
             threads=threads,
             mirrored=mirrored,

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int64
 
+from sim.core.geometry.pose import BodyPose
 from sim.core.interface import CameraModel
 from sim.training.segmentation.evaluation import Iou, confusion
 from stubborn.segmentation.rednet import CLASSES
@@ -88,12 +89,12 @@ def fused_classes(
 def world_points(
     depth_m: Float32[np.ndarray, "h w"], used: Bool[np.ndarray, "h w"], pose: Mapping[str, float], camera: CameraModel
 ) -> Float64[np.ndarray, "n 3"]:
-    """Returns the positions in the world, in metres, of some pixels of a whole depth image of a level camera.
+    """Returns the positions in the world, in metres, of some pixels of a whole depth image.
 
     Args:
         depth_m: metres along the optical axis.
         used: the pixels.
-        pose: `x_m`, `y_m`, `yaw_rad` and `floor_z_m` of the robot.
+        pose: `x_m`, `y_m`, `yaw_rad` and `floor_z_m` of the robot; those of a `BodyPose` if its body leans.
         camera: field of view and height above the floor.
     """
     height, width = depth_m.shape
@@ -102,7 +103,5 @@ def world_points(
     forward_m = depth_m[used].astype(np.float64)
     left_m = (0.5 * width - (cols + 0.5)) / focal_px * forward_m
     up_m = camera.height_m + (0.5 * height - (rows + 0.5)) / focal_px * forward_m
-    cos, sin = math.cos(pose["yaw_rad"]), math.sin(pose["yaw_rad"])
-    x_m = pose["x_m"] + cos * forward_m - sin * left_m
-    y_m = pose["y_m"] + sin * forward_m + cos * left_m
-    return np.stack([x_m, y_m, pose.get("floor_z_m", 0.0) + up_m], axis=1)
+    body = BodyPose(**pose)
+    return body.point(0.0, 0.0, 0.0) + np.stack([forward_m, left_m, up_m], axis=1) @ body.axes

@@ -6,6 +6,7 @@ names of the object's category. Names that no training may use (`sim.core.vocabu
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -26,10 +27,11 @@ from sim.training.timed_training import TimedTraining, stride
 from stubborn.network_files import Family
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.names import NameGroups
+from stubborn.segmentation.network import block_px_of
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 
-LEAST_OBJECTS = 20
+MIN_OBJECTS = 20
 """A name that fewer objects of the views have is not learned."""
 _QUARTER = 4
 """Edge of the pixels of the network's input that one logit of a name is for."""
@@ -118,12 +120,12 @@ class Trainer(TimedTraining):
             raise ConfigError(f"--weights '{args.weights}' are not of a RedNet, which can have a head for names.")
         index, val_index = (ViewIndex.of(files, label_of=known_name) for files in (shards, val_shards))
         counts = {name: sum(map(len, styles.values())) for name, styles in index.objects.items()}
-        often = tuple(sorted(name for name, count in counts.items() if count >= LEAST_OBJECTS))
+        often = tuple(sorted(name for name, count in counts.items() if count >= MIN_OBJECTS))
         self.names = network.config.names or often
         self._sampled = [name for name in self.names if index.objects.get(name)]
         if len(self._sampled) < 2:
             raise ConfigError(
-                f"The views show {len(self._sampled)} names with {LEAST_OBJECTS} objects; at least 2 are needed."
+                f"The views show {len(self._sampled)} names with {MIN_OBJECTS} objects; at least 2 are needed."
             )
         torch.manual_seed(args.seed)
         self.network = RedNet(replace(network.config, names=self.names))
@@ -135,12 +137,17 @@ class Trainer(TimedTraining):
         self._apart = torch.from_numpy(np.where(together, 0.0, -1e4).astype(np.float32))
         """For each name, 0 for names of the same category, and a large negative number for others."""
         stored_px = stored_block_px([*shards, *val_shards])
-        used = int(self._metadata.get("block_px", 2)) // stored_px
+        block_px = block_px_of(network, self._metadata)
+        if block_px % stored_px:
+            raise ConfigError(f"The network takes blocks of {block_px} pixels, no multiple of the views' {stored_px}.")
+        used = block_px // stored_px
         width_px = CameraModel().width_px // (used * stored_px)
         sampler = Sampler(CameraModel(), 1, Augmentation(), width_px, 0.5, network.config.second, used)
         self.train = NamedViews(index, self.names, sampler)
         whole = replace(sampler, block_px=used, augmentation=NONE, window_px=None)
         self.val = NamedViews(val_index, self.names, whole)
+        if not self.val.objects:
+            raise ConfigError("--val-views show no object with one of the names that are learned.")
         super().__init__(args, FILES, head.requires_grad_(True), max_gradient_norm=5.0, samples_per_step=args.batch,
                          files={"views": shards, "val_views": val_shards})  # fmt: skip
         print(
@@ -189,7 +196,7 @@ class Trainer(TimedTraining):
                 right[number] += float((judged.argmax(dim=1) == names).float().mean())
                 count[number] += 1
         alone = self.groups.members.sum(axis=1) > 1
-        among = self.groups.members[alone].any(axis=0) & (count > 0)  # names that have others beside them
+        among = self.groups.members[alone].any(axis=0) & (count > 0)  # names that share a category with another
         shares = right[among] / count[among]
         row: dict[str, object] = {"objects": int(count.sum()), "loss": float(np.mean(losses))}
         row |= {"names": int(among.sum()), "right": float(shares.mean())}
@@ -206,6 +213,6 @@ class Trainer(TimedTraining):
 
     def save(self, file: Path, model: nn.Module, card: Mapping[str, object]) -> None:
         """Writes the network with the head; its own metadata stay, and those of the head are in `names`."""
-        tensors = {f"names_head.{name}": tensor for name, tensor in model.state_dict().items()}
-        self.network.load_state_dict(self.network.state_dict() | tensors)
-        save_network(file, self.network, self._metadata | {"names": card})
+        saved = copy.copy(self.network)  # the network's own head is the one that is trained; `model` is its average
+        saved._modules = self.network._modules | {"names_head": model}
+        save_network(file, saved, self._metadata | {"names": card})

@@ -22,7 +22,7 @@ DIMMED, AMBIENT = (0.5, 1.5), (0.6, 1.4)
 WARM = (1.12, 1.0, 0.78)
 """Factors of red, green and blue of the warmest light, about 2700 K; the coolest has their inverse to the power 0.4."""
 SUN_HEIGHT_DEG = (25.0, 70.0)
-LEANS, LEAN_DEG, MOST_DEG = 0.4, 1.5, 6.0
+LEANS, LEAN_DEG, MAX_LEAN_DEG = 0.4, 1.5, 6.0
 """Share of the views in which the body leans, standard deviation of pitch and roll, and their largest value."""
 
 
@@ -47,5 +47,5 @@ def leaning(pose: Pose, rng: np.random.Generator) -> Pose:
     """Returns a pose, in a share of the cases with a body that leans."""
     if rng.random() >= LEANS:
         return pose
-    pitch, roll = np.radians(np.clip(rng.normal(0.0, LEAN_DEG, 2), -MOST_DEG, MOST_DEG))
+    pitch, roll = np.radians(np.clip(rng.normal(0.0, LEAN_DEG, 2), -MAX_LEAN_DEG, MAX_LEAN_DEG))
     return BodyPose(pose.x_m, pose.y_m, pose.yaw_rad, pose.floor_z_m, 0.0, float(pitch), float(roll))

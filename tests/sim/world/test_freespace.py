@@ -64,6 +64,18 @@ def test_an_empty_room_is_free_up_to_the_radius_from_its_walls():
     assert not space.is_free(2.0 - RADIUS_M + 0.001, 0.0)
 
 
+def test_a_path_may_begin_next_to_the_grid():
+    space = free_space(room(4, 3))
+    space.free[:] = True
+    rows, cols = space.frame.shape
+    field = np.hypot(*np.indices((rows, cols)) - [[[rows // 2]], [[cols // 2]]]).astype(np.float32)
+    x_m, y_m = (cols + 2) * space.frame.cell_m + space.frame.origin_xy_m[0], 0.0
+    path = space.path(field, x_m, y_m)
+    assert path is not None
+    assert path[0].tolist() == [x_m, y_m]
+    np.testing.assert_allclose(path[-1], space.frame.to_metres([(rows // 2, cols // 2)])[0])
+
+
 @given(x=st.floats(-1.9, 1.9), y=st.floats(-1.4, 1.4))
 @settings(max_examples=50, deadline=None)
 def test_a_position_is_free_exactly_when_its_distance_to_a_turned_box_exceeds_the_radius(x, y):

@@ -78,6 +78,38 @@ def test_a_wish_scores_where_its_name_is_probable(network: RedNet):
     np.testing.assert_allclose(scores["dishwasher"], whole, atol=1e-6)  # a name that the head has not learned
 
 
+def test_names_of_a_camera_without_whole_cells_have_the_posteriors_resolution(network: RedNet):
+    camera, seen = replace(CAMERA, height_px=100), frame()
+    seen = {name: np.pad(image, ((0, 4), *((0, 0),) * (image.ndim - 1)), mode="edge") for name, image in seen.items()}
+    segmenter = WishedSegmenter(NetworkSegmenter(network, camera=camera), camera)
+    shape = segmenter.posteriors(seen).shape[1:]
+    assert shape == (25, 32)
+    assert segmenter.named(seen, shape)[0].shape == (4, 25, 32)
+    segmenter.ask("the fridge")
+    assert segmenter.scores(seen, segmenter.category).target.shape == shape
+
+
+def test_a_segmenter_may_guess_finer_names_and_names_that_no_house_has():
+    class Guesses:
+        camera = CAMERA
+
+        def scores(self, observation, goal):
+            raise NotImplementedError
+
+        def categories(self, observation):
+            raise NotImplementedError
+
+        def posteriors(self, observation):
+            return np.full((40, 12, 16), 1 / 40, np.float32)
+
+        def named(self, observation):
+            return np.full((3, 24, 32), 1 / 80, np.float32), ("fridge", "cooker", "spaceship")
+
+    segmenter = WishedSegmenter(Guesses(), CAMERA)
+    segmenter.ask("the fridge")
+    np.testing.assert_allclose(segmenter.scores(frame(), segmenter.category).target, 0.5 / 40, rtol=1e-4)
+
+
 def test_a_track_has_the_names_of_its_pixels():
     attributes, nowhere = Attributes(GridFrame.around_start(20, 0.1), 8), np.full((8, 8), -1)
     track = np.zeros((8, 8), np.int16)
@@ -85,10 +117,10 @@ def test_a_track_has_the_names_of_its_pixels():
     image = np.zeros((3, 2, 2), np.float32)
     image[:, :, 0] = np.array([0.6, 0.2, 0.0])[:, None]
     image[:, 0, 1] = (0.0, 0.0, 0.7)
-    names = ("fridge", "cooker", "armchair")
+    names = ("fridge", "cooker", "spaceship")
     attributes.add(Pixels(track, nowhere, nowhere, np.zeros((8, 8))), np.zeros((40, 8, 8), np.float32), None, None,
                    (image, names))  # fmt: skip
-    assert [attributes.name_of(number) for number in (1, 2, 3)] == ["fridge", "armchair", ""]
+    assert [attributes.name_of(number) for number in (1, 2, 3)] == ["fridge", "spaceship", ""]
 
     class Unmerged:
         def now(self) -> np.ndarray:

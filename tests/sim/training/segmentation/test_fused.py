@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from sim.core.geometry.pose import BodyPose
 from sim.core.interface import CameraModel
 from sim.training.segmentation.fused import FusedViews, fused_classes, world_points
 from stubborn.segmentation.rednet import CLASSES
@@ -25,6 +26,16 @@ def test_the_middle_of_the_image_lies_ahead_of_the_robot_at_the_height_of_the_ca
     ((x_m, _, z_m),) = world_points(depth_m, used, pose, CAMERA)
     assert x_m < 1.0 - 1.5
     assert z_m > 3.0 + CAMERA.height_m + 1.0
+
+
+def test_a_body_that_leans_moves_the_pixels_of_its_camera() -> None:
+    depth_m, used = np.full((60, 80), 2.0, np.float32), np.zeros((60, 80), np.bool_)
+    used[29:31, 39:41] = True
+    pose = {"x_m": 0.0, "y_m": 0.0, "yaw_rad": 0.0, "floor_z_m": 0.0, "rise_m": 0.0, "pitch_rad": 0.1, "roll_rad": 0.0}
+    x_m, y_m, z_m = world_points(depth_m, used, pose, CAMERA).mean(axis=0)
+    body = BodyPose(**pose)
+    assert (x_m, y_m, z_m) == pytest.approx(body.point(2.0, 0.0, CAMERA.height_m))
+    assert z_m < CAMERA.height_m - 0.15  # a positive pitch looks down
 
 
 def test_all_pixels_of_a_voxel_get_its_most_probable_category() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -68,11 +69,17 @@ def test_the_head_learns_to_tell_names_apart_and_the_network_stays(folder: Path)
         trainer.train_once()
     right = trainer.evaluate(trainer.model.eval())[1]["right"]
     assert right > 0.8
-    trainer.save(folder / "out/rednet.safetensors", trainer.model, {"val": {"right": right}})
+    trained = {name: tensor.clone() for name, tensor in trainer.model.state_dict().items()}
+    average = trainer.average.module
+    trainer.save(folder / "out/rednet.safetensors", average, {"val": {"right": right}})
+    assert all(torch.equal(trained[name], tensor) for name, tensor in trainer.model.state_dict().items())
     network, metadata = load_network(folder / "out/rednet.safetensors")
     shipped, of_shipped = load_network(SHIPPED_REDNET)
     assert network.config.names == ("cooker", "fridge")
     state = network.state_dict()
+    torch.testing.assert_close(
+        state["names_head.layers.6.bias"], average.state_dict()["layers.6.bias"], atol=1e-3, rtol=1e-2
+    )
     assert all(torch.equal(state[name], tensor) for name, tensor in without_names(shipped).state_dict().items())
     assert metadata["calibration"] == of_shipped["calibration"]
     assert metadata["names"]["val"]["right"] == right
@@ -90,7 +97,15 @@ def test_a_head_is_trained_further_with_its_own_names(folder: Path):
         torch.testing.assert_close(one, other, atol=1e-3, rtol=1e-2)  # files have 16 bits
 
 
+def test_views_without_a_learned_name_cannot_evaluate_it(folder: Path):
+    view = View("v00000", np.zeros((240, 320, 3), np.uint8), np.full((240, 320), 2000, np.uint16),
+                np.zeros((240, 320), np.uint8), {"house": "h"}, np.zeros((240, 320), np.uint16), [])  # fmt: skip
+    write_shard(folder / "bare", "views-000000", [view], house="h", config={"shrink": 2})
+    with pytest.raises(ConfigError, match="--val-views show no object"):
+        Trainer(replace(args_of(folder), val_views=(folder / "bare",)))
+
+
 def test_views_with_one_name_cannot_train_it(folder: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(naming, "LEAST_OBJECTS", 25)
+    monkeypatch.setattr(naming, "MIN_OBJECTS", 25)
     with pytest.raises(ConfigError, match="0 names with 25 objects"):
         Trainer(args_of(folder))

@@ -10,7 +10,7 @@ from sim.env.scene import Scene
 from sim.homes.housegen import generate
 from sim.houses.house import House
 from sim.robot.config import RobotConfig
-from sim.training.views.variation import MOST_DEG, leaning, with_other_light
+from sim.training.views.variation import MAX_LEAN_DEG, leaning, with_other_light
 from sim.training.views.views import camera_to_world, sample_views
 
 CAMERA = CameraModel(width_px=160, height_px=120)
@@ -38,7 +38,7 @@ def test_a_lean_is_in_the_pose_of_a_view_and_bounded() -> None:
     poses = [leaning(Pose(1.0, 2.0, 0.5, 0.1), np.random.default_rng(seed)) for seed in range(200)]
     lean = [pose for pose in poses if isinstance(pose, BodyPose)]
     assert 40 < len(lean) < 120
-    assert max(max(abs(pose.pitch_rad), abs(pose.roll_rad)) for pose in lean) <= np.radians(MOST_DEG) + 1e-9
+    assert max(max(abs(pose.pitch_rad), abs(pose.roll_rad)) for pose in lean) <= np.radians(MAX_LEAN_DEG) + 1e-9
     assert all((pose.x_m, pose.y_m, pose.yaw_rad, pose.floor_z_m) == (1.0, 2.0, 0.5, 0.1) for pose in lean)
     views = views_of(House("flat", generate(3, kind="studio")), lean=True)
     assert {"pitch_rad" in view.record["pose"] for view in views} == {True, False}
