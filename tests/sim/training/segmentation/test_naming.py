@@ -17,7 +17,7 @@ from sim.training.segmentation.naming import Args, Trainer, known_name
 from sim.training.views.coco import annotate
 from sim.training.views.shards import write_shard
 from sim.training.views.views import View
-from stubborn.segmentation.checkpoints import load_network
+from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.networks import without_names
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 
@@ -37,12 +37,15 @@ def folder(tmp_path: Path) -> Path:
         depth, record = np.full(ids.shape, 2000, np.uint16), {"house": "h"}
         views.append(View(f"v{number:05d}", rgb, depth, semantic, record, ids, annotate(ids, objects, STYLES)))
     write_shard(tmp_path / "views", "views-000000", views, house="h", config={"shrink": 2})
+    network, metadata = load_network(SHIPPED_REDNET)
+    save_network(tmp_path / "bare.safetensors", without_names(network), metadata)  # type: ignore[arg-type]
     return tmp_path
 
 
 def args_of(folder: Path, **changes: object) -> Args:
     views = (folder / "views",)
-    return Args(views=views, val_views=views, out=folder / "out", batch=4, **changes)  # type: ignore[arg-type]
+    chosen = {"weights": folder / "bare.safetensors", **changes}
+    return Args(views=views, val_views=views, out=folder / "out", batch=4, **chosen)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
