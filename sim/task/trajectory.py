@@ -7,7 +7,6 @@ steps are about 10 KB.
 from __future__ import annotations
 
 import contextlib
-import os
 import urllib.parse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -18,6 +17,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.core.files import part_file
 from sim.core.geometry.pose import Pose
 from sim.core.interface import Action, ConfigError
 from sim.core.reading import MAX_BYTES, Metres, parse_json, read_npz, reason_of
@@ -241,9 +241,8 @@ def write_trajectory(file: Path, trajectory: Trajectory, about: Recording | None
     )
     text = msgspec.json.encode(_Header(format=FORMAT, scalars=scalars, about=about))
     arrays = {name: getattr(trajectory, name) for name in (*_ARRAYS, "contacts")}
-    part = file.with_name(f"{file.name}.part-{os.getpid()}")
+    part = part_file(file, what="trajectory")
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
         with part.open("wb") as stream:
             np.savez_compressed(stream, about=np.frombuffer(text, np.uint8), **arrays)
         part.replace(file)

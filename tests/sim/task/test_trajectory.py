@@ -170,3 +170,10 @@ def test_a_file_that_is_no_trajectory_is_named(harm, message: str, tmp_path: Pat
     with pytest.raises(ConfigError, match=message) as refusal:
         read_trajectory(file)
     assert "e.npz" in str(refusal.value)
+
+
+def test_the_part_file_of_a_killed_run_leaves_with_the_next_one(tmp_path: Path):
+    (tmp_path / ".e.part-1.npz").write_bytes(b"half")
+    (tmp_path / ".e2.part-1.npz").write_bytes(b"of another episode")
+    write_trajectory(tmp_path / "e.npz", walked(3), None)
+    assert sorted(file.name for file in tmp_path.iterdir()) == [".e2.part-1.npz", "e.npz"]
