@@ -371,13 +371,10 @@ class _Judge:
 
 
 def _is_round(plan: np.ndarray) -> bool:
-    """Returns whether an outline fills the disc around its middle that just holds it, as well as an octagon does.
-
-    An octagon fills 0.90 of it, with such pixels as little as 0.87, a hexagon 0.83.
-    """
+    """Returns whether an outline fills the disc around its middle that holds the middles of its pixels."""
     rows, cols = np.nonzero(plan)
-    radius = np.hypot(rows - rows.mean(), cols - cols.mean()).max() + 0.5
-    return len(rows) >= 0.85 * np.pi * radius**2
+    radius = np.hypot(rows - rows.mean(), cols - cols.mean()).max()
+    return len(rows) >= 0.88 * np.pi * radius**2
 
 
 def _holds(box: np.ndarray, xy: np.ndarray) -> bool:

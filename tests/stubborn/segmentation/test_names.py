@@ -56,10 +56,13 @@ def test_a_name_that_no_house_has_is_refused():
 def test_the_head_changes_no_posterior_and_survives_a_file(network: RedNet, tmp_path: Path):
     save_network(tmp_path / "w.safetensors", network, {"block_px": 2})
     loaded, _ = load_network(tmp_path / "w.safetensors")
+    assert isinstance(loaded, RedNet)
     segmenter, seen = NetworkSegmenter(loaded, camera=CAMERA, mirrored=True), frame()
     plain = NetworkSegmenter(without_names(loaded), camera=CAMERA, mirrored=True)
     np.testing.assert_allclose(segmenter.posteriors(seen), plain.posteriors(seen), atol=1e-6)
-    image, names = segmenter.named(seen)
+    named = segmenter.named(seen)
+    assert named is not None
+    image, names = named
     assert names == NAMES
     assert image.shape == (4, 12, 16)
     of_category = segmenter.posteriors(seen)[APPLIANCES, 1::2, 1::2]
@@ -84,7 +87,9 @@ def test_names_of_a_camera_without_whole_cells_have_the_posteriors_resolution(ne
     segmenter = WishedSegmenter(NetworkSegmenter(network, camera=camera), camera)
     shape = segmenter.posteriors(seen).shape[1:]
     assert shape == (25, 32)
-    assert segmenter.named(seen, shape)[0].shape == (4, 25, 32)
+    named = segmenter.named(seen, shape)
+    assert named is not None
+    assert named[0].shape == (4, 25, 32)
     segmenter.ask("the fridge")
     assert segmenter.scores(seen, segmenter.category).target.shape == shape
 
@@ -105,7 +110,7 @@ def test_a_segmenter_may_guess_finer_names_and_names_that_no_house_has():
         def named(self, observation):
             return np.full((3, 24, 32), 1 / 80, np.float32), ("fridge", "cooker", "spaceship")
 
-    segmenter = WishedSegmenter(Guesses(), CAMERA)
+    segmenter = WishedSegmenter(Guesses(), CAMERA)  # type: ignore[arg-type]
     segmenter.ask("the fridge")
     np.testing.assert_allclose(segmenter.scores(frame(), segmenter.category).target, 0.5 / 40, rtol=1e-4)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -69,7 +70,7 @@ def test_scores_and_posteriors_of_one_frame_take_one_pass_of_the_network(
     model: RedNet, frame: dict[str, np.ndarray], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     segmenter, passes = NetworkSegmenter(model), []
-    compute = segmenter.model.pyramid
+    compute: Any = segmenter.model.pyramid
     monkeypatch.setattr(
         segmenter.model, "pyramid", lambda *seen, **options: passes.append(1) or compute(*seen, **options)
     )

@@ -198,6 +198,8 @@ def test_guessed_names_in_another_form_are_named_with_the_segmentation(returned:
 
     with pytest.raises(AgentError, match=r"Segmentation 'mine:SEG'.*named"):
         own_of(Guesses(returned)).named(FRAME)
-    image, names = own_of(Guesses((np.full((2, 12, 16), 0.5), ["fridge", "hob"]))).named(FRAME)
+    guessed = own_of(Guesses((np.full((2, 12, 16), 0.5), ["fridge", "hob"]))).named(FRAME)
+    assert guessed is not None
+    image, names = guessed
     assert (image.shape, image.dtype, names) == ((2, 12, 16), np.float32, ["fridge", "hob"])
     assert own_of(Guesses(None)).named(FRAME) is None

@@ -19,6 +19,7 @@ from sim.training.views.shards import write_shard
 from sim.training.views.views import View
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.networks import without_names
+from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 
 STYLES = {"appliances_00": "retro_fridge", "appliances_01": "stove", "appliances_02": "dishwasher"}
@@ -71,6 +72,7 @@ def test_the_head_learns_to_tell_names_apart_and_the_network_stays(folder: Path)
     for _ in range(20):
         trainer.train_once()
     right = trainer.evaluate(trainer.model.eval())[1]["right"]
+    assert isinstance(right, float)
     assert right > 0.8
     trained = {name: tensor.clone() for name, tensor in trainer.model.state_dict().items()}
     average = trainer.average.module
@@ -78,6 +80,8 @@ def test_the_head_learns_to_tell_names_apart_and_the_network_stays(folder: Path)
     assert all(torch.equal(trained[name], tensor) for name, tensor in trainer.model.state_dict().items())
     network, metadata = load_network(folder / "out/rednet.safetensors")
     shipped, of_shipped = load_network(SHIPPED_REDNET)
+    assert isinstance(network, RedNet)
+    assert isinstance(shipped, RedNet)
     assert network.config.names == ("cooker", "fridge")
     state = network.state_dict()
     torch.testing.assert_close(
