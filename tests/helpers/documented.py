@@ -311,6 +311,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn export lerobot runs/plus --out runs/plus_lerobot --only-success": Only(
         "needs pyarrow; tests/sim/app/bridges/test_lerobot.py exports runs"
     ),
+    "stubborn export lerobot runs/driven_2026-11-28_18-53-39 --out runs/person_lerobot": Only(
+        "needs pyarrow; tests/sim/app/bridges/test_lerobot.py exports runs"
+    ),
     # docs/tables/splits.md
     f"{PYTHON} -m tools.maintenance.split_report --workers 2 --published --out splits.md": (
         f"{PYTHON} -m tools.maintenance.split_report --splits hazards --episodes 2 --workers 1 --published --out "
