@@ -40,7 +40,7 @@ def with_other_light(house: House, rng: np.random.Generator) -> House:
         tint = np.array(WARM) ** rng.uniform(-0.4, 1.0)
         for name in ("diffuse", "specular"):
             setattr(light, name, list(np.clip(np.array(getattr(light, name)) * tint * rng.uniform(*DIMMED), 0.0, 1.0)))
-    return replace(house, source=spec)
+    return replace(house, source=spec, checksum=None)  # what is kept of its file has the old light
 
 
 def leaning(pose: Pose, rng: np.random.Generator) -> Pose:

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
+import pytest
 
 from sim.core.geometry.pose import BodyPose, Pose
 from sim.core.interface import CameraModel
+from sim.core.paths import CACHE_VARIABLE
+from sim.core.store import SIZE_VARIABLE
 from sim.env.scene import Scene
+from sim.episodes.splits import load_split
 from sim.homes.housegen import generate
 from sim.houses.house import House
 from sim.robot.config import RobotConfig
@@ -32,6 +38,21 @@ def test_other_light_changes_colours_but_no_label_and_no_depth() -> None:
     for a, b in zip(plain, other, strict=True):
         np.testing.assert_array_equal(a.semantic, b.semantic)
         np.testing.assert_array_equal(a.depth_mm, b.depth_mm)
+
+
+def test_a_house_of_a_file_has_the_other_light_also_where_its_model_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    monkeypatch.setenv(SIZE_VARIABLE, "1000")
+    house = load_split("val").load_house("val_00")
+    lights = []
+    for one in (house, with_other_light(house, np.random.default_rng(1))):
+        scene = Scene(one, robot=RobotConfig(), camera=CAMERA, profile="fast")
+        lights.append(scene.world.model.light_diffuse.copy())
+        scene.close()
+    assert lights[0].shape == lights[1].shape
+    assert not np.allclose(*lights)
 
 
 def test_a_lean_is_in_the_pose_of_a_view_and_bounded() -> None:
