@@ -321,6 +321,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     # docs/words.md
     f"{_WISH} --episodes 3 --video": (f"{_WISH} --episodes 1 --video --config task.max_steps=5 --out {{tmp}}/run",),
+    f"{_RUN} --agent stubborn-plus --split words-seen --episodes 40": (
+        f"{_RUN} --agent stubborn-plus --split words-seen --episodes 1 --config task.max_steps=5 --out {{tmp}}/run",
+    ),
     f"{_RUN} --agent stubborn-plus --semantics gt --split words-seen --episodes 20": (
         f"{_RUN} --agent stubborn-plus --semantics gt --split words-seen --episodes 1 --config task.max_steps=5"
         " --out {tmp}/run",
@@ -465,6 +468,19 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     "stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer": _TRANSFER[:-1],
     "stubborn episodes --split runs/transfer --recipe val": _TRANSFER,
+    "stubborn views --split runs/transfer --views 200 --seed 12 --out runs/views_transfer": (
+        *_TRANSFER,
+        "stubborn views --split {tmp}/transfer --views 2 --seed 12 --out {tmp}/views",
+    ),
+    "stubborn evaluate --views runs/views_transfer": (
+        _VIEWS.replace("shard 4", "shard 2"),
+        "stubborn evaluate --views {tmp}/views",
+    ),
+    f"{_RUN} --agent stubborn-plus --split runs/transfer --episodes 25": (
+        *_TRANSFER,
+        f"{_RUN} --agent stubborn-plus --split {{tmp}}/transfer --episodes 1 --config task.max_steps=5"
+        " --out {tmp}/run",
+    ),
     f"{_RUN} --semantics gt --noise harsh --episodes 100 --workers 2 --record --out runs/harsh": (
         f"{_RUN} --semantics gt --noise harsh {_SMALL} --agent oracle --episodes 1 --workers 1 --record"
         " --out {tmp}/harsh",

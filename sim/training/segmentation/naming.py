@@ -1,7 +1,7 @@
 """Trains the second head of a segmentation network, for everyday names; the network itself is not changed.
 
 Objects are sampled by name, so that rare ones count as much as common ones. The loss is the cross entropy among the
-names of the object's category. Names that no training may use (`sim.core.vocabulary.UNSEEN`) are no labels.
+names of the object's category. The head does not learn names that no training may use (`sim.core.vocabulary.UNSEEN`).
 """
 
 from __future__ import annotations
@@ -195,8 +195,8 @@ class Trainer(TimedTraining):
                 losses.append(float(nn.functional.cross_entropy(judged, names).detach()))
                 right[number] += float((judged.argmax(dim=1) == names).float().mean())
                 count[number] += 1
-        alone = self.groups.members.sum(axis=1) > 1
-        among = self.groups.members[alone].any(axis=0) & (count > 0)  # names that share a category with another
+        several = self.groups.members.sum(axis=1) > 1
+        among = self.groups.members[several].any(axis=0) & (count > 0)  # names that share a category with another
         shares = right[among] / count[among]
         row: dict[str, object] = {"objects": int(count.sum()), "loss": float(np.mean(losses))}
         row |= {"names": int(among.sum()), "right": float(shares.mean())}
