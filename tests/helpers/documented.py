@@ -321,6 +321,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     # docs/words.md
     f"{_WISH} --episodes 3 --video": (f"{_WISH} --episodes 1 --video --config task.max_steps=5 --out {{tmp}}/run",),
+    f"{PYTHON} -m tools.research.check_descriptions --split val --per-house 180 --workers 2"
+    " --out runs/descriptions.json": (
+        f"{PYTHON} -m tools.research.check_descriptions --split val --per-house 2 --houses 1 --workers 1"
+        " --out {tmp}/descriptions.json",
+    ),
     f"{_RUN} --agent stubborn-plus --split words-seen --episodes 40": (
         f"{_RUN} --agent stubborn-plus --split words-seen --episodes 1 --config task.max_steps=5 --out {{tmp}}/run",
     ),
