@@ -143,7 +143,8 @@ def _wrong_stop(result: RolloutResult, goal: str, rule: SuccessRule, nearest_m: 
         return f"False detection: the agent stopped {target}."
     if nearest_m <= rule.distance_m:
         return f"The STOP does not count: the nearest {name} is {nearest_m:.2f} m away, but a wall or a door hides it."
-    far = f"the nearest {name} is {math.ceil(round(nearest_m * 100, 6)) / 100:.2f} m away"  # up: 1.003 m is farther than 1 m
+    up_m = math.ceil(round(nearest_m * 100, 6)) / 100  # 1.003 m is farther than 1 m
+    far = f"the nearest {name} is {up_m:.2f} m away"
     if mistaken:
         return f"False detection: the agent took another object for the {name}; {far}."
     return f"The STOP came too early: {far}. At most {rule.distance_m:g} m counts."
