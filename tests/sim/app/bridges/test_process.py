@@ -78,7 +78,7 @@ FAULTS = {
     "text_action": "field 'action': expected int, got str",
     "real_action": "field 'action': expected int, got float",
     "no_action": "missing required field action",
-    "action_7": "field 'action': expected int <= 3",
+    "action_7": "field 'action': expected int <= 5",
     "nan": "its answer is not JSON",
     "confidence": "field 'stop_confidence': expected float <= 1.0",
     "target": r"field 'stop_target_xy_m\[0\]': expected float <= ",
