@@ -97,16 +97,18 @@ def test_an_object_with_its_edge_on_the_rug_is_not_said_to_be_on_it():
     assert not any("rug" in one.text for one in written(with_facts(house, floor_01="name: rug"))[1])
 
 
-@pytest.mark.parametrize("house", ["val_03", "val_17"])
-def test_the_episodes_of_shipped_splits_mean_what_they_meant_when_they_were_made(house):
-    task = Task(World(load_split("val").load_house(house)))
-    of_house = [
-        (name, episode)
-        for name in ("words-seen", "words-synonyms", "words-unseen", "descriptions")
-        for episode in load_split(name).episodes
-        if episode.house == house
-    ]
-    assert len(of_house) == 20
+@pytest.mark.parametrize(
+    ("home", "house", "names"),
+    [
+        ("val", "val_03", ("words-seen", "words-synonyms", "words-unseen", "descriptions")),
+        ("val", "val_17", ("words-seen", "words-synonyms", "words-unseen", "descriptions")),
+        ("test", "test_05", ("words-seen-test", "words-synonyms-test", "words-unseen-test")),
+    ],
+)
+def test_the_episodes_of_shipped_splits_mean_what_they_meant_when_they_were_made(home, house, names):
+    task = Task(World(load_split(home).load_house(house)))
+    of_house = [(name, episode) for name in names for episode in load_split(name).episodes if episode.house == house]
+    assert len(of_house) == 5 * len(names)
     for name, episode in of_house:
         assert task.distance_from(episode.goal, episode.start) == pytest.approx(episode.shortest_path_m, abs=1e-3), (
             episode
