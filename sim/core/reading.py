@@ -67,6 +67,7 @@ Name = Annotated[str, Meta(min_length=1, max_length=1000, pattern=r"^[^\x00-\x1f
 """An id or a name: text without control characters, which a terminal would interpret."""
 
 
+_CHUNK_BYTES = 1 << 20
 _LFS_POINTER = b"version https://git-lfs.github.com/spec/v"
 """What Git writes in place of a large file that was not downloaded begins with this."""
 
@@ -128,12 +129,21 @@ def read_bytes(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErr
     """
     with open_plain(file, what=what, error=error) as stream:
         try:
-            content = stream.read(most + 1)
+            content = _read_up_to(stream, most + 1)
         except OSError as fault:
             raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
     if len(content) > most:
         raise error(f"{what} '{file}' is too large: at most {most >> 20} MB are read.")
     return content
+
+
+def _read_up_to(stream: BinaryIO, most: int) -> bytes:
+    """Returns the rest of a stream, or its first `most` bytes; `read(most)` would allocate them all before it reads."""
+    chunks, left = [], most
+    while left and (chunk := stream.read(min(left, _CHUNK_BYTES))):
+        chunks.append(chunk)
+        left -= len(chunk)
+    return b"".join(chunks)
 
 
 def read_text(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError, most: int = MAX_BYTES) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import io
 import os
+import tracemalloc
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -216,3 +217,16 @@ def test_a_file_of_empty_lines_ends_soon(tmp_path: Path) -> None:
     file.write_bytes(gzip.compress(b"{}\n" + b"\n" * 300_000))
     with pytest.raises(ConfigError, match="line 10002: more than 10,000 lines are empty"):
         list(reading.json_lines(file, what="Scenes"))
+
+
+def test_the_memory_for_a_file_depends_on_its_size_and_not_on_the_limit(tmp_path):
+    file = tmp_path / "small.json"
+    file.write_bytes(b"[]")
+    tracemalloc.start()
+    try:
+        assert reading.read_bytes(file, what="File", most=1 << 30) == b"[]"
+        assert tracemalloc.get_traced_memory()[1] < 4 << 20
+    finally:
+        tracemalloc.stop()
+    with pytest.raises(ConfigError, match="too large"):
+        reading.read_bytes(file, what="File", most=1)
