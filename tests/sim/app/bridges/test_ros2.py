@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import importlib.util
+import inspect
 import math
 import time
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
 from sim.app import cli
 from sim.app.bridges.ros2.requests import Pace, Requests
-from sim.app.bridges.ros2.robot import RosConfig
+from sim.app.bridges.ros2.robot import RosConfig, run_driven, run_stepped
 from sim.app.commands.ros import agent, robot
 from sim.app.composition.ros_agent import build_apart
+from sim.app.composition.runner import Play
 from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
 from sim.core.interface import Action, ConfigError
@@ -28,6 +32,12 @@ def test_without_ros_one_line_says_what_to_install(command: object, capsys: pyte
     assert len(said.splitlines()) == 1
     assert "needs rclpy" in said
     assert "ros setup" in said
+
+
+@pytest.mark.parametrize("play", [run_stepped, run_driven])
+def test_what_runs_an_episode_has_the_parameters_that_a_run_gives_and_no_others(play: Callable[..., Any]) -> None:
+    given = list(inspect.signature(Play.__call__).parameters.values())[1:]
+    assert list(inspect.signature(play).parameters.values()) == given
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
