@@ -72,6 +72,7 @@ class RobotAgent:
 
     def __init__(self, setup: Setup, node: AgentNode, *, stepped: bool, words: bool = False) -> None:
         self._name, self._node, self._stepped, self._words = setup.options.agent, node, stepped, words
+        self._takes_words = setup.spec.words is not None
         self._agent = build_apart(setup)
         drive = setup.config.robot.drive
         self._limits = Limits(
@@ -96,7 +97,8 @@ class RobotAgent:
                 self._node.spin(WAIT_S)
                 continue
             if announced.goal not in GOAL_CATEGORIES and not self._words:
-                raise AgentError(f"The robot's goal '{announced.goal}' is in words: give --words.")
+                advice = "give --words" if self._takes_words else f"agent '{self._name}' takes categories only"
+                raise AgentError(f"The robot's goal '{announced.goal}' is in words: {advice}.")
             if announced.is_next_goal_of(last):
                 where = f"Agent '{self._name}', goal {announced.goal_number + 1}"
                 give_next_goal(self._agent, announced.goal, announced.seed, where)
