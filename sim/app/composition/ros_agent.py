@@ -7,6 +7,7 @@ from typing import Any, cast
 
 from sim.app.bridges.ros2.observer import AgentNode, Announced, Wheels
 from sim.app.composition.agents import build_agent
+from sim.app.composition.own_segmentation import OwnSegmenter
 from sim.app.composition.segmenters import NoSegmentation
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.rollout import ask, confidence_of, give_next_goal, next_action, target_of
@@ -43,7 +44,8 @@ def build_apart(setup: Setup) -> Agent:
     """Returns the agent of a setup, which gets observations and nothing else.
 
     Raises:
-        ConfigError: the agent or its segmentation reads the ground truth of the simulator, or has sensors of its own.
+        ConfigError: the agent or its segmentation reads the ground truth of the simulator, or has sensors of its own,
+            or the agent reads posteriors that its segmentation does not have.
     """
     spec, config = setup.spec, setup.config
     if spec.uses_ground_truth or setup.truth:
@@ -55,9 +57,12 @@ def build_apart(setup: Setup) -> Agent:
     robot = DeclaredRobot(camera_model=config.camera, robot_config=config.robot, task_config=config.task)
     make = cast(Any, setup.segmentation.make)  # a segmenter without ground truth reads the camera alone
     segmenter = make(robot, config.detector) if spec.uses_segmentation else NoSegmentation()
-    return build_agent(
+    agent = build_agent(
         setup.options.agent, spec, robot, segmenter=segmenter, verifier=setup.verifier, config=config.agent
     )
+    if isinstance(segmenter, OwnSegmenter):
+        segmenter.require_read_by(agent, setup.options.agent)
+    return agent
 
 
 class RobotAgent:
