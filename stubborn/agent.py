@@ -22,6 +22,7 @@ from sim.core.interface import (
     CameraModel,
     ConfigError,
     Observation,
+    ReadsPosteriors,
     RobotModel,
     Segmenter,
     SuccessRule,
@@ -167,6 +168,12 @@ class StubbornAgent:
         self.untrap = Untrap(self.policies.untrap_after, turns_reset=config.untrap.turns_reset)
         self.standstill = Standstill(config.standstill)
         self.reset(GOAL_CATEGORIES[0], 0)
+
+    @property
+    def reads_posteriors(self) -> bool:
+        """See `sim.core.interface.ReadsPosteriors`."""
+        by_seeker = isinstance(self.seeker, ReadsPosteriors) and self.seeker.reads_posteriors
+        return isinstance(self.explorer, ReadsSemantics) or by_seeker
 
     def reset(self, goal: str, seed: int) -> None:
         """Starts a new episode.

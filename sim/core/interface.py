@@ -460,6 +460,19 @@ class Agent(Protocol):
 
 
 @runtime_checkable
+class ReadsPosteriors(Protocol):
+    """An agent, or a part of one, that states whether it reads posteriors.
+
+    If it does, a run with a segmentation that has none does not begin.
+    """
+
+    @property
+    def reads_posteriors(self) -> bool:
+        """Returns whether it calls `Segmenter.posteriors` for each goal category."""
+        ...
+
+
+@runtime_checkable
 class KeepsMemory(Protocol):
     """An agent with a memory that outlasts a goal of a chain; `reset` is called at each goal of another agent."""
 

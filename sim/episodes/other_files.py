@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +11,7 @@ import msgspec
 
 from sim.core.errors import EpisodeError
 from sim.core.goals import MAX_GOALS, GoalSpec
-from sim.core.reading import Count, Metres, Name, Number, read_gzip_json
+from sim.core.reading import Count, Metres, Name, Number, parse_json, read_gzip_json
 from sim.episodes import habitat
 from sim.episodes.episode import Episode
 
@@ -21,24 +22,24 @@ TWICE = "__"
 def read_others(file: Path) -> tuple[list[Episode], set[Path]]:
     """Returns the episodes in the file of a house, and their scenes; the file is one of GOAT-Bench or HM3D-OVON.
 
-    Raises:
-        ConfigError: the file has another format.
-        EpisodeError: a goal is not known here.
-    """
-    content = read_gzip_json(file, _AnyFile, what="Episode file")
-    read = read_ovon if content.goals is msgspec.UNSET else read_goat
-    return read(file), {Path(entry.scene_id) for entry in content.episodes}
-
-
-def read_ovon(file: Path) -> list[Episode]:
-    """Returns the episodes in HM3D-OVON's file of a house, also those of the ObjectNav challenges.
+    Files of the ObjectNav challenges are read as those of HM3D-OVON; a file of GOAT-Bench holds chains.
 
     Raises:
         ConfigError: the file has another format.
-        EpisodeError: a goal is not known here, or an episode has `children_object_categories`, which widen its goal.
+        EpisodeError: a goal is not known here, a picture is not listed, or an episode of HM3D-OVON has
+            `children_object_categories`, which widen its goal.
     """
+    text = bytes(read_gzip_json(file, msgspec.Raw, what="Episode file"))
+    if parse_json(text, _Format, where=f"Episode file '{file}'").goals is msgspec.UNSET:
+        ovon = parse_json(text, _OvonFile, where=f"File of HM3D-OVON '{file}'")
+        return _from_ovon(ovon, file), _scenes_of(ovon.episodes)
+    goat = parse_json(text, _GoatFile, where=f"File of GOAT-Bench '{file}'")
+    return _from_goat(goat, file), _scenes_of(goat.episodes)
+
+
+def _from_ovon(content: _OvonFile, file: Path) -> list[Episode]:
     episodes = []
-    for entry in read_gzip_json(file, _OvonFile, what="File of HM3D-OVON").episodes:
+    for entry in content.episodes:
         if entry.children_object_categories:
             raise EpisodeError(
                 f"File of HM3D-OVON '{file}', episode '{entry.episode_id}': children_object_categories must be empty; "
@@ -50,14 +51,7 @@ def read_ovon(file: Path) -> list[Episode]:
     return episodes
 
 
-def read_goat(file: Path) -> list[Episode]:
-    """Returns the chains in GOAT-Bench's file of a house.
-
-    Raises:
-        ConfigError: the file has another format.
-        EpisodeError: a goal is not known here, or a picture is not listed.
-    """
-    content = read_gzip_json(file, _GoatFile, what="File of GOAT-Bench")
+def _from_goat(content: _GoatFile, file: Path) -> list[Episode]:
     listed = {(of.object_category, of.object_id): of for goals in content.goals.values() for of in goals}
     episodes = []
     for entry in content.episodes:
@@ -86,6 +80,10 @@ def _objects_of(content: _GoatFile, category: str, kind: str, object_id: str | N
         return frozenset(((object_id or "").partition(TWICE)[0],))
     same = (of for goals in content.goals.values() for of in goals if of.object_category == category)
     return frozenset(of.object_id.partition(TWICE)[0] for of in same)
+
+
+def _scenes_of(entries: Sequence[_Entry]) -> set[Path]:
+    return {Path(entry.scene_id) for entry in entries}
 
 
 def _house_of(entry: _Entry) -> str:
@@ -137,6 +135,7 @@ class _OvonFile(msgspec.Struct):
     episodes: list[_OvonEpisode]
 
 
-class _AnyFile(msgspec.Struct):
-    episodes: list[_Entry]
+class _Format(msgspec.Struct):
+    """What tells the formats apart: only files of GOAT-Bench have `goals`."""
+
     goals: msgspec.Raw | msgspec.UnsetType = msgspec.UNSET

@@ -214,7 +214,7 @@ class FreeSpace:
             return None
         row, col = np.unravel_index(int(away_m.argmin()), away_m.shape)
         cells = descend(field, int(row) + window[0].start, int(col) + window[1].start)
-        places_m = np.vstack([(x_m, y_m), self.frame.to_metres(cells[1:])])
+        places_m = np.vstack([(x_m, y_m), self.frame.to_metres(cells)])
         kept, here = [0], 0
         while here < len(places_m) - 1:
             ahead = len(places_m) - 1

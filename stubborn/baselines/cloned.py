@@ -44,6 +44,9 @@ class ClonedConfig:
 class ClonedAgent:
     """Feeds each observation to the policy and takes one of its actions."""
 
+    reads_posteriors = True
+    """See `sim.core.interface.ReadsPosteriors`."""
+
     def __init__(self, config: ClonedConfig, segmenter: Segmenter) -> None:
         """Reads the weights.
 

@@ -87,6 +87,9 @@ class TrackSeeker:
         finder: finds viewpoints, and places to stop at.
     """
 
+    reads_posteriors = True
+    """See `sim.core.interface.ReadsPosteriors`."""
+
     def __init__(self, config: TrackSeekerConfig, parts: SeekerParts, finder: ViewpointFinder) -> None:
         self.config = config
         self.target = parts.target

@@ -2,9 +2,10 @@
 
     stubborn leaderboard leaderboard
 
-Each submission is verified first (`stubborn verify`), once on this machine: the outcome is kept in the user's cache.
-Reports next to the submissions are written and never read. A submission that is refused, has a different episode, chose
-its episodes, has another robot or is a copy is named and left out; the exit status is then 1.
+Each submission that can have a row is verified (`stubborn verify`), once on this machine: the outcome is kept in the
+user's cache. Reports next to the submissions are written and never read. A submission that is refused, has too few
+episodes or a different one, chose its episodes, has another robot or is a copy is named and left out; the exit status
+is then 1.
 """
 
 from __future__ import annotations
@@ -25,7 +26,15 @@ from sim.app.composition.agents import SPECS
 from sim.app.composition.driven import HUMAN_NAME
 from sim.app.submissions.audit import Choices, check
 from sim.app.submissions.contents import read_submission
-from sim.app.submissions.leaderboard import Row, csv_of, report_file, submission_files, tables, without_copies
+from sim.app.submissions.leaderboard import (
+    Row,
+    csv_of,
+    refusal_before_replay,
+    report_file,
+    submission_files,
+    tables,
+    without_copies,
+)
 from sim.app.submissions.report import is_of, kept_file, read_report
 from sim.core.errors import ConfigError, ObjectNavError
 from sim.core.files import write_atomically, write_together
@@ -72,11 +81,19 @@ def main(args: Args) -> int:
 
 
 def _row(args: Args, file: Path) -> Row:
-    """Returns the row of a submission, which is replayed unless this machine has replayed it before."""
+    """Returns the row of a submission, which is replayed unless this machine has replayed it before.
+
+    Raises:
+        ConfigError: the table has no such row, whatever the replay shows.
+    """
     name = read_submission(file).manifest.split.name
     folder = next((split for split in args.splits if split.resolve().name == name), None)
     choices = Choices(split=folder, draw_seed=secrets.randbits(32), workers=args.workers)
     checked = check(file, choices, truth_of_agents())
+    shipped = frozenset((*SPECS, HUMAN_NAME))
+    refusal = refusal_before_replay(checked.submission, checked.is_first, checked.changes, shipped)
+    if refusal:
+        raise ConfigError(f"{refusal}.")
     kept, report = kept_file(checked), None
     if kept.is_file() and not args.again:
         with contextlib.suppress(ConfigError):  # of another form: it is written again
@@ -87,4 +104,4 @@ def _row(args: Args, file: Path) -> Row:
         write_atomically(kept, json.dumps(audit(file, choices), indent=2) + "\n")
         report = read_report(kept)
     write_atomically(report_file(args.folder, file), read_text(kept, what="Report"))
-    return Row(file, checked.submission, report, frozenset((*SPECS, HUMAN_NAME)))
+    return Row(file, checked.submission, report, shipped)

@@ -19,6 +19,7 @@ from sim.core.interface import (
     POSE_SENSORS,
     CameraModel,
     Observation,
+    ReadsPosteriors,
     Scores,
     SegmentationSpec,
     SegmenterSpec,
@@ -108,6 +109,14 @@ class OwnSegmenter:
     def names(self) -> bool:
         """True: it names the category of each pixel."""
         return not self._methods.isdisjoint(_METHODS[1:])
+
+    def require_read_by(self, agent: object, name: str) -> None:
+        """Raises ConfigError if an agent with this name states that it reads posteriors, and there are none."""
+        if isinstance(agent, ReadsPosteriors) and agent.reads_posteriors and "posteriors" not in self._methods:
+            raise ConfigError(
+                f"Segmentation '{self._name}' has no method posteriors, which agent '{name}' reads in addition to "
+                "scores: add it, or run an agent that reads only scores, such as --agent stubborn."
+            )
 
     def scores(self, observation: Observation, goal: str) -> Scores:
         """Returns the scores of one frame, float32 (h, w) at any whole fraction of the image's resolution.

@@ -7,6 +7,7 @@ from typing import Any, cast
 
 from sim.app.bridges.ros2.observer import AgentNode, Announced, Wheels
 from sim.app.composition.agents import build_agent
+from sim.app.composition.own_segmentation import OwnSegmenter
 from sim.app.composition.segmenters import NoSegmentation
 from sim.app.composition.setup import Setup
 from sim.app.evaluation.rollout import ask, confidence_of, give_next_goal, next_action, target_of
@@ -43,7 +44,8 @@ def build_apart(setup: Setup) -> Agent:
     """Returns the agent of a setup, which gets observations and nothing else.
 
     Raises:
-        ConfigError: the agent or its segmentation reads the ground truth of the simulator, or has sensors of its own.
+        ConfigError: the agent or its segmentation reads the ground truth of the simulator, or has sensors of its own,
+            or the agent reads posteriors that its segmentation does not have.
     """
     spec, config = setup.spec, setup.config
     if spec.uses_ground_truth or setup.truth:
@@ -55,9 +57,12 @@ def build_apart(setup: Setup) -> Agent:
     robot = DeclaredRobot(camera_model=config.camera, robot_config=config.robot, task_config=config.task)
     make = cast(Any, setup.segmentation.make)  # a segmenter without ground truth reads the camera alone
     segmenter = make(robot, config.detector) if spec.uses_segmentation else NoSegmentation()
-    return build_agent(
+    agent = build_agent(
         setup.options.agent, spec, robot, segmenter=segmenter, verifier=setup.verifier, config=config.agent
     )
+    if isinstance(segmenter, OwnSegmenter):
+        segmenter.require_read_by(agent, setup.options.agent)
+    return agent
 
 
 class RobotAgent:
@@ -72,6 +77,7 @@ class RobotAgent:
 
     def __init__(self, setup: Setup, node: AgentNode, *, stepped: bool, words: bool = False) -> None:
         self._name, self._node, self._stepped, self._words = setup.options.agent, node, stepped, words
+        self._takes_words = setup.spec.words is not None
         self._agent = build_apart(setup)
         drive = setup.config.robot.drive
         self._limits = Limits(
@@ -96,7 +102,8 @@ class RobotAgent:
                 self._node.spin(WAIT_S)
                 continue
             if announced.goal not in GOAL_CATEGORIES and not self._words:
-                raise AgentError(f"The robot's goal '{announced.goal}' is in words: give --words.")
+                advice = "give --words" if self._takes_words else f"agent '{self._name}' takes categories only"
+                raise AgentError(f"The robot's goal '{announced.goal}' is in words: {advice}.")
             if announced.is_next_goal_of(last):
                 where = f"Agent '{self._name}', goal {announced.goal_number + 1}"
                 give_next_goal(self._agent, announced.goal, announced.seed, where)

@@ -10,6 +10,7 @@ from typing import Protocol
 
 from sim.app.composition.agents import build_agent
 from sim.app.composition.environments import make_env
+from sim.app.composition.own_segmentation import OwnSegmenter
 from sim.app.composition.perception import AskedSegmenter, seen_by
 from sim.app.composition.record import error_result, recording_of, result_of, versions
 from sim.app.composition.segmenters import NoSegmentation
@@ -71,7 +72,7 @@ def build_parts(setup: Setup, *, watched: bool) -> Parts:
     """
     spec, config = setup.spec, setup.config
     env = make_env(setup, sensors=setup.sensors, truth=setup.truth + VIEWER_IMAGES * watched)
-    segmenter = setup.segmentation.make(env, config.detector) if spec.uses_segmentation else None
+    segmenter = made = setup.segmentation.make(env, config.detector) if spec.uses_segmentation else None
     if segmenter is not None and watched:
         segmenter = AskedSegmenter(segmenter, setup.segmentation_name)
     agent = build_agent(
@@ -84,6 +85,8 @@ def build_parts(setup: Setup, *, watched: bool) -> Parts:
         step_timeout_s=setup.options.step_limit_s,
         out=setup.options.out,
     )
+    if isinstance(made, OwnSegmenter):
+        made.require_read_by(agent, setup.options.agent)
     return Parts(env, agent, seen_by(setup, agent, segmenter), spec.painter(agent) if spec.painter else None)
 
 

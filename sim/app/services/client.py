@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import http.client
+import ipaddress
 import math
 import time
 import urllib.error
@@ -60,6 +61,22 @@ def is_address(text: str) -> bool:
         return parts.scheme in ("http", "https") and bool(parts.hostname) and (parts.port or 1) > 0
     except ValueError:
         return False
+
+
+def opener_for(url: str) -> urllib.request.OpenerDirector:
+    """Returns what opens an address: through the proxy of the environment (HTTP_PROXY, HTTPS_PROXY), if there is one.
+
+    Addresses of this machine (localhost, 127.0.0.1, ::1) and those of NO_PROXY are opened without a proxy.
+    """
+    direct = _is_this_machine(urllib.parse.urlsplit(url).hostname or "")
+    return urllib.request.build_opener(urllib.request.ProxyHandler({} if direct else None))
+
+
+def _is_this_machine(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
 
 
 class Client:
@@ -125,7 +142,7 @@ def _post(url: str, body: bytes, headers: Mapping[str, str], timeout_s: float) -
         request.add_unredirected_header(name, value)  # another host must not get the key
     deadline, parts, size = time.monotonic() + timeout_s, list[bytes](), 0
     try:
-        with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(request, timeout=timeout_s) as reply:
+        with opener_for(url).open(request, timeout=timeout_s) as reply:
             announced = reply.headers.get("Content-Length")
             while part := reply.read1(1 << 16):
                 parts.append(part)

@@ -20,6 +20,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.app.services.client import opener_for
 from sim.core.errors import ConfigError
 from sim.core.interface import CameraModel
 
@@ -120,7 +121,7 @@ def register(url: str, frame: Frame) -> None:
     """
     request = urllib.request.Request(f"{url.rstrip('/')}/frame", frame.to_bytes(), method="POST")
     try:
-        urllib.request.urlopen(request, timeout=TIMEOUT_S).close()
+        opener_for(url).open(request, timeout=TIMEOUT_S).close()
     except (OSError, ValueError, urllib.error.URLError) as error:
         raise ConfigError(f"detectors={url}: {error}. `stubborn serve detectors` starts the server.") from None
 

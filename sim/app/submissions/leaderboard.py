@@ -11,7 +11,7 @@ import csv
 import html
 import io
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -56,27 +56,47 @@ class Row:
     @property
     def episodes(self) -> int:
         """The number of episodes; replicates are not counted."""
-        return len(set(episodes_of(results_of(self.submission))))
+        return number_of_episodes(self.submission)
 
     @property
     def refusal(self) -> str:
         """The reason why the table has no such row; "": the submission is accepted."""
         if self.report.different:
             return f"{self.report.different} episodes are different in the replay"
-        if not self.report.is_first:
-            return "its episodes were chosen by the authors; the first ones of the split are allowed"
-        if self.episodes < MIN_EPISODES:
-            return f"it has {self.episodes} episodes; a row needs {MIN_EPISODES}"
-        if self.report.nonstandard:
-            return f"not the standard: {self.report.nonstandard[0]}"
-        manifest = self.submission.manifest
-        agent = manifest.inputs.agent.partition("+")[0]  # "human+stubborn": a person and an agent
-        if agent not in self.shipped and not manifest.inputs.isolated:
-            return "its agent did not run in a process of its own (--agent process:COMMAND)"
-        named = next((name for name in self.shipped if _letters(name) == _letters(manifest.name)), agent)
-        if named != agent:
-            return f"its name is that of the shipped agent '{named}', and its agent is '{manifest.inputs.agent}'"
-        return ""
+        return refusal_before_replay(self.submission, self.report.is_first, self.report.nonstandard, self.shipped)
+
+
+def refusal_before_replay(
+    submission: Submission, is_first: bool, nonstandard: Sequence[str], shipped: Collection[str]
+) -> str:
+    """Returns the reason why a submission is refused whatever its replay shows; "": there is none.
+
+    Args:
+        submission: from a file.
+        is_first: whether its episodes are the first ones of the split.
+        nonstandard: how its setting is different from the standard.
+        shipped: names of the agents that ship with the simulator, and of a person.
+    """
+    if not is_first:
+        return "its episodes were chosen by the authors; the first ones of the split are allowed"
+    episodes = number_of_episodes(submission)
+    if episodes < MIN_EPISODES:
+        return f"it has {episodes} episodes; a row needs {MIN_EPISODES}"
+    if nonstandard:
+        return f"not the standard: {nonstandard[0]}"
+    manifest = submission.manifest
+    agent = manifest.inputs.agent.partition("+")[0]  # "human+stubborn": a person and an agent
+    if agent not in shipped and not manifest.inputs.isolated:
+        return "its agent did not run in a process of its own (--agent process:COMMAND)"
+    named = next((name for name in shipped if _letters(name) == _letters(manifest.name)), agent)
+    if named != agent:
+        return f"its name is that of the shipped agent '{named}', and its agent is '{manifest.inputs.agent}'"
+    return ""
+
+
+def number_of_episodes(submission: Submission) -> int:
+    """Returns the number of episodes of a submission; replicates are not counted."""
+    return len(set(episodes_of(results_of(submission))))
 
 
 def submission_files(folder: Path) -> list[Path]:

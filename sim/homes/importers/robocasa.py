@@ -12,7 +12,7 @@ from __future__ import annotations
 import functools
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -235,26 +235,39 @@ def _show_unseen_bodies(spec: mujoco.MjSpec, model: mujoco.MjModel, changes: Cou
     """
     data = data_at_rest(model)
     collides, visible = collidable_geoms(model), rendered_geoms(model)
+    all_geoms = list(spec.geoms)  # each access to `spec.geoms` goes through all of them
+    unseen_geoms, ends = collides & ~visible, _subtree_ends(model.body_parentid.tolist())
     for body in range(1, model.nbody):
-        unseen = np.flatnonzero(collides & ~visible & (model.geom_bodyid == body))
-        seen = np.flatnonzero(visible & _in_subtree(model, body)[model.geom_bodyid])
+        unseen = _geoms_of(model, unseen_geoms, body, body + 1)
+        seen = _geoms_of(model, visible, body, ends[body])
         if not (unseen.size and seen.size):
             continue
         (low, high), (seen_low, seen_high) = (_bounds(model, data, body, geoms) for geoms in (unseen, seen))
         common = np.maximum(np.minimum(high, seen_high) - np.maximum(low, seen_low), 0.0)
         if common.prod() < SEEN_SHARE * (high - low).prod() and (high - low).min() > UNSEEN_M:
-            for geom in (spec.geoms[index] for index in unseen.tolist()):
+            for geom in (all_geoms[index] for index in unseen.tolist()):
                 geom.group, geom.material, geom.rgba = 0, "", UNSEEN_RGBA
             changes[f"The visible geoms fill little of '{model.body(body).name}'; its collision geoms are shown."] += 1
 
 
-def _in_subtree(model: mujoco.MjModel, root: int) -> NDArray[np.bool_]:
-    """Returns (nbody,) which bodies are a body or are inside of it."""
-    inside = np.zeros(model.nbody, np.bool_)
-    inside[root] = True
-    for body in range(root + 1, model.nbody):  # a body has a higher number than the one around it
-        inside[body] = inside[model.body_parentid[body]]
-    return inside
+def _geoms_of(model: mujoco.MjModel, shown: NDArray[np.bool_], begin: int, end: int) -> NDArray[np.intp]:
+    """Returns the numbers of the geoms of bodies begin to end - 1 that a mask (ngeom,) shows."""
+    first, last = np.searchsorted(model.geom_bodyid, (begin, end))  # geoms are in the order of their bodies
+    return first + np.flatnonzero(shown[first:last])
+
+
+def _subtree_ends(parents: Sequence[int]) -> list[int]:
+    """Returns for each body the number after that of the last body inside of it.
+
+    MuJoCo numbers bodies depth first, so that the bodies inside of a body follow it without a gap.
+
+    Args:
+        parents: number of the body around each body; body 0 is the world.
+    """
+    ends = list(range(1, len(parents) + 1))
+    for body in range(len(parents) - 1, 0, -1):
+        ends[parents[body]] = max(ends[parents[body]], ends[body])
+    return ends
 
 
 def _bounds(

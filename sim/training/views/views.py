@@ -7,6 +7,7 @@ path, in their order. `EXTRAS` are members that a view has only where they are a
 
 from __future__ import annotations
 
+import contextlib
 import zlib
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
@@ -108,26 +109,28 @@ def sample_views(
         poses = sequence_poses(space, cells, rng, sequence, name)
     else:
         poses = mixed_poses(space, cells, rng)
-    describe = _Describer(scene, -(-count // _VIEWS_PER_OBJECT)) if "instances" in extras else None
     labels = ("depth", "semantic", *(("geom",) if aim or {"instances", "normals"} & set(extras) else ()))
     taken = tries = 0
-    while taken < count:
-        if tries >= MAX_TRIES * count:
-            raise HouseError(f"House '{name}': {taken} of {count} views after {tries} tries; it shows too little.")
-        tries += 1
-        pose, how = next(poses)
-        pose = leaning(pose, rng) if lean else pose
-        images = scene.camera.render(scene.world.data, pose, labels)
-        if sequence is None and is_bare(images["semantic"], images["depth"]):
-            continue
-        camera = scene.camera.camera
-        if aim is not None and not shows(images["geom"], scene.world.labels, how["aim"]["instance"], camera):
-            continue
-        images |= scene.camera.render(scene.world.data, pose, ("rgb",))
-        yield _view(f"{stem}_{taken:05d}", images, pose, scene, block_px, record | how, extras, styles, describe)
-        taken += 1
-    if describe is not None:
-        describe.close()
+    with (
+        contextlib.closing(_Describer(scene, -(-count // _VIEWS_PER_OBJECT)))
+        if "instances" in extras
+        else contextlib.nullcontext()
+    ) as describe:
+        while taken < count:
+            if tries >= MAX_TRIES * count:
+                raise HouseError(f"House '{name}': {taken} of {count} views after {tries} tries; it shows too little.")
+            tries += 1
+            pose, how = next(poses)
+            pose = leaning(pose, rng) if lean else pose
+            images = scene.camera.render(scene.world.data, pose, labels)
+            if sequence is None and is_bare(images["semantic"], images["depth"]):
+                continue
+            camera = scene.camera.camera
+            if aim is not None and not shows(images["geom"], scene.world.labels, how["aim"]["instance"], camera):
+                continue
+            images |= scene.camera.render(scene.world.data, pose, ("rgb",))
+            yield _view(f"{stem}_{taken:05d}", images, pose, scene, block_px, record | how, extras, styles, describe)
+            taken += 1
 
 
 class _Describer:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from sim.core.goals import GoalSpec, PictureCamera
 from sim.episodes import habitat
 from sim.episodes.episode import Episode
 from sim.episodes.goat import goat_house, ovon_house
-from sim.episodes.other_files import read_goat, read_ovon
+from sim.episodes.other_files import read_others
 from sim.episodes.splits import load_split, read_index
 from sim.task.objectnav import Task
 from sim.world.world import World
@@ -43,9 +44,23 @@ def test_chains_are_read_as_they_were_written(task: Task, tmp_path: Path) -> Non
     content = goat_house(task, [CHAIN], "stubborn/mine/home.xml", step_cells=4, most=50)
     file = tmp_path / "home.json.gz"
     file.write_bytes(habitat.zipped_json(content))
-    (read,) = read_goat(file)
+    ((read,), _) = read_others(file)
     assert replace(read, start=CHAIN.start) == CHAIN
     assert (read.start.x_m, read.start.y_m, read.start.yaw_rad) == pytest.approx((0.5, 0.25, 1.0))
+
+
+def test_a_file_is_decompressed_once(task: Task, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file, read = tmp_path / "home.json.gz", []
+    content = goat_house(task, [CHAIN], "stubborn/mine/home.xml", step_cells=4, most=50)
+    file.write_bytes(habitat.zipped_json(content))
+
+    class Counted(gzip.GzipFile):
+        def read(self, size: int | None = -1) -> bytes:
+            read.append(size)
+            return super().read(size)
+
+    monkeypatch.setattr("sim.core.reading.gzip.GzipFile", Counted)
+    assert len(read_others(file)[0]) == len(read) == 1
 
 
 def test_goats_loader_finds_one_list_of_each_category_and_each_object_in_it(task: Task) -> None:
@@ -73,7 +88,7 @@ def test_a_picture_is_written_with_its_camera_and_read(task: Task, tmp_path: Pat
     assert entry["lang_desc"] == "the white table"
     file = tmp_path / "home.json.gz"
     file.write_bytes(habitat.zipped_json(content))
-    (read,) = read_goat(file)
+    ((read,), _) = read_others(file)
     assert [goal.kind for goal in read.goals] == ["category", "picture", "description", "words"]
     camera = read.goals[1].camera
     assert camera is not None
@@ -82,7 +97,7 @@ def test_a_picture_is_written_with_its_camera_and_read(task: Task, tmp_path: Pat
     content["episodes"][0]["tasks"][1][3] = 1
     file.write_bytes(habitat.zipped_json(content))
     with pytest.raises(EpisodeError, match="no picture 1"):
-        read_goat(file)
+        read_others(file)
 
 
 def test_a_goal_in_words_is_a_category_of_ovon(task: Task) -> None:
@@ -137,6 +152,6 @@ def test_shipped_houses_are_found_and_a_wider_goal_of_ovon_is_refused(task: Task
     content["episodes"][0]["children_object_categories"] = ["armchair"]
     file.write_bytes(habitat.zipped_json(content))
     with pytest.raises(EpisodeError, match="children_object_categories must be empty"):
-        read_ovon(file)
+        read_others(file)
     with pytest.raises(ConfigError, match="children_object_categories must be empty"):
         load_split(folder)

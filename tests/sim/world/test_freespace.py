@@ -76,6 +76,21 @@ def test_a_path_may_begin_next_to_the_grid():
     np.testing.assert_allclose(path[-1], space.frame.to_metres([(rows // 2, cols // 2)])[0])
 
 
+def test_a_path_from_a_place_that_is_not_free_leads_to_the_nearest_free_cell_first():
+    space = free_space(room(4, 3))
+    space.free[:] = False
+    row, col = space.frame.cell(0.0, 0.0)
+    space.free[row, : col + 1] = space.free[row:, col] = True  # two corridors with a corner at (row, col)
+    (middle_m,), begin_m = space.frame.to_metres([(row, col)]), 0.2
+    for source in ((row, col), (row, 5), (row + 20, col)):
+        sources = np.zeros(space.frame.shape, dtype=np.bool_)
+        sources[source] = True
+        path = space.path(space.geodesic(sources), middle_m[0] + begin_m, middle_m[1] - begin_m / 4)
+        assert path is not None
+        corners = space.frame.to_cells(path).tolist()
+        assert corners[1:] == [[row, col], list(source)][: 1 + (source != (row, col))]
+
+
 @given(x=st.floats(-1.9, 1.9), y=st.floats(-1.4, 1.4))
 @settings(max_examples=50, deadline=None)
 def test_a_position_is_free_exactly_when_its_distance_to_a_turned_box_exceeds_the_radius(x, y):

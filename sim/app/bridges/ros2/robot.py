@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sim.app.bridges.ros2.node import RobotNode
 from sim.app.bridges.ros2.requests import Pace
-from sim.app.evaluation.rollout import OnStep, play_episode, record_target, rollout_result
+from sim.app.evaluation.rollout import play_episode, record_target, rollout_result
 from sim.app.evaluation.watch import count_steps
 from sim.app.viewers.mcap_log import RosMessages, mcap_file, true_map
 from sim.app.viewers.ros import messages
@@ -295,7 +295,6 @@ def run_stepped(
     seed_of_agent: int | None = None,
     viewers: Sequence[Viewer] = (),
     name: str | None = None,
-    on_step: OnStep | None = None,
 ) -> RolloutResult:
     """Runs an episode action by action, as `play_episode`, and publishes its result.
 
@@ -305,9 +304,7 @@ def run_stepped(
     was_reset = False
     while True:
         begin_s = time.monotonic()
-        result = play_episode(
-            env, agent, episode, seed=seed, seed_of_agent=seed_of_agent, viewers=viewers, name=name, on_step=on_step
-        )
+        result = play_episode(env, agent, episode, seed=seed, seed_of_agent=seed_of_agent, viewers=viewers, name=name)
         agent.robot.end(result, time.monotonic() - begin_s)
         if agent.given_up != "reset":
             return _failed(env, result) if was_reset else result
@@ -323,15 +320,15 @@ def run_driven(
     seed_of_agent: int | None = None,
     viewers: Sequence[Viewer] = (),
     name: str | None = None,
-    on_step: OnStep | None = None,
 ) -> RolloutResult:
     """Runs an episode of an `ObjectNavVelocityEnv` at the node's pace, and publishes its result; see `run_stepped`.
 
-    Viewers and the agent, a `NodeDriver`, are not asked: velocities come from other nodes.
+    Viewers and the agent, a `NodeDriver`, are not asked: velocities come from other nodes. `viewers` and `name` are
+    parameters because every function of the type `sim.app.composition.runner.Play` has them.
     """
     assert isinstance(agent, NodeDriver)
     assert isinstance(env, ObjectNavVelocityEnv)
-    del viewers, name, on_step
+    del viewers, name
     robot, was_reset = agent.robot, False
     while True:
         observation, _ = env.reset(seed=seed, options={"episode": episode})

@@ -4,8 +4,9 @@
     stubborn export lerobot runs/plus --out runs/plus_lerobot
 
 Each recorded episode is run again by its actions, with the physics and the noise of the run, and its camera pictures
-become a video. Episodes that ended with an error are left out. The same command goes on with an export that was
-stopped, and adds the episodes of a run that has grown.
+become a video. Episodes that ended with an error are left out. An episode whose replay leaves its recorded path is
+named and left out; the exit status is then 1. The same command goes on with an export that was stopped, and adds the
+episodes of a run that has grown.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from sim.app.analysis.display import counted
 from sim.app.bridges.lerobot.dataset import DatasetWriter
 from sim.app.bridges.lerobot.features import task_of
 from sim.app.bridges.lerobot.replays import Replayer
-from sim.core.errors import ConfigError
+from sim.core.errors import ConfigError, EpisodeError
 from sim.core.files import write_atomically
 from sim.core.reading import read_json
 from sim.task.trajectory import trajectory_file
@@ -46,30 +47,55 @@ class Args:
 
 
 def main(args: Args) -> int:
-    """Writes the dataset and prints a line for each episode; returns the exit status."""
+    """Writes the dataset and prints a line for each episode; returns 1 if the replay of an episode was another one."""
     run = read_run(args.run)
     ids = exported(run, only_success=args.only_success)
     if not ids:
         raise ConfigError(f"'{args.run}' has no recorded episode to export: run it with --record.")
     writer, replayer = DatasetWriter(args.out, args.width_px), Replayer(run)
-    tasks = list(dict.fromkeys(task_of(run.results[episode_id].goal) for episode_id in ids))
     try:
-        rows, shape = 0, replayer.picture_shape(args.width_px)
-        _require_same(args, ids)
-        for number, episode_id in enumerate(ids):
-            if writer.has(number):
-                rows += writer.length_of(number)
-                continue
-            goal = run.results[episode_id].goal
-            task = task_of(goal)
-            count = writer.add(number, goal, task, tasks.index(task), rows, replayer.frames(episode_id))
-            rows += count
-            print(f"[{number + 1}/{len(ids)}] {episode_id}: {task}, {counted(count, 'frame')}", flush=True)
+        shape = replayer.picture_shape(args.width_px)
+        about = _begun(args, ids)
+        rows, tasks, about = _written(args, about, run, writer, replayer)
     finally:
         replayer.close()
-    writer.finish(len(ids), tasks, shape, robot="stubborn")
-    print(f"{counted(len(ids), 'episode')}, {counted(rows, 'frame')}, {counted(len(tasks), 'task')} in {args.out}.")
-    return 0
+    count = len(ids) - len(about.left_out)
+    if not count:
+        raise ConfigError(f"No episode of '{args.run}' follows its recorded path, so there is nothing to export.")
+    writer.finish(count, tasks, shape, robot="stubborn")
+    print(f"{counted(count, 'episode')}, {counted(rows, 'frame')}, {counted(len(tasks), 'task')} in {args.out}.")
+    if about.left_out:
+        print(f"{counted(len(about.left_out), 'episode')} left out, see above or '{args.out / ABOUT}'.")
+    return int(bool(about.left_out))
+
+
+def _written(
+    args: Args, about: About, run: Run, writer: DatasetWriter, replayer: Replayer
+) -> tuple[int, list[str], About]:
+    """Writes the episodes; returns the number of rows, the tasks by their number, and which episodes are left out."""
+    rows, number, tasks = 0, 0, list[str]()
+    for position, episode_id in enumerate(about.episodes, start=1):
+        goal = run.results[episode_id].goal
+        task = task_of(goal)
+        where = f"[{position}/{len(about.episodes)}] {episode_id}"
+        if episode_id in about.left_out:
+            print(f"{where}: left out before.", flush=True)
+            continue
+        if writer.has(number):
+            count = writer.length_of(number)
+        else:
+            index = tasks.index(task) if task in tasks else len(tasks)
+            try:
+                count = writer.add(number, goal, task, index, rows, replayer.frames(episode_id))
+            except EpisodeError as error:
+                print(f"{where}: left out. {error}", flush=True)
+                about = msgspec.structs.replace(about, left_out=[*about.left_out, episode_id])
+                _write_about(args, about)
+                continue
+            print(f"{where}: {task}, {counted(count, 'frame')}", flush=True)
+        tasks += [] if task in tasks else [task]
+        rows, number = rows + count, number + 1
+    return rows, tasks, about
 
 
 def exported(run: Run, *, only_success: bool) -> list[str]:
@@ -90,16 +116,19 @@ class About(msgspec.Struct, frozen=True):
     width_px: int
     only_success: bool
     episodes: list[str]
-    """Ids in the order of the dataset."""
+    """Ids in the order of the run's results."""
+    left_out: list[str] = []
+    """Ids of those that are not in the dataset, because their replay leaves the recorded path."""
 
 
-def _require_same(args: Args, ids: list[str]) -> None:
-    """Writes what the folder is an export of.
+def _begun(args: Args, ids: list[str]) -> About:
+    """Returns what the folder is an export of, and writes it there.
 
     Raises:
         ConfigError: it is one of another run, with other options, or of episodes that have changed since.
     """
     about, file = About(str(args.run.resolve()), args.width_px, args.only_success, ids), args.out / ABOUT
+    left_out: list[str] = []
     if file.is_file():
         before = read_json(file, About, what="Export")
         changed = [
@@ -109,5 +138,12 @@ def _require_same(args: Args, ids: list[str]) -> None:
             changed.append("the order of its episodes")
         if changed:
             raise ConfigError(f"--out '{args.out}' is another export ({', '.join(changed)}). Give another folder.")
+        left_out = before.left_out
+    about = msgspec.structs.replace(about, left_out=left_out)
     args.out.mkdir(parents=True, exist_ok=True)
-    write_atomically(file, msgspec.json.encode(about) + b"\n")
+    _write_about(args, about)
+    return about
+
+
+def _write_about(args: Args, about: About) -> None:
+    write_atomically(args.out / ABOUT, msgspec.json.encode(about) + b"\n")

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Literal
 
 from sim.app.bridges.ros2.loading import require_ros
+from sim.app.composition.agents import find_agent
 from sim.app.options import RunOptions
 from sim.core.errors import ConfigError
 
@@ -54,15 +55,16 @@ class Args:
 
 def main(args: Args) -> int:
     """Drives until it is interrupted, or with --once until the robot's last episode; returns the exit status."""
+    spec = find_agent(args.agent)
+    if args.words and spec.words is None:
+        raise ConfigError(f"--words: agent '{args.agent}' takes categories only.")
     require_ros()
     from sim.app.bridges.ros2.observer import AgentNode
     from sim.app.composition.ros_agent import RobotAgent
     from sim.app.composition.setup import resolve
 
     names = {field.name for field in fields(RunOptions)}
-    setup = resolve(RunOptions(**{name: value for name, value in vars(args).items() if name in names}))
-    if args.words and setup.spec.words is None:
-        raise ConfigError(f"--words: agent '{args.agent}' takes categories only.")
+    setup = resolve(RunOptions(**{name: value for name, value in vars(args).items() if name in names}), spec)
     sensors = dict.fromkeys((*setup.config.sensors, *((setup.spec.words or ()) if args.words else ())))
     node = AgentNode(setup.config.camera, (*sensors,), stepped=args.stepped, pose=args.pose, ros_args=args.ros_args)
     try:

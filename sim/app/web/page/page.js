@@ -11,7 +11,8 @@ let socket = null;
 let left = false;  // true: another page is shown; the browser may keep this one for its Back button
 let failures = 0;
 let choices = null;
-let closed = false;  // true: the user has closed the outcome of this episode; further states do not open it again
+let seen = false;  // true: this page was open before the end of the episode, whose outcome is then new
+let closed = false;  // true: the outcome of this episode is not new, or the user has closed it; no state opens it again
 let state = {phase: "idle", driver: "agent", paused: false, per_s: 2, hints: false};
 
 // --- connection ---------------------------------------------------------------------------------------------------
@@ -90,7 +91,10 @@ function showState(news) {
     document.body.classList.remove("hit");
     for (const figure of figures.values()) figure.classList.replace("absent", "empty") || figure.classList.add("empty");
   }
-  $("message").textContent = news.message;
+  const outcome = news.phase === "ended" ? news.outcome : null;
+  seen ||= news.phase !== "ended";
+  closed = Boolean(outcome) && (closed || !seen);
+  $("message").textContent = outcome && !seen ? `Last episode: ${news.message}` : news.message;
   $("driver").textContent = news.driver === "person" ? "you drive" : news.request ? news.request.agent : "agent";
   $("pause").textContent = news.paused ? "Run" : "Pause";
   $("pause").disabled = $("step").disabled = !running || news.driver === "person";
@@ -104,8 +108,6 @@ function showState(news) {
   $("speed").value = String(news.per_s);
   for (const button of document.querySelectorAll(".pad button")) button.disabled = !running;
   showConnection(news.clients > 1 ? `connected, ${news.clients} pages` : "connected", false);
-  const outcome = news.phase === "ended" ? news.outcome : null;
-  if (!outcome) closed = false;
   $("outcome").hidden = !outcome || closed;
   if (outcome) {
     $("outcome").className = `card outcome ${outcome.found ? "found" : "missed"}`;
@@ -175,7 +177,7 @@ function facts(frame) {
   hint(frame.hint);
   const advice = state.driver === "person" && frame.advice ? `The agent would: ${frame.advice}. ` : "";
   const shortest = frame.hint ? `Shortest path: ${frame.hint.words}. ` : "";
-  $("doing").textContent = shortest + advice + (frame.doing ? `Agent: ${frame.doing}.` : "");
+  if (!closed) $("doing").textContent = shortest + advice + (frame.doing ? `Agent: ${frame.doing}.` : "");
   fill($("goals"), frame.goals.map(goalItem));
   if (frame.goals.length && state.phase === "running") $("message").textContent = frame.looking;
   fill($("sight"), frame.in_sight.map((item) => legendItem(item.name, item.colour, item.goal)));

@@ -185,17 +185,49 @@ def test_only_successes_are_exported_where_that_is_asked_for(folder: Path, tmp_p
             export(folder, "noisy", tmp_path, only_success=True)
 
 
-def test_a_replay_that_leaves_the_recorded_path_is_refused(folder: Path, tmp_path: Path) -> None:
-    run = read_run(recorded(tiny_split(tmp_path), tmp_path / "run", "oracle", episodes=1))
-    episode_id = next(iter(run.results))
-    file = trajectory_file(tmp_path / "run", episode_id)
+def bent(run: Path, episode_id: str) -> None:
+    """Moves a recorded pose of an episode, so that its replay is another one."""
+    file = trajectory_file(run, episode_id)
     trajectory = read_trajectory(file)
     trajectory.poses[2, 0] += 0.05
     write_trajectory(file, trajectory, trajectory.about)
+
+
+def test_a_replay_that_leaves_the_recorded_path_is_refused(folder: Path, tmp_path: Path) -> None:
+    run = read_run(recorded(tiny_split(tmp_path), tmp_path / "run", "oracle", episodes=1))
+    episode_id = next(iter(run.results))
+    bent(tmp_path / "run", episode_id)
     replayer = Replayer(run)
     with pytest.raises(EpisodeError, match=r"0\.05 m off the recorded path at step 2"):
         list(replayer.frames(episode_id))
     replayer.close()
+
+
+def test_an_episode_whose_replay_is_another_one_is_named_and_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = recorded(tiny_split(tmp_path), tmp_path / "run", "oracle")
+    ids = list(read_run(run).results)
+    bent(run, ids[1])
+    args = lerobot.Args(run=run, out=tmp_path / "data", width_px=48)
+    capsys.readouterr()
+    for attempt in range(2):  # the second one has nothing left to write
+        assert lerobot.main(args) == 1
+        printed = capsys.readouterr().out
+        assert f"[2/3] {ids[1]}: left out" in printed
+        assert ("0.05 m off the recorded path" in printed) == (attempt == 0)
+        assert "1 episode left out" in printed
+        info = json.loads((args.out / "meta" / "info.json").read_text())
+        assert (info["total_episodes"], info["splits"]) == (2, {"train": "0:2"})
+    last = rows_of(args.out / "data/chunk-000/file-001.parquet")
+    trajectory = read_trajectory(trajectory_file(run, ids[2]))
+    assert np.argmax(last["action"], axis=1).tolist() == trajectory.actions.tolist()
+    assert last["index"][0] == read_trajectory(trajectory_file(run, ids[0])).num_steps
+    for episode_id in (ids[0], ids[2]):
+        bent(run, episode_id)
+    with pytest.raises(ConfigError, match=r"No episode of .* follows its recorded path"):
+        lerobot.main(lerobot.Args(run=run, out=tmp_path / "none", width_px=48))
+    assert not list((tmp_path / "none").rglob("*.mp4"))
 
 
 def test_statistics_of_parts_are_those_of_the_whole() -> None:

@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import importlib.util
+import inspect
 import math
 import time
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
 from sim.app import cli
+from sim.app.bridges.ros2.observer import AgentNode, Announced
 from sim.app.bridges.ros2.requests import Pace, Requests
-from sim.app.bridges.ros2.robot import RosConfig
+from sim.app.bridges.ros2.robot import RosConfig, run_driven, run_stepped
 from sim.app.commands.ros import agent, robot
-from sim.app.composition.ros_agent import build_apart
+from sim.app.composition.ros_agent import RobotAgent, build_apart
+from sim.app.composition.runner import Play
 from sim.app.composition.setup import resolve
 from sim.app.options import RunOptions
-from sim.core.interface import Action, ConfigError
+from sim.core.errors import AgentError, ConfigError
+from sim.core.interface import Action
 
 without_ros = pytest.mark.skipif(importlib.util.find_spec("rclpy") is not None, reason="there is ROS 2")
 
@@ -28,6 +35,28 @@ def test_without_ros_one_line_says_what_to_install(command: object, capsys: pyte
     assert len(said.splitlines()) == 1
     assert "needs rclpy" in said
     assert "ros setup" in said
+
+
+def test_an_agent_that_takes_no_words_is_refused_before_ros_is_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(agent, "require_ros", lambda: pytest.fail("ROS was loaded"))
+    with pytest.raises(ConfigError, match="--words: agent 'cloned' takes categories only"):
+        agent.main(agent.Args(agent="cloned", words=True))
+
+
+@pytest.mark.parametrize(
+    ("name", "advice"), [("tests.helpers.ros_agents:TURNER", "takes categories only"), ("random", "give --words")]
+)
+def test_a_goal_in_words_without_that_option_names_the_remedy_or_that_there_is_none(name: str, advice: str) -> None:
+    node = SimpleNamespace(announced=Announced("run", 1, 0, "the red chair", 0, 0, over=False))
+    driving = RobotAgent(resolve(RunOptions(agent=name)), cast(AgentNode, node), stepped=True)
+    with pytest.raises(AgentError, match=f"'the red chair' is in words: .*{advice}"):
+        driving.run(once=True)
+
+
+@pytest.mark.parametrize("play", [run_stepped, run_driven])
+def test_what_runs_an_episode_has_the_parameters_that_a_run_gives_and_no_others(play: Callable[..., Any]) -> None:
+    given = list(inspect.signature(Play.__call__).parameters.values())[1:]
+    assert list(inspect.signature(play).parameters.values()) == given
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])

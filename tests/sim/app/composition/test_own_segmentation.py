@@ -81,6 +81,22 @@ def test_a_result_that_is_not_allowed_is_named_with_the_segmentation(
     env.close()
 
 
+@pytest.mark.parametrize(
+    "agent", [("stubborn-plus",), ("cloned",), ("stubborn", "--explorer", "informed-tour")], ids=lambda words: words[-1]
+)
+def test_a_segmentation_without_posteriors_is_refused_before_the_run_of_an_agent_that_reads_them(
+    agent: tuple[str, ...], house: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name = "tests.helpers.segmentations:Wrong"
+    assert run(house, tmp_path, "--semantics", name, "--step-timeout", "0", "--agent", *agent) == 2
+    captured = capsys.readouterr()
+    said = " ".join(captured.err.split())
+    assert f"Segmentation '{name}' has no method posteriors, which agent '{agent[0]}' reads" in said
+    assert said.count("posteriors") == 1
+    results = tmp_path / "results.jsonl"
+    assert not results.exists() or not results.read_text()
+
+
 @pytest.mark.parametrize("returned", [np.zeros((5, 7), int), np.zeros((0, 0), int), np.full((48, 64), 41)])
 def test_categories_of_a_wrong_size_or_number_are_named(
     returned: object, house: Path, monkeypatch: pytest.MonkeyPatch

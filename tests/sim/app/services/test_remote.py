@@ -223,6 +223,24 @@ def test_no_server_is_one_sentence() -> None:
         asking("http://127.0.0.1:9", retries=0).posteriors(view())
 
 
+def test_other_machines_are_asked_through_the_proxy_of_the_environment(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    proxy, local = (start(body_of(posteriors_bytes(probabilities()))) for _ in range(2))
+    for name in ("http_proxy", "HTTP_PROXY"):
+        monkeypatch.setenv(name, proxy.url)
+    for name in ("no_proxy", "NO_PROXY"):
+        monkeypatch.setenv(name, "inside.invalid")
+    far = "http://detectors.invalid:8000"
+    np.testing.assert_array_equal(asking(far, retries=0).posteriors(view()), probabilities())
+    assert [path for path, _ in proxy.requests] == [f"{far}/posteriors"]
+    for url in (local.url, local.url.replace("127.0.0.1", "localhost")):
+        asking(url, retries=0).posteriors(view())
+    with pytest.raises(AgentError, match="no valid reply"):
+        asking("http://inside.invalid:8000", retries=0).posteriors(view())
+    assert (len(proxy.requests), len(local.requests)) == (1, 2)
+
+
 def test_a_fault_that_ends_is_repaired_by_the_next_attempt(start: Start) -> None:
     count = 0
 

@@ -123,6 +123,8 @@ def test_the_leaderboard_has_the_rows_that_hold(
         "broken.json.gz: Submission ", "few.json.gz: it has 2 episodes; a row needs 3",
     ):  # fmt: skip
         assert f"Left out: {part}" in printed
+    verified = {line.split()[1] for line in printed.splitlines() if line.startswith("Verifying")}
+    assert verified == {"good.json.gz.", "erred.json.gz.", "forged.json.gz."}
     table = (tmp_path / "table.md").read_text()
     assert r"Our &lt;b&gt;agent&lt;/b&gt; \[x\]\(y\)" in table
     assert "| equal |" in table

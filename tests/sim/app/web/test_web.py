@@ -267,6 +267,12 @@ def test_an_episode_runs_to_its_end_and_a_second_client_sees_it(server: Server, 
     assert {"camera", "chase", "plan", "semantic", "depth"} <= set(drawn)
     assert browser.console_errors() == []
     assert all(address.startswith((server.address, "blob:", "data:")) for address in browser.requests())
+    browser.visit(server.address)  # a page that is opened now shows the end, but not as one that is new
+    wait_for(lambda: browser.run("return document.body.dataset.phase") == "ended")
+    assert browser.run(closing)
+    message, doing = (f"return document.getElementById('{name}').textContent" for name in ("message", "doing"))
+    assert browser.run(message).startswith("Last episode: Found after")
+    wait_for(lambda: browser.run(doing).startswith("The STOP counts"))
 
 
 def test_ten_actions_are_driven_the_agent_is_taken_over_from_and_gets_the_robot_back(

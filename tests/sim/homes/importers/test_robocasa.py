@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import time
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,8 @@ from sim.app.commands.importing import robocasa as command
 from sim.core.errors import ConfigError, HouseError
 from sim.episodes.splits import labels_of
 from sim.gl import mujoco
+from sim.homes.importers.robocasa import _show_unseen_bodies as show_unseen_bodies
+from sim.homes.importers.robocasa import _subtree_ends as subtree_ends
 from sim.homes.importers.robocasa import category_of_fixture, find_scenes, import_kitchen
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels, rendered_geoms
@@ -214,3 +218,37 @@ def test_a_fixture_whose_mesh_is_a_placeholder_shows_the_boxes_that_the_robot_to
     assert (
         "visible geoms fill little of 'stove_main_group_main'" in (tmp_path / "out" / "import.json").read_text()
     ) == shown
+
+
+def test_the_bodies_inside_of_a_body_follow_it_without_a_gap() -> None:
+    spec = mujoco.MjSpec()
+    left, right = spec.worldbody.add_body(name="left"), spec.worldbody.add_body(name="right")
+    for name, parent in (("deep", left.add_body(name="inner")), ("second", left), ("third", right)):
+        parent.add_body(name=name)
+    model = spec.compile()
+    ends = subtree_ends(model.body_parentid.tolist())
+    inside = {
+        model.body(body).name: [model.body(one).name for one in range(body, end)] for body, end in enumerate(ends)
+    }
+    assert inside == {
+        "world": ["world", "left", "inner", "deep", "second", "right", "third"],
+        "left": ["left", "inner", "deep", "second"],
+        "inner": ["inner", "deep"],
+        "deep": ["deep"],
+        "second": ["second"],
+        "right": ["right", "third"],
+        "third": ["third"],
+    }
+
+
+def test_a_thousand_bodies_are_looked_at_in_a_second() -> None:
+    spec, sizes = mujoco.MjSpec(), ((0.3, 3), (0.01, 0))
+    for _ in range(500):
+        body = spec.worldbody
+        for half_m, group in sizes:
+            body = body.add_body()
+            body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[half_m] * 3, group=group, contype=group, conaffinity=0)
+    model, changes, begin_s = spec.compile(), Counter[str](), time.process_time()
+    show_unseen_bodies(spec, model, changes)
+    assert changes.total() == 500
+    assert time.process_time() - begin_s < 1.0  # 9 s where each body was compared with each other one

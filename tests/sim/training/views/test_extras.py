@@ -23,6 +23,7 @@ from sim.core.errors import HouseError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import FORWARD_M, MPCAT40_ID, CameraModel, ConfigError
 from sim.env.scene import Scene
+from sim.episodes.descriptions import Descriptions
 from sim.robot.config import RobotConfig
 from sim.training.segmentation.dataset import LabelledView, ViewDataset, decode_member, read_shard
 from sim.training.views.coco import annotate, bounding_box, decode_mask, encode_mask
@@ -67,6 +68,20 @@ def test_extras_do_not_change_the_other_arrays_of_a_view(scene: Scene, views: li
         for name in ("rgb", "depth_mm", "semantic"):
             np.testing.assert_array_equal(getattr(plain, name), getattr(rich, name))
         assert set(rich.record) - set(plain.record) == {"T_world_cam"}
+
+
+def test_the_renderer_of_descriptions_is_freed_after_an_error(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    close, closed = Descriptions.close, []
+
+    def counted(self: Descriptions) -> None:
+        closed.append(self)
+        close(self)
+
+    monkeypatch.setattr(Descriptions, "close", counted)
+    monkeypatch.setattr("sim.training.views.views.is_bare", lambda *_: True)
+    with pytest.raises(HouseError, match="it shows too little"):
+        views_of(scene, count=1, extras=("instances",))
+    assert len(closed) == 1
 
 
 def test_objects_are_described_by_texts_that_fit_no_other_one() -> None:
