@@ -114,7 +114,7 @@ def require_same_episodes(first: Run, *others: Run) -> list[str]:
     """Returns the ids of the episodes that all runs share, in the order of the first run.
 
     Episodes sampled in one house (`stubborn run --house`) have the same ids for every seed. So house, goal and shortest
-    path must also be equal; the path to `SAME_PATH_M`, and only where neither episode ended with an error.
+    path must also be equal; the path to `SAME_PATH_M`, and only where neither episode ended with an error or is a chain.
 
     Raises:
         ConfigError: a run is of another split than the first, shares no episode with it, or shares only ids of
@@ -162,6 +162,8 @@ def _same_paths_expected(first: Run, second: Run) -> bool:
 
 def _same_path(first: EpisodeResult, second: EpisodeResult) -> bool:
     if first.is_error or second.is_error:  # the path may not have been measured
+        return True
+    if first.goals is not None and second.goals is not None:  # the path to each goal begins where the robot was
         return True
     a_m, b_m = first.shortest_path, second.shortest_path
     return a_m == b_m if a_m is None or b_m is None else abs(a_m - b_m) <= SAME_PATH_M

@@ -83,10 +83,12 @@ def compare(first: Run, second: Run) -> ResultTable:
     if fewer:
         notes.append(f"Differences of fewer episodes, because the others have no value: {', '.join(fewer)}.")
     if changed:
-        lost = [i for i in changed if first.results[i].success]
-        gained = [i for i in changed if not first.results[i].success]
-        notes.append(f"Only A succeeds in {len(lost)}: {' '.join(lost) or '-'}.")
-        notes.append(f"Only B succeeds in {len(gained)}: {' '.join(gained) or '-'}.")
+        lost = [i for i in changed if first.results[i].success > second.results[i].success]
+        gained = [i for i in changed if i not in lost]
+        chains = any(result.goals is not None for result in a)
+        for name, won in (("A", lost), ("B", gained)):
+            start = f"{name} reaches more goals in" if chains else f"Only {name} succeeds in"
+            notes.append(f"{start} {len(won)}: {' '.join(won) or '-'}.")
     title = f"B - A, paired over {episodes} episodes"
     return ResultTable("comparison", title, ("metric", "A", "B", "B - A"), rows, notes)
 
