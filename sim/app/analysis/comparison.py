@@ -114,7 +114,7 @@ def require_same_episodes(first: Run, *others: Run) -> list[str]:
     """Returns the ids of the episodes that all runs share, in the order of the first run.
 
     Episodes sampled in one house (`stubborn run --house`) have the same ids for every seed. So house, goal and shortest
-    path must also be equal; the path to `SAME_PATH_M`, and only where neither episode ended with an error or is a chain.
+    path must also be equal; the path to `SAME_PATH_M`, and only where no episode ended with an error or is a chain.
 
     Raises:
         ConfigError: a run is of another split than the first, shares no episode with it, or shares only ids of
