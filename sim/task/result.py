@@ -219,6 +219,13 @@ class RolloutResult(EpisodeMetrics, frozen=True, kw_only=True, omit_defaults=Tru
 Isolation = bool | Literal["namespace"]
 
 
+def outcome_of(result: RolloutResult) -> str:
+    """Returns the end of an episode in a few words: "found", "not found (loop)", "5 of 7 goals found"."""
+    if result.goals is not None:
+        return goals_found(result.goals)
+    return "found" if result.success else f"not found ({result.failure or result.end_reason})"
+
+
 class EpisodeResult(RolloutResult, frozen=True, kw_only=True):
     """A line of `results.jsonl`."""
 

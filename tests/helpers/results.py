@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 
 from sim.app.evaluation.results import read_results
-from sim.task.result import EpisodeResult, RolloutResult, metrics_without_episode
+from sim.task.result import EpisodeResult, GoalResult, RolloutResult, metrics_without_episode
 
 ENTRIES: dict[str, Any] = msgspec.to_builtins(metrics_without_episode(4.2)) | {
     "episode_id": "val_0000",
@@ -41,6 +41,14 @@ ENTRIES: dict[str, Any] = msgspec.to_builtins(metrics_without_episode(4.2)) | {
 def a_result(**changes: Any) -> EpisodeResult:
     """Returns the result of `ENTRIES` with some changes."""
     return msgspec.convert(ENTRIES | changes, EpisodeResult)
+
+
+def a_goal(**changes: Any) -> GoalResult:
+    """Returns the result of a goal of a chain, as of `ENTRIES` with some changes."""
+    of_goal = {"goal": "bed", "kind": "words", "goat_success": 1.0, "goat_spl": 1.0}
+    names = [field.name for field in msgspec.structs.fields(GoalResult)]
+    lines = ENTRIES | of_goal | changes
+    return msgspec.convert({name: lines[name] for name in names if name in lines}, GoalResult)
 
 
 def write_lines(folder: Path, *lines: dict[str, Any]) -> None:

@@ -142,7 +142,7 @@ def largest_push_n(config: RobotConfig, contact_m: float) -> float:
     """Returns the largest force of the robot at a height.
 
     The push at a height h and the traction at the floor lift the wheels about the rear caster at a distance d: they
-    carry m g - F h / d, and F is at most the friction times that. Below 0.3 m the motors are the limit.
+    carry m g - F h / d, and F is at most the friction times that. Below about 0.11 m the motors are the limit.
     """
     weight_n, arm = config.body.mass_kg * GRAVITY_M_S2, contact_m / config.wheels.caster_offset_m
     traction_n = FLOOR_FRICTION * weight_n / (1.0 + FLOOR_FRICTION * arm)

@@ -84,7 +84,7 @@ def compare(first: Run, second: Run) -> ResultTable:
         notes.append(f"Differences of fewer episodes, because the others have no value: {', '.join(fewer)}.")
     if changed:
         lost = [i for i in changed if first.results[i].success > second.results[i].success]
-        gained = [i for i in changed if i not in lost]
+        gained = [i for i in changed if first.results[i].success < second.results[i].success]
         chains = any(result.goals is not None for result in a)
         for name, won in (("A", lost), ("B", gained)):
             start = f"{name} reaches more goals in" if chains else f"Only {name} succeeds in"

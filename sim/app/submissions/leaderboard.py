@@ -69,7 +69,7 @@ class Row:
 def refusal_before_replay(
     submission: Submission, is_first: bool, nonstandard: Sequence[str], shipped: Collection[str]
 ) -> str:
-    """Returns the reason why a submission is refused whatever its replay shows; "": there is none.
+    """Returns the reason why a submission is refused whatever its replay shows; "": it is not refused.
 
     Args:
         submission: from a file.

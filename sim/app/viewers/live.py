@@ -25,7 +25,7 @@ from sim.env.scene import Scene
 from sim.gl import mujoco
 from sim.robot.body import PREFIX, ROBOT_GROUP
 from sim.task.explanations import ACTION_WORDS, in_words
-from sim.task.result import RolloutResult
+from sim.task.result import RolloutResult, outcome_of
 
 ACTION_S = 0.3
 """Display time of an action; in the simulation it takes up to two seconds."""
@@ -99,9 +99,13 @@ class LiveView:
     def end(self, result: RolloutResult) -> None:
         """Shows the outcome for a second."""
         if self._is_open:
-            outcome = "found" if result.success else f"not found ({result.failure or result.end_reason})"
             place = mujoco.mjtGridPos.mjGRID_TOPLEFT.value
-            words = (mujoco.mjtFontScale.mjFONTSCALE_100.value, place, in_words(self._env.scene.task.goal), outcome)
+            words = (
+                mujoco.mjtFontScale.mjFONTSCALE_100.value,
+                place,
+                in_words(self._env.scene.task.goal),
+                outcome_of(result),
+            )
             self._handle.set_texts(words)
             self._handle.sync()
             time.sleep(1.0)

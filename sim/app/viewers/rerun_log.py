@@ -41,7 +41,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40, CameraModel, ConfigError
 from sim.env.objectnav import ObjectNavEnv
 from sim.task.explanations import ACTION_WORDS, in_words
-from sim.task.result import RolloutResult
+from sim.task.result import RolloutResult, outcome_of
 
 FOLDER = "rerun"
 PORT = 9876
@@ -138,8 +138,8 @@ class RerunLog:
 
     def end(self, result: RolloutResult) -> None:
         """Logs the outcome of the episode and completes the file."""
-        outcome = "found" if result.success else f"not found: {result.failure or result.end_reason}"
-        self._text(f"{outcome} after {result.num_steps} steps", level="INFO" if result.success else "ERROR")
+        level = "INFO" if result.success == 1.0 else "ERROR"
+        self._text(f"{outcome_of(result)} after {result.num_steps} steps", level=level)
         self._disconnect()
         if self._part is not None and self._run is not None:
             self._part.replace(rerun_file(self._run, self._env.episode.episode_id))

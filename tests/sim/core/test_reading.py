@@ -219,7 +219,7 @@ def test_a_file_of_empty_lines_ends_soon(tmp_path: Path) -> None:
         list(reading.json_lines(file, what="Scenes"))
 
 
-def test_the_memory_for_a_file_depends_on_its_size_and_not_on_the_limit(tmp_path):
+def test_the_memory_for_a_file_depends_on_its_size_and_not_on_the_limit(tmp_path: Path) -> None:
     file = tmp_path / "small.json"
     file.write_bytes(b"[]")
     tracemalloc.start()

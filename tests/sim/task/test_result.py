@@ -16,8 +16,9 @@ from sim.task.result import (
     StopTarget,
     failed_metrics,
     metrics_without_episode,
+    outcome_of,
 )
-from tests.helpers.results import ENTRIES, a_result
+from tests.helpers.results import ENTRIES, a_goal, a_result
 
 PAGE = Path(__file__).parents[3] / "docs" / "task.md"
 
@@ -69,3 +70,11 @@ def test_the_page_of_the_task_names_every_metric_and_field() -> None:
     page = PAGE.read_text(encoding="utf-8")
     fields = {*EpisodeMetrics.__struct_fields__, "stop_confidence", *METRICS}
     assert [name for name in sorted(fields) if f"`{name}`" not in page] == []
+
+
+def test_the_outcome_of_a_chain_counts_its_goals() -> None:
+    assert outcome_of(a_result()) == "found"
+    assert outcome_of(a_result(success=0.0, failure="loop")) == "not found (loop)"
+    assert outcome_of(a_result(success=0.0, end_reason="fallen")) == "not found (fallen)"
+    chain = msgspec.structs.replace(a_result(success=0.5), goals=(a_goal(), a_goal(success=0.0)))
+    assert outcome_of(chain) == "1 of 2 goals found"

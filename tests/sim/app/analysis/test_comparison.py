@@ -12,7 +12,6 @@ import pytest
 from msgspec.structs import replace as changed
 
 from sim.app.analysis.comparison import (
-    Run,
     code_of,
     differences_table,
     differing_fields,
@@ -33,9 +32,8 @@ from sim.app.commands.compare import Args, compare, main, verdict
 from sim.app.evaluation.config_fields import ABSENT, run_differences
 from sim.app.evaluation.intervals import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.core.interface import ConfigError
-from sim.task.result import GoalMetrics, GoalResult
 from tests.helpers import wording
-from tests.helpers.results import write_lines
+from tests.helpers.results import a_goal, write_lines
 
 
 def houses(count: int) -> list[str]:
@@ -181,24 +179,14 @@ def test_an_episode_that_broke_or_whose_path_was_measured_again_is_still_the_sam
 
 
 def test_chains_are_the_same_although_the_robot_was_elsewhere_when_a_goal_began(tmp_path: Path) -> None:
-    runs = [
-        as_chains(read_run(run_folder(tmp_path / name, "ab")), shortest_path=path_m, success=success)
-        for name, path_m, success in (("a", 33.2, 0.5), ("b", 32.9, 0.75))
-    ]
+    runs = []
+    for name, path_m, success in (("a", 33.2, 0.5), ("b", 32.9, 0.75)):
+        run = read_run(run_folder(tmp_path / name, "ab", shortest_path=path_m, success=success))
+        runs.append(replace(run, results={i: changed(line, goals=(a_goal(),)) for i, line in run.results.items()}))
     assert require_same_episodes(*runs) == ["a", "b"]
     notes = compare(*runs).notes
     assert "A reaches more goals in 0: -." in notes
     assert "B reaches more goals in 2: a b." in notes
-
-
-def as_chains(run: Run, **fields: float) -> Run:
-    """Returns a run in which each episode is a chain of one goal."""
-    results = {}
-    for name, line in run.results.items():
-        of_goal = {field: getattr(line, field) for field in GoalMetrics.__struct_fields__}
-        goal = GoalResult(**of_goal, goal="bed", kind="words", goat_success=1.0, goat_spl=1.0)
-        results[name] = changed(line, goals=(goal,), **fields)
-    return replace(run, results=results)
 
 
 def test_a_folder_that_is_not_a_run_is_reported(tmp_path: Path) -> None:

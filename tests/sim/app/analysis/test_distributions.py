@@ -22,8 +22,8 @@ from sim.app.analysis.report.distributions import (
 )
 from sim.app.analysis.report.figures import causes, grouped, means, proportion_of
 from sim.app.analysis.report.trend import HEIGHT, METRICS, TOP, trend
-from sim.task.result import EpisodeResult, GoalMetrics, GoalResult
-from tests.helpers.results import a_result
+from sim.task.result import EpisodeResult
+from tests.helpers.results import a_goal, a_result
 
 
 def line(**changed: Any) -> EpisodeResult:
@@ -123,10 +123,7 @@ def test_calibration_counts_stops_with_a_confidence_in_tenths() -> None:
 
 def test_the_confidence_of_a_chain_is_that_of_its_last_stop() -> None:
     episode = line(stop_confidence=0.9, success=0.5)
-    fields: dict[str, Any] = {name: getattr(episode, name) for name in GoalMetrics.__struct_fields__}
-    fields |= {"goal": "bed", "kind": "words", "goat_success": 1.0, "goat_spl": 1.0}
-    goal = GoalResult(**fields)
-    first, last = replace(goal, success=0.0), replace(goal, success=1.0)
+    first, last = a_goal(success=0.0), a_goal(success=1.0)
     for goals, correct in (((first, last), 1), ((last, first), 0)):
         assert calibration([replace(episode, goals=goals)]).correct.count == correct
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import time
-from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +17,6 @@ from sim.app.commands.importing import robocasa as command
 from sim.core.errors import ConfigError, HouseError
 from sim.episodes.splits import labels_of
 from sim.gl import mujoco
-from sim.homes.importers.robocasa import _show_unseen_bodies as show_unseen_bodies
 from sim.homes.importers.robocasa import _subtree_ends as subtree_ends
 from sim.homes.importers.robocasa import category_of_fixture, find_scenes, import_kitchen
 from sim.houses.house import read_rooms
@@ -239,16 +236,3 @@ def test_the_bodies_inside_of_a_body_follow_it_without_a_gap() -> None:
         "right": ["right", "third"],
         "third": ["third"],
     }
-
-
-def test_a_thousand_bodies_are_looked_at_in_a_second() -> None:
-    spec, sizes = mujoco.MjSpec(), ((0.3, 3), (0.01, 0))
-    for _ in range(500):
-        body = spec.worldbody
-        for half_m, group in sizes:
-            body = body.add_body()
-            body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[half_m] * 3, group=group, contype=group, conaffinity=0)
-    model, changes, begin_s = spec.compile(), Counter[str](), time.process_time()
-    show_unseen_bodies(spec, model, changes)
-    assert changes.total() == 500
-    assert time.process_time() - begin_s < 1.0  # 9 s where each body was compared with each other one
