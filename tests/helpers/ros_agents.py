@@ -7,7 +7,7 @@ import zlib
 
 import numpy as np
 
-from sim.core.interface import Action, AgentSpec, Observation
+from sim.core.interface import GOAL_SENSORS, Action, AgentSpec, Observation
 
 ACTIONS = (
     Action.TURN_LEFT, Action.MOVE_FORWARD, Action.MOVE_FORWARD, Action.TURN_RIGHT, Action.TURN_RIGHT,
@@ -44,7 +44,8 @@ class Remembering(Witness):
 
     def act(self, observation: Observation) -> Action:
         super().act(observation)
-        self._sum = zlib.crc32(str(observation["goal"]).encode(), self._sum)
+        for name in GOAL_SENSORS:
+            self._sum = zlib.crc32(np.array(observation[name]).tobytes(), self._sum)
         return Action.STOP if self._steps == 2 else Action.TURN_LEFT
 
 
@@ -65,5 +66,6 @@ REMEMBERING = AgentSpec(
     sensors=("rgb", "depth", "imu", "odometry"),
     uses_segmentation=False,
     words=("goal",),
+    pictures=("goal", "goal_picture"),
 )
 WITNESS = AgentSpec(make=lambda **_: Witness(), sensors=("rgb", "depth", "imu", "odometry"), uses_segmentation=False)

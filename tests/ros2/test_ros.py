@@ -25,7 +25,7 @@ from sim.app.bridges.ros2.loading import has_frames  # noqa: E402
 from sim.app.bridges.ros2.node import RobotNode  # noqa: E402
 from sim.app.viewers.ros.topics import COLOUR, DEPTH, TOPICS  # noqa: E402
 from sim.core.geometry.pose import Pose  # noqa: E402
-from sim.core.goals import GoalSpec  # noqa: E402
+from sim.core.goals import PICTURE_PX, GoalSpec, PictureCamera  # noqa: E402
 from sim.episodes.episode import Episode  # noqa: E402
 from sim.episodes.splits import write_split  # noqa: E402
 from tests.helpers.worlds import sofa_room  # noqa: E402
@@ -272,7 +272,8 @@ def test_an_agent_drives_a_robot_in_real_time_by_velocities(robots: Robots) -> N
         assert line["stop_target_xy_m"] == pytest.approx([x_m, y_m], abs=0.1)
 
 
-CHAIN = ("sofa", "the couch", "sofa")
+CHAIN = ("sofa", "the couch", "")
+"""The last goal is a picture."""
 
 
 def write_chain(robots: Robots) -> str:
@@ -280,7 +281,9 @@ def write_chain(robots: Robots) -> str:
     folder = robots.folder / "chains"
     folder.mkdir()
     robots.house.rename(folder / "home.xml")
-    goals = tuple(GoalSpec.of(goal) for goal in CHAIN)
+    camera = PictureCamera(x_m=0.5, y_m=0.0, z_m=1.2, yaw_rad=0.0, pitch_rad=0.4)
+    picture = GoalSpec("sofa_00", "picture", camera)
+    goals = tuple(GoalSpec.of(goal) if goal else picture for goal in CHAIN)
     episode = Episode("chain", "home", "sofa", Pose(-1.5, 1.0, 0.5), None, goals)
     write_split(folder, [episode], {"home": {}}, version="1")
     return str(folder)
@@ -290,12 +293,14 @@ def write_chain(robots: Robots) -> str:
 def test_each_goal_of_a_chain_is_announced_and_the_agent_keeps_its_memory(
     robots: Robots, peer: Peer, mode: tuple[str, ...]
 ) -> None:
+    from sensor_msgs.msg import Image
     from std_msgs.msg import String
 
     split, agent = write_chain(robots), "tests.helpers.ros_agents:REMEMBERING"
     common = ("--split", split, "--episodes", "1", "--seed-key", "k")
     for topic in ("/goal", "/episode"):
         peer.hear(topic, String, latched=True)
+    peer.hear("/goal_image", Image, latched=True)
     robot = robots.start("-m", "sim.app.commands.main", "ros", *common, "--out", "run", *mode, "--config", *SMALL)
     stepped = mode[:1] if mode[0] == "--stepped" else ()
     driver = robots.start(
@@ -306,6 +311,7 @@ def test_each_goal_of_a_chain_is_announced_and_the_agent_keeps_its_memory(
         "--agent",
         agent,
         "--words",
+        "--pictures",
         "--once",
         *stepped,
         "--config",
@@ -319,6 +325,10 @@ def test_each_goal_of_a_chain_is_announced_and_the_agent_keeps_its_memory(
     announced = [json.loads(message.data) for message in peer.heard["/episode"]]
     told = [(about["number"], about["goal_number"], about["goal"]) for about in announced if "over" not in about]
     assert told == [(1, 0, CHAIN[0]), (1, 1, CHAIN[1]), (1, 2, CHAIN[2])]
+    (picture,) = peer.heard["/goal_image"]
+    assert (picture.width, picture.height, picture.encoding) == (PICTURE_PX, PICTURE_PX, "rgb8")
+    last = next(about for about in announced if about.get("picture"))
+    assert (last["goal_number"], last["stamp"]["sec"]) == (2, picture.header.stamp.sec)
     (line,) = robots.lines()
     assert [goal["end_reason"] for goal in line["goals"]] == ["stop"] * 3
     if not stepped:

@@ -35,6 +35,7 @@ def specification(config: RosConfig) -> AgentSpec:
         sensors=SENSORS,
         uses_segmentation=False,
         words=(),
+        pictures=(),
         uses_ground_truth=config.uses_ground_truth,
     )
 

@@ -72,12 +72,15 @@ class RobotAgent:
         setup: of the agent.
         node: its node.
         stepped: whether the robot waits for an action after each observation.
-        words: whether the agent takes goals in words; other goals are categories.
+        words: whether the agent takes goals in words.
+        pictures: whether the agent takes pictures as goals; other goals are categories.
     """
 
-    def __init__(self, setup: Setup, node: AgentNode, *, stepped: bool, words: bool = False) -> None:
-        self._name, self._node, self._stepped, self._words = setup.options.agent, node, stepped, words
-        self._takes_words = setup.spec.words is not None
+    def __init__(
+        self, setup: Setup, node: AgentNode, *, stepped: bool, words: bool = False, pictures: bool = False
+    ) -> None:
+        self._name, self._node, self._stepped = setup.options.agent, node, stepped
+        self._spec, self._words, self._pictures = setup.spec, words, pictures
         self._agent = build_apart(setup)
         drive = setup.config.robot.drive
         self._limits = Limits(
@@ -101,9 +104,7 @@ class RobotAgent:
             if announced is None or announced.over or announced == last:
                 self._node.spin(WAIT_S)
                 continue
-            if announced.goal not in GOAL_CATEGORIES and not self._words:
-                advice = "give --words" if self._takes_words else f"agent '{self._name}' takes categories only"
-                raise AgentError(f"The robot's goal '{announced.goal}' is in words: {advice}.")
+            self._require_taken(announced)
             if announced.is_next_goal_of(last):
                 where = f"Agent '{self._name}', goal {announced.goal_number + 1}"
                 give_next_goal(self._agent, announced.goal, announced.seed, where)
@@ -112,6 +113,17 @@ class RobotAgent:
                 self._reset(announced)
             last = announced
             self._pursue(announced)
+
+    def _require_taken(self, announced: Announced) -> None:
+        """Raises AgentError if the agent was started without the option for a goal of this kind."""
+        if announced.picture and not self._pictures:
+            what, takes, option = "goal is a picture", self._spec.pictures, "--pictures"
+        elif not announced.picture and announced.goal not in GOAL_CATEGORIES and not self._words:
+            what, takes, option = f"goal '{announced.goal}' is in words", self._spec.words, "--words"
+        else:
+            return
+        advice = f"agent '{self._name}' does not take it" if takes is None else f"give {option}"
+        raise AgentError(f"The robot's {what}: {advice}.")
 
     def _reset(self, announced: Announced) -> None:
         ask(f"Agent '{self._name}', reset", lambda: self._agent.reset(announced.goal, announced.seed))

@@ -18,7 +18,8 @@ from sim.app.viewers.ros.messages import depth_of, pose_of
 from sim.app.viewers.ros.topics import COLOUR, DEPTH, TOPICS, Delivery
 from sim.core.errors import AgentError, ConfigError
 from sim.core.geometry.pose import Pose
-from sim.core.interface import GOAL_CATEGORIES, Action, CameraModel, Observation
+from sim.core.goals import PICTURE_PX
+from sim.core.interface import GOAL_CATEGORIES, GOAL_SENSORS, Action, CameraModel, Observation
 from sim.env.discrete import SLOW_SHARE, Held
 
 KEPT = 10
@@ -41,6 +42,8 @@ class Announced(NamedTuple):
     seed: int
     stamp_ns: int
     over: bool
+    picture: bool
+    """Whether the goal is the picture on `/goal_image` with the same stamp."""
 
     def is_next_goal_of(self, last: Announced | None) -> bool:
         """Returns whether this is a further goal of the episode that was announced last."""
@@ -74,8 +77,8 @@ class AgentNode:
     ) -> None:
         self._camera = camera
         inputs = self._inputs(pose)
-        self._shows_goal = "goal" in sensors
-        sensors = [name for name in sensors if name != "goal"]
+        self._shows_goal, self._shows_picture = "goal" in sensors, "goal_picture" in sensors
+        sensors = [name for name in sensors if name not in GOAL_SENSORS]
         missing = [name for name in sensors if name not in inputs]
         if missing:
             raise ConfigError(f"The sensor '{missing[0]}' has no topic; topics have {', '.join(inputs)}.")
@@ -88,6 +91,8 @@ class AgentNode:
         self._readings: dict[int, dict[str, dict[str, NDArray]]] = {}
         """Readings by stamp (ns) and topic."""
         self.announced: Announced | None = None
+        self._picture: tuple[int, NDArray[np.uint8]] | None = None
+        """Stamp (ns) and the last picture of a goal."""
         self.odometry: tuple[int, Pose, float, float] | None = None
         """Stamp (ns), pose, speed (m/s) and turn rate (rad/s) of the last message of `/odom`."""
         self.touched = False
@@ -113,6 +118,9 @@ class AgentNode:
         ]
         if not complete or self.announced is None:
             return None
+        shown = self.announced.picture and self._shows_picture
+        if shown and (self._picture is None or self._picture[0] != self.announced.stamp_ns):
+            return None
         readings: dict[str, Any] = {}
         for of_topic in self._readings[max(complete)].values():
             readings |= of_topic
@@ -120,6 +128,9 @@ class AgentNode:
         readings["objectgoal"] = np.array([GOAL_CATEGORIES.index(goal) if goal in GOAL_CATEGORIES else -1], np.int64)
         if self._shows_goal:
             readings["goal"] = goal
+        if self._shows_picture:
+            no_picture = np.zeros((PICTURE_PX, PICTURE_PX, 3), np.uint8)
+            readings["goal_picture"] = self._picture[1] if shown and self._picture else no_picture
         return max(complete), readings
 
     def act(self, action: Action) -> None:
@@ -196,6 +207,8 @@ class AgentNode:
 
         # First, so that a new episode is known before its first observation: the robot sends that one later.
         subscribe("/episode", self._announce, Delivery.LATCHED)
+        if self._shows_picture:
+            subscribe("/goal_image", self._show, Delivery.LATCHED)
         for topic in self._needed:
             subscribe(topic, self._keeping(topic, reads[topic]), Delivery.LATCHED if stepped else Delivery.STREAM)
         self._wheels = (
@@ -226,7 +239,11 @@ class AgentNode:
             content.get("seed", 0),
             stamp["sec"] * 10**9 + stamp["nanosec"],
             content.get("over", False),
+            content.get("picture", False),
         )
+
+    def _show(self, message: Any) -> None:
+        self._picture = _nanoseconds(message.header.stamp), _rgb_of(message)
 
     def _drive(self, message: Any) -> None:
         stamp, twist = _nanoseconds(message.header.stamp), message.twist.twist
@@ -237,11 +254,7 @@ class AgentNode:
 
     def _colour(self, message: Any) -> dict[str, NDArray]:
         self._require_size(message)
-        if message.encoding not in ("rgb8", "bgr8"):
-            raise AgentError(f"Unsupported encoding '{message.encoding}' of colour; use rgb8 or bgr8.")
-        image = np.frombuffer(message.data, np.uint8).reshape(message.height, message.step)
-        image = image[:, : 3 * message.width].reshape(message.height, message.width, 3)
-        return {"rgb": np.ascontiguousarray(image if message.encoding == "rgb8" else image[:, :, ::-1])}
+        return {"rgb": _rgb_of(message)}
 
     def _depth(self, message: Any) -> dict[str, NDArray]:
         self._require_size(message)
@@ -315,6 +328,19 @@ class Wheels:
 
 def _nanoseconds(stamp: Any) -> int:
     return stamp.sec * 10**9 + stamp.nanosec
+
+
+def _rgb_of(message: Any) -> NDArray[np.uint8]:
+    """Returns the image (h, w, 3) of a message of colour.
+
+    Raises:
+        AgentError: its encoding is neither `rgb8` nor `bgr8`.
+    """
+    if message.encoding not in ("rgb8", "bgr8"):
+        raise AgentError(f"Unsupported encoding '{message.encoding}' of colour; use rgb8 or bgr8.")
+    image = np.frombuffer(message.data, np.uint8).reshape(message.height, message.step)
+    image = image[:, : 3 * message.width].reshape(message.height, message.width, 3)
+    return np.ascontiguousarray(image if message.encoding == "rgb8" else image[:, :, ::-1])
 
 
 def _pose_readings(pose: Pose) -> dict[str, NDArray]:

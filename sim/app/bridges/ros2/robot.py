@@ -140,8 +140,12 @@ class LiveRobot:
         self._announce(goal)
 
     def _announce(self, goal: str) -> None:
+        """Publishes a goal, after its picture if it has one."""
         time_s, about = self.time_s, {"run": self._run, "number": self._number, "goal_number": self._goal_number}
-        about |= {"goal": goal, "seed": self._seed, "stamp": messages.stamp(time_s)}
+        picture = self.env.scene.picture_of(self.env.episode.specs[self._goal_number])
+        if picture is not None:
+            self._send("/goal_image", time_s, messages.colour_image(time_s, picture))
+        about |= {"goal": goal, "seed": self._seed, "stamp": messages.stamp(time_s), "picture": picture is not None}
         self._send("/episode", time_s, messages.text(json.dumps(about)))
         self.node.await_readers("/episode")
         self._send("/goal", time_s, messages.text(goal))

@@ -29,6 +29,9 @@ class Args:
     """Topic of the robot's pose: that of ObjectNav's sensors or of a localisation, or the robot's odometry."""
     words: bool = False
     """The robot's goals are in words: the agent gets the sensors that it reads for them in addition."""
+    pictures: bool = False
+    """The robot's goals may be pictures, on /goal_image: the agent gets the sensors that it reads for them in
+    addition."""
     once: bool = False
     """End after the last episode of the robot, in place of waiting for others."""
     ros_args: str = ""
@@ -58,6 +61,8 @@ def main(args: Args) -> int:
     spec = find_agent(args.agent)
     if args.words and spec.words is None:
         raise ConfigError(f"--words: agent '{args.agent}' takes categories only.")
+    if args.pictures and spec.pictures is None:
+        raise ConfigError(f"--pictures: agent '{args.agent}' takes no pictures.")
     require_ros()
     from sim.app.bridges.ros2.observer import AgentNode
     from sim.app.composition.ros_agent import RobotAgent
@@ -65,10 +70,11 @@ def main(args: Args) -> int:
 
     names = {field.name for field in fields(RunOptions)}
     setup = resolve(RunOptions(**{name: value for name, value in vars(args).items() if name in names}), spec)
-    sensors = dict.fromkeys((*setup.config.sensors, *((setup.spec.words or ()) if args.words else ())))
+    words, pictures = (spec.words or ()) if args.words else (), (spec.pictures or ()) if args.pictures else ()
+    sensors = dict.fromkeys((*setup.config.sensors, *words, *pictures))
     node = AgentNode(setup.config.camera, (*sensors,), stepped=args.stepped, pose=args.pose, ros_args=args.ros_args)
     try:
-        agent = RobotAgent(setup, node, stepped=args.stepped, words=args.words)
+        agent = RobotAgent(setup, node, stepped=args.stepped, words=args.words, pictures=args.pictures)
         print(f"{args.agent} waits for a robot.", flush=True)
         episodes = agent.run(once=args.once)
     finally:

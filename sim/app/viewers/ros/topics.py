@@ -17,6 +17,7 @@ topic                                         type                       content
 /cmd_vel                                      geometry_msgs/Twist        the velocity that the robot is to have
 /clock                                        rosgraph_msgs/Clock        simulated time
 /goal                                         std_msgs/String            the goal, and each further one of a chain
+/goal_image                                   sensor_msgs/Image          the picture of a goal, `rgb8`
 /episode                                      std_msgs/String            JSON: number, goal and seed of the episode
 /result                                       std_msgs/String            JSON: the result of the last episode
 ============================================  =========================  ==============================================
@@ -89,6 +90,7 @@ TOPICS: Mapping[str, Topic] = MappingProxyType(
         "/cmd_vel": Topic("geometry_msgs/Twist", Delivery.RELIABLE),
         "/clock": Topic("rosgraph_msgs/Clock", Delivery.STREAM),
         "/goal": Topic("std_msgs/String", Delivery.LATCHED),
+        "/goal_image": Topic("sensor_msgs/Image", Delivery.LATCHED),
         "/episode": Topic("std_msgs/String", Delivery.LATCHED),
         "/result": Topic("std_msgs/String", Delivery.LATCHED),
     }

@@ -37,19 +37,32 @@ def test_without_ros_one_line_says_what_to_install(command: object, capsys: pyte
     assert "ros setup" in said
 
 
-def test_an_agent_that_takes_no_words_is_refused_before_ros_is_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("option", "said"),
+    [("words", "agent 'cloned' takes categories only"), ("pictures", "agent 'cloned' takes no pictures")],
+)
+def test_an_agent_that_does_not_take_a_kind_of_goal_is_refused_before_ros_is_loaded(
+    monkeypatch: pytest.MonkeyPatch, option: str, said: str
+) -> None:
     monkeypatch.setattr(agent, "require_ros", lambda: pytest.fail("ROS was loaded"))
-    with pytest.raises(ConfigError, match="--words: agent 'cloned' takes categories only"):
-        agent.main(agent.Args(agent="cloned", words=True))
+    with pytest.raises(ConfigError, match=f"--{option}: {said}"):
+        agent.main(agent.Args(agent="cloned", **{option: True}))
 
 
 @pytest.mark.parametrize(
-    ("name", "advice"), [("tests.helpers.ros_agents:TURNER", "takes categories only"), ("random", "give --words")]
+    ("name", "goal", "said"),
+    [
+        ("tests.helpers.ros_agents:TURNER", "the red chair", "'the red chair' is in words: agent .* does not take it"),
+        ("random", "the red chair", "'the red chair' is in words: give --words"),
+        ("tests.helpers.ros_agents:TURNER", "", "goal is a picture: agent .* does not take it"),
+        ("stubborn-plus", "", "goal is a picture: give --pictures"),
+    ],
 )
-def test_a_goal_in_words_without_that_option_names_the_remedy_or_that_there_is_none(name: str, advice: str) -> None:
-    node = SimpleNamespace(announced=Announced("run", 1, 0, "the red chair", 0, 0, over=False))
+def test_a_goal_without_its_option_names_the_remedy_or_that_there_is_none(name: str, goal: str, said: str) -> None:
+    announced = Announced("run", 1, 0, goal, 0, 0, over=False, picture=not goal)
+    node = SimpleNamespace(announced=announced)
     driving = RobotAgent(resolve(RunOptions(agent=name)), cast(AgentNode, node), stepped=True)
-    with pytest.raises(AgentError, match=f"'the red chair' is in words: .*{advice}"):
+    with pytest.raises(AgentError, match=said):
         driving.run(once=True)
 
 

@@ -35,7 +35,7 @@ CAMERA = CameraModel(width_px=160, height_px=120)
 START = Pose(-1.5, 1.0, math.radians(30.0))
 ACTIONS = (Action.MOVE_FORWARD, Action.TURN_LEFT, Action.MOVE_FORWARD, Action.TURN_RIGHT, Action.STOP)
 ONCE = {"/map", "/tf_static"}
-LIVE = {"/clock", "/goal", "/episode", "/result"}
+LIVE = {"/clock", "/goal", "/goal_image", "/episode", "/result"}
 """Topics of a running robot, which a recording does not need."""
 WRITTEN = set(TOPICS) - LIVE
 STANDARD = get_typestore(Stores.ROS2_JAZZY)
