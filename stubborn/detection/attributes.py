@@ -23,7 +23,7 @@ from sim.core.colours import COLOUR_NAMES, colour_numbers
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import MPCAT40, MPCAT40_ID
 from sim.core.reading import Number, read_json
-from sim.core.vocabulary import vocabulary
+from sim.core.vocabulary import NO_OBJECTS, vocabulary
 from sim.core.wishes import Beside, Wish
 from stubborn.detection.classifiers import logistic
 from stubborn.detection.tracks import Pixels, Tracks
@@ -168,10 +168,12 @@ class Attributes:
     def name_shares(
         self, tracks: Tracks, candidates: Int[np.ndarray, " n"], names: frozenset[str]
     ) -> Float32[np.ndarray, " n"]:
-        """Returns the share of the pixels of each candidate that have one of some names.
+        """Returns how many pixels of each candidate have one of some names, as a share.
 
-        It is 1 if the segmentation knows no names, or guesses names and has not learned all of these, and 0 for a track
-        that was not seen with its name yet.
+        If the segmentation tells objects apart, it is a share of the most frequent name's pixels: a track has pixels of
+        its neighbours, of the counter around a sink, and of the surface behind a thin object, which do not count. If it
+        guesses names, it is a share of all pixels. It is 1 if the segmentation knows no names, or guesses names and has
+        not learned all of these, and 0 for a track that was not seen with its name yet.
         """
         self._follow_merges(tracks.now())
         if not self._names or (self._guessed is not None and not names <= self._guessed):
@@ -181,10 +183,11 @@ class Attributes:
             categories = set(vocabulary().categories_of(names))
             alike = [name for name in self._guessed if not categories.isdisjoint(vocabulary().categories.get(name, ()))]
             counts = [{name: of_track.get(name, 0.0) for name in alike} for of_track in counts]
-        right = [
-            sum(of_track.get(name, 0) for name in names) / max(sum(of_track.values()), 1e-6) for of_track in counts
-        ]
-        return np.array(right, np.float32)
+            whole = [sum(of_track.values()) for of_track in counts]
+        else:
+            whole = [max((of_track[name] for name in of_track.keys() - NO_OBJECTS), default=0.0) for of_track in counts]
+        right = np.array([sum(of_track.get(name, 0.0) for name in names) for of_track in counts])
+        return np.minimum(right / np.maximum(whole, 1e-6), 1.0).astype(np.float32)
 
     def factors(
         self,

@@ -15,7 +15,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import FORWARD_M, ConfigError, Observation
 from sim.core.wishes import Wish
 from stubborn.detection.approach import Approach, approach_from_here, approach_on, on_map
-from stubborn.detection.attributes import Attributes
+from stubborn.detection.attributes import AT_LAST, LATE_SHARE, Attributes
 from stubborn.detection.context import SHIPPED, read_context
 from stubborn.detection.fusion import fusion_for
 from stubborn.detection.look import LookConfig, Verdicts, look_at
@@ -56,6 +56,9 @@ class TrackSeekerConfig:
     """A track next to an accepted one, with at least this share of its probability, is approached as a part of it."""
     part_gap_voxels: int = 1
     """Boxes of two tracks with at most this gap are next to each other."""
+    counter_m: float = 0.65
+    """A track without a viewpoint may have one over an edge as high as the camera within this distance of it, the depth
+    of a kitchen counter (0.6 m) and a cell."""
     most_pushes: int = 2
     """After this many steps in which an approach did not move the robot, the agent stops if a STOP counts there."""
 
@@ -67,6 +70,8 @@ class TrackSeekerConfig:
                 "TrackSeekerConfig needs core_share and part_share in [0, 1] and as_good >= 0, got "
                 f"{self.core_share}, {self.part_share} and {self.as_good}."
             )
+        if self.counter_m < 0.0:
+            raise ConfigError(f"TrackSeekerConfig.counter_m must be >= 0 m, got {self.counter_m}.")
         if self.near_best_m <= 0.0:
             raise ConfigError(f"TrackSeekerConfig.near_best_m must be > 0 m, got {self.near_best_m}.")
         if self.most_pushes < 1:
@@ -74,7 +79,8 @@ class TrackSeekerConfig:
 
     def make(self, parts: SeekerParts) -> TrackSeeker:
         """Returns a new seeker with these parameters. It judges tracks itself and does not use the verifier."""
-        finder = ViewpointFinder(parts.planner, parts.layers, parts.distances, parts.target.target_edge_m)
+        edge_m = parts.target.target_edge_m
+        finder = ViewpointFinder(parts.planner, parts.layers, parts.distances, edge_m, self.counter_m)
         return TrackSeeker(self, parts, finder)
 
 
@@ -239,6 +245,9 @@ class TrackSeeker:
             left_share = 1.0 - self.step / self.max_steps
             well_seen = np.array([bool(tracks.evidence.near_sectors(track).any()) for track in candidates.tolist()])
             probability[candidates] *= attributes.factors(wish, tracks, candidates, left_share, well_seen)
+            best = float(probability[candidates].max())
+            if self.verdicts.exact and left_share <= 1.0 - LATE_SHARE and 0.0 < best < AT_LAST:
+                probability[candidates] *= AT_LAST / best  # its names are certain, and no better object was found
         return probability
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
@@ -547,10 +556,13 @@ class TrackSeeker:
         return self.step >= self._retry_step.get(track, 0)
 
     def _set_aside(self, tracks: list[int]) -> None:
-        """Tries these tracks again later, each time after twice as many steps."""
+        """Tries these tracks again later, each time after twice as many steps, and when a last resort is allowed."""
         for track in tracks:
             wait = self._wait_steps.get(track, self.target.retry_after_steps)
-            self._retry_step[track], self._wait_steps[track] = self.step + wait, 2 * wait
+            again = self.step + wait
+            if self.step < self._last_resort_step:
+                again = min(again, self._last_resort_step)
+            self._retry_step[track], self._wait_steps[track] = again, 2 * wait
         self._accepted = [t for t in self._accepted if t not in tracks]
 
     def _known(self, navmap: NavMap) -> Window:

@@ -45,13 +45,28 @@ class ViewpointFinder:
     """Finds the viewpoints of candidates on a part of the map."""
 
     def __init__(
-        self, planner: Planner, layers: tuple[CollisionLayer, ...], distances: StopDistances, target_edge_m: float
+        self,
+        planner: Planner,
+        layers: tuple[CollisionLayer, ...],
+        distances: StopDistances,
+        target_edge_m: float,
+        counter_m: float = 0.0,
     ) -> None:
-        """`layers` are the collision layers to plan on, in order of preference."""
+        """Makes a finder.
+
+        Args:
+            planner: finds free and reachable cells.
+            layers: the collision layers to plan on, in order of preference.
+            distances: of viewpoints.
+            target_edge_m: surfaces this near to a candidate do not hide it.
+            counter_m: the same for a candidate that has no viewpoint otherwise, on the side from which it was seen: a
+                counter is as high as the camera, and what stands on it was seen over its edge. 0: not tried.
+        """
         self.planner = planner
         self.layers = layers
         self.distances = distances
         self.target_edge_m = target_edge_m
+        self.counter_m = counter_m
 
     def find(self, view: NavMap, pose: Pose, nearest: NearestCells, last_resort: LastResort) -> Iterator[Viewpoints]:
         """Yields viewpoints from the best kind to the last resort.
@@ -59,15 +74,16 @@ class ViewpointFinder:
         `nearest` holds, for each cell of the view, the distance and the place of the nearest candidate cell.
         """
         gap_m = nearest.gap_cells * np.float32(view.frame.cell_m)
-        in_sight = self.in_sight(view, gap_m, nearest, self.distances.viewpoints_m[-1])
         unseen = self.planner.unseen(view)
         free_spaces: dict[CollisionLayer, FreeSpace] = {}
-        for within_m, layer in self.distances.tried_on(self.layers):
-            if layer not in free_spaces:
-                free_spaces[layer] = self.planner.free_space(view, pose, layer, unseen)
-            cells = free_spaces[layer].reachable & in_sight & (gap_m <= within_m)
-            if cells.any():
-                yield Viewpoints(free_spaces[layer], cells, near_enough=True)
+        for over_counters in (False, True) if self.counter_m > 0.0 else (False,):
+            in_sight = self.in_sight(view, gap_m, nearest, self.distances.viewpoints_m[-1], over_counters=over_counters)
+            for within_m, layer in self.distances.tried_on(self.layers):
+                if layer not in free_spaces:
+                    free_spaces[layer] = self.planner.free_space(view, pose, layer, unseen)
+                cells = free_spaces[layer].reachable & in_sight & (gap_m <= within_m)
+                if cells.any():
+                    yield Viewpoints(free_spaces[layer], cells, near_enough=True)
         if last_resort is LastResort.NONE:
             return
         free = free_spaces[self.layers[-1]]
@@ -86,13 +102,24 @@ class ViewpointFinder:
         return Viewpoints(free, free.reachable & seen & (gap_m >= between_m[0]), near_enough=False)
 
     def in_sight(
-        self, view: NavMap, gap_m: Float32[np.ndarray, "rows cols"], nearest: NearestCells, within_m: float
+        self,
+        view: NavMap,
+        gap_m: Float32[np.ndarray, "rows cols"],
+        nearest: NearestCells,
+        within_m: float,
+        *,
+        over_counters: bool = False,
     ) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells within a distance of a candidate from which nothing hides its nearest cell.
 
-        `gap_m` is the distance of each cell to the candidate.
+        Args:
+            view: a part of the map.
+            gap_m: the distance of each cell to the candidate.
+            nearest: for each cell, the nearest candidate cell.
+            within_m: the largest distance.
+            over_counters: see `counter_m`.
         """
-        edge_cells = self.target_edge_m / view.frame.cell_m
+        edge_cells = (self.counter_m if over_counters else self.target_edge_m) / view.frame.cell_m
         rows, cols = np.nonzero(gap_m <= within_m)
         ends = nearest.rows[rows, cols], nearest.cols[rows, cols]
         in_sight = np.zeros_like(view.rejected)
@@ -100,6 +127,9 @@ class ViewpointFinder:
         # A picture hides the wall it is mounted on. Behind that wall there may seem to be free ground, from which the
         # picture cannot be seen: ground never in view counts only on the side from which the candidate was seen.
         seen_side = (rows - ends[0]) * view.shown_y[ends] + (cols - ends[1]) * view.shown_x[ends] > 0
+        if over_counters:
+            in_sight[rows, cols] &= seen_side
+            return in_sight
         # An object that is remembered may be behind a wall that furniture hides: there all ground in between must have
         # been in view.
         from_here = view.frames_in_view[rows, cols] > 0

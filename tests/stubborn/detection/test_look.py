@@ -13,7 +13,7 @@ from stubborn.detection.distances import StopDistances, TargetConfig
 from stubborn.detection.evidence import Evidence, EvidenceConfig
 from stubborn.detection.fusion import Fusion
 from stubborn.detection.look import LookConfig, Verdicts, believed, look_at
-from stubborn.detection.viewpoints import ViewpointFinder
+from stubborn.detection.viewpoints import LastResort, ViewpointFinder
 from stubborn.mapping.masks import nearest
 from stubborn.planning.planner import Route
 from tests.helpers.asciimap import map_of
@@ -191,3 +191,23 @@ def test_a_second_look_is_taken_from_another_direction():
     bearing_rad = np.arctan2(rows - 70, cols - 70)
     off_rad = np.abs(np.arctan2(np.sin(bearing_rad - math.pi), np.cos(bearing_rad - math.pi)))
     assert off_rad.min() >= math.radians(44)
+
+
+@pytest.mark.parametrize(
+    ("counter_m", "seen_from_x", "found"), [(0.0, -1.0, False), (0.65, -1.0, True), (0.65, 1.0, False)]
+)
+def test_what_stands_on_a_counter_is_seen_over_its_edge_but_only_from_the_side_from_which_it_was_seen(
+    counter_m: float, seen_from_x: float, found: bool
+):
+    navmap, _ = map_of("\n".join("." * 60 + "#" + "." * 39 for _ in range(60)))
+    navmap.frames_in_view[:] = 1
+    navmap.seen_at_eye_level[:, 60] = True
+    target = np.zeros(navmap.frame.shape, np.bool_)
+    target[30, 66] = True  # 0.3 m behind the edge
+    navmap.shown_x[target] = seen_from_x
+    distances = StopDistances.of(TargetConfig(), SuccessRule(), SegmenterSpec())
+    finder = ViewpointFinder(PLANNER, BOTH_LAYERS, distances, 0.08, counter_m)
+    x_m, y_m = (float(v) for v in navmap.frame.centres(30, 40))
+    kinds = list(finder.find(navmap, Pose(x_m, y_m, 0.0), nearest(target), LastResort.NONE))
+    assert bool(kinds) == found
+    assert all(kind.near_enough and np.nonzero(kind.cells)[1].max() < 60 for kind in kinds)

@@ -22,10 +22,12 @@ from sim.core.interface import (
     Segmenter,
     SegmenterSpec,
 )
+from sim.core.wishes import parse_wish
 from stubborn import agents
 from stubborn.agent import StubbornAgent
 from stubborn.detection import track_seeker
 from stubborn.detection.approach import Approach
+from stubborn.detection.attributes import AT_LAST, Attributes
 from stubborn.detection.context import OBJECTS, read_context
 from stubborn.detection.fusion import Fusion
 from stubborn.detection.look import LookConfig
@@ -50,6 +52,7 @@ ROOM = boxes_from_plan(
     0.3,
 )
 START = (1.2, 1.3, 0.0)
+BED = parse_wish("the red bed").names
 
 
 class Unsure:
@@ -235,6 +238,31 @@ def test_a_track_above_the_bar_that_cannot_be_looked_at_counts_as_looked_at(monk
     seeker.probability[track] = seeker.verdicts.bar
     assert seeker._look(agent.navmap, window, Pose(0.0, 0.0, 0.0), track) is None
     assert seeker.verdicts.looks == {track: 1}
+
+
+def test_a_track_that_waits_is_tried_again_when_a_last_resort_is_allowed():
+    _, seeker, _, track = tracked()
+    seeker._retry_step.clear()
+    seeker._wait_steps[track] = 300
+    for step, due in ((200, 420), (430, 430 + 600)):
+        seeker.step = step
+        seeker._set_aside([track])
+        assert seeker._retry_step[track] == due
+
+
+@pytest.mark.parametrize(("step", "expected"), [(0, 0.24), (MAX_STEPS // 2, 0.24), (MAX_STEPS * 3 // 5, AT_LAST)])
+def test_late_in_an_episode_the_best_object_of_certain_names_passes_whatever_its_conditions_say(
+    monkeypatch: pytest.MonkeyPatch, step: int, expected: float
+):
+    _, seeker, tracks, track = tracked()
+    seeker.attributes = Attributes(tracks.plan, tracks.config.most_tracks)
+    seeker.verdicts.exact, seeker.step = True, step
+    monkeypatch.setattr(seeker.attributes, "name_shares", lambda _, of, names: np.full(len(of), 0.8 * (names == BED)))
+    monkeypatch.setattr(seeker.attributes, "factors", lambda wish, _, of, *rest: np.full(len(of), 0.3))
+    monkeypatch.setattr(tracks, "probabilities", lambda *_: np.eye(tracks.count + 1, dtype=np.float32)[track])
+    probability = seeker._probabilities(tracks, parse_wish("the red bed"))
+    assert probability[track] == pytest.approx(expected)
+    assert probability.sum() == pytest.approx(expected)
 
 
 def test_a_look_that_was_blocked_is_not_repeated_from_the_same_side(monkeypatch: pytest.MonkeyPatch):

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -12,7 +14,7 @@ from sim.core.interface import MPCAT40_ID, Observation, RobotModel
 from sim.core.wishes import WishError
 from stubborn import agents
 from stubborn.detection.attributes import AT_LAST, UNDECIDED, Attributes
-from stubborn.detection.tracks import Pixels
+from stubborn.detection.tracks import Pixels, Tracks
 from stubborn.detection.wished import WishedSegmenter
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.gridworld import SMALL_CAMERA
@@ -108,3 +110,25 @@ def test_evidence_follows_tracks_that_are_merged():
     attributes._follow_merges(np.array([0, 1, 1]))
     assert (attributes.name_of(2), attributes.name_of(1)) == ("", "armchair")
     assert attributes._colour_factor(1, "red", UNDECIDED) > 0.6
+
+
+@pytest.mark.parametrize(
+    ("names", "share"),
+    [
+        (("wall", "wall", "toy train"), 1.0),
+        (("wall", "armchair", "toy train"), 1.0),
+        (("armchair", "armchair", "toy train"), 0.5),
+        (("armchair",), 0.0),
+        (("wall",), 0.0),
+    ],
+)
+def test_a_name_counts_against_that_of_the_main_neighbour_but_not_against_a_wall(
+    names: tuple[str, ...], share: float
+) -> None:
+    attributes = Attributes(GridFrame.around_start(20, 0.1), 8)
+    for name in names:  # one frame each
+        seen = Pixels(np.ones((4, 4), np.int16), *[np.full((4, 4), -1)] * 2, np.zeros((4, 4)))
+        attributes.add(seen, np.zeros((40, 4, 4), np.float32), None, (np.zeros((4, 4), np.int32), [name]))
+    tracks = SimpleNamespace(now=lambda: np.arange(8))
+    shares = attributes.name_shares(cast(Tracks, tracks), np.array([1]), frozenset({"toy train"}))
+    assert shares.tolist() == [share]
