@@ -30,14 +30,12 @@ from stubborn.detection.tracks import Pixels, Tracks
 
 FILE = Path(__file__).with_name("attributes.json")
 UNDECIDED, AT_LAST = 0.45, 0.7
-"""Factor of a condition that is not decided, and the same when few actions are left."""
+"""Factor of a condition that is not decided, and the same when an object must be chosen."""
 _NO_COLOUR = 0.3
 """Weight of the case that no one colour describes an object: people name the one that it looks like most."""
 _SEEN_ALONE = 0.85
 """The factor of an object that was seen well but not beside what the wish names is this share of `UNDECIDED`: what is
 beside it may be out of the picture."""
-LATE_SHARE = 0.6
-"""After this share of the actions, conditions that are not decided count as `AT_LAST`."""
 _LEAST_PIXELS = 60
 """Pixels of a track, at the resolution of the posteriors, from which its colour is judged."""
 _NEXT_TO_M, _SAME_ROOM_M = 0.75, 4.5
@@ -194,7 +192,7 @@ class Attributes:
         wish: Wish,
         tracks: Tracks,
         candidates: Int[np.ndarray, " n"],
-        left_share: float,
+        late: bool,
         well_seen: Bool[np.ndarray, " n"],
     ) -> Float32[np.ndarray, " n"]:
         """Returns the factor of the conditions for each candidate.
@@ -203,11 +201,11 @@ class Attributes:
             wish: the goal.
             tracks: all objects.
             candidates: numbers of the tracks that are probably of the goal's category.
-            left_share: share of the actions that are left.
+            late: whether an object must be chosen: there is nothing new to see, or few actions are left.
             well_seen: candidates that were seen from near, so that what is next to them was, too.
         """
         self._follow_merges(tracks.now())
-        undecided = UNDECIDED if left_share > 1.0 - LATE_SHARE else AT_LAST
+        undecided = AT_LAST if late else UNDECIDED
         result = np.ones(len(candidates))
         if wish.colour is not None:
             result *= [self._colour_factor(track, wish.colour, undecided) for track in candidates.tolist()]
@@ -219,7 +217,7 @@ class Attributes:
         if wish.size is not None:
             result *= self._size_factors(wish, tracks, candidates, result, undecided)
         best = float(result.max(initial=0.0))
-        if undecided == AT_LAST and 0.0 < best < AT_LAST:
+        if late and 0.0 < best < AT_LAST:
             result *= AT_LAST / best  # the house has the goal, and no better object was found
         return result.astype(np.float32)
 

@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Float32, Int, UInt8
 
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID
-from stubborn.detection.attributes import AT_LAST, LATE_SHARE, UNDECIDED, fitted, follow_merges
+from stubborn.detection.attributes import AT_LAST, UNDECIDED, fitted, follow_merges
 from stubborn.detection.tracks import Pixels, Tracks
 
 CELLS = 384
@@ -79,11 +79,10 @@ class PictureEvidence:
             self._around[track] += frame - own
 
     def factors(
-        self, goal: PictureGoal, tracks: Tracks, candidates: Int[np.ndarray, " n"], left_share: float
+        self, goal: PictureGoal, tracks: Tracks, candidates: Int[np.ndarray, " n"], late: bool
     ) -> Float32[np.ndarray, " n"]:
         """Returns the factor of a picture for each candidate; see `Attributes.factors`."""
         follow_merges(tracks.now(), self._own, self._around)
-        late = left_share <= 1.0 - LATE_SHARE
         undecided = AT_LAST if late else UNDECIDED
         result = np.array([self._probability(goal, track, undecided) for track in candidates.tolist()])
         best = float(result.max(initial=0.0))

@@ -15,7 +15,7 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import FORWARD_M, ConfigError, Observation
 from sim.core.wishes import Wish
 from stubborn.detection.approach import Approach, approach_from_here, approach_on, on_map
-from stubborn.detection.attributes import AT_LAST, LATE_SHARE, Attributes
+from stubborn.detection.attributes import AT_LAST, Attributes
 from stubborn.detection.context import SHIPPED, read_context
 from stubborn.detection.fusion import fusion_for
 from stubborn.detection.look import LookConfig, Verdicts, look_at
@@ -56,6 +56,9 @@ class TrackSeekerConfig:
     """A track next to an accepted one, with at least this share of its probability, is approached as a part of it."""
     part_gap_voxels: int = 1
     """Boxes of two tracks with at most this gap are next to each other."""
+    late_share: float = 0.6
+    """After this share of the actions, or earlier if nothing new comes into view, a goal with conditions (words or a
+    picture) takes the best object that is known."""
     counter_m: float = 0.65
     """A track without a viewpoint may have one over an edge as high as the camera within this distance of it, the depth
     of a kitchen counter (0.6 m) and a cell."""
@@ -116,6 +119,7 @@ class TrackSeeker:
         """See `Seeker`."""
         self.goal = goal
         self.step = 0
+        self._nothing_new = False
         self.tracks: Tracks | None = None
         self.attributes: Attributes | None = None
         """The names and attributes of the tracks; None: no goal was in words yet, or the first frame was not seen."""
@@ -233,8 +237,7 @@ class TrackSeeker:
         attributes, picture = self.attributes, None if self.wished is None else self.wished.picture
         if picture is not None and self.pictured is not None:
             candidates = np.flatnonzero(probability >= self.config.look.visit)
-            left_share = 1.0 - self.step / self.max_steps
-            probability[candidates] *= self.pictured.factors(picture, tracks, candidates, left_share)
+            probability[candidates] *= self.pictured.factors(picture, tracks, candidates, self._is_late)
         if wish is None or attributes is None:
             return probability
         probability = np.minimum(probability, np.float32(1.0))
@@ -242,13 +245,17 @@ class TrackSeeker:
         probability[candidates] *= attributes.name_shares(tracks, candidates, wish.names)
         candidates = candidates[probability[candidates] >= self.config.look.visit]
         if candidates.size:
-            left_share = 1.0 - self.step / self.max_steps
             well_seen = np.array([bool(tracks.evidence.near_sectors(track).any()) for track in candidates.tolist()])
-            probability[candidates] *= attributes.factors(wish, tracks, candidates, left_share, well_seen)
+            probability[candidates] *= attributes.factors(wish, tracks, candidates, self._is_late, well_seen)
             best = float(probability[candidates].max())
-            if self.verdicts.exact and left_share <= 1.0 - LATE_SHARE and 0.0 < best < AT_LAST:
+            if self.verdicts.exact and self._is_late and 0.0 < best < AT_LAST:
                 probability[candidates] *= AT_LAST / best  # its names are certain, and no better object was found
         return probability
+
+    @property
+    def _is_late(self) -> bool:
+        """Whether an object must be chosen although the conditions of the goal are not certain."""
+        return self._nothing_new or self.step >= self.config.late_share * self.max_steps
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
         """See `Seeker`."""
@@ -360,7 +367,8 @@ class TrackSeeker:
         self._set_aside(self._targets if self.pursued is None else [*self._targets, self.pursued])
 
     def retry(self) -> None:
-        """See `Seeker`."""
+        """See `Seeker`. From now on, a goal with conditions takes the best object that is known."""
+        self._nothing_new = True
         self._retry_step.clear()
         self._wait_steps.clear()
 

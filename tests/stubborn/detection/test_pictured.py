@@ -56,7 +56,7 @@ def factors(colours: tuple[tuple[int, int, int], tuple[int, int, int]], pixels: 
         seen.reshape(-1, 3)[:pixels], tracks.flat[:pixels] = colour, track
         evidence.add(Pixels(tracks.astype(np.int16), nowhere, nowhere, np.zeros((40, 40))), seen)
     tracks, both = cast(Tracks, TwoTracks(merged=merged)), np.array([1, 2])
-    return evidence.factors(goal, tracks, both, 1.0).tolist()
+    return evidence.factors(goal, tracks, both, False).tolist()
 
 
 def test_the_track_with_the_colours_of_the_picture_is_it():

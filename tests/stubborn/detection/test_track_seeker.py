@@ -250,13 +250,18 @@ def test_a_track_that_waits_is_tried_again_when_a_last_resort_is_allowed():
         assert seeker._retry_step[track] == due
 
 
-@pytest.mark.parametrize(("step", "expected"), [(0, 0.24), (MAX_STEPS // 2, 0.24), (MAX_STEPS * 3 // 5, AT_LAST)])
-def test_late_in_an_episode_the_best_object_of_certain_names_passes_whatever_its_conditions_say(
-    monkeypatch: pytest.MonkeyPatch, step: int, expected: float
+@pytest.mark.parametrize(
+    ("step", "nothing_new", "expected"),
+    [(0, False, 0.24), (MAX_STEPS // 2, False, 0.24), (0, True, AT_LAST), (MAX_STEPS * 3 // 5, False, AT_LAST)],
+)
+def test_late_or_with_nothing_new_to_see_the_best_object_of_certain_names_passes_whatever_its_conditions_say(
+    monkeypatch: pytest.MonkeyPatch, step: int, nothing_new: bool, expected: float
 ):
     _, seeker, tracks, track = tracked()
     seeker.attributes = Attributes(tracks.plan, tracks.config.most_tracks)
     seeker.verdicts.exact, seeker.step = True, step
+    if nothing_new:
+        seeker.retry()
     monkeypatch.setattr(seeker.attributes, "name_shares", lambda _, of, names: np.full(len(of), 0.8 * (names == BED)))
     monkeypatch.setattr(seeker.attributes, "factors", lambda wish, _, of, *rest: np.full(len(of), 0.3))
     monkeypatch.setattr(tracks, "probabilities", lambda *_: np.eye(tracks.count + 1, dtype=np.float32)[track])
