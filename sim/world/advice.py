@@ -42,7 +42,7 @@ HIDDEN_SHARE = 0.25
 AT_WALL_M = 0.25
 """Furniture nearer to a wall than this hides what hangs on the wall."""
 COMPANY_M = 1.0
-"""A stool or a bench away from the walls has a seat, a bed or a table at most this far away."""
+"""A stool or a bench away from the walls has a seat, a bed, a table or a counter at most this far away."""
 RUG_TO_FIRE_M = 0.1
 """Smallest distance of a rug from a fireplace or a stove, which includes its hearth plate."""
 ON_RUG_SHARES = (0.05, 0.9)
@@ -51,8 +51,8 @@ SLACK_M = 0.02
 _STORAGE = frozenset(("wardrobe", "chest of drawers", "sideboard", "linen shelf", "drying cupboard"))
 _EASILY_MOVED = frozenset(("stool", "pouf", "dining chair", "office chair"))
 _HANGING = frozenset(("picture", "mirror", "board_panel"))
-_HIDES = frozenset(("cabinet", "chest_of_drawers", "shelving", "appliances", "fireplace", "furniture"))
-_COMPANY = frozenset(("sofa", "chair", "bed", "table"))
+_HIDES = frozenset(("cabinet", "chest_of_drawers", "shelving", "appliances", "furniture"))
+_COMPANY = frozenset(("sofa", "chair", "bed", "table", "counter"))
 _HEAVY = frozenset(("cabinet", "shelving", "chest_of_drawers"))
 _HALL_PIECES = frozenset(("console table", "bench"))
 

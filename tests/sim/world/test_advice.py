@@ -128,7 +128,8 @@ def test_a_bench_in_the_middle_of_a_room_has_company() -> None:
     expected = ["room_living_room_00 has seating_00, which stands alone in the middle of the room"]
     assert told("living_room", bench) == expected
     assert told("living_room", moved(bench, 0.0, 1.6)) == []
-    assert told("living_room", bench, moved(TABLE, 0.0, 1.5)) == []
+    for table in (TABLE, piece("counter_00", "kitchen island", (0.0, 0.0), (1.6, 0.9, 0.9))):
+        assert told("living_room", bench, moved(table, 0.0, 1.5)) == []
 
 
 def test_a_rack_of_dumbbells_stands_at_a_wall() -> None:
