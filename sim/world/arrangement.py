@@ -132,23 +132,13 @@ def _kitchen(inside: Sequence[Standing]) -> list[str]:
     units = [item for item in inside if item.name in _RUN]
     counters = [unit for unit in units if unit.category == "counter"]
     clauses = []
-    fronts: list[NDArray[np.float64]] = []
     hobs = [item for item in inside if item.name in ("hob", "cooker")]
-    for kind, found in (
-        ("fridge", [unit for unit in units if unit.name == "fridge"]),
-        ("sink", [item for item in inside if item.category == "sink"]),
-        ("cooker or hob", hobs),
-    ):
-        if not found or not counters:  # a requirement of its own
-            continue
-        item = found[0]
+    for kind, item in _work_units(inside).items():
         if min(item.gap_m(counter) for counter in counters) > TOUCH_M and not (
             kind == "fridge" and _joined(item, units)
         ):
             clauses.append(f"has no worktop next to the {kind}")
-        holder = next((c for c in counters if kind != "fridge" and c.gap_m(item) == 0.0), item)
-        depth_m = 0.5 * float(np.abs(holder.high - holder.low)[:2] @ np.abs(holder.front))
-        fronts.append(item.middle + holder.front * (depth_m - float((item.middle - holder.middle) @ holder.front)))
+    fronts = list(work_centres(inside).values())
     if len(fronts) == 3:
         triangle_m = sum(math.dist(a, b) for a, b in itertools.combinations(fronts, 2))
         longest_m = max(math.dist(a, b) for a, b in itertools.combinations(fronts, 2))
@@ -165,6 +155,32 @@ def _kitchen(inside: Sequence[Standing]) -> list[str]:
         if any((cabinet.overlap_m(hob)[:2] > 0.1).all() for hob in hobs):
             clauses.append(f"has {cabinet.label} above its hob")
     return clauses
+
+
+def _work_units(inside: Sequence[Standing]) -> dict[str, Standing]:
+    """Returns the fridge, the sink and the cooker or hob of a kitchen with worktops; a missing one is left out."""
+    if not any(item.name in _RUN and item.category == "counter" for item in inside):
+        return {}  # a requirement of its own
+    kinds = {
+        "fridge": [item for item in inside if item.name == "fridge"],
+        "sink": [item for item in inside if item.category == "sink"],
+        "cooker or hob": [item for item in inside if item.name in ("hob", "cooker")],
+    }
+    return {kind: found[0] for kind, found in kinds.items() if found}
+
+
+def work_centres(inside: Sequence[Standing]) -> dict[str, NDArray[np.float64]]:
+    """Returns where one stands at the fridge, the sink and the cooker or hob: the middles (2,) of their fronts, metres.
+
+    The front of a sink or a hob is that of the worktop that holds it.
+    """
+    counters = [item for item in inside if item.name in _RUN and item.category == "counter"]
+    centres = {}
+    for kind, item in _work_units(inside).items():
+        holder = next((c for c in counters if kind != "fridge" and c.gap_m(item) == 0.0), item)
+        depth_m = 0.5 * float(np.abs(holder.high - holder.low)[:2] @ np.abs(holder.front))
+        centres[kind] = item.middle + holder.front * (depth_m - float((item.middle - holder.middle) @ holder.front))
+    return centres
 
 
 def _joined(fridge: Standing, units: Sequence[Standing]) -> bool:

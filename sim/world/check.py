@@ -23,6 +23,7 @@ from sim.houses.geoms import data_at_rest, world_boxes
 from sim.houses.hazards import Hazard, read_hazards
 from sim.houses.house import House, Room, read_rooms
 from sim.houses.labels import Instance, Labels, collidable_geoms, cover_geoms, describe_geom, read_labels
+from sim.world.advice import advice
 from sim.world.arrangement import arrangement_faults
 from sim.world.freespace import FreeSpace, connected_to
 from sim.world.plan_requirements import unmet_plan_requirements
@@ -68,15 +69,28 @@ def check_house(
         return [f"it does not compile: {error}"]
     faults = _overlaps(house) + _without_support(house) + _unstable(house.model)
     if furnished:
-        hazards = read_hazards(house.model)
-        everything = read_standing(house.model, house.data, house.labels)
-        standing = [item for item in everything if not any(is_part_of(item, hazard) for hazard in hazards)]
+        standing = _furniture(house)
         faults += unmet_requirements(standing, house.rooms)
         faults += unmet_plan_requirements(house.model, house.data, house.labels, house.rooms)
         faults += arrangement_faults(house.model, house.data, house.labels, house.rooms, standing)
     if not house.rooms:
         return [*faults, "it has no room sites"]
     return faults + _unreachable(house, rule or SuccessRule(), robot or RobotModel())
+
+
+def advise_house(spec: mujoco.MjSpec) -> list[str]:
+    """Returns what an architect would change in a furnished house, a sentence each (`sim.world.advice`).
+
+    No house is rejected for it. The list is empty for a house that does not compile, or whose labels are not allowed.
+
+    Args:
+        spec: the house, without a robot; it is not changed.
+    """
+    try:
+        house = _compiled(spec, None)
+    except (ValueError, HouseError):
+        return []
+    return advice(house.rooms, _furniture(house))
 
 
 def check_own_house(house: House) -> tuple[list[str], list[str]]:
@@ -131,6 +145,13 @@ class _CompiledHouse:
     def boxes(self, geoms: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Returns the lowest and highest corners (n, 3) of the world-aligned boxes around geoms, metres."""
         return world_boxes(self.model, self.data, geoms)
+
+
+def _furniture(house: _CompiledHouse) -> list[Standing]:
+    """Returns the instances of a house that are not part of a hazard."""
+    hazards = read_hazards(house.model)
+    everything = read_standing(house.model, house.data, house.labels)
+    return [item for item in everything if not any(is_part_of(item, hazard) for hazard in hazards)]
 
 
 def _overlaps(house: _CompiledHouse) -> list[str]:

@@ -108,7 +108,7 @@ def _bathroom(room: Room, inside: Sequence[Standing]) -> list[str]:
     clauses += [
         f"has {shower.label}, a shower that stands in no corner"
         for shower in (item for item in inside if item.category == "shower")
-        if not any(_to_walls_m(box, shower).max() <= SHOWER_TO_WALL_M for box in room.boxes)
+        if not any(to_walls_m(box, shower).max() <= SHOWER_TO_WALL_M for box in room.boxes)
     ]
     for plant in (item for item in inside if item.category == "plant"):
         height_m = float(plant.high[2] - plant.low[2])
@@ -192,7 +192,7 @@ def _out_of_place(room: Room, inside: Sequence[Standing]) -> list[str]:
     clauses = [
         f"has {shelf.label}, a bookcase that stands at no wall"
         for shelf in (item for item in inside if item.name == "bookcase")
-        if min(float(_to_walls_m(box, shelf).min()) for box in room.boxes) > SHELF_TO_WALL_M
+        if min(float(to_walls_m(box, shelf).min()) for box in room.boxes) > SHELF_TO_WALL_M
     ]
     return clauses + [
         f"has {table.label}, a coffee table without a seat next to it"
@@ -201,7 +201,7 @@ def _out_of_place(room: Room, inside: Sequence[Standing]) -> list[str]:
     ]
 
 
-def _to_walls_m(box: Box, item: Standing) -> NDArray[np.float64]:
+def to_walls_m(box: Box, item: Standing) -> NDArray[np.float64]:
     """Returns the gap between an item and the nearer wall along x and along y (2,), metres."""
     low, high = (np.add(box[0], sign * np.asarray(box[1]))[:2] for sign in (-1.0, 1.0))
     return np.minimum(item.low[:2] - low, high - item.high[:2])

@@ -7,9 +7,10 @@
 
 The check measures the file as users load it: labels, overlaps, support, movable objects at rest, reachability, the
 rules for floor plans (`sim.world.plan_requirements`), the furniture that each kind of room must have
-(`sim.world.room_requirements`), and pixels of void in views of the robot's camera. A house of your own needs no room
-sites and no furniture: only places and goals that the robot cannot reach are faults, and everything else is printed as
-notes, unless `--furnished` is given. The exit status is 1 if any house has a fault.
+(`sim.world.room_requirements`), and pixels of void in views of the robot's camera. What an architect would change
+(`sim.world.advice`) is printed as notes. A house of your own needs no room sites and no furniture: only places and
+goals that the robot cannot reach are faults, and everything else is printed as notes, unless `--furnished` is given.
+The exit status is 1 if any house has a fault.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ from sim.homes.housegen.splits.recipes import SPLIT_VERSION, SPLITS
 from sim.houses.house import House
 from sim.houses.writing import house_text
 from sim.robot.config import RobotConfig
-from sim.world.check import check_house, check_own_house
+from sim.world.check import advise_house, check_house, check_own_house
 
 CAMERA = CameraModel(width_px=160, height_px=120)
 
@@ -82,7 +83,7 @@ class Checked:
     name: str
     faults: tuple[str, ...]
     notes: tuple[str, ...] = ()
-    """Sentences on unusual properties of a user's house that do not prevent its use."""
+    """Sentences on properties that do not prevent the use of the house."""
     tries: int = 1
     """Number of attempts that the generator made."""
     rejects: tuple[str, ...] = ()
@@ -166,7 +167,7 @@ def _check_seed(config: HouseConfig, views: int, seed: int) -> Checked:
     seconds = time.process_time() - began_s
     spec = mujoco.MjSpec.from_string(house_text(house.spec, str(assets_dir() / "textures")))
     faults = _faults(House(name, spec), views)
-    return Checked(name, faults, tries=house.tries, rejects=house.rejects, seconds=seconds)
+    return Checked(name, faults, tuple(advise_house(spec)), tries=house.tries, rejects=house.rejects, seconds=seconds)
 
 
 def _check_named(split: Split, views: int, generated: bool, name: str) -> Checked:
@@ -178,7 +179,7 @@ def _check_loaded(house: House, views: int, *, generated: bool) -> Checked:
     """Checks a house by all rules of generated houses, or only by those for users' houses."""
     began_s = time.process_time()
     if generated:
-        faults, notes = _faults(house, views), ()
+        faults, notes = _faults(house, views), tuple(advise_house(house.spec))
     else:
         wrong, remarks = check_own_house(house)
         void = _void(house, views) if not wrong else []

@@ -33,3 +33,10 @@ def test_houses_without_episodes_are_checked_whatever_their_endings(
     printed = capsys.readouterr().out
     assert "first: 0 faults" in printed
     assert "second: 0 faults" in printed
+
+
+def test_advice_on_a_generated_house_is_a_note_and_no_fault(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(Args(first_seed=5003, seeds=1, kind="flat", area_m2=64.0, views=0)) == 0
+    printed = capsys.readouterr().out
+    assert "heldout_5003: 0 faults" in printed
+    assert "    note: room_kitchen_00 has 5 objects of the kind tea set\n" in printed
