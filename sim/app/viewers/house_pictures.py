@@ -14,18 +14,21 @@ from numpy.typing import NDArray
 
 from sim.app.viewers.palette import PALETTE
 from sim.app.viewers.text import BOLD, text_width, write
+from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel
 from sim.gl import mujoco
 from sim.houses.geoms import data_at_rest
 from sim.houses.house import House, Room, read_rooms
 from sim.houses.labels import VOID, Instance, Labels, read_labels, rendered_geoms
 from sim.houses.proposals import box_around, void_objects
+from sim.renderer.camera import Camera
 from sim.world.freespace import FreeSpace
 
 Picture = NDArray[np.uint8]
 ViewPose = tuple[float, float, float, float]
 """x, y, height of the floor (metres) and yaw (degrees)."""
-VIEW_PX = (640, 480)
+VIEWS_CAMERA = CameraModel()
+"""Camera of the views of a house: that of the robot."""
 TITLE_PX = 44
 """Height of the strip with a title."""
 TOP_PX = (1400, 1100)
@@ -221,25 +224,20 @@ def draw_views(house: House, columns: int = 3, *, least: int = 0) -> Picture | N
         columns: views in a row.
         least: in a house with fewer rooms, it also looks at objects of different categories until there are so many.
     """
-    seen = house.spec.copy()
-    add_backdrop(seen)
-    model = seen.compile()
+    model = house.spec.compile()
     data = data_at_rest(model)
     rooms = read_rooms(model)
     labels = read_labels(model, rules=house.rules, ignore_prefix="")
     poses = list(_room_poses(model, data, labels, rooms) if rooms else _object_poses(model, data, labels))
     if rooms and len(poses) < least:
         poses += itertools.islice(_object_poses(model, data, labels), least - len(poses))
-    eye_m, fovy = CameraModel().height_m, math.degrees(CameraModel().vfov_rad)
-    cameras = [
-        camera_at(np.array([x, y, floor_z_m + eye_m]), azimuth_deg=yaw_deg, elevation_deg=0.0)
-        for _, (x, y, floor_z_m, yaw_deg) in poses
-    ]
-    tiles = []
-    for (name, _), picture in zip(poses, render_all(model, cameras, VIEW_PX, fovy_deg=fovy), strict=True):
-        tile = np.ascontiguousarray(picture)
+    mujoco.mj_camlight(model, data)
+    camera, tiles = Camera(model, labels, camera=VIEWS_CAMERA, profile="good"), []
+    for name, (x, y, floor_z_m, yaw_deg) in poses:
+        tile = camera.render(data, Pose(x, y, math.radians(yaw_deg), floor_z_m), ("rgb",))["rgb"]
         _outlined(tile, name, (10, 26), 22)
         tiles.append(tile)
+    camera.close()
     return tiled(tiles, min(columns, len(tiles))) if tiles else None
 
 
@@ -277,7 +275,7 @@ def _look_at(
     The ray from the camera to the instance, at the camera's height where the instance has that height, hits it first.
     """
     low, high = box_around(model, data, instance.geom_ids)
-    middle, eye_m = (low + high) / 2, CameraModel().height_m
+    middle, eye_m = (low + high) / 2, VIEWS_CAMERA.height_m
     aim = np.array([middle[0], middle[1], np.clip(eye_m, low[2] + 0.02, high[2] - 0.02)])
     away_m = np.hypot(*(places_m - aim[:2]).T)
     wanted_m = NEAREST_LOOK_M + LOOK_SIZES * float((high - low)[:2].max())
@@ -317,7 +315,7 @@ def _view_lengths(model: mujoco.MjModel, data: mujoco.MjData, room: Room, x: flo
     fan = np.radians(FAN_DEG)
     rays = np.column_stack([np.cos(fan), np.sin(fan), np.zeros_like(fan)])
     geom, far = np.zeros(len(fan), np.int32), np.zeros(len(fan))
-    eye = np.array([x, y, room.floor_z_m + CameraModel().height_m])
+    eye = np.array([x, y, room.floor_z_m + VIEWS_CAMERA.height_m])
     mujoco.mj_multiRay(model, data, eye, rays.ravel(), None, 1, -1, geom, far, None, len(fan), 10.0)
     with np.errstate(divide="ignore"):
         to_walls = (np.array([hx, hy]) - np.sign(rays[:, :2]) * np.array([x - cx, y - cy])) / np.abs(rays[:, :2])
@@ -378,19 +376,7 @@ def render(
     fovy_deg: float,
     near_far_m: tuple[float, float] = NEAR_FAR_M,
 ) -> Picture:
-    """Renders (h, w, 3) RGB with four samples per pixel and without shadows."""
-    return next(render_all(model, [camera], size_px, fovy_deg=fovy_deg, near_far_m=near_far_m))
-
-
-def render_all(
-    model: mujoco.MjModel,
-    cameras: Iterable[mujoco.MjvCamera],
-    size_px: tuple[int, int],
-    *,
-    fovy_deg: float,
-    near_far_m: tuple[float, float] = NEAR_FAR_M,
-) -> Iterator[Picture]:
-    """Yields a picture (h, w, 3) of each camera; the model's visual settings are changed."""
+    """Renders (h, w, 3) RGB with four samples per pixel and without shadows; changes the model's visual settings."""
     width, height = size_px
     model.vis.global_.offwidth, model.vis.global_.offheight = width, height
     model.vis.global_.fovy = fovy_deg
@@ -404,11 +390,10 @@ def render_all(
     option = mujoco.MjvOption()
     option.sitegroup[:] = 0
     try:
-        for camera in cameras:
-            renderer.update_scene(data, camera, option)
-            renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
-            renderer.scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
-            yield renderer.render().copy()
+        renderer.update_scene(data, camera, option)
+        renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
+        renderer.scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
+        return renderer.render().copy()
     finally:
         renderer.close()
 

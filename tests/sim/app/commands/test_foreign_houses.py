@@ -19,7 +19,7 @@ from sim.app.commands.views import generate as generate_views
 from sim.app.viewers import house_pictures
 from sim.app.viewers.house_pictures import storeys
 from sim.core.errors import ConfigError
-from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID
+from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel
 from sim.episodes.splits import load_split
 from sim.gl import mujoco
 from sim.houses.house import House
@@ -27,13 +27,13 @@ from sim.houses.labels import read_labels
 from sim.houses.load import load_house
 from sim.training.segmentation.dataset import list_shards, read_shard
 from tests.helpers.foreign import SCENE, write_scene
-from tests.helpers.worlds import room, two_storeys, with_box
+from tests.helpers.worlds import room, sofa_room, two_storeys, with_box
 
 
 @pytest.fixture(autouse=True)
 def _small_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sim.app.viewers.house_pictures.TOP_PX", (280, 220))
-    monkeypatch.setattr("sim.app.viewers.house_pictures.VIEW_PX", (160, 120))
+    monkeypatch.setattr("sim.app.viewers.house_pictures.VIEWS_CAMERA", CameraModel(width_px=160, height_px=120))
 
 
 @pytest.fixture(scope="module")
@@ -194,6 +194,16 @@ def test_the_gallery_draws_a_house_without_rooms(scene: tuple[Path, Path], tmp_p
     top = read(tmp_path / "flat_top.png")
     assert top.std() > 20.0
     assert read(tmp_path / "flat_views.png").shape[1] >= 160
+
+
+def test_lamps_light_the_views_of_the_gallery() -> None:
+    dark = sofa_room().spec.copy()
+    lit = dark.copy()
+    lit.worldbody.add_light(pos=(0.0, 0.0, 2.4), dir=(0.0, 0.0, -1.0), diffuse=(1.0, 1.0, 1.0))
+    views = [house_pictures.draw_views(House("home", spec)) for spec in (dark, lit)]
+    assert views[0] is not None
+    assert views[1] is not None
+    assert views[1].mean() > views[0].mean() + 4.0
 
 
 def test_the_gallery_draws_a_house_with_nothing_to_look_at(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
