@@ -601,10 +601,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _SCENE,
         f"stubborn label {_OF_SCENE} --picture {{tmp}}/flat.png",
     ),
-    "stubborn episodes --house flat.xml --labels labels.json --episodes 20 --out runs/flat_split": (
-        _SCENE,
-        _PACKED,
-    ),
+    "stubborn episodes --house flat.xml --labels labels.json --episodes 20 --out runs/flat_split": (_SCENE, _PACKED),
     f"{_RUN} --root {_KITCHEN} --house {_KITCHEN}/kitchen_assets/kitchen_env_model.xml"
     " --labels examples/worlds/kitchen.json --goal counter --semantics gt --episodes 2": _PACKAGE,
     f"{_RUN} --robot carrier.xml --episodes 20": (

@@ -183,12 +183,7 @@ HOLLOW = """</default>
     <geom contype="0" conaffinity="0"/>
   </default>"""
 """In place of the end of the robot's defaults: nothing of it collides."""
-SIDECAR = {
-    "wheel_joints": ["hub_l", "hub_r"],
-    "wheel_radius_m": 0.075,
-    "casters": ["castor"],
-    "camera_height_m": 0.82,
-}
+SIDECAR = {"wheel_joints": ["hub_l", "hub_r"], "wheel_radius_m": 0.075, "casters": ["castor"], "camera_height_m": 0.82}
 
 
 def write_robot(folder: Path, *, robot: str = ROBOT, **sidecar: object) -> Path:

@@ -18,7 +18,7 @@ TABLE: Mapping[str, Sequence[Box]] = {
     "wood": [
         *((x, 0, z, x + 0.05, 0.7, z + 0.05) for x in (-0.7, 0.65) for z in (-0.4, 0.35)),
         (-0.7, 0.7, -0.4, 0.7, 0.74, 0.4),
-    ],
+    ]
 }
 """A table of 1.4 m x 0.8 m in metres."""
 MATERIALS = "newmtl wood\nKd 0.6 0.4 0.2\nnewmtl cloth\nKd 0.1 0.2 0.8\n"

@@ -105,10 +105,7 @@ def with_post(
     """Returns the house with an additional static upright cylinder, such as a table's leg or a pole."""
     spec = house.spec.copy()
     spec.worldbody.add_geom(
-        name=name,
-        type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-        pos=(*xy_m, 0.5 * height_m),
-        size=(radius_m, 0.5 * height_m, 0),
+        name=name, type=mujoco.mjtGeom.mjGEOM_CYLINDER, pos=(*xy_m, 0.5 * height_m), size=(radius_m, 0.5 * height_m, 0)
     )
     return House(house.name, spec, house.rules)
 

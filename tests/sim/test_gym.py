@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import types
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,8 +12,6 @@ import cv2
 import gymnasium
 import numpy as np
 import pytest
-from gymnasium import wrappers
-from gymnasium.utils.env_checker import check_env
 
 import sim.gym
 from sim.core.geometry.pose import Pose
@@ -38,28 +35,12 @@ def env(options: dict[str, Any]) -> Iterator[gymnasium.Env]:
     env.close()
 
 
-@pytest.mark.filterwarnings("error")
-def test_gymnasiums_checker_accepts_a_shipped_house() -> None:
-    env = gymnasium.make(ENV_ID, split="traps", camera=SMALL)
-    check_env(env.unwrapped)
-    env.close()
-
-
 def test_the_checker_of_stable_baselines_accepts_it(options: dict[str, Any]) -> None:
     checker = pytest.importorskip("stable_baselines3.common.env_checker", reason="the extra [train] is not installed")
     env = gymnasium.make(ENV_ID, **options)
     checker.check_env(env.unwrapped, warn=False)
     checker.check_env(sim.gym.ProgressReward(env), warn=False)
     env.close()
-
-
-def test_frames_are_stacked_by_gymnasiums_wrapper(env: gymnasium.Env) -> None:
-    stacked = wrappers.FrameStackObservation(env, 3)
-    first, _ = stacked.reset(seed=0)
-    second, *_ = stacked.step(Action.TURN_LEFT)
-    assert first["depth"].shape == (3, 48, 64)
-    np.testing.assert_array_equal(first["depth"][1:], second["depth"][:2])
-    assert stacked.observation_space.contains(second)
 
 
 def test_a_configuration_may_be_a_dict_of_its_fields(house: Path) -> None:
@@ -163,14 +144,6 @@ def test_the_time_limit_of_gymnasium_truncates_and_the_task_continues_to_count(o
     env.close()
 
 
-def test_episode_statistics_count_reward_and_length(env: gymnasium.Env) -> None:
-    counted = wrappers.RecordEpisodeStatistics(env)
-    counted.reset(seed=0)
-    counted.step(Action.TURN_LEFT)
-    *_, info = counted.step(Action.STOP)
-    assert (info["episode"]["l"], info["episode"]["r"]) == (2, info["success"])
-
-
 def test_render_returns_the_colour_image(env: gymnasium.Env) -> None:
     observation, _ = env.reset(seed=0)
     np.testing.assert_array_equal(env.render(), observation["rgb"])
@@ -194,43 +167,6 @@ def test_rendering_changes_no_observation(options: dict[str, Any]) -> None:
     for plain, rendered in zip(*runs, strict=True):
         for name, value in plain.items():
             np.testing.assert_array_equal(value, rendered[name])
-
-
-def test_record_video_takes_every_frame(env: gymnasium.Env, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Uses MoviePy where it is installed, else a substitute for its encoder."""
-    given: list[tuple[int, float]] = []
-    try:
-        import moviepy  # noqa: F401 # pyright: ignore[reportMissingImports]
-    except ImportError:
-        _stand_in_for_moviepy(monkeypatch, given)
-    filmed = wrappers.RecordVideo(env, str(tmp_path / "films"), episode_trigger=lambda _: True, disable_logger=True)
-    filmed.reset(seed=0)
-    for action in (Action.TURN_LEFT, Action.MOVE_FORWARD, Action.STOP):
-        filmed.step(action)
-    filmed.close()
-    (film,) = tmp_path.glob("films/*.mp4")
-    if given:
-        assert given == [(4, env.metadata["render_fps"])]
-    assert film.stat().st_size > 0
-
-
-def _stand_in_for_moviepy(monkeypatch: pytest.MonkeyPatch, given: list[tuple[int, float]]) -> None:
-    """Replaces `moviepy` by the functions that `RecordVideo` calls; records number and rate of the frames."""
-
-    class ImageSequenceClip:
-        def __init__(self, frames: list[np.ndarray], fps: float) -> None:
-            assert all(frame.shape == (48, 64, 3) and frame.dtype == np.uint8 for frame in frames)
-            given.append((len(frames), fps))
-
-        def write_videofile(self, file: str, **_: object) -> None:
-            Path(file).write_bytes(b"film")
-
-    package, clip = types.ModuleType("moviepy"), types.ModuleType("moviepy.video.io.ImageSequenceClip")
-    for module in (package, clip):
-        vars(module)["ImageSequenceClip"] = ImageSequenceClip
-    for name in ("moviepy", "moviepy.video", "moviepy.video.io"):
-        monkeypatch.setitem(sys.modules, name, package)
-    monkeypatch.setitem(sys.modules, "moviepy.video.io.ImageSequenceClip", clip)
 
 
 @pytest.mark.costly

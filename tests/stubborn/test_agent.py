@@ -53,7 +53,7 @@ def run(
     return run_episode(world, agent, goal, max_steps=max_steps), agent
 
 
-@pytest.mark.parametrize("goal", ["bed", "picture", "cushion", "cabinet", "chair", "table"])
+@pytest.mark.parametrize("goal", ["bed", "picture", "cushion", "cabinet", "table"])
 def test_it_finds_each_kind_of_object_and_stops_within_a_metre(goal: str):
     start = (10.0, 3.7, 1.9) if goal == "cabinet" else (1.2, 0.7, 1.9)
     trace, _ = run(APARTMENT, start, goal)
@@ -128,7 +128,9 @@ def test_the_same_house_turned_by_the_start_heading_is_still_solved():
 
 
 def test_the_picture_of_a_map_shows_robot_target_and_legend_and_changes_nothing():
-    _, agent = run(APARTMENT, (1.2, 0.7, 1.9), "chair")
+    trace, agent = run(APARTMENT, (1.2, 0.7, 1.9), "chair")
+    assert trace.stopped
+    assert trace.goal_distance_m < 1.0
     before = agent.navmap.seen_obstacle.copy()
     picture = map_painter.draw_map(agent, size_px=480)
     assert picture.dtype == np.uint8

@@ -13,7 +13,7 @@ from sim.core.geometry.grid import GridFrame, Window
 from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40_ID, CameraModel, ConfigError
 from stubborn.kernels.frames import enter_bits, shows_no_noise
-from stubborn.kernels.grids import bilinear, distance_within, speeds
+from stubborn.kernels.grids import bilinear, distance_within
 from stubborn.mapping.masks import connected, distance_to, farther_than
 from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.object_layers import FrameScores
@@ -285,13 +285,6 @@ def test_bits_are_added_to_those_of_a_cell_where_they_count() -> None:
 def test_a_reach_whose_square_is_no_short_number_is_refused() -> None:
     with pytest.raises(ValueError, match="at most 180 cells"):
         distance_within(np.ones((2, 2), np.bool_), 181)
-
-
-def test_the_speed_rises_with_the_clearance() -> None:
-    clearance_m = np.random.default_rng(9).uniform(0.0, 0.5, (20, 30)).astype(np.float32)
-    share = (clearance_m - np.float32(0.15)) / np.float32(0.15)
-    found = speeds(clearance_m, *(np.float32(number) for number in (0.15, 0.15, 0.35, 1.0 - 0.35)))
-    assert np.array_equal(found, np.clip(0.35 + (1.0 - 0.35) * share, 0.35, 1.0))
 
 
 @pytest.mark.parametrize("connectivity", [4, 8])

@@ -29,14 +29,7 @@ from tools.research.external_eye import (
     scores,
     write_sheets,
 )
-from tools.research.external_eye_scores import (
-    Detection,
-    Truth,
-    match,
-    paired_difference,
-    share_with_interval,
-    whole_px,
-)
+from tools.research.external_eye_scores import Detection, Truth, match, paired_difference, share_with_interval, whole_px
 
 CAMERA, HERE = CameraModel(), Pose(0.0, 0.0, 0.0, 0.0)
 CHAIR = Truth("chair_00", "chair", (100.0, 100.0, 200.0, 300.0), counted=True)

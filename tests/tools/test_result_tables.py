@@ -285,17 +285,6 @@ def test_a_row_has_the_command_that_repeats_it(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize("settings", [{}, {"agent.seeker.verify": False}])
-def test_the_command_of_an_older_row_sets_what_its_agent_did(tmp_path: Path, settings: dict[str, object]) -> None:
-    config = {"agent": {"mapping": {"candidate_score": 0.5}}}
-    write_run(tmp_path / "a", [LINE], semantics="rednet", settings=settings, config=config)
-    own = "".join(f"{path}={json.dumps(value)} " for path, value in settings.items())
-    assert archived(tmp_path).command(1) == (
-        f"stubborn run --agent stubborn --config {own}agent.mapping.other_of_target_pixel=true "
-        "--semantics rednet --split val --episodes 1"
-    )
-
-
 def test_the_command_of_a_row_configures_the_agent_as_its_run_was(runs: Mapping[RunKey, ArchivedRun]) -> None:
     for run in runs.values():
         words = shlex.split(run.command(1).rpartition("; ")[2])

@@ -15,8 +15,6 @@ from sim.app import cli
 from sim.core.errors import PhysicsError, debug
 from sim.core.interface import ConfigError
 
-ROOT = Path(__file__).resolve().parents[3]
-
 
 @dataclass(frozen=True)
 class Args:

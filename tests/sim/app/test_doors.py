@@ -19,10 +19,10 @@ def test_python_starts_the_commands(words: list[str]) -> None:
     assert "Run episodes of an agent" in _python(*words, "--help")
 
 
-@pytest.mark.parametrize("option", ["--help", "--version"])
-def test_the_list_of_commands_imports_neither_numpy_nor_tyro(option: str) -> None:
+@pytest.mark.parametrize("words", [[], ["--help"], ["--version"]], ids="".join)
+def test_the_list_of_commands_imports_neither_numpy_nor_tyro(words: list[str]) -> None:
     code = (
-        f"import sys; sys.argv = ['stubborn', '{option}']\nfrom sim.app.commands.main import entry\nassert entry() == 0"
+        f"import sys; sys.argv = ['stubborn', *{words}]\nfrom sim.app.commands.main import entry\nassert entry() == 0"
     )
     imported = _python("-c", f"{code}\nprint(sorted({{'numpy', 'tyro', 'mujoco', 'rich'}} & set(sys.modules)))")
     assert imported.splitlines()[-1] == "[]"

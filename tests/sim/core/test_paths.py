@@ -11,11 +11,7 @@ from sim.core.paths import hash_of_packages
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    for file, text in (
-        ("sim/run.py", "pass"),
-        ("sim/sensors/noise.py", "1"),
-        ("sim/verifiers/noisy.json", "{}"),
-    ):
+    for file, text in (("sim/run.py", "pass"), ("sim/sensors/noise.py", "1"), ("sim/verifiers/noisy.json", "{}")):
         (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / file).write_text(text)
     return tmp_path / "sim"

@@ -52,74 +52,41 @@ from tests.sim.task.test_trajectory import walked
 
 LISTED = [(train_recipe(1), "0" * 64)]
 SIDECAR = Sidecar(start=Pose(0.0, 0.0, 0.0), goal="bed")
-LINE = {"episode_id": "e1", "house": "h", "goal": "bed", "end_reason": "stop", "success": 1.0, "spl": 0.5, "seed": 0}
 EPISODE = {
-    "episode_id": "e1",
-    "scene_id": "mjcf_houses/val/h.xml",
-    "start_position": [0.0, 0.0, 1.0],
-    "start_rotation": [0.0, 0.5, 0.0, 0.5],
-    "object_category": "bed",
-    "info": {"geodesic_distance": 3.0},
-}
+    "episode_id": "e1", "scene_id": "mjcf_houses/val/h.xml", "start_position": [0.0, 0.0, 1.0],
+    "start_rotation": [0.0, 0.5, 0.0, 0.5], "object_category": "bed", "info": {"geodesic_distance": 3.0},
+}  # fmt: skip
 MODEL = Model(
     key="i01234567", ident="a", name="a", category="chair", uses=(), mount="floor", elevation_m=0.0,
     size_m=(1.0, 1.0, 1.0), author="", licence="", origin="", sha256="", split="train", triangles=1,
 )  # fmt: skip
 CELLS = np.zeros((2, 3))
 PLAN = Plan(
-    name="h",
-    frame=GridFrame(origin_xy_m=(0.0, 0.0), shape=(2, 3), cell_m=0.05),
-    floor_z_m=0.0,
-    ceiling_m=2.5,
-    radius_m=0.18,
-    slack_m=CELLS.astype(np.float32),
-    floor=CELLS.astype(np.bool_),
-    room=CELLS.astype(np.int8),
-    rooms=("room_bedroom_00",),
-    succeeds=CELLS.astype(np.uint32),
-    span_start=np.arange(7, dtype=np.int32),
-    span_low_m=np.zeros(6, np.float32),
-    span_high_m=np.ones(6, np.float32),
-    span_instance=np.zeros(6, np.uint16),
-    instances=("wall_00",),
-    categories=np.ones(1, np.uint8),
-)
+    name="h", frame=GridFrame(origin_xy_m=(0.0, 0.0), shape=(2, 3), cell_m=0.05), floor_z_m=0.0, ceiling_m=2.5,
+    radius_m=0.18, slack_m=CELLS.astype(np.float32), floor=CELLS.astype(np.bool_), room=CELLS.astype(np.int8),
+    rooms=("room_bedroom_00",), succeeds=CELLS.astype(np.uint32), span_start=np.arange(7, dtype=np.int32),
+    span_low_m=np.zeros(6, np.float32), span_high_m=np.ones(6, np.float32), span_instance=np.zeros(6, np.uint16),
+    instances=("wall_00",), categories=np.ones(1, np.uint8),
+)  # fmt: skip
 SHOWN = Demonstration(
-    depth_mm=np.zeros((2, 3, 4), np.uint16),
-    semantic=np.zeros((2, 3, 4), np.uint8),
-    poses=np.zeros((2, 3), np.float32),
-    actions=np.zeros(2, np.uint8),
-    goal="bed",
-    house="h",
-    success=True,
-)
+    depth_mm=np.zeros((2, 3, 4), np.uint16), semantic=np.zeros((2, 3, 4), np.uint8), poses=np.zeros((2, 3), np.float32),
+    actions=np.zeros(2, np.uint8), goal="bed", house="h", success=True,
+)  # fmt: skip
 SAMPLES = SampleConfig(cells=4, map_cells=40)
 SAMPLE = Sample(
     MapPatch(
-        frame=GridFrame.around_start(4, 0.25),
-        obstacle=np.zeros((4, 4), np.bool_),
-        seen=np.zeros((4, 4), np.bool_),
-        trail=np.zeros((4, 4), np.bool_),
-        goals=np.eye(4, dtype=np.uint32),
-        robot=(2, 2),
+        frame=GridFrame.around_start(4, 0.25), obstacle=np.zeros((4, 4), np.bool_), seen=np.zeros((4, 4), np.bool_),
+        trail=np.zeros((4, 4), np.bool_), goals=np.eye(4, dtype=np.uint32), robot=(2, 2),
     ),
     seen_goals=1,
     potentials=Potentials(
-        rows=np.arange(2),
-        cols=np.arange(2),
-        area=np.ones(2, np.float32),
-        objects=np.ones((2, len(GOAL_CATEGORIES)), np.float32),
-        part=np.arange(2),
-        path_m=np.ones(2, np.float32),
+        rows=np.arange(2), cols=np.arange(2), area=np.ones(2, np.float32), part=np.arange(2),
+        objects=np.ones((2, len(GOAL_CATEGORIES)), np.float32), path_m=np.ones(2, np.float32),
     ),
-)
+)  # fmt: skip
 SHAPE = {
-    "rgba": np.ones((1, 4)),
-    "v0": np.ones((3, 3)),
-    "f0": np.ones((1, 3)),
-    "boxes": np.ones((1, 6)),
-    "top": np.ones(0),
-}
+    "rgba": np.ones((1, 4)), "v0": np.ones((3, 3)), "f0": np.ones((1, 3)), "boxes": np.ones((1, 6)), "top": np.ones(0),
+}  # fmt: skip
 TINY = RedNetConfig(width=4, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
 
 
@@ -281,17 +248,10 @@ def test_any_content_gives_a_result_or_a_message(reader: Reader, tmp_path: Path)
 
 
 BAD_ARRAYS = (
-    np.array(7),
-    np.array("a"),
-    np.full((2, 2), "a"),
-    np.zeros(0),
-    np.full((3, 4, 4), -1),
-    np.full(3, np.nan),
-    np.full((2, 5), 1 << 60),
-    np.array(["2020-01-01"], "datetime64[D]"),
-    np.zeros(2, [("a", "u1")]),
+    np.array(7), np.array("a"), np.full((2, 2), "a"), np.zeros(0), np.full((3, 4, 4), -1), np.full(3, np.nan),
+    np.full((2, 5), 1 << 60), np.array(["2020-01-01"], "datetime64[D]"), np.zeros(2, [("a", "u1")]),
     np.ones(2, np.complex64),
-)
+)  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -187,12 +187,6 @@ def test_a_pipe_in_place_of_a_file_is_refused_and_not_waited_for(kind: str, tmp_
         reading.read_bytes(tmp_path, what="Table")
 
 
-def test_the_size_of_a_jpeg_is_found_behind_fill_bytes() -> None:
-    content = cv2.imencode(".jpg", np.zeros((30, 50, 3), np.uint8))[1].tobytes()
-    filled = content.replace(b"\xff\xc0", b"\xff" * 700 + b"\xc0", 1)
-    assert pictures.image_size_px(filled) == (50, 30)
-
-
 @pytest.mark.parametrize("suffix", [".png", ".jpg"])
 def test_the_size_of_an_image_is_read_from_its_header(suffix: str) -> None:
     content = cv2.imencode(suffix, np.zeros((30, 50, 3), np.uint8))[1].tobytes()

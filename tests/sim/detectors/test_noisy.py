@@ -56,14 +56,6 @@ def test_views_are_mistaken_as_often_as_the_rates_say():
     assert mistaken == pytest.approx(expected, abs=near(expected))
 
 
-def test_a_row_that_sums_to_less_than_one_reduces_the_error_rate():
-    config = replace(FLAWLESS, mistake_rate=0.5)
-    for category in ("toilet", "door", "plant"):
-        expected = 0.5 * sum(CONFUSIONS[category].values())
-        mistaken = (seen(config, objects(category)).first != MPCAT40_ID[category]).mean()
-        assert mistaken == pytest.approx(expected, abs=near(expected))
-
-
 def test_errors_have_the_shares_of_the_table():
     first = seen(replace(FLAWLESS, mistake_rate=1.0), objects("sofa")).first
     for name, share in CONFUSIONS["sofa"].items():
@@ -127,13 +119,6 @@ def test_confidence_has_the_mean_and_deviation_of_the_config():
     assert (right.mean(), right.std()) == pytest.approx((0.8, 0.05), abs=0.005)
     wrong = seen(replace(config, mistake_rate=1.0, lookalike_share=0.0), objects("sofa")).confidence
     assert (wrong.mean(), wrong.std()) == pytest.approx((0.6, 0.05), abs=0.005)
-
-
-def test_another_seed_gives_other_errors():
-    of, config = objects("chair"), replace(FLAWLESS, mistake_rate=0.5)
-    one, same, other = (seen(config, of, seed=seed).first for seed in (1, 1, 2))
-    np.testing.assert_array_equal(one, same)
-    assert (one != other).mean() > 0.4
 
 
 def test_the_table_names_categories_and_its_shares_are_shares():
@@ -243,11 +228,6 @@ def test_a_run_with_noisy_semantics_is_reproducible_and_records_its_settings(hou
         lines.append({key: value for key, value in line.items() if key not in ("wall_time_s", "steps_per_s")})
     assert lines[0] == lines[1]
     assert lines[0]["semantics"] == "noisy"
-
-
-def test_unknown_semantics_are_refused_with_the_names_that_exist(house: Path, tmp_path: Path):
-    with pytest.raises(ConfigError, match=r"Unknown --semantics 'dreams'\. Available: gt, noisy"):
-        run.main(RunOptions(house=house, semantics="dreams", out=tmp_path))
 
 
 def test_rates_outside_their_range_are_refused():

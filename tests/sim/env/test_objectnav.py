@@ -175,23 +175,6 @@ def test_an_episode_is_truncated_not_terminated_at_max_steps(env: ObjectNavEnv) 
     assert env.scene.world.pose == turned
 
 
-def test_driving_into_a_wall_is_a_collision_and_driving_freely_is_not(env: ObjectNavEnv) -> None:
-    env.reset(seed=0)
-    infos = [env.step(action)[4] for action in [Action.TURN_RIGHT] * 3 + [Action.MOVE_FORWARD] * 16]
-    collided = [info["collided"] for info in infos]
-    assert not any(collided[:12])
-    assert all(collided[-2:])
-    assert infos[-1]["collisions"] == sum(collided)
-
-
-def test_observations_do_not_change_when_the_next_one_comes(env: ObjectNavEnv) -> None:
-    first, _ = env.reset(seed=0)
-    kept = {name: value.copy() for name, value in first.items()}
-    env.step(Action.MOVE_FORWARD)
-    for name, value in first.items():
-        np.testing.assert_array_equal(value, kept[name])
-
-
 def test_the_same_seed_gives_the_same_episode_and_another_seed_another(house: Path) -> None:
     env = ObjectNavEnv(house=house, camera=SMALL)
     starts = []
@@ -199,15 +182,6 @@ def test_the_same_seed_gives_the_same_episode_and_another_seed_another(house: Pa
         env.reset(seed=seed)
         starts.append(env.episode.start)
     assert starts[0] == starts[1] != starts[2]
-    env.close()
-
-
-def test_the_robot_is_in_no_image(house: Path) -> None:
-    """If the hull were rendered, it would cover the lower half of this image."""
-    env = ObjectNavEnv(house=house, goal="sofa", start=Pose(0, 0, math.pi), camera=SMALL)
-    observation, _ = env.reset(seed=0)
-    assert set(np.unique(observation["semantic"])) <= {0, 1, 2}
-    assert observation["depth"][-1].min() > 0.5
     env.close()
 
 
@@ -228,7 +202,9 @@ def test_an_invalid_option_is_named(house: Path, options: dict, error: type[Exce
         ObjectNavEnv(**{"house": house, "camera": SMALL, **options}).reset(seed=0)
 
 
-def test_a_step_after_a_reset_that_failed_is_refused(env: ObjectNavEnv) -> None:
+def test_a_step_before_a_reset_and_after_one_that_failed_is_refused(env: ObjectNavEnv) -> None:
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(Action.STOP)
     env.reset(seed=0)
     inside = Episode(episode_id="inside", house="sofa_room", goal="sofa", start=Pose(2.5, 0.0, 0.0))
     with pytest.raises(EpisodeError):
@@ -237,11 +213,6 @@ def test_a_step_after_a_reset_that_failed_is_refused(env: ObjectNavEnv) -> None:
         env.step(Action.TURN_LEFT)
     env.reset(seed=0)
     env.step(Action.TURN_LEFT)
-
-
-def test_step_before_reset_is_refused(env: ObjectNavEnv) -> None:
-    with pytest.raises(gymnasium.error.ResetNeeded):
-        env.step(Action.STOP)
 
 
 def test_a_closed_environment_says_so(house: Path) -> None:

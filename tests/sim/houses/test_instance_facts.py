@@ -28,10 +28,7 @@ def compiled(floor: str = "name: floor") -> mujoco.MjModel:
 def test_texts_with_the_name_of_an_instance_are_its_facts() -> None:
     model = compiled()
     facts = read_instance_facts(model, read_labels(model))
-    assert facts == {
-        "chair_00": InstanceFacts("dining chair", "red", "wood"),
-        "floor_00": InstanceFacts("floor"),
-    }
+    assert facts == {"chair_00": InstanceFacts("dining chair", "red", "wood"), "floor_00": InstanceFacts("floor")}
 
 
 @pytest.mark.parametrize(

@@ -41,11 +41,7 @@ def test_a_bare_grey_room_is_bright_at_every_heading(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "own",
-    [
-        {"lamp": '<light pos="0 0 2"/>'},
-        {"head": '<visual><headlight ambient=".4 .4 .4"/></visual>'},
-    ],
+    "own", [{"lamp": '<light pos="0 0 2"/>'}, {"head": '<visual><headlight ambient=".4 .4 .4"/></visual>'}]
 )
 def test_a_scene_with_light_keeps_it(tmp_path: Path, own: dict[str, str]) -> None:
     house = load_house(written(tmp_path, **own))

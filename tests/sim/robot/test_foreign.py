@@ -15,7 +15,6 @@ from sim.core.interface import Action, ConfigError
 from sim.env.objectnav import ObjectNavEnv
 from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot, robot_sha256
-from sim.task.ground_truth import GroundTruth
 from sim.world.world import World
 from tests.helpers.foreign import HOLLOW, ROBOT, TWO_BODIES, write_robot
 from tests.helpers.worlds import open_floor, room, with_box
@@ -160,14 +159,6 @@ def test_joints_are_fixed_where_the_sidecar_says(tmp_path: Path) -> None:
     world.reset(Pose(0.0, 0.0, 0.0))
     head = world.data.geom("stubborn_robot/file/head.0").xmat.reshape(3, 3)
     np.testing.assert_allclose(head[:, 0], (0.0, 1.0, 0.0), atol=1e-3)
-
-
-def test_the_free_space_depends_on_the_robot(carrier: Path) -> None:
-    config, _ = load_robot(carrier)
-    ours, theirs = World(room(4, 4)), World(room(4, 4), robot=config)
-    edges = [np.flatnonzero(GroundTruth(world).space().free.any(axis=0)) for world in (ours, theirs)]
-    lost_m = 0.025 * (len(edges[0]) - len(edges[1]))
-    assert lost_m == pytest.approx(2 * (config.model.radius_m - ours.robot.radius_m), abs=0.026)
 
 
 def test_the_camera_is_mounted_where_the_sidecar_says(tmp_path: Path) -> None:

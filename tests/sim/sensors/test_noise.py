@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.special import ndtr
 
 from sim.core.geometry.pose import Pose
 from sim.core.interface import FORWARD_M, SENSORS, Action, CameraModel, ConfigError, wrap_angle
@@ -141,16 +140,6 @@ def test_depth_comes_in_steps_that_grow_with_the_square_of_range(distance_m: flo
     here = np.abs(values - distance_m).argmin()
     assert values[here + 1] - values[here] == pytest.approx(step_1_m * distance_m**2, rel=0.05)
     np.testing.assert_allclose(1.0 / values / step_1_m, np.rint(1.0 / values / step_1_m), atol=1e-3)
-
-
-@pytest.mark.parametrize("sigma_px", [0.5, 1.0, 2.0])
-def test_pixels_are_shifted_as_often_as_configured(sigma_px: float) -> None:
-    """A pixel k columns before a step shows the far side when its shift is rounded to k or more."""
-    depth_m = sensed(DepthNoise(lateral_px=sigma_px), step_of(1.0, 3.0))
-    for k in (1, 2, 3):
-        share = (depth_m[:, SHAPE[1] // 2 - k] == 3.0).mean()
-        wanted = float(ndtr(-(k - 0.5) / sigma_px))
-        assert share == pytest.approx(wanted, rel=0.05, abs=4.0 * math.sqrt(wanted / SHAPE[0]))
 
 
 def test_shifts_have_the_configured_std_in_both_directions_and_are_uncorrelated() -> None:

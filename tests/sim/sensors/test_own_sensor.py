@@ -256,11 +256,7 @@ class Gps(Constant):
 
 @pytest.mark.parametrize(
     ("sensor", "message"),
-    [
-        (Constant, wording.CONSTANT_IS_A_CLASS_GIVE_AN_OBJECT),
-        (NoNoise(), "NoNoise"),
-        (Gps(0.0), "'gps'"),
-    ],
+    [(Constant, wording.CONSTANT_IS_A_CLASS_GIVE_AN_OBJECT), (NoNoise(), "NoNoise"), (Gps(0.0), "'gps'")],
 )
 def test_an_object_that_is_no_sensor_is_refused_in_one_sentence(sensor: object, message: str) -> None:
     with pytest.raises(ConfigError, match=message):

@@ -10,7 +10,6 @@ import pytest
 from sim.core.errors import EpisodeError
 from sim.core.geometry.pose import Pose
 from sim.core.interface import MPCAT40_ID, Action, ConfigError
-from sim.episodes.drawing import draw_start
 from sim.gl import mujoco
 from sim.task.config import TaskConfig
 from sim.task.ground_truth import GroundTruth
@@ -79,16 +78,6 @@ def test_a_stop_at_once_at_the_goal_has_spl_one():
     result = act(world, begin(world, "bed", Pose(1.2, 0.0, 0.0)), STOP)
     assert result.success == result.spl == result.soft_spl == 1.0
     assert result.path_length == 0.0
-
-
-def test_the_last_step_truncates_and_no_action_counts_after_it():
-    world = bed_room()
-    task = begin(world, "bed", Pose(-1.0, 0.0, 0.0), max_steps=3)
-    assert act(world, task, LEFT, LEFT, LEFT).end_reason == "max_steps"
-    assert task.truncated
-    assert not task.terminated
-    with pytest.raises(EpisodeError, match="has ended"):
-        act(world, task, LEFT)
 
 
 def test_a_stop_as_the_last_step_is_a_stop():
@@ -203,18 +192,6 @@ def test_a_goal_on_the_storey_of_the_robot_is_found():
         assert result.success == 1.0, goal
         assert result.failure is None
         assert result.spl > 0.7
-
-
-def test_a_goal_on_the_other_storey_is_not_found():
-    world = World(two_storeys())
-    result = act(world, begin(world, "bed", UPSTAIRS, max_steps=2), FORWARD, LEFT)
-    assert (result.success, result.failure) == (0.0, "stairs")
-
-
-def test_no_sampled_episode_has_its_goal_on_another_storey():
-    with_sofa = World(two_storeys())
-    with pytest.raises(EpisodeError, match=wording.ON_ANOTHER_STOREY_ONLY):
-        draw_start(Task(with_sofa), "sofa", np.random.default_rng(0))
 
 
 def test_the_trajectory_has_a_line_for_each_moment_and_action():

@@ -15,15 +15,7 @@ from sim.core.interface import GOAL_CATEGORIES, MOVES, MPCAT40_ID, Action, Camer
 from sim.training.cloned.samples import LabelledSteps, Streams
 from stubborn.agents import make
 from stubborn.baselines.cloned import SHIPPED, ClonedAgent, ClonedConfig
-from stubborn.baselines.cloned_input import (
-    MOTION,
-    NO_ACTION,
-    Steps,
-    motion_of,
-    motions,
-    small_categories,
-    small_depth,
-)
+from stubborn.baselines.cloned_input import MOTION, NO_ACTION, Steps, motion_of, motions, small_categories, small_depth
 from stubborn.baselines.cloned_net import FILES, ClonedNet, NetConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 

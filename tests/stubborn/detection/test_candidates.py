@@ -105,17 +105,3 @@ def test_a_few_cells_are_not_an_object():
         assert seek.candidates(navmap).any() == counts
         assert (seek.in_reach(navmap, sighting) is not None) == counts
         assert seek.judge(navmap, (30, 41)) is counts
-
-
-def test_a_candidate_found_late_next_to_a_rejected_object_is_verified():
-    navmap, refuse = room(), RefuseAll()
-    seek = seeker(refuse)
-    show(navmap, slice(20, 25), slice(40, 50), 0.4)
-    assert seek.judge(navmap, (22, 44)) is False
-    show(navmap, slice(20, 25), slice(55, 70), 0.9, step=250)  # from the end of its margin on
-    asked = len(refuse.asked)
-    assert seek.judge(navmap, (22, 65)) is False
-    assert len(refuse.asked) == asked + 1
-    fresh = room()
-    show(fresh, slice(20, 25), slice(55, 70), 0.9, step=250)
-    assert seek.judge(fresh, (22, 65)) is True

@@ -70,8 +70,7 @@ def test_many_uninformative_views_give_no_nan():
 
 
 @pytest.mark.parametrize(
-    "wrong",
-    [{"offsets": {"wall": 1.0}}, {"offsets": {"unicorn": 1.0}}, {"sharpness": 0.0}, {"ring_weights": ()}],
+    "wrong", [{"offsets": {"wall": 1.0}}, {"offsets": {"unicorn": 1.0}}, {"sharpness": 0.0}, {"ring_weights": ()}]
 )
 def test_wrong_parameters_are_refused(wrong: dict):
     with pytest.raises(ConfigError, match="Fusion"):

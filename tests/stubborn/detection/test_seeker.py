@@ -158,14 +158,6 @@ def test_distances_shift_with_the_success_distance_and_stay_within_it(segmenter:
             assert shifted.in_view_m - usual.in_view_m == pytest.approx(distance_m - 1.0)
 
 
-def test_at_a_success_distance_of_a_metre_the_distances_are_those_of_the_config():
-    exact = StopDistances.of(TargetConfig(), SuccessRule(), EXACT)
-    assert (exact.in_view_m, exact.viewpoints_m, exact.last_resort_m) == (0.92, (0.85, 0.93), 1.6)
-    assert exact.nearer_viewpoint_m is None
-    inexact = StopDistances.of(TargetConfig(), SuccessRule(), INEXACT)
-    assert (inexact.in_view_m, inexact.nearer_viewpoint_m) == (0.92 - 0.25, 0.85 - 0.25)
-
-
 def test_a_margin_as_large_as_the_distance_is_refused():
     with pytest.raises(ConfigError, match=r"0 <= outline_margin_m < viewpoint_m and stop_in_view_m, got 0\.9, 0\.85"):
         TargetConfig(outline_margin_m=0.9)
@@ -326,20 +318,6 @@ def test_each_time_a_candidate_cannot_be_reached_it_waits_twice_as_long():
         if not navmap.set_aside[0, 0]:
             tried.append(step)
     assert tried == [0, 10, 30, 70]
-
-
-def test_late_in_the_episode_the_nearest_reachable_place_is_used():
-    rows = room(R=(30, 10), T=(30, 60))
-    for row in range(1, 59):
-        for col in range(35, 79):
-            rows[row][col] = "o"
-    navmap, pose = known(text_of(rows))
-    navmap.score_max[30, 60] = 1.0
-    seek = seeker(last_resort_step=100)
-    assert seek.approach(navmap, whole(navmap), pose, 99) is None
-    late = seek.approach(navmap, whole(navmap), pose, 200)
-    assert late is not None
-    assert late.route is not None
 
 
 def far_target() -> tuple[NavMap, Pose]:

@@ -429,11 +429,8 @@ def test_wrong_settings_are_refused(wrong: dict):
 
 
 def test_the_robot_drives_to_the_core_of_a_track_that_holds_a_part_of_another_object():
-    agent, seeker = agent_with(0.97)
-    run_episode(GridWorld(ROOM, START, camera=SMALL_CAMERA), agent, "bed", max_steps=30)
-    assert seeker.tracks is not None
-    track = int(np.argmax(seeker.probability))
-    index, mask = seeker.tracks.footprint(track)
+    agent, seeker, tracks, track = tracked()
+    index, mask = tracks.footprint(track)
     rows, cols = (int(each[0]) for each in np.nonzero(mask))
     other = index[0].start + rows, index[1].start + cols
     agent.navmap.score_sum[index], agent.navmap.frames_in_view[index] = 9.0, 10

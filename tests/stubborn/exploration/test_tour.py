@@ -16,14 +16,7 @@ from stubborn.agent import StubbornAgent
 from stubborn.exploration.frontiers import Frontiers
 from stubborn.exploration.glance import GlanceConfig
 from stubborn.exploration.potentials import PotentialConfig, Potentials
-from stubborn.exploration.tour import (
-    InformedTourExplorer,
-    TourConfig,
-    TourExplorer,
-    _Paths,
-    _Stop,
-    first_of_best_order,
-)
+from stubborn.exploration.tour import InformedTourExplorer, TourConfig, TourExplorer, _Paths, _Stop, first_of_best_order
 from stubborn.mapping.navmap import NavMap
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode

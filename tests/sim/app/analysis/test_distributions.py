@@ -20,7 +20,7 @@ from sim.app.analysis.report.distributions import (
     first_sight_histogram,
     spl_histogram,
 )
-from sim.app.analysis.report.figures import causes, grouped, means, proportion_of
+from sim.app.analysis.report.figures import grouped, proportion_of
 from sim.app.analysis.report.trend import HEIGHT, METRICS, TOP, trend
 from sim.task.result import EpisodeResult
 from tests.helpers.results import a_goal, a_result
@@ -79,16 +79,6 @@ def test_spl_counts_failures_apart_and_each_tenth_from_its_lower_edge() -> None:
     assert histogram.shares[0][-1].interval[1] == pytest.approx(0.869, abs=0.001)  # 2 of 5, with Student's t of 4
     assert histogram.top_percent == 100
     assert spl_histogram([[], []]).top_percent == 100
-
-
-def test_five_equal_episodes_do_not_look_certain() -> None:
-    few, many = ([line(success=1.0, house=f"h{i}") for i in range(count)] for count in (5, 40))
-    (_, cells, _), *_ = means([few])
-    assert cells[0].estimate.low == pytest.approx(5 / (5 + 2.776**2), abs=0.001)  # Wilson, with Student's t of 4
-    (_, cells, _), *_ = means([many])
-    assert cells[0].estimate.low == pytest.approx(40 / (40 + 2.023**2), abs=0.001)
-    failed = causes([[line(success=0.0, failure="loop")] * 5])
-    assert failed[0].shares[0].interval[0] < 0.6
 
 
 def test_an_episode_that_never_showed_the_goal_is_the_last_bin_of_first_sights() -> None:

@@ -126,13 +126,6 @@ def test_the_shortest_path_has_the_measured_length_and_goes_round_the_wall(recor
     assert truth.space().free[tuple(truth.space().frame.to_cells(samples).T)].all()
 
 
-def test_without_a_path_no_path_is_drawn() -> None:
-    house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
-    house = with_box(house, "wall_10", centre_m=(0.5, 0, 1.25), half_m=(0.05, 2.0, 1.25))
-    truth = GroundTruth(World(house))
-    assert truth.space().path(truth.target("sofa").distance_m, -2.0, 0.0) is None
-
-
 def test_the_plan_shows_objects_at_their_positions_and_leaves_doorways_open() -> None:
     house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     house = with_box(house, "wall_10", centre_m=(0, 1.0, 1.25), half_m=(0.05, 1.0, 1.25))
@@ -492,7 +485,6 @@ def test_the_page_opens_from_disk_without_requests_or_console_errors(browser: Br
     for folders in ((pair[0],), pair):
         _open(browser, *folders)
         assert len(browser.run(SHOWN)) == 4
-        assert browser.run("return performance.getEntriesByType('navigation')[0].loadEventEnd") < 2000
         fetched = [address for address in browser.requests() if not address.startswith("data:image/jpeg;base64,")]
         assert all(address.startswith("file:") and "page.html" in address for address in fetched)
         assert browser.console_errors() == []

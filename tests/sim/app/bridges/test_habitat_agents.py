@@ -200,12 +200,7 @@ def test_an_agent_specification_may_declare_ground_truth() -> None:
 
 
 @pytest.mark.parametrize(
-    ("declared", "message"),
-    [
-        (3, "AgentSpec"),
-        (NoAgent, "NoAgent"),
-        (lambda categories: Wanderer(), "'categories'"),
-    ],
+    ("declared", "message"), [(3, "AgentSpec"), (NoAgent, "NoAgent"), (lambda categories: Wanderer(), "'categories'")]
 )
 def test_something_else_is_refused(declared: Any, message: str) -> None:
     with pytest.raises(ConfigError, match=message):

@@ -42,7 +42,7 @@ def test_a_house_made_again_is_the_shipped_file_to_the_byte(split: str, name: st
 def test_the_tool_writes_what_is_shipped(tmp_path: Path) -> None:
     assert main(Args(split="val", houses=1, out=tmp_path / "val")) == 0
     written = (tmp_path / "val" / "val_00.xml").read_bytes()
-    assert written == SPLITS["val"][0].house_bytes()
+    assert written == load_split("val").house_paths["val_00"].read_bytes()
     assert (tmp_path / "textures").is_dir()
 
 
@@ -79,12 +79,7 @@ def test_every_documented_command_has_a_trial_and_every_trial_a_command() -> Non
 
 
 @pytest.mark.parametrize(
-    "typed",
-    [
-        "stubborn run --out x",
-        ".venv/bin/stubborn run --out x",
-        "python -m sim.run --out x",
-    ],
+    "typed", ["stubborn run --out x", ".venv/bin/stubborn run --out x", "python -m sim.run --out x"]
 )
 def test_a_command_has_one_form_however_a_page_writes_it(typed: str) -> None:
     assert documented.canonical(shlex.split(typed)) == "stubborn run --out x"

@@ -62,10 +62,7 @@ def test_houses_of_withheld_styles_show_what_training_leaves_out(
     [
         ({"split": "val", "area_m2": 80.0}, r"--area-m2.*--split"),
         ({"split": "train", "first_seed": 3}, r"--first-seed.*--split"),
-        (
-            {"transfer_test": True, "furniture": Path("models"), "withheld": "only"},
-            r"--withheld.*--tra",
-        ),
+        ({"transfer_test": True, "furniture": Path("models"), "withheld": "only"}, r"--withheld.*--tra"),
     ],
 )
 def test_options_that_recipes_determine_are_refused(options: dict[str, Any], message: str, tmp_path: Path) -> None:

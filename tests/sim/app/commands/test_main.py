@@ -5,8 +5,6 @@ from __future__ import annotations
 import ast
 import importlib
 import importlib.metadata
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,10 +17,6 @@ ROOT = Path(__file__).resolve().parents[4]
 
 def file_of(module: str) -> Path:
     return ROOT / f"{module.replace('.', '/')}.py"
-
-
-def started(*words: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([sys.executable, *words], cwd=cwd, capture_output=True, text=True, check=False, timeout=120)
 
 
 def top_names(module: ast.Module) -> Iterator[str]:
@@ -79,14 +73,6 @@ def test_the_list_has_one_line_for_each_command(words: list[str], capsys: pytest
     for name, command in COMMANDS.items():
         assert [line for line in lines if line.split("  ")[1:2] == [name] and line.endswith(f"  {command.summary}.")]
     assert max(map(len, lines)) <= 90
-
-
-def test_the_list_imports_neither_mujoco_nor_torch_nor_the_parser_of_options() -> None:
-    code = (
-        "import sys; from sim.app.commands.main import entry; entry([]); "
-        "print(sorted({'mujoco', 'torch', 'numpy', 'tyro'} & set(sys.modules)))"
-    )
-    assert started("-c", code).stdout.splitlines()[-1] == "[]"
 
 
 @pytest.mark.parametrize("group", ["houses", "train", "import"])

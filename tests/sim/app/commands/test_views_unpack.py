@@ -77,10 +77,7 @@ def test_a_member_that_is_no_part_of_a_view_is_named(
 
 @pytest.mark.parametrize(
     ("names", "expected"),
-    [
-        (("v.rgb.jpg", "v.rgb.png"), "view 'v' has 'rgb' twice"),
-        (("v.rgb.png", "w.rgb.png", "v.depth.png"), "'v'"),
-    ],
+    [(("v.rgb.jpg", "v.rgb.png"), "view 'v' has 'rgb' twice"), (("v.rgb.png", "w.rgb.png", "v.depth.png"), "'v'")],
 )
 def test_a_view_or_a_part_of_it_that_is_stored_twice_is_refused(
     names: tuple[str, ...], expected: str, tmp_path: Path

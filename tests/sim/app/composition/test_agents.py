@@ -34,8 +34,7 @@ def run_episode(house: Path, out: Path, agent: str, semantics: str, *config: str
 
 @pytest.mark.parametrize("semantics", ["gt", "noisy"])
 @pytest.mark.parametrize(
-    ("agent", "sensors"),
-    [("tests.helpers.agents:make_spy", {"rgb", "depth"}), ("tests.helpers.agents:SPY", {"depth"})],
+    ("agent", "sensors"), [("tests.helpers.agents:make_spy", {"rgb", "depth"}), ("tests.helpers.agents:SPY", {"depth"})]
 )
 def test_no_true_image_reaches_an_agent_that_does_not_declare_it(
     house: Path, tmp_path: Path, agent: str, sensors: set[str], semantics: str

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -79,9 +77,3 @@ def test_weights_that_are_not_there_and_weights_without_rednet_are_refused(tmp_p
         resolve(RunOptions(semantics="gt", weights=tmp_path / "none.safetensors"))
     with pytest.raises(ConfigError, match="Unknown --semantics 'dreams'"):
         resolve(RunOptions(semantics="dreams"))
-
-
-def test_a_run_without_a_network_does_not_load_torch() -> None:
-    code = "import sys, sim.run, sim.app.composition.segmenters; print('torch' in sys.modules)"
-    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert answer.stdout.strip() == "False"

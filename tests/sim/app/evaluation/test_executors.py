@@ -236,10 +236,6 @@ def wait_for(condition: Callable[[], bool], seconds: float) -> None:
         time.sleep(0.02)
 
 
-def test_processes_are_an_executor_of_their_own_number() -> None:
-    assert make_executor("local", workers=3) == Processes(3)
-
-
 @pytest.mark.parametrize(("threads", "expected"), [(None, "4"), ("3", "3")])
 def test_workers_share_the_processors_unless_the_user_says_how_many_threads(
     monkeypatch: pytest.MonkeyPatch, threads: str | None, expected: str
@@ -263,15 +259,6 @@ def test_a_call_that_never_returns_ends_its_item_and_no_other(how: str) -> None:
         "reason": "The job hangs: no answer within 0.3 s (--step-timeout), so its process was ended.",
     }
     assert lines[1]["episode_id"] == "works"
-
-
-def test_one_item_that_kills_its_process_does_not_kill_this_one(tmp_path: Path) -> None:
-    deadly = Job("deadly", "house_0", kill=tmp_path / "died", always=True)
-    for executor in (Processes(2), Processes(1, Isolation(needed=True))):
-        (line,) = executor.run(SPEC, [deadly], on_death=lambda item, reason: {"reason": reason})
-        assert line["reason"] == (
-            "The process of the worker ended with status -9; 2 workers were lost in this episode."
-        )
 
 
 def test_the_supervisor_of_a_clusters_process_reports_its_end_and_goes_on(tmp_path: Path) -> None:

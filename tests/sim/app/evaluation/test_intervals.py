@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 
 import numpy as np
 import pytest
@@ -178,14 +177,6 @@ def test_the_spread_of_replicates_is_that_of_repeated_means() -> None:
         math.sqrt((rates * (1.0 - rates)).sum()) / 100, rel=0.03
     )
     assert replicate_spread([1.0, 0.0, None], ["a", "b", "a"]) is None
-
-
-def test_a_split_of_a_thousand_episodes_takes_a_few_milliseconds() -> None:
-    values = np.random.default_rng(0).random(1020).tolist()
-    began_s = time.process_time()
-    for _ in range(10):
-        estimate(values, houses_of(20, 51), most=1.0)
-    assert time.process_time() - began_s < 0.5
 
 
 def test_a_ratio_of_medians_is_significant_when_its_interval_excludes_one() -> None:

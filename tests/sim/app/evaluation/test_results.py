@@ -57,6 +57,7 @@ def test_a_run_that_was_killed_while_writing_a_line_goes_on_without_that_line(tm
     (tmp_path / "results.jsonl").write_text(whole[:-10])
     again = opened(tmp_path, CONFIG)
     assert [result.episode_id for result in again.lines] == ["e1"]
+    assert "line 2 was dropped" in again.healed
     again.append(line(2))
     again.close()
     assert (tmp_path / "results.jsonl").read_text() == whole
@@ -68,20 +69,16 @@ def test_other_options_in_the_same_folder_are_refused_and_named(tmp_path: Path) 
         opened(tmp_path, CONFIG | {"agent": "oracle"})
 
 
-def test_the_number_of_workers_may_change_when_a_run_goes_on(tmp_path: Path) -> None:
+@pytest.mark.parametrize("change", [{"workers": 2}, {"record": True}, {"explorer": None}])
+def test_options_that_change_no_line_may_change_when_a_run_goes_on(change: dict[str, object], tmp_path: Path) -> None:
     opened(tmp_path, CONFIG).close()
-    opened(tmp_path, CONFIG | {"workers": 2}).close()
+    opened(tmp_path, CONFIG | change).close()
 
 
 def test_a_run_continues_to_more_episodes_and_says_so(tmp_path: Path) -> None:
     for episodes in (5, 8, 6):
         opened(tmp_path, CONFIG | {"episodes": episodes}).close()
     assert json.loads((tmp_path / "config.json").read_text())["episodes"] == 8
-
-
-def test_a_run_from_before_trajectories_can_go_on_with_them(tmp_path: Path) -> None:
-    opened(tmp_path, CONFIG).close()
-    opened(tmp_path, CONFIG | {"record": True}).close()
 
 
 def test_every_code_that_ran_in_a_folder_is_recorded(tmp_path: Path) -> None:
@@ -203,11 +200,6 @@ def test_the_config_names_the_episodes_of_all_starts(tmp_path: Path) -> None:
     assert named() == []  # the first N
 
 
-def test_an_option_that_a_run_does_not_have_is_the_same_as_null(tmp_path: Path) -> None:
-    opened(tmp_path, CONFIG).close()
-    opened(tmp_path, CONFIG | {"explorer": None}).close()
-
-
 def write_lines(folder: Path, *lines: Mapping[str, object] | str) -> None:
     """Starts a run whose file of results has these lines."""
     opened(folder, CONFIG | {"seed": 0}).close()
@@ -276,15 +268,6 @@ def test_every_metric_has_its_mean_in_the_summary_and_a_field_of_the_result(tmp_
     assert list(line(1).as_json())[:3] == ["episode_id", "house", "goal"]
 
 
-def test_a_dropped_line_is_reported(tmp_path: Path) -> None:
-    write_lines(tmp_path, entries(1))
-    with (tmp_path / "results.jsonl").open("a") as stream:
-        stream.write('{"episode_id": "e2", "su')
-    run = opened(tmp_path, CONFIG | {"seed": 0})
-    assert "line 2 was dropped" in run.healed
-    run.close()
-
-
 @pytest.mark.parametrize("content", ["", "{", "[]", '{"seed": "0"}', '{"versions": {"code": 5}}', "\0" * 20])
 def test_a_broken_config_is_refused_with_its_name(content: str, tmp_path: Path) -> None:
     opened(tmp_path, CONFIG).close()
@@ -295,6 +278,7 @@ def test_a_broken_config_is_refused_with_its_name(content: str, tmp_path: Path) 
 
 def test_a_start_that_wrote_nothing_leaves_no_folder_and_one_that_did_stays(tmp_path: Path) -> None:
     run = opened(tmp_path / "run", CONFIG)
+    run.write_summary({})
     run.discard_if_empty()
     run.close()
     assert not (tmp_path / "run").exists()
@@ -385,14 +369,6 @@ def test_a_change_of_the_users_code_is_refused_with_two_ways_out(tmp_path: Path)
 def test_a_seed_of_any_size_is_read_back(tmp_path: Path) -> None:
     write_lines(tmp_path, entries(1, seed=2**63 - 1))
     assert read_results(tmp_path / "results.jsonl").values[0].seed == 2**63 - 1
-
-
-def test_a_folder_without_lines_is_removed_with_its_summary(tmp_path: Path) -> None:
-    run = opened(tmp_path / "run", CONFIG)
-    run.write_summary({})
-    run.discard_if_empty()
-    run.close()
-    assert not (tmp_path / "run").exists()
 
 
 def test_a_run_resumed_with_another_library_names_it(tmp_path: Path) -> None:

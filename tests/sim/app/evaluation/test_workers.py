@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.app.evaluation.processes import Processes
+from sim.app.evaluation.processes import Isolation, Processes
 from sim.app.evaluation.watch import Steps
 from sim.app.evaluation.workers import MAX_TRIES, RunnerSpec
 from tests.helpers import wording
@@ -59,11 +59,14 @@ def test_a_killed_worker_costs_its_item_one_more_try(tmp_path: Path) -> None:
     assert sorted(line["episode_id"] for line in lines) == sorted(item.episode_id for item in items)
 
 
-def test_an_item_that_kills_every_worker_becomes_an_error_line(tmp_path: Path) -> None:
+@pytest.mark.parametrize("executor", [Processes(2), Processes(1, Isolation(needed=True))], ids=["two", "isolated"])
+def test_an_item_that_kills_every_worker_becomes_an_error_line(executor: Processes, tmp_path: Path) -> None:
     items = [*jobs(4), Job("deadly", "house_0", kill=tmp_path / "died", always=True)]
-    lines = list(Processes(2).run(SPEC, items, on_death=lambda item, _: {"episode_id": item.episode_id, "dead": True}))
+    lines = list(executor.run(SPEC, items, on_death=lambda item, why: {"episode_id": item.episode_id, "why": why}))
     assert len(lines) == 5
-    assert [line["episode_id"] for line in lines if line.get("dead")] == ["deadly"]
+    assert [(line["episode_id"], line["why"]) for line in lines if "why" in line] == [
+        ("deadly", "The process of the worker ended with status -9; 2 workers were lost in this episode.")
+    ]
     assert len((tmp_path / "died").read_text()) == MAX_TRIES
 
 

@@ -28,10 +28,7 @@ from sim.core.errors import ConfigError
 from sim.core.reading import sha256_of
 from sim.robot.config import PHYSICS_VERSION
 from tests.helpers import wording
-from tests.helpers.submissions import (
-    content_of,
-    written,
-)
+from tests.helpers.submissions import content_of, written
 
 SHIPPED = frozenset((*SPECS, HUMAN_NAME))
 
@@ -160,15 +157,8 @@ def test_a_report_that_comes_with_a_forged_submission_is_not_read(
     assert "| equal | 0 + 0 + 0 |" in (tmp_path / "table.md").read_text(), "the forged copy does not count"
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"equal": 0}, {"episodes": 0, "equal": 0}, {"tolerance_m": 1e9}, {"is_first": False}, {"origin": "organiser"},
-        {"errors": 1, "equal": 2}, {"nonstandard": ["x"]}, {"physics": 1}, {"oracle_paths": None},
-    ],
-)  # fmt: skip
 def test_a_report_that_contradicts_its_submission_is_made_again(
-    change: dict[str, Any], folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     small_rows(monkeypatch, tmp_path)
     written(tmp_path / "submissions" / "a.json.gz", content_of(folder / "random.json.gz"))
@@ -176,10 +166,15 @@ def test_a_report_that_contradicts_its_submission_is_made_again(
     assert leaderboard.main(args) == 0
     (kept,) = (tmp_path / "cache").rglob("*.json")
     report = json.loads(kept.read_text())
-    kept.write_text(json.dumps(report | change))
-    assert leaderboard.main(args) == 0
-    again = json.loads(kept.read_text())
-    assert {key: again[key] for key in change} == {key: report[key] for key in change}
+    changes: tuple[dict[str, Any], ...] = (
+        {"equal": 0}, {"episodes": 0, "equal": 0}, {"tolerance_m": 1e9}, {"is_first": False}, {"origin": "organiser"},
+        {"errors": 1, "equal": 2}, {"nonstandard": ["x"]}, {"physics": 1}, {"oracle_paths": None},
+    )  # fmt: skip
+    for change in changes:
+        kept.write_text(json.dumps(report | change))
+        assert leaderboard.main(args) == 0
+        again = json.loads(kept.read_text())
+        assert {key: again[key] for key in change} == {key: report[key] for key in change}
 
 
 def test_one_content_under_three_names_is_one_row(

@@ -23,16 +23,7 @@ from sim.app.evaluation.rollout import play_episode
 from sim.app.options import RunOptions
 from sim.app.viewers import overlay, video
 from sim.app.viewers.chase import ChaseView, hidden_obstacles
-from sim.app.viewers.topview import (
-    BLOCKED,
-    FREE,
-    INSTANCE,
-    OBSTACLE,
-    SHORTEST,
-    SUCCEEDS,
-    TopView,
-    whole_storey_m,
-)
+from sim.app.viewers.topview import BLOCKED, FREE, INSTANCE, OBSTACLE, SHORTEST, SUCCEEDS, TopView, whole_storey_m
 from sim.app.viewers.video import FRAMES_PER_S, VideoRecorder, VideoWriter, video_file
 from sim.app.viewers.viewer import VIEWER_IMAGES, Moment
 from sim.core.geometry.pose import Pose
@@ -47,7 +38,7 @@ from sim.task.explanations import Outcome, explain_end
 from sim.task.ground_truth import GroundTruth
 from sim.world.world import World
 from stubborn.drawing.map_painter import AgentMapPainter
-from tests.helpers import browser, wording
+from tests.helpers import browser
 from tests.helpers.results import a_result, lines_of
 from tests.helpers.runners import Script
 from tests.helpers.worlds import room, sofa_room, with_box
@@ -171,22 +162,6 @@ def test_an_episode_that_is_not_ended_leaves_nothing(env: ObjectNavEnv, tmp_path
         play_episode(env, Script(AHEAD), EPISODE, seed=0, on_step=interrupt, viewers=[recorder])
     recorder.close()
     assert list((tmp_path / "videos").iterdir()) == []
-
-
-def test_partial_files_of_a_killed_process_are_removed_when_the_episode_is_recorded_again(
-    env: ObjectNavEnv, tmp_path: Path
-) -> None:
-    (tmp_path / "videos").mkdir()
-    left_over = tmp_path / "videos" / f".{video_file(tmp_path, EPISODE.episode_id).stem}.part-99999.mp4"
-    left_over.touch()
-    play_episode(env, Script([Action.STOP]), EPISODE, seed=0, viewers=[VideoRecorder(tmp_path)])
-    assert list((tmp_path / "videos").iterdir()) == [video_file(tmp_path, EPISODE.episode_id)]
-
-
-def test_an_unwritable_folder_gives_one_sentence(tmp_path: Path) -> None:
-    (tmp_path / "videos").write_text("a file where the folder should be")
-    with pytest.raises(ConfigError, match=wording.CANNOT_WRITE_THE_VIDEO):
-        VideoWriter(video_file(tmp_path, "e"), size_px=(64, 48))
 
 
 Box = tuple[int, int, int, int]
@@ -458,69 +433,41 @@ def test_each_error_of_the_encoder_is_reported_and_leaves_no_file(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    ("line", "nearest_m", "detects", "expected"),
-    [
-        ({"success": 1.0, "end_reason": "stop"}, 0.72, True, "The STOP counts: the nearest chair is 0.72 m away"),
-        ({"end_reason": "stop", "failure": "false_detection"}, 4.2, True, "False detection: the agent took another"),
-        (
-            {"end_reason": "stop", "failure": "false_detection"},
-            4.2,
-            False,
-            "The STOP came too early: the nearest chair",
-        ),
-        (
-            {"end_reason": "stop", "failure": "false_detection", "stop_target_to_goal_m": 1.84},
-            0.8,
-            True,
-            "False detection: the agent stopped for something 1.8 m from the nearest chair.",
-        ),
-        (
-            {
-                "end_reason": "stop",
-                "failure": "false_detection",
-                "stop_target_to_goal_m": 1.84,
-                "stop_target_category": "sofa",
-            },
-            4.2,
-            True,
-            "False detection: the agent stopped at a sofa, 1.8 m from the nearest chair.",
-        ),
-        (
-            {"end_reason": "stop", "failure": "stopped_short", "stop_target_to_goal_m": 0.04},
-            1.3,
-            True,
-            "The STOP came too early: the nearest chair is 1.30 m",
-        ),
-        (
-            {"end_reason": "stop", "failure": "misc"},
-            1.003,
-            True,
-            "the nearest chair is 1.01 m away. At most 1 m counts.",
-        ),
-        ({"end_reason": "stop", "failure": "misc"}, 0.8, True, "but a wall or a door hides it"),
-        ({"end_reason": "stop", "failure": "false_detection"}, None, True, "there is no chair on this storey"),
-        ({"end_reason": "max_steps", "failure": "explore"}, 3.0, True, "used up. The goal was never in sight."),
-        (
-            {"end_reason": "max_steps", "failure": "trapped"},
-            3.0,
-            True,
-            "All 9 steps are used up. The robot was trapped: 100 steps within 1 m of one position.",
-        ),
-        (
-            {"end_reason": "max_steps", "failure": "misc", "distance_to_goal": 0.0},
-            0.5,
-            True,
-            "The robot is where a STOP counts, and STOP was not called.",
-        ),
-        ({"end_reason": "fallen", "failure": "stairs"}, 3.0, True, "drove over an edge"),
-    ],
-)
-def test_the_explanation_of_the_end_names_its_cause(
-    line: dict, nearest_m: float | None, detects: bool, expected: str
-) -> None:
+WRONG, SHORT = ({"end_reason": "stop", "failure": cause} for cause in ("false_detection", "stopped_short"))
+BESIDE, OUT_OF_STEPS = {"end_reason": "stop", "failure": "misc"}, {"end_reason": "max_steps"}
+FOR_ANOTHER = WRONG | {"stop_target_to_goal_m": 1.84}
+ENDS = [
+    ({"success": 1.0, "end_reason": "stop"}, 0.72, "The STOP counts: the nearest chair is 0.72 m away"),
+    (WRONG, 4.2, "False detection: the agent took another"),
+    (WRONG | {"detects": False}, 4.2, "The STOP came too early: the nearest chair"),
+    (FOR_ANOTHER, 0.8, "False detection: the agent stopped for something 1.8 m from the nearest chair."),
+    (
+        FOR_ANOTHER | {"stop_target_category": "sofa"}, 4.2,
+        "False detection: the agent stopped at a sofa, 1.8 m from the nearest chair.",
+    ),
+    (SHORT | {"stop_target_to_goal_m": 0.04}, 1.3, "The STOP came too early: the nearest chair is 1.30 m"),
+    (BESIDE, 1.003, "the nearest chair is 1.01 m away. At most 1 m counts."),
+    (BESIDE, 0.8, "but a wall or a door hides it"),
+    (WRONG, None, "there is no chair on this storey"),
+    (OUT_OF_STEPS | {"failure": "explore"}, 3.0, "used up. The goal was never in sight."),
+    (
+        OUT_OF_STEPS | {"failure": "trapped"}, 3.0,
+        "All 9 steps are used up. The robot was trapped: 100 steps within 1 m of one position.",
+    ),
+    (
+        OUT_OF_STEPS | {"failure": "misc", "distance_to_goal": 0.0}, 0.5,
+        "The robot is where a STOP counts, and STOP was not called.",
+    ),
+    ({"end_reason": "fallen", "failure": "stairs"}, 3.0, "drove over an edge"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("line", "nearest_m", "expected"), ENDS)
+def test_the_explanation_of_the_end_names_its_cause(line: dict, nearest_m: float | None, expected: str) -> None:
     fixed = {"success": 0.0, "spl": 0.5, "num_steps": 9, "path_length": 3.0, "shortest_path": 2.0}
-    whole = a_result(**fixed | {"distance_to_goal": None} | line)
+    detects = line.get("detects", True)
+    known = {name: value for name, value in line.items() if name != "detects"}
+    whole = a_result(**fixed | {"distance_to_goal": None} | known)
     outcome = explain_end(whole, "chair", SuccessRule(), nearest_m, detects=detects)
     assert expected in outcome.sentence
     assert outcome.found == bool(whole.success)

@@ -169,16 +169,7 @@ def test_only_the_page_and_files_of_runs_are_served(server: Server) -> None:
 
 
 @pytest.mark.parametrize(
-    "message",
-    [
-        "no JSON",
-        "[]",
-        '{"do": "start"}',
-        json.dumps({"do": "start", **WISH, "agent": "os:system"}),
-        json.dumps({"do": "start", **WISH, "agent": "oracle", "house": "../../etc"}),
-        json.dumps({"do": "start", **WISH, "agent": "oracle", "split": "/tmp"}),
-        json.dumps({"do": "start", **WISH, "agent": "oracle", "semantics": ["gt"]}),
-    ],
+    "message", ["no JSON", "[]", '{"do": "start"}', json.dumps({"do": "start", **WISH, "agent": "os:system"})]
 )
 def test_commands_that_are_not_in_the_package_cannot_be_started(server: Server, message: str) -> None:
     with server.connect() as socket:

@@ -33,13 +33,6 @@ def rectangle(x0: float, y0: float, x1: float, y1: float) -> ConvexPolygon:
     return polygon
 
 
-def test_an_upright_box_projects_to_its_rectangle():
-    polygon = projection('<geom type="box" size=".5 .2 1" pos="1 2 0"/>')
-    assert polygon is not None
-    np.testing.assert_allclose(polygon.bounds_m, (0.5, 1.8, 1.5, 2.2), atol=1e-6)
-    assert len(polygon.vertices_m) == 4
-
-
 def test_a_leaning_box_covers_only_what_lies_between_the_heights():
     # A 2 m rod leaning 45 degrees in xz: at height z its axis is at x = z; thickness 0.1 m gives +- 0.05 sqrt 2.
     rod = '<geom type="box" size="1 .05 .05" euler="0 -45 0"/>'

@@ -52,20 +52,6 @@ def test_a_window_has_its_point_in_the_middle_where_there_is_room():
     assert window.frame.cell(0.01, 3.01) == (10, 10)
 
 
-def test_the_disc_swept_along_a_segment_is_every_cell_near_it():
-    frame = GridFrame.around_start(80, 0.05)
-    start, end, radius_m = (-0.3, 0.1), (0.4, -0.5), 0.18
-    index, inside = cells_near_segment(frame, start, end, radius_m)
-    swept = np.zeros(frame.shape, bool)
-    swept[index] = inside
-    for row in range(80):
-        for col in range(80):
-            x, y = (float(c) for c in frame.centres(row, col))
-            share = min(max(((x + 0.3) * 0.7 + (y - 0.1) * -0.6) / (0.7**2 + 0.6**2), 0.0), 1.0)
-            gap_m = math.hypot(x - (-0.3 + 0.7 * share), y - (0.1 - 0.6 * share))
-            assert swept[row, col] == (gap_m <= radius_m)
-
-
 def test_the_cells_near_a_segment_are_those_of_float64_arithmetic():
     frame, rng = GridFrame.around_start(80, 0.05), np.random.default_rng(0)
     for number in range(200):

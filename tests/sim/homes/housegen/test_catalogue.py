@@ -71,11 +71,7 @@ def test_two_styles_of_one_name_in_a_category_are_refused():
 @pytest.mark.parametrize(
     ("category", "uses", "message"),
     [
-        (
-            "chair",
-            ("dining", "diningg"),
-            r"'block'.*'chair'.*'diningg'",
-        ),
+        ("chair", ("dining", "diningg"), r"'block'.*'chair'.*'diningg'"),
         ("chair", (), "'chair'"),
         ("chair", "dining", r"\(.*'dining'.*\)"),
         ("bed", ("double",), r"'bed'.*`uses`.*'double'"),

@@ -37,7 +37,7 @@ def plan_of(kind: PlanKind, seed: int) -> tuple[FloorPlan, float]:
 
 
 @pytest.mark.parametrize(("kind", "seed"), sample(CASES, 30))
-def test_rooms_do_not_overlap_and_keep_their_sizes(kind: PlanKind, seed: int) -> None:
+def test_rooms_keep_their_sizes_and_are_all_reachable_without_crossing_bathrooms(kind: PlanKind, seed: int) -> None:
     plan, area_m2 = plan_of(kind, seed)
     for a, b in itertools.combinations(plan.rooms, 2):
         assert not a.rect.overlaps(b.rect, 0.01), f"{a.name} overlaps {b.name}"
@@ -45,26 +45,10 @@ def test_rooms_do_not_overlap_and_keep_their_sizes(kind: PlanKind, seed: int) ->
         assert room.rect.short_m >= ROOM_RULES[room.kind].short_m - 0.11
     assert 3 <= len(plan.rooms) <= MAX_ROOMS[kind]
     assert plan.area_m2 == pytest.approx(area_m2, rel=0.25)
-
-
-@pytest.mark.parametrize(("kind", "seed"), sample(CASES, 30))
-def test_every_room_is_reachable_from_every_other(kind: PlanKind, seed: int) -> None:
-    plan, _ = plan_of(kind, seed)
-    reached, todo = {0}, [0]
-    while todo:
-        room = todo.pop()
-        for join in plan.joins:
-            if room in (join.a, join.b):
-                other = join.a + join.b - room
-                if other not in reached:
-                    reached.add(other)
-                    todo.append(other)
+    reached = {0}
+    for _ in plan.rooms:
+        reached |= {room for join in plan.joins if reached & {join.a, join.b} for room in (join.a, join.b)}
     assert len(reached) == len(plan.rooms)
-
-
-@pytest.mark.parametrize(("kind", "seed"), sample(CASES, 30))
-def test_bathrooms_are_connected_to_hallways_and_private_rooms_only(kind: PlanKind, seed: int) -> None:
-    plan, _ = plan_of(kind, seed)
     for join in plan.joins:
         kinds = {plan.rooms[join.a].kind, plan.rooms[join.b].kind}
         if "bathroom" in kinds:
@@ -72,34 +56,24 @@ def test_bathrooms_are_connected_to_hallways_and_private_rooms_only(kind: PlanKi
 
 
 @pytest.mark.parametrize(("kind", "seed"), sample(CASES, 30))
-def test_doors_are_wide_enough_and_lie_in_the_wall_that_two_rooms_share(kind: PlanKind, seed: int) -> None:
+def test_doors_lie_in_the_wall_that_two_rooms_share_and_windows_in_outer_walls(kind: PlanKind, seed: int) -> None:
     plan, _ = plan_of(kind, seed)
     try:
         openings = cut_openings(np.random.default_rng(seed), plan)
     except PlanError:
         return  # the generator samples another plan
+    rects = [room.rect for room in plan.rooms]
     for hole in openings:
         if hole.kind == "door":
             assert hole.b is not None
             lo, hi = hole.clear_span()
             assert 0.8 - 1e-6 <= hi - lo <= 1.0 + 1e-6
-            shared = shared_side(plan.rooms[hole.a].rect, plan.rooms[hole.b].rect)
+            shared = shared_side(rects[hole.a], rects[hole.b])
             assert shared is not None
             assert shared[0] == hole.side
             assert shared[1][0] <= lo - JAMB_M
             assert hi + JAMB_M <= shared[1][1]
-
-
-@pytest.mark.parametrize(("kind", "seed"), sample(CASES, 30))
-def test_windows_are_in_outer_walls(kind: PlanKind, seed: int) -> None:
-    plan, _ = plan_of(kind, seed)
-    try:
-        openings = cut_openings(np.random.default_rng(seed), plan)
-    except PlanError:
-        return
-    rects = [room.rect for room in plan.rooms]
-    for hole in openings:
-        if hole.kind in ("window", "entry"):
+        elif hole.kind in ("window", "entry"):
             spans = outer_spans(rects, hole.a, hole.side)
             assert any(lo <= hole.span[0] and hole.span[1] <= hi for lo, hi in spans)
 
@@ -129,14 +103,14 @@ def has_long_cycle(plan: FloorPlan, length: int) -> bool:
     return False
 
 
-@pytest.mark.parametrize("seed", range(15))
+@pytest.mark.parametrize("seed", sample(range(15), 5))
 @pytest.mark.parametrize("kind", ["loop", "estate"])
 def test_loops_lead_round_a_core(kind: PlanKind, seed: int) -> None:
     plan, _ = plan_of(kind, seed)
     assert has_long_cycle(plan, 4), [(plan.rooms[j.a].name, plan.rooms[j.b].name) for j in plan.joins]
 
 
-@pytest.mark.parametrize("seed", range(15))
+@pytest.mark.parametrize("seed", sample(range(15), 5))
 def test_great_rooms_have_zones_without_doors_between_partial_walls(seed: int) -> None:
     plan, _ = plan_of("greatroom", seed)
     openings = [o for o in cut_openings(np.random.default_rng(seed), plan) if o.kind == "open"]
@@ -150,7 +124,7 @@ def test_great_rooms_have_zones_without_doors_between_partial_walls(seed: int) -
         assert shared[1][1] - hole.span[1] > 0.3, "no part of the wall is left"
 
 
-@pytest.mark.parametrize("seed", range(15))
+@pytest.mark.parametrize("seed", sample(range(15), 5))
 def test_the_bedrooms_of_a_split_home_lie_in_two_wings(seed: int) -> None:
     plan, _ = plan_of("split", seed)
     wings = [i for i, room in enumerate(plan.rooms) if room.kind == "hallway"]
@@ -161,7 +135,7 @@ def test_the_bedrooms_of_a_split_home_lie_in_two_wings(seed: int) -> None:
         assert sum(wing in (join.a, join.b) for join in plan.joins) >= 3
 
 
-@pytest.mark.parametrize("seed", range(15))
+@pytest.mark.parametrize("seed", sample(range(15), 5))
 def test_an_estate_has_many_rooms_wings_and_a_stair_hall_that_is_wanted(seed: int) -> None:
     rng = np.random.default_rng(seed)
     plan = next(plan for _ in range(60) if (plan := tried(rng, "estate", 300.0 + 33.0 * seed, ("stair_hall", "gym"))))
@@ -184,7 +158,7 @@ def tried(rng: np.random.Generator, kind: PlanKind, area_m2: float, wanted: tupl
         return None
 
 
-@pytest.mark.parametrize(("kind", "seed"), NEW_CASES)
+@pytest.mark.parametrize(("kind", "seed"), sample(NEW_CASES, 20))
 def test_front_doors_lead_outside(kind: PlanKind, seed: int) -> None:
     plan, _ = plan_of(kind, seed)
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import math
 import subprocess
 import sys
@@ -67,23 +68,22 @@ def test_any_seed_gives_a_house_in_the_format_that_passes_the_check(seed: int) -
         assert any(room.contains(x, y) for x, y, _ in lamps.tolist()), room.name
 
 
+@functools.cache
 def small(seed: int) -> GeneratedHouse:
     return generate_house(seed, HouseConfig(kind="studio", area_m2=55.0))
 
 
 @pytest.mark.costly
 def test_the_same_seed_gives_the_same_bytes_in_another_process() -> None:
-    xml = generate(3, kind="studio", area_m2=55.0).to_xml()
     code = "from sim.homes.housegen import generate; print(generate(3, kind='studio', area_m2=55.0).to_xml(), end='')"
     other = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert xml == other
+    assert small(3).spec.to_xml() == other
 
 
 @pytest.mark.costly
 def test_seeds_and_pools_give_different_houses() -> None:
-    xml = {small(seed).spec.to_xml() for seed in range(3)}
-    assert len(xml) == 3
-    assert generate(0, kind="studio", pool="heldout").to_xml() != generate(0, kind="studio", pool="train").to_xml()
+    heldout = generate(4, kind="studio", area_m2=55.0, pool="heldout").to_xml()
+    assert len({heldout, *(small(seed).spec.to_xml() for seed in (3, 4, 5))}) == 4
 
 
 @pytest.mark.slow
@@ -97,11 +97,6 @@ def test_area_and_kind_of_plan_are_as_requested() -> None:
     house = generate_house(1, HouseConfig(kind="corridor", area_m2=120.0))
     assert house.plan.kind == "corridor"
     assert house.plan.area_m2 == pytest.approx(120.0, rel=0.25)
-
-
-def test_clutter_zero_leaves_no_small_objects() -> None:
-    labels = read_labels(generate_house(2, HouseConfig(clutter=0.0, kind="flat")).spec.compile())
-    assert not labels.of_category("objects")
 
 
 def test_no_view_from_inside_shows_void() -> None:
@@ -138,7 +133,7 @@ def test_errors_of_bad_requests_name_the_allowed_values() -> None:
 @pytest.mark.parametrize("area_m2", [52.0, 90.0, 200.0, 500.0])
 def test_the_area_and_the_rooms_that_are_asked_for_are_met(area_m2: float) -> None:
     config = HouseConfig(area_m2=area_m2, rooms=("office",) if area_m2 > 80.0 else ())
-    for seed in range(6):
+    for seed in range(2 if area_m2 > 300.0 else 6):
         rng = np.random.default_rng(seed)
         plan, _ = _draw_plan(rng, draw_plan_kind(rng, area_m2), area_m2, config)
         inner_m2 = sum(room.rect.grown(-HALF_WALL_M).area_m2 for room in plan.rooms)
@@ -220,7 +215,7 @@ def test_val_and_test_mix_sizes_as_homes_do() -> None:
 
 
 def test_a_written_house_is_read_from_its_folder_wherever_that_is(tmp_path: Path) -> None:
-    written = write_house(generate(3, kind="studio", area_m2=55.0), tmp_path / "first", "home")
+    written = write_house(small(3).spec.copy(), tmp_path / "first", "home")
     moved = (tmp_path / "first").rename(tmp_path / "second") / written.name
     house = load_house(moved)
     assert house.name == "home"
@@ -289,7 +284,7 @@ def test_a_house_that_breaks_the_format_does_not_replace_a_file(tmp_path: Path) 
     assert (tmp_path / "mine.xml").read_text() == "kept"
 
 
-@pytest.mark.parametrize("seed", [3, 5, 713])
+@pytest.mark.parametrize("seed", sample([3, 5, 713], 2))
 def test_walls_of_two_rooms_overlap_nowhere_in_sight(seed: int) -> None:
     """Overlapping walls show a strip of the other room's paint."""
     world = World(House("house", generate(seed)))
@@ -307,7 +302,7 @@ def test_walls_of_two_rooms_overlap_nowhere_in_sight(seed: int) -> None:
                 assert (np.minimum(end, opposite) - np.maximum(start, corner))[:2].min() < -0.001, (start, end)
 
 
-@pytest.mark.parametrize("seed", [4, 701, 702])
+@pytest.mark.parametrize("seed", sample([4, 701, 702], 2))
 def test_doors_of_bedrooms_and_bathrooms_have_a_leaf_and_rooms_a_ceiling_lamp(seed: int) -> None:
     """702 has a bed with a canopy below the middle of a ceiling."""
     config = HouseConfig(pool="heldout", exact=False)

@@ -5,8 +5,6 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
-import subprocess
-import sys
 from collections.abc import Iterator
 
 import numpy as np
@@ -137,21 +135,13 @@ def is_too_high(motion: Motion) -> bool:
     return any(contact.stopped and contact.position_m[2] > HIGH_M for contact in motion.contacts)
 
 
-@pytest.mark.slow
-def test_the_same_seed_gives_the_same_bytes_in_another_process() -> None:
-    arguments = f"{seed_of_home()}, kind='flat', area_m2={AREA_M2}, movable=True"
-    code = f"from sim.homes.housegen import generate; print(generate({arguments}).to_xml(), end='')"
-    other = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert home().spec.to_xml() == other
-
-
 def test_only_light_items_of_four_categories_are_movable_and_only_on_request() -> None:
     assert {name.rpartition("_")[0] for name in movable_names(home().spec.compile())} <= set(KINDS)
-    assert not movable_bodies(generate(seed_of_home(), kind="flat", area_m2=AREA_M2).compile())
+    assert not movable_bodies(generate(seed_of_home(), kind="studio", area_m2=55.0).compile())
 
 
 @pytest.mark.parametrize("name", movable_styles(*KINDS), ids="-".join)
-def test_a_movable_has_exact_collision_shapes_and_is_light_enough(name: tuple[str, str, str]) -> None:
+def test_a_movable_has_exact_shapes_is_light_enough_stays_in_place_and_sleeps(name: tuple[str, str, str]) -> None:
     world = world_with(item_of(*name))
     model = world.model
     for body in movable_bodies(model):
@@ -165,17 +155,11 @@ def test_a_movable_has_exact_collision_shapes_and_is_light_enough(name: tuple[st
         friction = float(model.geom_friction[collision[0], 0])
         assert friction * model.body_mass[body] * GRAVITY_M_S2 <= MAX_PUSH_N
         assert 0.0 < model.body_ipos[body, 2] < 0.6
-
-
-@pytest.mark.parametrize("name", movable_styles(*KINDS), ids="-".join)
-def test_a_movable_stays_in_place_and_sleeps(name: tuple[str, str, str]) -> None:
-    world = world_with(item_of(*name))
     world.reset(Pose(3.0, 3.0, 0.0))
-    before = world.model.qpos0.copy()
     wait(world, 1.0)
-    for body in movable_bodies(world.model):
-        at = world.model.jnt_qposadr[world.model.body_jntadr[body]]
-        assert np.linalg.norm(world.data.qpos[at : at + 3] - before[at : at + 3]) < 0.002
+    for body in movable_bodies(model):
+        at = model.jnt_qposadr[model.body_jntadr[body]]
+        assert np.linalg.norm(world.data.qpos[at : at + 3] - model.qpos0[at : at + 3]) < 0.002
         assert asleep(world, body)
 
 

@@ -323,13 +323,15 @@ def test_habitats_test_data_set_is_imported(tmp_path: Path) -> None:
     assert report["furniture"] == {"dataset_test_object1": 1, "dataset_test_object2": 1}
 
 
-def test_a_part_of_a_handle_names_a_template_if_it_is_part_of_one_only(tmp_path: Path) -> None:
+def test_a_part_of_a_handle_names_a_template_if_it_is_part_of_one_only(
+    homes: dict[str, tuple[Path, Path, House]], tmp_path: Path
+) -> None:
     file = write_dataset(tmp_path)
     scene = next(file.parent.rglob("*.scene_instance.json"))
     whole = scene.read_text()
     names = {entry["template_name"] for entry in json.loads(whole)["object_instances"]}
     name = sorted(names, key=len)[-1]
-    before = import_source(find_sources(file)[0], MeshConfig()).report
+    (before,) = json.loads((homes["data set"][1] / "import.json").read_text()).values()
     scene.write_text(whole.replace(json.dumps(name), json.dumps(name[:-1] if name[:-1] not in names else name[1:])))
     after = import_source(find_sources(file)[0], MeshConfig()).report
     several = [other for other in names if name[:-1] in other.rpartition("/")[2]]

@@ -143,11 +143,6 @@ CORNERS = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
 @pytest.mark.parametrize(
     ("changed", "data", "reason"),
     [
-        (
-            {"accessors": [{"componentType": 5126, "count": 10**9, "type": "VEC3"}]},
-            CORNERS,
-            wording.ANNOUNCES_MORE_THAN,
-        ),
         ({"nodes": [{"mesh": 0, "children": [1]}, {"children": [0]}]}, CORNERS, wording.ITS_NODES_FORM_A_LOOP),
         ({"nodes": [{"mesh": 0, "children": [7]}]}, CORNERS, wording.A_CHILD_THAT_DOES_NOT_EXIST),
         ({"nodes": [{"children": [2]}, {"children": [2]}, {"mesh": 0}]}, CORNERS, wording.THE_CHILD_OF_SEVERAL),

@@ -13,7 +13,6 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-import webdataset
 from torch.utils.data import DataLoader
 
 from examples.read_views import read_with_webdataset
@@ -26,7 +25,7 @@ from sim.env.scene import Scene
 from sim.episodes.descriptions import Descriptions
 from sim.robot.config import RobotConfig
 from sim.training.segmentation.dataset import LabelledView, ViewDataset, decode_member, read_shard
-from sim.training.views.coco import annotate, bounding_box, decode_mask, encode_mask
+from sim.training.views.coco import bounding_box, decode_mask, encode_mask
 from sim.training.views.normals import surface_normals
 from sim.training.views.shards import write_shard
 from sim.training.views.views import EXTRAS, View, camera_to_world, sample_views
@@ -156,14 +155,6 @@ def test_masks_survive_their_encoding() -> None:
     assert bounding_box(np.pad(corner, ((3, 0), (5, 1)))) == [5, 3, 2, 2]
 
 
-def test_walls_and_floors_have_no_box() -> None:
-    from sim.houses.labels import Instance
-
-    instances = (Instance("wall_00", "wall", (0,)), Instance("bed_01", "bed", (1,)))
-    found = annotate(np.array([[0, 1, 2]], np.uint16), instances)
-    assert [(each["name"], each["bbox"]) for each in found] == [("bed_01", [2, 0, 1, 1])]
-
-
 def test_normals_of_floor_and_walls_are_those_of_their_planes(scene: Scene) -> None:
     pose = Pose(-1.0, 0.0, 0.0)
     images = scene.camera.render(scene.world.data, pose, ("depth", "geom", "semantic"))
@@ -227,14 +218,6 @@ def test_our_reader_and_webdataset_return_the_stored_arrays(views: list[View], s
         assert np.abs(127.5 * (mine.normals + 1.0) - view.normals)[view.normals.any(axis=-1)].max() < 1e-3
         assert mine.annotations == view.annotations == other["coco.json"]
         assert mine.record == view.record == other["json"]
-
-
-def test_webdatasets_own_decoder_loses_depth_which_is_why_there_is_ours(shards: Path) -> None:
-    pytest.importorskip("PIL")
-    files = webdataset.WebDataset(  # pyright: ignore[reportAttributeAccessIssue] - no stub
-        str(shards / "views-000000.tar"), shardshuffle=False
-    )
-    assert next(iter(files.decode("rgb8")))["depth.png"].dtype == np.uint8
 
 
 def test_a_view_dataset_without_transform_gives_the_views(shards: Path) -> None:
