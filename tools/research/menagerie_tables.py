@@ -38,7 +38,7 @@ from sim.robot.menagerie import ENTRIES, PREFIX
 from sim.robot.velocity import Velocity
 from sim.task.result import EpisodeResult
 from sim.world.world import World
-from tools.research.physics_tables import Row, floor, show
+from tools.research.lean_tables import Row, floor, show
 
 DEFAULT = "default"
 """The robot of the simulator, for comparison."""
