@@ -81,7 +81,7 @@ EXCEPTIONS = {
     ("sim/app/bridges/process_guard.py", "os.open"): "/dev/null",
     ("sim/app/bridges/process_boundary.py", "open"): "files of the kernel in /proc/self",
     ("sim/app/bridges/process_boundary.py", "os.open"): "/dev/null",
-    ("sim/app/bridges/stubborn_client.py", "os.open"): "runs in the agent's process; memory that the simulator names",
+    ("sim/app/bridges/stubborn_client.py", "os.open"): "/dev/null",
     ("sim/homes/housegen/imported/infinigen_worker.py", "open"): "runs in the user's Python; a new part file",
     ("sim/app/commands/habitat/setup.py", "distribution.read_text"): "a file of the installed package",
     ("tools/research/habitat_names.py", "file.read_text"): "sources of a checkout that a maintainer reads",
