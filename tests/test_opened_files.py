@@ -70,7 +70,6 @@ EXCEPTIONS = {
     ("sim/app/services/client.py", "opener_for(url).open"): "an address",
     ("sim/app/services/frames.py", "opener_for(url).open"): "an address",
     ("stubborn/segmentation/processor.py", "_PROCESSOR.read_text"): "a fixed file of the system, /proc/cpuinfo",
-    ("stubborn/segmentation/lite0.py", "torch.load"): "weights of an installed package",
     ("sim/app/composition/segmenters.py", "safe_open"): "as in stubborn/network_files.py",
     ("stubborn/network_files.py", "safe_open"): "takes a name only; open_plain is called just before",
     ("tools/maintenance/site_hooks.py", "file.read_text"): "pages that the maintainer's build has just written",

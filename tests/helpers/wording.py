@@ -33,7 +33,6 @@ ENCODING_IS_NOT_READ_NOT_WELL_FORMED_NOT_AN_MJCF = (
 AN_AGENT_HAS_NO_EPISODES_OF_ITS_OWN = "An agent has no episodes of its own here"
 EPISODES_MUST_BE_1_TO_3_GOT_4 = "episodes must be 1 to 3, got 4"
 EPISODES_MUST_BE_AT_LEAST_1_GOT = "episodes must be at least 1, got"
-EXCLUDE_EACH_OTHER = "exclude each other"
 EXPECTED_OBJECT_GOT_INT = "expected object, got int"
 EXPECTED_OBJECT_GOT_NULL = "expected object, got null"
 FAILURES_ABLATION_EXPLORATION_CONTROLS_CATEGORIE = "failures, ablation, exploration, controls, categories, overall"

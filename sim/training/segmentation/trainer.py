@@ -18,15 +18,20 @@ from torch.utils.data import DataLoader, Subset
 from sim.core.interface import CameraModel, ConfigError
 from sim.core.paths import code_hash
 from sim.core.reading import Count, Number
-from sim.training.segmentation.averaged_checkpoints import AveragedCheckpoints
 from sim.training.segmentation.balanced import Batches, ViewIndex
 from sim.training.segmentation.dataset import list_shards, pixel_counts, spread_views, stored_block_px, stored_views
 from sim.training.segmentation.evaluation import Iou, evaluate
 from sim.training.segmentation.options import MAY_CHANGE, Args, check
 from sim.training.segmentation.recipe import PROGRESSIVE
 from sim.training.segmentation.samples import Augmentation, Sampler, Samples
-from sim.training.segmentation.steps import exponential_average, pyramid_loss, root_class_weights, set_normalisation
-from sim.training.segmentation.trained_network import device_of, parameter_groups, precision_of, start_network
+from sim.training.segmentation.steps import (
+    AveragedCheckpoints,
+    exponential_average,
+    pyramid_loss,
+    root_class_weights,
+    set_normalisation,
+)
+from sim.training.segmentation.trained_network import device_of, precision_of, start_network
 from sim.training.training_files import (
     HasState,
     append_row,
@@ -89,13 +94,12 @@ class Trainer:
         if (known := stored_views(shards)) is not None and known < args.batch:
             folders = ", ".join(map(str, args.views))
             raise ConfigError(f"--views {folders}: fewer views than one batch of {args.batch} (--batch).")
-        self.size, model, self.started_from = start_network(args.size, args.init, imagenet=args.imagenet)
+        self.size, model, self.started_from = start_network(args.size, args.init)
         self.model = model.to(self.device)
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
         self.average = AveragedModel(self.model, multi_avg_fn=exponential_average(RECIPE.average), use_buffers=True)
         self.precision = precision_of(args.precision, self.device)
-        groups = parameter_groups(self.model, imagenet=args.imagenet)
-        self.optimiser = torch.optim.AdamW(groups, lr=args.rate, weight_decay=RECIPE.weight_decay)
+        self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=RECIPE.weight_decay)
         self.options = options_of(args, may_change=MAY_CHANGE, files={"val_views": val_shards})
         self.weights = root_class_weights(pixel_counts(shards)).to(self.device)
         self._make_data(shards, val_shards)
@@ -213,7 +217,7 @@ class Trainer:
         """Makes one step of the optimiser and returns the loss; a GPU may still be computing it."""
         rate = self.args.rate * RECIPE.relative_rate(self.step, self.total)
         for group in self.optimiser.param_groups:
-            group["lr"] = rate * group["relative_rate"]
+            group["lr"] = rate
         self.model.train()
         self.optimiser.zero_grad(set_to_none=True)
         with torch.autocast(self.device.type, dtype=torch.bfloat16, enabled=self.precision == "bf16"):

@@ -18,7 +18,7 @@ from sim.app.analysis.comparison import (
     read_run,
     require_same_episodes,
 )
-from sim.app.analysis.replicates import replicate_note
+from sim.app.analysis.metrics import replicate_note
 from sim.app.analysis.tables import (
     ONE_HOUSE_NOTE,
     Cell,

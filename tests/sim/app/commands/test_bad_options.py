@@ -150,7 +150,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
     ],
     "sim.app.commands.views.show": [("--views nowhere --out OUT", "No shards")],
     "tools.maintenance.split_report": [("--splits nowhere", "Unknown split")],
-    "sim.app.commands.train.cloned": [("--demonstrations nowhere --out OUT", "No demonstration in 'nowhere'")],
+    "sim.training.cloned.trainer": [("--demonstrations nowhere --out OUT", "No demonstration in 'nowhere'")],
     "sim.app.commands.train.segmentation": [
         ("--views nowhere --val-views nowhere --out OUT --size vast", "--size must be one of"),
         ("--views nowhere --val-views nowhere --out OUT --batch 1", "--batch must be at least 2"),
@@ -159,15 +159,15 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--furniture nowhere --out OUT", "is not a folder"),
     ],
     "sim.app.commands.train.fusion": [
-        ("--split val", "fitted on 'val'"),
-        ("--split OUT --semantics gt", "makes no errors to learn"),
-        ("--split nowhere --judge", "nowhere"),
-        ("--split val --judge --minutes 0 --log OUT", "has no tracks"),
+        ("--split val --out OUT", "fitted on 'val'"),
+        ("--split OUT --semantics gt --out OUT", "makes no errors to learn"),
+        ("--split nowhere --out OUT", "nowhere"),
+        ("--split train --out OUT --minutes 0 --log OUT", "has no tracks"),
     ],
     "sim.app.commands.train.verifier": [
-        ("--semantics gt", "makes no errors to learn"),
-        ("--split nowhere", "Unknown split"),
-        ("--split val", "fitted on 'val'"),
+        ("--semantics gt --out OUT", "makes no errors to learn"),
+        ("--split nowhere --out OUT", "Unknown split"),
+        ("--split val --out OUT", "fitted on 'val'"),
     ],
     "sim.app.commands.traps.make": [
         ("--out OUT --family glass", "pane_gap"),
