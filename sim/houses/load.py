@@ -20,7 +20,6 @@ from sim.houses.foreign import make_walls_solid, remove_unsupported, void_notes
 from sim.houses.geoms import data_at_rest
 from sim.houses.house import House
 from sim.houses.labels import ROBOT_PREFIX, Labels, collidable_geoms, describe_geom, read_labels
-from sim.houses.light import add_light
 from sim.houses.mjcf import TEXTURE_VARIABLE, read_spec, require_few_contacts, require_sizes
 from sim.houses.references import add_files, require_root, shipped_textures_sum
 
@@ -215,3 +214,30 @@ def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
         return spec.compile()
     except (ValueError, OSError, MemoryError) as error:
         raise HouseError(f"it is not an MJCF file that MuJoCo can read: {reason_of(error)}") from None
+
+
+MIN_AMBIENT = 0.3
+"""A scene without lamps keeps its light if its headlight has at least this ambient part."""
+AMBIENT, HEADLIGHT = 0.5, 0.2
+"""Ambient and diffuse part of the headlight that is set."""
+SIDES = (((0.45, 0.3, -0.85), 0.25), ((-0.6, -0.35, -0.7), 0.12))
+"""Direction and strength of two added lights without shadows: the walls of a corner then differ in brightness."""
+
+
+def add_light(spec: mujoco.MjSpec) -> tuple[str, ...]:
+    """Adds light to a scene without lamps if its headlight is weak; returns a sentence if it has added light.
+
+    A bare room of medium grey then has a mean grey level of about 80 of 255 in the images of the robot's camera.
+    """
+    head = spec.visual.headlight
+    if any(light.active for light in spec.lights) or (head.active and np.mean(head.ambient) >= MIN_AMBIENT):
+        return ()
+    head.active = 1
+    head.ambient, head.diffuse, head.specular = [AMBIENT] * 3, [HEADLIGHT] * 3, [0.0] * 3
+    for direction, strength in SIDES:
+        light = spec.worldbody.add_light()
+        light.type = mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
+        light.pos, light.dir = [0.0, 0.0, 3.0], list(direction)
+        light.ambient, light.diffuse, light.specular = [0.0] * 3, [strength] * 3, [0.0] * 3
+        light.castshadow = False
+    return ("Added light: the scene has no lamps and a weak headlight.",)

@@ -191,8 +191,8 @@ class PhysicsConfig:
     """The time step, and the limits beyond which a state is not physical."""
 
     timestep_s: float = 0.004
-    """Chosen by convergence: at 4, 2.5, 2 and 1 ms the robot climbs and is stopped by the same edges
-    (`tools.research.physics_tables --tables steps`); the hull overlaps obstacles by less than 3 mm."""
+    """Chosen by convergence: at 4, 2.5, 2 and 1 ms the robot climbs and is stopped by the same edges; the hull overlaps
+    obstacles by less than 3 mm."""
     settle_s: float = 0.2
     """Simulated time for the robot to come to rest after it was placed on the floor."""
     max_overlap_m: float = 0.001

@@ -1,6 +1,6 @@
 """The controller of the robot: performs an action as a closed-loop motion along a trapezoid profile.
 
-A motion starts and ends at rest, and ends early when it is blocked (`sim.robot.blocking`). Feedback is odometry
+A motion starts and ends at rest, and ends early when it is blocked (`Blocking`). Feedback is odometry
 (`sim.robot.odometry`), never the true pose: a forward is 0.25 m by the wheel encoders. The heading reference is
 absolute: the start heading plus a whole number of turns by odometry, so that errors of single motions do not
 accumulate. Motor commands are constant during a tick of `tick_s`.
@@ -15,10 +15,9 @@ from typing import Literal
 
 from sim.core.interface import Action, wrap_angle
 from sim.gl import mujoco
-from sim.robot.blocking import Blocking
 from sim.robot.body import Body
 from sim.robot.conditions import NOMINAL, Conditions
-from sim.robot.config import RobotConfig
+from sim.robot.config import DriveConfig, RobotConfig
 from sim.robot.contacts import Contact, ContactLog
 from sim.robot.motors import Motors
 from sim.robot.odometry import Odometry
@@ -271,3 +270,33 @@ class Driver:
 
 def _clamp(value: float, centre: float, reach: float) -> float:
     return max(centre - reach, min(centre + reach, value))
+
+
+class Blocking:
+    """Compares the commands of the motors with the motion of the body over the last `DriveConfig.blocked_s`.
+
+    It does not matter which part of the robot touches something, how large the force is, or whether the wheels stall or
+    slip. Wheel encoders cannot see slip, so that the motion is the true one, which real bases measure with a sensor of
+    optical flow that faces the floor.
+    """
+
+    def __init__(self, drive: DriveConfig, *, turning: bool) -> None:
+        self._ticks = math.ceil(drive.blocked_s / drive.tick_s)
+        self._least = drive.blocked_rad if turning else drive.blocked_m
+        self._pushing = drive.pushing_rad_s if turning else drive.pushing_m_s
+        self._commanded: list[float] = []
+        self._moved: list[float] = []
+
+    def add(self, commanded: float, moved: float) -> bool:
+        """Adds one tick and returns whether the motion is blocked.
+
+        Args:
+            commanded: speed (m/s) or turn rate (rad/s) in the direction of the motion.
+            moved: distance (m) or angle (rad) in that direction since its start.
+        """
+        self._commanded.append(commanded)
+        self._moved.append(moved)
+        if len(self._moved) <= self._ticks:
+            return False
+        pushing = min(self._commanded[-self._ticks :]) >= self._pushing
+        return pushing and self._moved[-1] - self._moved[-1 - self._ticks] < self._least

@@ -1,13 +1,21 @@
-"""Figures of matplotlib that are drawn to files, without a display."""
+"""Packages of the extra `train`: whether they are installed, and figures of matplotlib without a display."""
 
 from __future__ import annotations
 
+import importlib.util
 from typing import TYPE_CHECKING
 
 from sim.core.errors import ConfigError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+def require_packages(*names: str) -> None:
+    """Raises ConfigError if one of these packages is not installed."""
+    for name in names:
+        if importlib.util.find_spec(name) is None:
+            raise ConfigError(f"This command needs the package {name}: pip install 'stubborn-objectnav[train]'.")
 
 
 def empty_figure(width_in: float, height_in: float, *, what: str) -> Figure:

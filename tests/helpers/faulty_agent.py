@@ -43,7 +43,7 @@ def write(content: bytes) -> None:
         content = content[os.write(1, content) :]
 
 
-def message(header: object, arrays: bytes = b"", *, version: int = 1, raw: bytes | None = None) -> bytes:
+def message(header: object, arrays: bytes = b"", *, version: int = 2, raw: bytes | None = None) -> bytes:
     head = json.dumps(header).encode() if raw is None else raw
     return PREFIX.pack(MARK, version, len(head), len(arrays)) + head + arrays
 
@@ -116,10 +116,10 @@ def act(header: dict) -> None:
         "sigstop": lambda: os.kill(os.getpid(), signal.SIGSTOP),
         "exit_0": lambda: os._exit(0),
         "exit_3": lambda: exit_with(3),
-        "version": lambda: write(message(good, version=2)),
-        "huge_header": lambda: write(PREFIX.pack(MARK, 1, 2**32 - 1, 0)),
-        "huge_arrays": lambda: write(PREFIX.pack(MARK, 1, 2, 2**63) + b"{}"),
-        "large_arrays": lambda: write(PREFIX.pack(MARK, 1, 2, 2**28) + b"{}"),
+        "version": lambda: write(message(good, version=1)),
+        "huge_header": lambda: write(PREFIX.pack(MARK, 2, 2**32 - 1, 0)),
+        "huge_arrays": lambda: write(PREFIX.pack(MARK, 2, 2, 2**63) + b"{}"),
+        "large_arrays": lambda: write(PREFIX.pack(MARK, 2, 2, 2**28) + b"{}"),
         "no_json": lambda: write(message({}, raw=b"{'action': 1}")),
         "no_utf8": lambda: write(message({}, raw=b'{"type": "\xff"}')),
         "no_object": lambda: write(message([1])),

@@ -17,8 +17,7 @@ from sim.core.paths import assets_dir
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import load_split
 from sim.homes.housegen.splits.recipes import SPLIT_VERSION
-from sim.homes.housegen.traps.families.catalogue import FAMILIES, HELD_OUT
-from sim.homes.housegen.traps.families.contact_splits import CONTACT_SPLITS, TrapKey
+from sim.homes.housegen.traps.families.catalogue import CONTACT_SPLITS, FAMILIES, HELD_OUT, TrapKey
 from sim.homes.housegen.traps.families.draw import DETOUR_M, MARGIN_M, draw_trap
 from sim.homes.housegen.traps.families.family import BLOCKING_M, CLIMBED_M, DIFFICULTIES, ROBOT_M, SPARE_M, Chance
 from sim.houses.geoms import data_at_rest, geom_polytope

@@ -1,1 +1,1 @@
-"""Benchmarks for maintainers, on pytest-benchmark, and the comparison with another commit."""
+"""Benchmarks for maintainers, on pytest-benchmark."""

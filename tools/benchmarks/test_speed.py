@@ -4,7 +4,8 @@
     python -m pytest -p pytest_benchmark.plugin tools/benchmarks/test_speed.py -k step --benchmark-cprofile=cumtime
     python -m pytest -p pytest_benchmark.plugin tools/benchmarks/test_speed.py --benchmark-json=runs/bench.json
 
-`--benchmark-cprofile=cumtime` shows the stages of a step. `python -m tools.benchmarks.against` compares two commits.
+`--benchmark-cprofile=cumtime` shows the stages of a step. To compare two commits, run each with `--benchmark-autosave`;
+`pytest-benchmark compare` then shows both. Other work on the machine changes the times, so run them in turns.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""Assets, benchmarks against other versions, the documentation and its pictures."""
+"""Assets, the documentation, and type stubs."""

@@ -1,1 +1,1 @@
-"""Experiments: the 2-D environment against the real one, explorers in plans, drawings of paths and potentials."""
+"""Experiments and the tables of the documentation."""

@@ -1,4 +1,4 @@
-"""Measures how the robot leans, pushes, slips and drifts.
+"""Measures how the robot leans, pushes, slips and drifts, and the errors of its motions.
 
     python -m tools.research.lean_tables                                 # all tables, some minutes
     python -m tools.research.lean_tables --tables pushes,slopes --out runs/lean.json
@@ -10,42 +10,53 @@
 | slopes | ramps: whether the robot climbs, its speed when it is left alone, and whether a stop is a collision |
 | ledges | displacement of the forward that leads over an edge down |
 | surfaces | true and measured distance of 40 forwards by friction of the floor, and on carpet |
+| noise | errors of a forward and a turn with each noise preset, and those of a LoCoBot (PyRobot, controller ILQR) |
 | drift | true pose against odometry after 10 and 50 forwards and turns, by noise preset, with intervals |
 """
 
 from __future__ import annotations
 
+import json
 import math
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+from rich.table import Table
 
 from sim.app import cli
+from sim.app.analysis import display
+from sim.core.files import write_atomically
 from sim.core.geometry.pose import Pose
-from sim.core.interface import FORWARD_M, Action
+from sim.core.interface import FORWARD_M, TURN_RAD, Action
 from sim.gl import mujoco
 from sim.houses.house import House
 from sim.robot.body import GRAVITY_M_S2
 from sim.robot.config import RobotConfig
 from sim.sensors.noise import NOISE_PRESETS
 from sim.world.world import World
-from tools.research.physics_tables import Row, floor, write_tables
 
-CAMERA_M = 0.88
+Row = dict[str, str | float]
 FORWARD, LEFT, RIGHT = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_RIGHT
 FLOOR_FRICTION, GLIDE_FRICTION = 0.7, 0.2
 SEAT_M, LEG_INSET_M = 0.4, 0.05
 """Edge of the seats that are pushed, and distance of their legs from the edge."""
 DRIFT_EPISODES = 200
+LOCOBOT = {"forward_mm": 14.0, "sideways_mm": 9.0, "turn_deg": math.degrees(0.023)}
+"""Mean errors of a forward and a turn that PyRobot publishes for a LoCoBot with the controller ILQR."""
+LOCOBOT_STD = {"forward_std_mm": 6.0, "sideways_std_mm": 5.0, "turn_std_deg": math.degrees(0.012)}
+"""Their standard deviations."""
+NOISE_EPISODES = 30
+"""Draws of an episode's conditions for each preset."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
     """Measure how the robot leans, pushes, slips and drifts, and print one table for each part."""
 
-    tables: str = "rest,pushes,slopes,ledges,surfaces,drift"
+    tables: str = "rest,pushes,slopes,ledges,surfaces,noise,drift"
     """Names with commas between."""
     out: cli.OutFile | None = None
     """A JSON file for the rows."""
@@ -55,6 +66,34 @@ def main(args: Args) -> int:
     """Measures and prints the tables; returns the exit status."""
     write_tables({name: TABLES[name] for name in cli.chosen(args.tables, TABLES, option="--tables")}, args.out)
     return 0
+
+
+def write_tables(tables: Mapping[str, Callable[[], Iterator[Row]]], out: Path | None) -> None:
+    """Measures and prints tables, and writes their rows to a JSON file unless it is None."""
+    rows_of = {}
+    for name, rows in tables.items():
+        rows_of[name] = list(rows())
+        show(name, rows_of[name])
+    if out is not None:
+        write_atomically(out, json.dumps(rows_of, indent=2) + "\n")
+
+
+def show(name: str, rows: list[Row]) -> None:
+    """Prints the rows of one table."""
+    table = Table(title=name)
+    for key in rows[0]:
+        table.add_column(key.replace("_", " "))
+    for row in rows:
+        table.add_row(*(f"{value:.3g}" if isinstance(value, float) else str(value) for value in row.values()))
+    display.make_console().print(table)
+
+
+def floor(friction: float) -> mujoco.MjSpec:
+    """Returns an endless floor."""
+    spec = mujoco.MjSpec()
+    spec.worldbody.add_geom(name="floor_00", type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 1))
+    spec.geom("floor_00").friction[0] = friction
+    return spec
 
 
 def lean_deg(world: World) -> tuple[float, float]:
@@ -243,6 +282,31 @@ def carpet_floor(friction: float) -> mujoco.MjSpec:
     return spec
 
 
+def noise() -> Iterator[Row]:
+    """Yields the mean absolute errors of forwards and turns with each noise preset, on a floor of friction 0.7, and the
+    standard deviations within an episode."""
+    world = World(House("floor", floor(0.7)))
+    for name, preset in NOISE_PRESETS.items():
+        errors: dict[str, list[list[float]]] = {key: [] for key in LOCOBOT}  # by episode
+        for number in range(NOISE_EPISODES):
+            world.reset(Pose(0.0, 0.0, 0.0), preset.actuation.draw(np.random.default_rng(number)))
+            for values in errors.values():
+                values.append([])
+            for action in map(Action, (1, 2, 1, 3, 1, 1, 2, 2, 1, 3, 1, 3, 1, 1)):
+                before = world.pose
+                world.move(action)
+                moved = world.pose.relative_to(before)
+                if action == Action.MOVE_FORWARD:
+                    errors["forward_mm"][-1].append(1000.0 * (moved.x_m - FORWARD_M))
+                    errors["sideways_mm"][-1].append(1000.0 * moved.y_m)
+                else:
+                    errors["turn_deg"][-1].append(math.degrees(abs(moved.yaw_rad) - TURN_RAD))
+        means = {key: float(np.abs(values).mean()) for key, values in errors.items()}
+        within = [float(np.std(values, axis=1, ddof=1).mean()) for values in errors.values()]
+        yield {"preset": name, **means, **dict(zip(LOCOBOT_STD, within, strict=True))}
+    yield {"preset": "LoCoBot, published", **LOCOBOT, **LOCOBOT_STD}
+
+
 def drift() -> Iterator[Row]:
     """Yields the distance between true pose and odometry after 10 and 50 forwards with as many turns."""
     world = World(House("floor", floor(FLOOR_FRICTION)))
@@ -274,7 +338,8 @@ def _with_interval(values: np.ndarray) -> str:
 
 
 TABLES: Mapping[str, Callable[[], Iterator[Row]]] = {
-    "rest": rest, "pushes": pushes, "slopes": slopes, "ledges": ledges, "surfaces": surfaces, "drift": drift,
+    "rest": rest, "pushes": pushes, "slopes": slopes, "ledges": ledges, "surfaces": surfaces,
+    "noise": noise, "drift": drift,
 }  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import statistics
 from collections.abc import Sequence
 
 from sim.app.analysis.tables import Cell
-from sim.app.evaluation.intervals import estimate, paired_difference, ratio_of_medians
+from sim.app.evaluation.intervals import estimate, paired_difference, ratio_of_medians, replicate_spread
 from sim.episodes.replicates import episode_of
 from sim.task.result import METRICS, EpisodeResult, Metric
 
@@ -50,3 +50,33 @@ def houses_of(results: Sequence[EpisodeResult]) -> list[str]:
 def episodes_of(results: Sequence[EpisodeResult]) -> list[str]:
     """Returns the id of each result's episode, which its replicates share."""
     return [episode_of(result.episode_id) for result in results]
+
+
+def replicate_note(results: Sequence[EpisodeResult]) -> str:
+    """Returns the sentence on the spread of a run's success and SPL; "" for a run without replicates."""
+    spreads = [_spread(list(map(metric.value, results)), results) for metric in (SUCCESS, SPL)]
+    return _sentence(spreads, results, "the mean over one replicate of each")
+
+
+def difference_note(first: Sequence[EpisodeResult], second: Sequence[EpisodeResult]) -> str:
+    """Returns the sentence on the spread of the difference of two runs with paired results; "" without replicates."""
+    spreads = []
+    for metric in (SUCCESS, SPL):
+        pairs = zip(*(map(metric.value, results) for results in (first, second)), strict=True)
+        spreads.append(_spread([None if a is None or b is None else b - a for a, b in pairs], first))
+    return _sentence(spreads, first, "the difference over one replicate of each")
+
+
+def _spread(values: Sequence[float | None], results: Sequence[EpisodeResult]) -> float | None:
+    return replicate_spread(values, episodes_of(results))
+
+
+def _sentence(spreads: Sequence[float | None], results: Sequence[EpisodeResult], what: str) -> str:
+    success, spl = spreads
+    if success is None or spl is None:
+        return ""
+    count = len(set(episodes_of(results)))
+    return (
+        f"{len(results)} replicates of {count} episodes; each episode counts once. Chance alone gives {what} a "
+        f"standard deviation of {100.0 * success:.1f} points of success and {spl:.3f} of SPL."
+    )

@@ -50,10 +50,8 @@ _Text = Annotated[str, Meta(max_length=MAX_HEADER_BYTES)]
 
 
 class _Ready(msgspec.Struct, tag_field="type", tag="ready"):
-    shares_memory: bool = False
     draws_map: bool = False
     keeps_memory: bool = False
-    interface: str = "stubborn"
 
 
 class _Done(msgspec.Struct, tag_field="type", tag="done"):
@@ -149,7 +147,7 @@ class ProcessAgent:
             self._setup |= {"interface": config.interface, "goals": goals, "config": of_the_run}
         self._process: AgentProcess | None = None
         self._chosen = _Chosen(action=0)
-        self._shares_memory, self._keeps_memory, self._seed = True, False, 0
+        self._keeps_memory, self._seed = False, 0
         self.draws_map = False
         """Whether the agent draws a map."""
         try:
@@ -207,12 +205,6 @@ class ProcessAgent:
         except ProtocolError as fault:
             raise self._failure(AgentError(f"its map is not valid: {fault}")) from None
 
-    def share_no_memory(self) -> None:
-        """Sends observations through the pipe from now on, as to an agent on another machine or in a container."""
-        self._shares_memory = False
-        if self._process is not None:
-            self._process.share_no_memory()
-
     def close(self) -> None:
         """Ends the process."""
         process, self._process = self._process, None
@@ -222,15 +214,8 @@ class ProcessAgent:
     def _start(self) -> AgentProcess:
         """Starts the process and returns it."""
         process = self._process = AgentProcess(self._command, self._hidden)
-        request = {"type": "start", "setup": self._setup, "memory": process.memory}
+        request = {"type": "start", "setup": self._setup}
         ready, _ = self._ask(request, _Ready, within_s=self._config.start_timeout_s)
-        if ready.interface != self._config.interface:
-            reason = (
-                f"its stubborn_client.py does not know agent.interface={self._config.interface}: copy the file anew"
-            )
-            raise self._failure(AgentError(reason))
-        if not (ready.shares_memory and self._shares_memory):
-            process.share_no_memory()
         self.draws_map, self._keeps_memory = ready.draws_map, ready.keeps_memory
         return process
 

@@ -3,12 +3,11 @@
 The guard is a program of its own between the simulator and the agent, so that it still runs if either of the two is
 killed. It needs nothing but Python. When the simulator has ended, the control socket is closed.
 
-    python process_guard.py CONTROL HIDDEN KEPT COMMAND ...
+    python process_guard.py CONTROL HIDDEN COMMAND ...
 
 CONTROL is the number of an open socket to the simulator. HIDDEN is JSON: null, or a list of paths, for a command in
-namespaces in which they are hidden (`process_boundary`). KEPT is JSON: file descriptors that the command gets. When the
-command has ended or could not be started, the guard writes one line to CONTROL: `ended STATUS`, `killed SIGNAL` or
-`failed REASON`.
+namespaces in which they are hidden (`process_boundary`). When the command has ended or could not be started, the guard
+writes one line to CONTROL: `ended STATUS`, `killed SIGNAL` or `failed REASON`.
 """
 
 from __future__ import annotations
@@ -33,18 +32,18 @@ ENDING_S = 3.0
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36  # sys/prctl.h
 
 
-def main(control: socket.socket, hidden: list[str] | None, kept: list[int], command: list[str]) -> None:
+def main(control: socket.socket, hidden: list[str] | None, command: list[str]) -> None:
     """Runs the command until it or the simulator has ended, then kills all processes of the command that remain."""
     _prctl(_PR_SET_CHILD_SUBREAPER, 1)  # processes whose parent has ended become children of this one
     reading, report = os.pipe()
-    begin, passed = _end_with_guard, kept
+    begin, passed = _end_with_guard, ()
     try:
         if hidden is not None:
             sys.path.append(os.path.dirname(os.path.abspath(__file__)))  # this file is run without the user's modules
             import process_boundary  # pyright: ignore[reportMissingImports]
 
             process_boundary.enter(hidden)
-            begin, passed = functools.partial(process_boundary.begin, report), [*kept, report]
+            begin, passed = functools.partial(process_boundary.begin, report), (report,)
         # The command gets a session of its own, so that Ctrl-C does not reach it.
         agent = subprocess.Popen(command, start_new_session=True, preexec_fn=begin, pass_fds=passed)
     except (OSError, ValueError, subprocess.SubprocessError) as error:
@@ -121,4 +120,4 @@ def _say(control: socket.socket, line: str) -> None:
 
 
 if __name__ == "__main__":
-    main(socket.socket(fileno=int(sys.argv[1])), json.loads(sys.argv[2]), json.loads(sys.argv[3]), sys.argv[4:])
+    main(socket.socket(fileno=int(sys.argv[1])), json.loads(sys.argv[2]), sys.argv[3:])

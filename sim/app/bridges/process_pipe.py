@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import json
-import mmap
 import os
 import re
 import select
@@ -24,7 +23,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-import numpy as np
 from numpy.typing import NDArray
 
 from sim.app.bridges import stubborn_client
@@ -85,10 +83,7 @@ class AgentProcess:
 
     def __init__(self, command: Sequence[str], hidden: Sequence[str] | None = None) -> None:
         self._control, theirs = socket.socketpair()
-        self._memory = _SharedMemory.make(is_inherited=hidden is not None)
-        kept = [] if hidden is None or self._memory is None else [self._memory.handle]
-        settings = str(theirs.fileno()), json.dumps(hidden), json.dumps(kept)
-        words = [sys.executable, "-I", "-S", str(GUARD), *settings, *command]
+        words = [sys.executable, "-I", "-S", str(GUARD), str(theirs.fileno()), json.dumps(hidden), *command]
         known = {name: value for name, value in os.environ.items() if name in ENVIRONMENT or name.startswith("LC_")}
         pipe = subprocess.PIPE
         try:
@@ -98,7 +93,7 @@ class AgentProcess:
                 stdin=pipe,
                 stdout=pipe,
                 stderr=pipe,
-                pass_fds=(theirs.fileno(), *kept),
+                pass_fds=(theirs.fileno(),),
                 env=None if hidden is None else known,
                 start_new_session=True,
             )
@@ -124,15 +119,6 @@ class AgentProcess:
         """A text on how the process has ended, for messages; "" while it runs."""
         self._number = 0
 
-    @property
-    def memory(self) -> dict[str, str] | None:
-        """The description of the shared memory for the agent; None if the operating system does not provide any."""
-        return None if self._memory is None else self._memory.description
-
-    def share_no_memory(self) -> None:
-        """Sends arrays through the pipe from now on: the agent cannot open the memory."""
-        self._memory = None
-
     def ask(
         self, request: Mapping[str, object], arrays: Mapping[str, NDArray] | None = None, *, within_s: float
     ) -> Answer:
@@ -147,12 +133,7 @@ class AgentProcess:
             AgentError: no valid answer arrived; the process cannot be used any more and must be closed.
         """
         self._number += 1
-        shared = arrays is not None and self._memory is not None
-        if shared:
-            assert arrays is not None
-            assert self._memory is not None
-            self._memory.write(arrays)
-        parts = stubborn_client.pack({**request, "id": self._number}, arrays, shared=shared)
+        parts = stubborn_client.pack({**request, "id": self._number}, arrays)
         try:
             answer = self._exchange([memoryview(part).cast("B") for part in parts], within_s)
         except ProtocolError as fault:
@@ -295,53 +276,6 @@ class AgentProcess:
         message = bytes(self._received[: begin + array_bytes])
         del self._received[: begin + array_bytes]
         return Answer(message[PREFIX.size : begin], memoryview(message)[begin:])
-
-
-class _SharedMemory:
-    """Memory for observations, which the process of the agent opens by its path.
-
-    Args:
-        handle: file descriptor of the memory.
-        is_inherited: the process of the agent has the same file descriptor.
-    """
-
-    def __init__(self, handle: int, *, is_inherited: bool) -> None:
-        self._stream, self.handle = os.fdopen(handle, "r+b", buffering=0), handle
-        key = os.urandom(16).hex()
-        self._stream.write(key.encode())
-        owner = "self" if is_inherited else os.getpid()
-        self.description = {"path": f"/proc/{owner}/fd/{handle}", "key": key}
-        self._view = np.zeros(0, np.uint8)
-
-    @classmethod
-    def make(cls, *, is_inherited: bool) -> _SharedMemory | None:
-        """Returns new memory; None if the operating system does not provide any that cannot be shortened.
-
-        The agent's process can open the memory for writing. If it could also shorten it, the next write of the
-        simulator would end the simulator by SIGBUS.
-        """
-        if not hasattr(os, "memfd_create") or not hasattr(fcntl, "F_ADD_SEALS"):
-            return None
-        handle = -1
-        try:
-            handle = os.memfd_create("stubborn", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
-            fcntl.fcntl(handle, fcntl.F_ADD_SEALS, fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_SEAL)
-        except OSError:
-            if handle >= 0:
-                os.close(handle)
-            return None
-        return cls(handle, is_inherited=is_inherited)
-
-    def write(self, arrays: Mapping[str, NDArray]) -> None:
-        """Writes arrays one after the other."""
-        begin = stubborn_client.SHARED_START
-        size = begin + sum(array.nbytes for array in arrays.values())
-        if self._view.size < size:
-            self._stream.truncate(size)
-            self._view = np.frombuffer(mmap.mmap(self._stream.fileno(), size), np.uint8)
-        for array in arrays.values():
-            self._view[begin : begin + array.nbytes] = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
-            begin += array.nbytes
 
 
 def _end_in_words(line: bytes) -> str:

@@ -37,12 +37,10 @@ the order of the numbers in `semantic` images.
 Protocol: messages pass through standard input and output, so that any program which forwards these (ssh, docker run -i)
 can connect the two processes. What the agent prints goes to standard error. A message consists of `PREFIX` (mark,
 version, number of bytes of the header and of the arrays), a header in JSON, and the arrays, little-endian in C order,
-one after the other. The arrays of observations pass through shared memory if both sides can open it. Each request has
-a number, which its answer repeats.
+one after the other. Each request has a number, which its answer repeats.
 """
 
 import json
-import mmap
 import operator
 import os
 import random
@@ -61,7 +59,7 @@ try:
 except ImportError:
     sys.exit("stubborn_client.py needs NumPy in the Python of the agent, " + sys.executable)
 
-VERSION = 1
+VERSION = 2
 """Version of the protocol; both sides must have the same."""
 MARK = b"\x89STUBB\r\n"
 """The first bytes of each message."""
@@ -70,8 +68,6 @@ PREFIX = struct.Struct("<8sIIQ")
 MAX_HEADER_BYTES = 1 << 16
 MAX_ARRAY_BYTES = 1 << 29
 """Largest size of the arrays of a message."""
-SHARED_START = 4096
-"""Offset of the arrays in shared memory, in bytes; the key is stored before them."""
 DTYPES = ("|b1", "|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f2", "<f4", "<f8")
 """Allowed types of array elements, in NumPy's notation."""
 LAST_WORDS_S = 5.0
@@ -89,23 +85,21 @@ class ProtocolError(Exception):
     """The other side sent bytes that are not a valid message."""
 
 
-def pack(header, arrays=None, shared=False):
+def pack(header, arrays=None):
     """Returns a message as a list of buffers to be written one after the other.
 
     Args:
         header: JSON types; has `type` and `id`.
         arrays: NumPy arrays by name, of `DTYPES`.
-        shared: whether the arrays are in shared memory; the message then has only their description.
     """
     described, buffers, size = [], [], 0
     for name, array in (arrays or {}).items():
         array = np.ascontiguousarray(array).reshape(np.shape(array))
         array = array.astype(array.dtype.newbyteorder("<"), copy=False)
         described.append({"name": name, "dtype": array.dtype.str, "shape": list(array.shape)})
-        if not shared:
-            buffers.append(array.reshape(-1).view(np.uint8).data)
-            size += array.nbytes
-    head = json.dumps(dict(header, arrays=described, shared=shared)).encode()
+        buffers.append(array.reshape(-1).view(np.uint8).data)
+        size += array.nbytes
+    head = json.dumps(dict(header, arrays=described)).encode()
     if len(head) > MAX_HEADER_BYTES or size > MAX_ARRAY_BYTES:
         raise ProtocolError(f"a message of {len(head)} + {size} bytes is too large")
     return [PREFIX.pack(MARK, VERSION, len(head), size) + head] + [buffer for buffer in buffers if len(buffer)]
@@ -201,7 +195,6 @@ class _Client:
 
     def __init__(self, agent):
         self.agent = agent
-        self.shared = _SharedMemory()
         self.interface = "stubborn"
 
     def answer(self, request, content):
@@ -216,16 +209,13 @@ class _Client:
             self.agent.next_goal(request["goal"])
             return {"type": "done"}, {}
         if kind == "act":
-            described = request["arrays"]
-            content = self.shared.read(described) if request["shared"] else content
-            return self.act(unpack_arrays(described, content)), {}
+            return self.act(unpack_arrays(request["arrays"], content)), {}
         if kind == "map":
             state = str(self.agent.state()) if hasattr(self.agent, "state") else ""
             return {"type": "map", "state": state[:1000]}, {"map": _map_of(self.agent)}
         raise ProtocolError(f"there is no request {kind!r}")
 
     def start(self, request):
-        shared = self.shared.open(request["memory"])
         self.interface = request["setup"].get("interface", self.interface)
         if isinstance(self.agent, type) or not hasattr(self.agent, "act"):
             self.agent = self.agent(_as_namespace(request["setup"]))
@@ -235,8 +225,7 @@ class _Client:
         python = ".".join(str(part) for part in sys.version_info[:3])
         keeps_memory = callable(getattr(self.agent, "next_goal", None))
         has = {"draws_map": hasattr(self.agent, "map_image"), "keeps_memory": keeps_memory}
-        ready = dict(has, type="ready", python=python, shares_memory=shared)
-        return dict(ready, interface=self.interface)
+        return dict(has, type="ready", python=python)
 
     def reset(self, goal, seed):
         if self.interface != "habitat":
@@ -284,39 +273,6 @@ def from_habitat(action: Any) -> Any:
     if shape != () and np.prod(shape) == 1:  # an array or tensor of one element
         return getattr(inner, "reshape")(-1)[0]  # noqa: B009 - of an unknown class
     return inner
-
-
-class _SharedMemory:
-    """The memory into which the simulator writes observations, if this process can open it."""
-
-    def __init__(self):
-        self._file, self._view = -1, None
-
-    def open(self, memory):
-        """Returns whether the file of the description can be opened and has its key."""
-        if memory is None:
-            return False
-        try:
-            self._file = os.open(memory["path"], os.O_RDONLY)
-            return os.read(self._file, len(memory["key"])).decode("latin-1") == memory["key"]
-        except OSError:  # another machine or container
-            return False
-
-    def read(self, described):
-        """Returns a copy of the bytes of the arrays."""
-        size = 0
-        for description in described:
-            count = np.dtype(description["dtype"]).itemsize
-            for side in description["shape"]:
-                count *= side
-            size += count
-        if self._view is None or len(self._view) < SHARED_START + size:
-            self._view = mmap.mmap(self._file, 0, prot=mmap.PROT_READ)
-        if len(self._view) < SHARED_START + size:
-            raise ProtocolError(f"the shared memory is too small for {size} bytes")
-        content = np.empty(size, np.uint8)
-        content[:] = np.frombuffer(self._view, np.uint8, size, SHARED_START)
-        return content
 
 
 def _take_pipes():

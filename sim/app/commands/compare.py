@@ -18,8 +18,7 @@ import tyro
 from sim.app import cli
 from sim.app.analysis import display
 from sim.app.analysis.comparison import Run, differences_table, read_run, require_same_episodes
-from sim.app.analysis.metrics import SPL, SUCCESS, difference_cell, episodes_of, mean_cell
-from sim.app.analysis.replicates import difference_note
+from sim.app.analysis.metrics import SPL, SUCCESS, difference_cell, difference_note, episodes_of, mean_cell
 from sim.app.analysis.tables import NOT_SIGNIFICANT, ResultTable, to_csv, to_markdown, to_rich
 from sim.app.evaluation.intervals import MIN_PAIRS
 from sim.core.files import write_together

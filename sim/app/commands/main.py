@@ -78,11 +78,13 @@ COMMANDS: Mapping[str, Command] = {
     "train segmentation": Command("sim.app.commands.train.segmentation", "Train a segmentation network on views"),
     "train verifier": Command("sim.app.commands.train.verifier", "Fit the verifier of a segmentation"),
     "train fusion": Command("sim.app.commands.train.fusion", "Fit the fusion of views to a segmentation"),
-    "train names": Command("sim.app.commands.train.names", "Train a network's head for the everyday names of objects"),
+    "train names": Command(
+        "sim.training.segmentation.naming", "Train a network's head for the everyday names of objects"
+    ),
     "train context": Command("sim.app.commands.train.context", "Fit which objects are near objects of each category"),
     "train semexp": Command("sim.app.commands.train.semexp", "Train the explorer `semexp` in plans"),
-    "train poni": Command("sim.app.commands.train.poni", "Train the explorer `poni` on plans"),
-    "train cloned": Command("sim.app.commands.train.cloned", "Train the agent `cloned` on demonstrations"),
+    "train poni": Command("sim.training.poni.trainer", "Train the explorer `poni` on plans"),
+    "train cloned": Command("sim.training.cloned.trainer", "Train the agent `cloned` on demonstrations"),
     "evaluate": Command("sim.app.commands.evaluate.segmentation", "Evaluate a segmentation network on views"),
     "evaluate mistakes": Command("sim.app.commands.evaluate.mistakes", "Show what the network saw in failed episodes"),
     "evaluate objects": Command("sim.app.commands.evaluate.objects", "Draw the objects that a network misses"),

@@ -13,9 +13,7 @@ from rich.table import Table
 
 from sim.app import cli
 from sim.app.analysis import display
-from sim.app.composition import RUNNER
 from sim.app.composition.agents import SPECS
-from sim.app.evaluation.processes import isolation_of, started_early
 from sim.app.options import RunOptions
 from sim.core.invocation import RUN_STOPPED
 from stubborn.agents import EXPLORERS
@@ -30,9 +28,7 @@ def main(options: RunOptions) -> int:
     if options.list_agents:
         console.print(agent_table())
         return 0
-    apart = isolation_of(options).needed and options.workers == 1 and options.executor == "local"
-    with started_early(RUNNER if apart else None):  # it imports its modules while this process reads the options
-        return _run(options, console)
+    return _run(options, console)
 
 
 def _run(options: RunOptions, console: Console) -> int:

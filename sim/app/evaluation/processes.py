@@ -87,23 +87,24 @@ class Processes:
 class _Process:
     """A spawned process with a pipe to it; see `sim.app.evaluation.workers.Worker`.
 
+    It first sends a message that it is ready.
+
     Args:
-        threads: see `ProcessPool`.
-        preload: a module that the process imports at its start.
+        spec, threads, limit_s: see `ProcessPool`.
     """
 
-    def __init__(self, *, threads: int, preload: str) -> None:
+    def __init__(self, spec: RunnerSpec, *, threads: int, limit_s: float) -> None:
         context = mp.get_context("spawn")
         self.connection, child_connection = context.Pipe()
         try:
-            self.calls = Calls(context, limit_s=0.0)
+            self.calls = Calls(context, limit_s=limit_s)
         except OSError as error:  # for example a read-only /dev/shm of a container
             raise ConfigError(
                 f"Processes of workers need shared memory (/dev/shm), which cannot be used here: {reason_of(error)}. "
                 "--workers 1 needs none, except for agents of --step-timeout (give 0)."
             ) from None
         from_main_thread = threading.current_thread() is threading.main_thread()
-        args = (child_connection, self.calls, preload, from_main_thread)
+        args = (child_connection, self.calls, spec, from_main_thread)
         self.process = context.Process(target=_worker_main, args=args, daemon=True)
         with _environment(OMP_NUM_THREADS=str(threads)):  # libraries read this variable when they are imported
             self.process.start()
@@ -111,12 +112,6 @@ class _Process:
         self.loss = ""
         """The reason why this process was killed; "" if it was not."""
         child_connection.close()
-
-    def begin(self, spec: RunnerSpec, *, limit_s: float) -> None:
-        """Sends the process the specification of its runner; it then reports that it is ready."""
-        self.calls.limit_s = limit_s
-        self.calls.rest()
-        self.connection.send(spec)
 
     def send(self, item: object) -> None:
         self.busy = True
@@ -157,27 +152,6 @@ class _Process:
         self.connection.close()
 
 
-_spare: _Process | None = None
-"""A process that was started before its work is known; None: no process was started."""
-
-
-@contextlib.contextmanager
-def started_early(preload: str | None) -> Iterator[None]:
-    """Starts one process, which imports a module and is then used by a `ProcessPool` inside the `with` block.
-
-    Args:
-        preload: the module that it imports; None: no process is started.
-    """
-    global _spare
-    _spare = None if preload is None else _Process(threads=_processors(), preload=preload)
-    try:
-        yield
-    finally:
-        unused, _spare = _spare, None
-        if unused is not None:
-            unused.end(within_s=0.0)
-
-
 class ProcessPool:
     """Starts and stops processes of this machine; see `sim.app.evaluation.workers.WorkerPool`.
 
@@ -194,13 +168,8 @@ class ProcessPool:
         self._limit_s = limit_s
 
     def start(self) -> _Process:
-        """Spawns one process, or takes the one that was started early."""
-        global _spare
-        early, _spare = _spare if self._threads == _processors() else None, None
-        started = early or _Process(threads=self._threads, preload=self._spec.entry.partition(":")[0])
-        with contextlib.suppress(OSError):  # the process died: `receive` finds the pipe closed
-            started.begin(self._spec, limit_s=self._limit_s)
-        return started
+        """Spawns one process."""
+        return _Process(self._spec, threads=self._threads, limit_s=self._limit_s)
 
     def wait(self, workers: Sequence[_Process]) -> list[_Process]:
         """Returns the workers that sent a message, closed their pipe, or were killed because they were too slow."""
@@ -291,7 +260,7 @@ def _end_with_parent(*, by_kernel: bool) -> None:
     threading.Thread(target=watch, daemon=True, name="parent").start()
 
 
-def _worker_main(connection: Connection, calls: Calls, preload: str, from_main_thread: bool) -> None:
+def _worker_main(connection: Connection, calls: Calls, spec: RunnerSpec, from_main_thread: bool) -> None:
     """Reports that the worker is ready and runs items until None arrives or the parent process has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes; the parent process ends the workers
     _end_with_parent(by_kernel=from_main_thread)
@@ -299,15 +268,13 @@ def _worker_main(connection: Connection, calls: Calls, preload: str, from_main_t
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(line_buffering=True)  # an agent's output is not lost if the process is killed
     with contextlib.suppress(Exception):  # `ItemRunner` reports the error
-        importlib.import_module(preload)
-    runner: ItemRunner | None = None
+        importlib.import_module(spec.entry.partition(":")[0])
+    runner = ItemRunner(spec)
     try:
-        runner = ItemRunner(connection.recv())
         connection.send(None)
         while (item := connection.recv()) is not None:
             connection.send(runner.run(item))
     except (EOFError, OSError):
         return
     finally:
-        if runner is not None:
-            runner.close()
+        runner.close()

@@ -73,16 +73,16 @@ class TopView:
             self._key, self._ground = key, self._paint_ground(task.goal, pose.floor_z_m, (width_px, height_px))
         image = self._ground.copy()
         trajectory = task.trajectory()
-        path = self._pixels(trajectory.positions_m)
+        path = self.pixels(trajectory.positions_m)
         cv2.polylines(image, [path.reshape(-1, 1, 2)], False, PATH, 2, cv2.LINE_AA)
-        for u, v in self._pixels(trajectory.contacts[:, 1:]).tolist():
+        for u, v in self.pixels(trajectory.contacts[:, 1:]).tolist():
             cv2.circle(image, (u, v), 3, STOPPED, -1, cv2.LINE_AA)
         here_m = np.array([pose.x_m, pose.y_m])
         radius_px = max(6, round(world.robot.radius_m * self._scale))
         turned = pose.yaw_rad + np.array([0.0, 2.5, math.pi, -2.5])
         long_m = np.array([1.9, 1.25, 0.6, 1.25]) * radius_px / self._scale
         corners_m = here_m + long_m[:, None] * np.stack([np.cos(turned), np.sin(turned)], axis=1)
-        pointer = self._pixels(corners_m)
+        pointer = self.pixels(corners_m)
         cv2.fillPoly(image, [pointer], ROBOT, cv2.LINE_AA)
         cv2.polylines(image, [pointer], True, (255, 255, 255), 1, cv2.LINE_AA)
         return image
@@ -106,13 +106,13 @@ class TopView:
             cells, self._from_cells(space), size_px, flags=cv2.INTER_NEAREST, borderValue=OUTSIDE
         ).astype(np.uint8)
         for obstacle in space.obstacles:
-            cv2.fillConvexPoly(image, self._pixels(obstacle.vertices_m), OBSTACLE, cv2.LINE_AA)
+            cv2.fillConvexPoly(image, self.pixels(obstacle.vertices_m), OBSTACLE, cv2.LINE_AA)
         for footprint in target.region.footprints:
             for piece in footprint.parts:
-                cv2.fillConvexPoly(image, self._pixels(piece.vertices_m), INSTANCE, cv2.LINE_AA)
+                cv2.fillConvexPoly(image, self.pixels(piece.vertices_m), INSTANCE, cv2.LINE_AA)
         if abs(start.floor_z_m - floor_z_m) < LEVEL_M:
             path_m = space.path(target.distance_m, start.x_m, start.y_m)
-            path_px = self._pixels(np.array([[start.x_m, start.y_m]]) if path_m is None else path_m)
+            path_px = self.pixels(np.array([[start.x_m, start.y_m]]) if path_m is None else path_m)
             cv2.polylines(image, [path_px.reshape(-1, 1, 2)], False, SHORTEST, 2, cv2.LINE_AA)
             cv2.circle(image, path_px[0].tolist(), 4, SHORTEST, cv2.FILLED, cv2.LINE_AA)
         return image
@@ -122,8 +122,8 @@ class TopView:
         cell_m, middle_m = space.frame.cell_m, np.asarray(space.frame.origin_xy_m) + 0.5 * space.frame.cell_m
         return np.column_stack([self._to_px[:, :2] * cell_m, self._to_px[:, :2] @ middle_m + self._to_px[:, 2]])
 
-    def _pixels(self, points_m: NDArray[np.floating]) -> NDArray[np.int32]:
-        """Returns (n, 2) column and row of points (n, 2) in the world."""
+    def pixels(self, points_m: NDArray[np.floating]) -> NDArray[np.int32]:
+        """Returns column and row (n, 2) of points (n, 2) in the world, in the picture that was drawn last."""
         return (np.asarray(points_m, np.float64) @ self._to_px[:, :2].T + self._to_px[:, 2]).round().astype(np.int32)
 
 

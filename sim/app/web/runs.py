@@ -1,7 +1,7 @@
-"""Lists the finished runs in a folder, and opens their reports, pictures and videos.
+"""Lists the finished runs in a folder, and finds their reports, pictures and videos.
 
 Files are found by the names in the results, never by a path in a request. Links that lead out of the folder of the runs
-are refused, and only plain files are opened.
+are refused, and only plain files count.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import tempfile
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import NamedTuple
 
 from sim.app.analysis.comparison import Run, differences_table, require_same_episodes
 from sim.app.analysis.metrics import difference_cell, episodes_of, mean_cell
@@ -24,12 +24,13 @@ from sim.app.viewers.video import video_file
 from sim.core import invocation
 from sim.core.errors import ConfigError
 from sim.core.files import open_to_grow
-from sim.core.reading import open_plain, printable, reason_of
+from sim.core.reading import printable, reason_of
 from sim.task.result import EpisodeResult, metrics_for
 
 MAX_RUNS = 100
 """Largest number of runs that are listed, the newest ones."""
 REPORT = "report.html"
+_PART_BYTES = 1 << 18
 _FILES: Mapping[str, Callable[[Path, str], Path]] = {"pictures": picture_file, "videos": video_file}
 """Functions that return the path of an episode's file to which a report links, by the file's folder."""
 _COLUMNS = (
@@ -91,8 +92,8 @@ class Runs:
             raise ConfigError(f"Run '{name}' has no episode '{episode_id}'.")
         return run, run.results[episode_id]
 
-    def video(self, name: str, episode_id: str) -> BinaryIO:
-        """Returns the video of an episode, open for reading.
+    def video(self, name: str, episode_id: str) -> Path:
+        """Returns the file of the video of an episode.
 
         Raises:
             ConfigError: it does not exist.
@@ -101,11 +102,11 @@ class Runs:
         if episode_id in run.results:
             file = video_file(run.path, episode_id)
             if self._there(file):
-                return self._open(file)
+                return file
         raise ConfigError(f"Run '{name}' has no video of '{episode_id}'.")
 
-    def linked(self, name: str, kind: str, file_name: str) -> BinaryIO:
-        """Returns a picture or a video to which the report of a run links, open for reading.
+    def linked(self, name: str, kind: str, file_name: str) -> Path:
+        """Returns the file of a picture or a video to which the report of a run links.
 
         Args:
             name: name of the run.
@@ -119,28 +120,28 @@ class Runs:
         for episode_id in run.results if kind in _FILES else ():
             file = _FILES[kind](run.path, episode_id)
             if file.name == file_name and self._there(file):
-                return self._open(file)
+                return file
         raise ConfigError(f"Run '{name}' has no file '{file_name}' in '{kind}'.")
 
-    def packed(self, name: str) -> BinaryIO:
-        """Returns a ZIP file of a run's folder, open for reading; links are left out.
+    def packed(self, name: str) -> Iterator[bytes]:
+        """Returns the parts of a ZIP file of a run's folder; links are left out.
 
         Raises:
             ConfigError: there is no such run, or a file cannot be read.
         """
         folder = self._folder_of(name)
-        packed = tempfile.TemporaryFile()  # noqa: SIM115 - the response closes it
+        packed = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the last part
         try:
-            with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:  # its large files are compressed already
+            # Its large files are compressed already.
+            with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED, strict_timestamps=False) as archive:
                 for file in sorted(folder.rglob("*")):
                     if not file.name.startswith(".") and self._there(file):
-                        with self._open(file) as source, archive.open(_member(folder, file), "w") as target:
-                            shutil.copyfileobj(source, target)
+                        archive.write(file, _member(folder, file))
         except (OSError, ValueError) as error:
             packed.close()
             raise ConfigError(f"Run '{name}' cannot be packed: {reason_of(error)}.") from None
         packed.seek(0)
-        return packed
+        return iter(lambda: packed.read(_PART_BYTES), b"")
 
     def delete(self, name: str) -> None:
         """Deletes the folder of a run.
@@ -159,8 +160,8 @@ class Runs:
             raise ConfigError(f"Run '{name}' cannot be deleted: {reason_of(error)}.") from None
         self._read.pop(folder, None)
 
-    def report(self, name: str) -> BinaryIO:
-        """Returns the report of a run, open for reading.
+    def report(self, name: str) -> Path:
+        """Returns the file of the report of a run.
 
         Raises:
             ConfigError: it does not exist.
@@ -168,7 +169,7 @@ class Runs:
         file = self._folder_of(name) / REPORT
         if not self._there(file):
             raise ConfigError(f"Run '{name}' has no report; {invocation.command('report', file.parent)} makes it.")
-        return self._open(file)
+        return file
 
     def comparison(self, first: str, second: str) -> list[dict[str, object]]:
         """Returns the paired differences of two runs, and the fields in which their configurations differ, as tables.
@@ -255,10 +256,6 @@ class Runs:
             return file.is_file() and file.resolve().is_relative_to(self._folder.resolve())
         except (OSError, ValueError, RuntimeError):  # a name that is too long, a loop of links
             return False
-
-    @staticmethod
-    def _open(file: Path) -> BinaryIO:
-        return open_plain(file, what="File of a run")
 
 
 def _table_as_json(table: ResultTable) -> dict[str, object]:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-import mimetypes
 import re
 import struct
 from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
@@ -19,12 +18,12 @@ from pathlib import Path
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
 from starlette.requests import Request
-from starlette.responses import PlainTextResponse, Response
+from starlette.responses import FileResponse, PlainTextResponse, Response, StreamingResponse
 from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from sim.app.web.answers import Json, as_ascii, file_answer, or_404
+from sim.app.web.answers import Json, as_ascii, or_404
 from sim.app.web.choices import Choices
 from sim.app.web.controls import EpisodeRequest
 from sim.app.web.driven import DrivenRuns
@@ -32,7 +31,7 @@ from sim.app.web.pictures import NAMES
 from sim.app.web.runs import Runs
 from sim.app.web.session import Frame, Session
 from sim.core.errors import ConfigError, ObjectNavError
-from sim.core.reading import open_plain, parse_json, printable
+from sim.core.reading import parse_json, printable
 
 PAGE = Path(__file__).parent / "page"
 PAGE_FILES: Mapping[str, tuple[str, str]] = {
@@ -258,7 +257,7 @@ def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -
         run = request.path_params["run"]
         name = re.sub(r"[^\w.-]", "_", run, flags=re.ASCII)
         headers = {"content-disposition": f'attachment; filename="{name}.zip"'}
-        return await or_404(file_answer(request, lambda: runs.packed(run), "application/zip", headers))
+        return await or_404(lambda: StreamingResponse(runs.packed(run), headers=headers, media_type="application/zip"))
 
     async def delete_run(request: Request) -> Response:
         if request.headers.get("origin") is None:  # a page of this server always sends it
@@ -276,17 +275,16 @@ def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -
 
     async def video(request: Request) -> Response:
         run, episode = request.path_params["run"], request.query_params.get("episode", "")
-        return await or_404(file_answer(request, lambda: runs.video(run, episode), "video/mp4"))
+        return await or_404(lambda: FileResponse(runs.video(run, episode), media_type="video/mp4"))
 
     async def report(request: Request) -> Response:
         run, headers = request.path_params["run"], {"content-security-policy": _REPORT_POLICY}
-        return await or_404(file_answer(request, lambda: runs.report(run), "text/html", headers))
+        return await or_404(lambda: FileResponse(runs.report(run), headers=headers, media_type="text/html"))
 
     async def linked(request: Request) -> Response:
         run, kind, file = (request.path_params[part] for part in ("run", "kind", "file"))
         headers = {"cross-origin-resource-policy": "cross-origin"}  # a sandboxed report has another origin
-        media_type = mimetypes.guess_type(file)[0] or "application/octet-stream"
-        return await or_404(file_answer(request, lambda: runs.linked(run, kind, file), media_type, headers))
+        return await or_404(lambda: FileResponse(runs.linked(run, kind, file), headers=headers))
 
     routes = [Route(address, _page_file(*about)) for address, about in PAGE_FILES.items()]
     routes += [
@@ -310,7 +308,7 @@ def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -
 
 def _page_file(name: str, media_type: str) -> Callable[[Request], Awaitable[Response]]:
     async def answer(request: Request) -> Response:
-        return await or_404(file_answer(request, lambda: open_plain(PAGE / name, what="Page"), media_type))
+        return FileResponse(PAGE / name, media_type=media_type)
 
     return answer
 

@@ -32,7 +32,6 @@ MAX_POINTS = 4_000_000
 CONCAVITY_M = 0.03
 """Largest depth of a hollow that a convex part fills, metres."""
 MAX_PARTS = 64
-MIN_VOLUME_M3 = 1e-9
 
 
 def collision_boxes(

@@ -1,4 +1,12 @@
-"""Trains the policy of the agent `cloned`: demonstrations, the loss, the run and its curve."""
+"""Trains the policy of `--agent cloned` on demonstrations: it learns to choose the same actions.
+
+    stubborn train cloned --demonstrations runs/demonstrations --minutes 60 --out runs/cloned
+
+The demonstrations are files of `tools.training.render_demonstrations` and `tools.training.plan_demonstrations`. One
+house in ten, by its name, is held back for `val.csv`: the cross entropy, and how many actions are those of the
+demonstrator. The same command continues a killed run: `state.pt` holds weights, their average, optimiser and step.
+`cloned.safetensors` is the averaged network of the best evaluation so far, `curve.png` the picture of the curves.
+"""
 
 from __future__ import annotations
 
@@ -10,18 +18,115 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from jaxtyping import Bool, Float32, UInt8
 from torch import Tensor
 from torch.nn import functional
 
 from sim.core.interface import GOAL_CATEGORIES, Action, ConfigError
+from sim.core.invocation import command
 from sim.core.option_types import Amount, Count, NotNegative, OutFolder, Positive, Seed
-from sim.training.cloned.demonstrations import Demonstration, read_demonstration
-from sim.training.cloned.samples import LabelledSteps, Piece, Streams
-from sim.training.figures import empty_figure
+from sim.training.cloned.demonstrations import Demonstration, list_demonstrations, read_demonstration
+from sim.training.figures import empty_figure, require_packages
 from sim.training.timed_training import PRINT_EVERY_S, TimedTraining, stride
-from sim.training.training_files import read_columns
-from stubborn.baselines.cloned_input import HEIGHT_PX, NO_ACTION, WIDTH_PX, Steps, depth_levels, motions
+from sim.training.training_files import print_next_commands, read_columns
+from stubborn.baselines.cloned_input import (
+    HEIGHT_PX,
+    MOTION,
+    NO_ACTION,
+    WIDTH_PX,
+    Steps,
+    depth_levels,
+    mirrored_actions,
+    motions,
+)
 from stubborn.baselines.cloned_net import FILES, ClonedNet
+
+
+@dataclass(frozen=True, eq=False)
+class LabelledSteps:
+    """One demonstration: the inputs of the policy, and the action of each step."""
+
+    steps: Steps
+    actions: UInt8[np.ndarray, " n"]
+
+    @property
+    def changes(self) -> Bool[np.ndarray, " n"]:
+        """Returns whether each action differs from the previous one."""
+        return self.actions != self.steps.before
+
+    def mirrored(self) -> LabelledSteps:
+        """Returns the demonstration in the mirrored house (left and right are exchanged)."""
+        return LabelledSteps(self.steps.mirrored(), mirrored_actions(self.actions))
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """The next steps of several demonstrations side by side, padded at the ends of episodes."""
+
+    depth: UInt8[np.ndarray, "steps n h w"]
+    categories: UInt8[np.ndarray, "steps n h w"]
+    motion: Float32[np.ndarray, "steps n motion"]
+    before: UInt8[np.ndarray, "steps n"]
+    goal: np.ndarray
+    """(n,) index of the goal category."""
+    actions: UInt8[np.ndarray, "steps n"]
+    weight: Float32[np.ndarray, "steps n"]
+    """Weight of each step in the loss; 0: padding."""
+    begins: Bool[np.ndarray, " n"]
+    """True: the piece begins an episode, so the policy must not remember an earlier one."""
+
+
+class Streams:
+    """Demonstrations in random order, `width` side by side, in pieces of `length` steps.
+
+    Each stream reads one demonstration to its end, half of them mirrored, then samples another; the state of the policy
+    is carried from piece to piece. Most actions repeat the previous one. An action that differs from it has a weight
+    that is larger, the rarer such actions are (inflection weighting; Wijmans et al. 2019, arXiv:1904.03461).
+
+    Args:
+        shown: the demonstrations; at least one.
+        width: number of demonstrations side by side.
+        length: steps of a piece.
+        seed: seeds the order and the mirroring.
+    """
+
+    def __init__(self, shown: Sequence[LabelledSteps], *, width: int, length: int, seed: int) -> None:
+        self._shown, self._length = shown, length
+        self._rng = np.random.default_rng(seed)
+        changes = sum(int(np.count_nonzero(steps.changes)) for steps in shown)
+        self.inflection = sum(len(steps.actions) for steps in shown) / max(changes, 1)
+        """Weight of an action that differs from the previous one."""
+        self._now = [self._draw() for _ in range(width)]
+        # Each stream begins in the middle of an episode, so that the streams do not all end at once.
+        self._at = [int(self._rng.integers(len(steps.actions))) // length * length for steps in self._now]
+
+    def next_piece(self) -> Piece:
+        """Returns the next piece."""
+        height, width_px = self._now[0].steps.depth.shape[1:]
+        images = (self._length, len(self._now), height, width_px)
+        depth, categories = np.zeros(images, np.uint8), np.zeros(images, np.uint8)
+        motion = np.zeros((*images[:2], len(MOTION)), np.float32)
+        before, actions = np.full(images[:2], NO_ACTION, np.uint8), np.zeros(images[:2], np.uint8)
+        weight = np.zeros(images[:2], np.float32)
+        begins = np.array([at == 0 for at in self._at])
+        goal = np.array([one.steps.goal for one in self._now])
+        for number, (one, at) in enumerate(zip(self._now, self._at, strict=True)):
+            part = slice(at, at + self._length)
+            place = slice(0, len(one.actions[part])), number
+            depth[place], categories[place] = one.steps.depth[part], one.steps.categories[part]
+            motion[place], before[place] = one.steps.motion[part], one.steps.before[part]
+            actions[place] = one.actions[part]
+            weight[place] = np.where(one.changes[part], self.inflection, 1.0)
+            self._at[number] += self._length
+            if self._at[number] >= len(one.actions):
+                self._now[number], self._at[number] = self._draw(), 0
+        return Piece(depth, categories, motion, before, goal, actions, weight, begins)
+
+    def _draw(self) -> LabelledSteps:
+        """Returns a random demonstration, mirrored or not."""
+        one = self._shown[int(self._rng.integers(len(self._shown)))]
+        return one.mirrored() if self._rng.random() < 0.5 else one
+
 
 HELD_BACK = 10
 """One of this many houses is held back."""
@@ -51,6 +156,20 @@ class Args:
     """Largest number of held-back demonstrations in an evaluation; 0: all."""
     seed: Seed = 0
     """Seed of the initial weights and of the order."""
+
+
+def main(args: Args) -> int:
+    """Trains; returns the exit status."""
+    require_packages("matplotlib")
+    torch.set_num_threads(args.threads)
+    files = list_demonstrations(args.demonstrations)
+    train, val = read_all(files)
+    Trainer(args, train, val, files).run()
+    draw_curve(args.out)
+    weights = args.out / "cloned.safetensors"
+    chosen = ("--agent", "cloned", "--semantics", "gt", "--config", f"agent.weights={weights}")
+    print_next_commands(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
+    return 0
 
 
 def read_all(files: Sequence[Path]) -> tuple[list[LabelledSteps], list[LabelledSteps]]:

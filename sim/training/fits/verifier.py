@@ -124,19 +124,16 @@ def _left_out(table: Candidates, separate: Sequence[str]) -> Float64[np.ndarray,
     return probability
 
 
-def judge(
-    probability: Float64[np.ndarray, " n"], truth: Bool[np.ndarray, " n"], least_probability: float = 0.5
-) -> dict[str, Any]:
+def judge(probability: Float64[np.ndarray, " n"], truth: Bool[np.ndarray, " n"]) -> dict[str, Any]:
     """Returns the quality of probabilities: precision before and after verification, accuracy, calibration.
 
     Args:
         probability: probability of each candidate to be true; NaN is left out.
         truth: True for each true candidate.
-        least_probability: candidates with more are accepted.
     """
     known = np.isfinite(probability)
     probability, truth = probability[known], truth[known]
-    accepted = probability > least_probability
+    accepted = probability > FittedVerifier.least_probability
     return {
         "candidates": len(truth),
         "precision_before": _share(truth),
@@ -163,19 +160,6 @@ def _calibration(probability: Float64[np.ndarray, " n"], truth: Bool[np.ndarray,
         for number in range(_BINS)
         if (bins == number).any()
     ]
-
-
-def judge_by_category(lines: Sequence[Mapping[str, Any]], verifier: FittedVerifier) -> dict[str, dict[str, Any]]:
-    """Returns the result of `judge` for a verifier on logged candidates: for all, then for each category in them.
-
-    Candidates of failed episodes (0 steps) are left out.
-    """
-    goals, _, features, truth = _candidates(_completed(lines))
-    rows = zip(goals.tolist(), features.tolist(), strict=True)
-    probability = np.array([verifier.probability(goal, Features(*row)) for goal, row in rows], np.float64)
-    bar = verifier.least_probability
-    parts = {"all": np.ones(len(truth), np.bool_)} | {goal: goals == goal for goal in GOAL_CATEGORIES}
-    return {name: judge(probability[part], truth[part], bar) for name, part in parts.items() if part.any()}
 
 
 def _completed(lines: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:

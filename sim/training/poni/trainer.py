@@ -1,14 +1,24 @@
-"""Trains the predictor of the explorer `poni`: samples of plans, the loss, the run and its curve."""
+"""Trains the predictor of `--agent poni` on house plans, without an agent that acts in them.
+
+    stubborn train poni --plans runs/plans/train runs/plans/large_train --minutes 30 --out runs/poni
+
+First the samples are made, partial maps with the true potentials of their frontiers (`sim.training.poni.potentials`),
+one file for each plan in --samples; then the network is trained on them for --minutes. One plan in eight is held back
+for `val.csv`: the loss, and how often the best predicted frontier is truly the best one. The same command continues a
+killed run: `state.pt` holds weights, their average, optimiser and step. `poni.safetensors` is the averaged network of
+the best evaluation so far, `curve.png` the picture of the two curves.
+"""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import torch
+from jaxtyping import Float, Int
 from torch import Tensor
 from torch.nn import functional
 
@@ -17,12 +27,11 @@ from sim.core.invocation import command
 from sim.core.option_types import Amount, Count, NotNegative, OutFolder, Positive, Seed
 from sim.core.reading import sha256_of
 from sim.homes.plans.plan import read_plan
-from sim.training.figures import empty_figure
-from sim.training.poni.potential_choices import Choices, add_choices
+from sim.training.figures import empty_figure, require_packages
 from sim.training.poni.potential_files import HELD_BACK, SYMMETRIES, Batch, SampleSet, held_back, plan_of, write_samples
 from sim.training.poni.potentials import SampleConfig, samples_of
 from sim.training.timed_training import PRINT_EVERY_S, TimedTraining, stride
-from sim.training.training_files import read_columns
+from sim.training.training_files import print_next_commands, read_columns
 from stubborn.exploration.poni_net import FILES, MAPS, PoniNet, PoniNetConfig
 
 OBJECT_WEIGHT = 5.0
@@ -61,6 +70,20 @@ class Args:
     """Largest number of held-back samples in an evaluation; 0: all."""
     seed: Seed = 0
     """Seed of the initial weights and of the order and rotations of the samples; the samples have another seed."""
+
+
+def main(args: Args) -> int:
+    """Makes the samples and trains; returns the exit status."""
+    require_packages("matplotlib")
+    torch.set_num_threads(args.threads)
+    config = SampleConfig(walks=args.walks, maps=args.maps, most_steps=args.most_steps)
+    files = make_samples(args, config)
+    Trainer(args, config, files).run()
+    draw_curve(args.out)
+    weights = args.out / "poni.safetensors"
+    chosen = ("--agent", "poni", "--semantics", "gt", "--config", f"agent.explorer.weights={weights}")
+    print_next_commands(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
+    return 0
 
 
 def make_samples(args: Args, config: SampleConfig) -> list[Path]:
@@ -195,3 +218,64 @@ def draw_curve(out: Path) -> None:
 def _targets(batch: Batch) -> tuple[Tensor, Tensor]:
     """Returns the true potentials of a batch and which of them count."""
     return torch.from_numpy(batch.potentials), torch.from_numpy(batch.counts)
+
+
+TIE = 0.02
+"""A frontier is as good as the best one if its true potential is less than this below."""
+
+
+@dataclass
+class Choices:
+    """Sums over maps in which there is something to choose: two frontiers or more, of different potential."""
+
+    count: int = 0
+    hits: dict[str, float] = field(default_factory=lambda: dict.fromkeys(("predicted", "random", "nearest"), 0.0))
+    """Number of maps in which the choice is the best one; for `random` its expectation."""
+    gained: dict[str, float] = field(default_factory=lambda: dict.fromkeys(("predicted", "random", "nearest"), 0.0))
+    """Sum of the true potentials of the choices."""
+    most: float = 0.0
+    """Sum of the true potentials of the best frontiers."""
+
+    def add(self, true: Float[np.ndarray, " n"], predicted: Float[np.ndarray, " n"], path_m: Float[np.ndarray, " n"]):
+        """Counts the choice among the frontiers of a map; nothing if all are equally good."""
+        best = true >= true.max() - TIE
+        if best.all():
+            return
+        self.count += 1
+        self.most += float(true.max())
+        for name, number in (("predicted", np.argmax(predicted)), ("nearest", np.argmin(path_m))):
+            self.hits[name] += float(best[number])
+            self.gained[name] += float(true[number])
+        self.hits["random"] += float(best.mean())
+        self.gained["random"] += float(true.mean())
+
+    def shares(self) -> dict[str, float]:
+        """Returns the share of best choices, and the potential of the choices as a share of the best ones."""
+        shares = {f"{name}_best": value / max(self.count, 1) for name, value in self.hits.items()}
+        return shares | {f"{name}_potential": value / max(self.most, 1e-9) for name, value in self.gained.items()}
+
+
+def add_choices(batch: Batch, predicted: Float[np.ndarray, "m maps"], area: Choices, objects: Choices) -> None:
+    """Counts the choices in the maps of a batch, by the area potential and by each object potential that counts.
+
+    Args:
+        batch: the samples.
+        predicted: potentials at the batch's frontier cells.
+        area: is changed.
+        objects: is changed.
+    """
+    for sample in range(int(batch.sample.max(initial=-1)) + 1):
+        cells = np.flatnonzero(batch.sample == sample)
+        part = np.unique(batch.part[cells], return_inverse=True)[1]
+        true, guess = (_highest(values[cells], part) for values in (batch.potentials, predicted))
+        path_m = -_highest(-batch.path_m[cells, None], part)[:, 0]
+        area.add(true[:, 0], guess[:, 0], path_m)
+        for goal in np.flatnonzero(batch.counts[cells[0], 1:]) + 1:
+            objects.add(true[:, goal], guess[:, goal], path_m)
+
+
+def _highest(values: Float[np.ndarray, "m maps"], part: Int[np.ndarray, " m"]) -> Float[np.ndarray, "parts maps"]:
+    """Returns the highest value of each frontier."""
+    highest = np.full((int(part.max()) + 1, values.shape[1]), -np.inf)
+    np.maximum.at(highest, part, values)
+    return highest

@@ -7,12 +7,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import cv2
 import numpy as np
 import torch
-from jaxtyping import Float32, Float64, Int64
+from jaxtyping import Float32, Float64, Int64, UInt8
 from torch import Tensor
 
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID
+from sim.training.segmentation.samples import SURFACES
 from stubborn.segmentation.calibration import fit_calibration
 from stubborn.segmentation.networks import Network
 from stubborn.segmentation.rednet import CLASSES
@@ -168,3 +170,31 @@ def calibrated_iou(views: Sequence[tuple[Tensor, Tensor]]) -> Iou:
         for view, target in judged:
             matrix += confusion(calibration.applied(view.float()).argmax(dim=0).numpy(), target.numpy())
     return Iou.of(matrix)
+
+
+SLIVER_PX = 24
+"""A sliver at an edge of the image extends less than this from the edge, in pixels of the 640 x 480 image."""
+
+
+def without_slivers(semantic: UInt8[np.ndarray, "h w"], block_px: int) -> UInt8[np.ndarray, "h w"]:
+    """Returns the labels with slivers at the image's edges as void, which no evaluation counts.
+
+    A sliver is a connected region of one category, other than walls, floors and ceilings, that touches the left or the
+    right edge and is less than `SLIVER_PX` wide, or touches the upper or the lower edge and is less than `SLIVER_PX`
+    high.
+
+    Args:
+        semantic: mpcat40 ids.
+        block_px: edge of the square of pixels of the 640 x 480 image that one pixel stands for.
+    """
+    kept, (height, width) = semantic.copy(), semantic.shape
+    edge = np.concatenate([semantic[0], semantic[-1], semantic[:, 0], semantic[:, -1]])
+    for category in np.setdiff1d(edge, SURFACES).tolist():
+        count, regions, boxes, _ = cv2.connectedComponentsWithStats((semantic == category).astype(np.uint8))
+        for number in range(1, count):
+            left, top, cols, rows = boxes[number, :4].tolist()
+            at_side = (left == 0 or left + cols == width) and cols * block_px < SLIVER_PX
+            above = (top == 0 or top + rows == height) and rows * block_px < SLIVER_PX
+            if at_side or above:
+                kept[regions == number] = 0
+    return kept

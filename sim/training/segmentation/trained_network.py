@@ -1,4 +1,4 @@
-"""The network that `stubborn train segmentation` starts from, its parameters by learning rate, device and precision."""
+"""The network that `stubborn train segmentation` starts from, its device and its precision."""
 
 from __future__ import annotations
 
@@ -8,36 +8,29 @@ import torch
 
 from sim.core.interface import ConfigError
 from stubborn.segmentation.checkpoints import load_network
-from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet, with_geometry, without_names
+from stubborn.segmentation.networks import NETWORKS, Network, build_network, with_geometry, without_names
 from stubborn.segmentation.processor import computes_bf16
 from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.shipped import SHIPPED_REDNET
-from stubborn.segmentation.unet import MobileEncoder, UNet
 
 DEFAULT_SIZE = "compact-both"
-PRETRAINED_RATE = 0.1
-"""Learning rate of an encoder with ImageNet weights, relative to that of all other parameters."""
 OF_TRAINING = ("step", "hours", "options", "code", "averaged", "started_from")
 """Metadata of a network that say how it was trained; the networks that are trained further keep them."""
 
 
-def start_network(size: str | None, init: Path | None, *, imagenet: bool) -> tuple[str, Network, dict[str, object]]:
+def start_network(size: str | None, init: Path | None) -> tuple[str, Network, dict[str, object]]:
     """Returns the size of the network to train, the network, and the metadata of its earlier training.
 
     Args:
         size: name in `NETWORKS`; None: that of `init`, else `DEFAULT_SIZE`.
         init: file of initial weights, or `shipped`; None: random ones.
-        imagenet: ImageNet weights for the colour encoder of lite0.
 
     Raises:
         ConfigError: the file is broken, or of another size.
     """
     if init is None:
         size = size or DEFAULT_SIZE
-        network = build_network(NETWORKS[size])
-        if imagenet:
-            load_imagenet(network)
-        return size, network, {}
+        return size, build_network(NETWORKS[size]), {}
     model, metadata = load_network(SHIPPED_REDNET if init == Path("shipped") else init)
     if isinstance(model, RedNet):
         model = without_names(model)
@@ -47,17 +40,6 @@ def start_network(size: str | None, init: Path | None, *, imagenet: bool) -> tup
     if known is None or size not in (None, known):
         raise ConfigError(f"--init '{init}' is not of size '{size or ' or '.join(NETWORKS)}'.")
     return known, model, {key: metadata[key] for key in OF_TRAINING if key in metadata}
-
-
-def parameter_groups(model: Network, *, imagenet: bool) -> list[dict[str, object]]:
-    """Returns the parameters in groups for the optimiser, with their `relative_rate`."""
-    encoder = model.encoder if isinstance(model, UNet) else None
-    pretrained = encoder.colour.parameters() if imagenet and isinstance(encoder, MobileEncoder) else ()
-    slow_ids = {id(p) for p in pretrained}
-    slow = [p for p in model.parameters() if id(p) in slow_ids]
-    fast = [p for p in model.parameters() if id(p) not in slow_ids]
-    groups = [{"params": fast, "relative_rate": 1.0}, {"params": slow, "relative_rate": PRETRAINED_RATE}]
-    return [group for group in groups if group["params"]]
 
 
 def precision_of(name: str, device: torch.device) -> str:

@@ -18,16 +18,20 @@ from torch.utils.data import DataLoader, Subset
 from sim.core.interface import CameraModel, ConfigError
 from sim.core.paths import code_hash
 from sim.core.reading import Count, Number
-from sim.training.segmentation.averaged_checkpoints import AveragedCheckpoints
 from sim.training.segmentation.balanced import Batches, ViewIndex
 from sim.training.segmentation.dataset import list_shards, pixel_counts, spread_views, stored_block_px, stored_views
-from sim.training.segmentation.device_batches import DeviceBatches, room_for
 from sim.training.segmentation.evaluation import Iou, evaluate
 from sim.training.segmentation.options import MAY_CHANGE, Args, check
 from sim.training.segmentation.recipe import PROGRESSIVE
 from sim.training.segmentation.samples import Augmentation, Sampler, Samples
-from sim.training.segmentation.steps import exponential_average, pyramid_loss, root_class_weights, set_normalisation
-from sim.training.segmentation.trained_network import device_of, parameter_groups, precision_of, start_network
+from sim.training.segmentation.steps import (
+    AveragedCheckpoints,
+    exponential_average,
+    pyramid_loss,
+    root_class_weights,
+    set_normalisation,
+)
+from sim.training.segmentation.trained_network import device_of, precision_of, start_network
 from sim.training.training_files import (
     HasState,
     append_row,
@@ -90,13 +94,12 @@ class Trainer:
         if (known := stored_views(shards)) is not None and known < args.batch:
             folders = ", ".join(map(str, args.views))
             raise ConfigError(f"--views {folders}: fewer views than one batch of {args.batch} (--batch).")
-        self.size, model, self.started_from = start_network(args.size, args.init, imagenet=args.imagenet)
+        self.size, model, self.started_from = start_network(args.size, args.init)
         self.model = model.to(self.device)
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
         self.average = AveragedModel(self.model, multi_avg_fn=exponential_average(RECIPE.average), use_buffers=True)
         self.precision = precision_of(args.precision, self.device)
-        groups = parameter_groups(self.model, imagenet=args.imagenet)
-        self.optimiser = torch.optim.AdamW(groups, lr=args.rate, weight_decay=RECIPE.weight_decay)
+        self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=RECIPE.weight_decay)
         self.options = options_of(args, may_change=MAY_CHANGE, files={"val_views": val_shards})
         self.weights = root_class_weights(pixel_counts(shards)).to(self.device)
         self._make_data(shards, val_shards)
@@ -125,25 +128,12 @@ class Trainer:
         counts = ", ".join(f"{name} {n} of {styles}" for name, (n, styles) in index.counts().items())
         print(f"{len(index.views)} views; objects and styles: {counts}", flush=True)
         sampler = Sampler(camera, 1, Augmentation(), second=second, used_block_px=used, area_weights=True)
-        self.data = self._make_batches(index, sampler)
+        self.data = Batches(index, sampler, RECIPE, batch=self.args.batch, seed=self.args.seed)
         self.val: Samples | Subset = Samples(
             spread_views(val_shards, self.args.val_count), Sampler(camera, used, second=second)
         )
         augmented = Sampler(camera, used, Augmentation(), second=second)
         self.whole = Samples(spread_views(shards, NORMALISATION_VIEWS), augmented)
-
-    def _make_batches(self, index: ViewIndex, sampler: Sampler) -> Batches | DeviceBatches:
-        """Returns the batches, on a GPU computed there if its memory has room for the views."""
-        made, count = {"batch": self.args.batch, "seed": self.args.seed}, len(index.views)
-        if self.device.type != "cuda":
-            return Batches(index, sampler, RECIPE, **made)
-        if (most := room_for(index.views, self.device)) < count:
-            print(f"The GPU's memory has room for {most} of {count} views: --workers processes make the samples.")
-            return Batches(index, sampler, RECIPE, **made)
-        began_s = time.perf_counter()
-        batches = DeviceBatches(index, sampler, RECIPE, **made, device=self.device, workers=self.args.workers)
-        print(f"{count} views on the GPU after {time.perf_counter() - began_s:.0f} s", flush=True)
-        return batches
 
     def run(self) -> None:
         """Trains until the steps are done or the time is up."""
@@ -215,8 +205,7 @@ class Trainer:
 
     def _batches(self) -> Iterator[Sequence[Tensor]]:
         """Yields the batch of each step until the steps are done or the time is up; measures how long each takes."""
-        workers = self.args.workers if isinstance(self.data, Batches) else 0  # the GPU makes the batches of the others
-        loader = DataLoader(self.data, batch_size=None, sampler=_Steps(self), num_workers=workers)
+        loader = DataLoader(self.data, batch_size=None, sampler=_Steps(self), num_workers=self.args.workers)
         batches = iter(loader)
         while self.step < self.total and not self._time_is_up():
             start_s = time.perf_counter()
@@ -228,7 +217,7 @@ class Trainer:
         """Makes one step of the optimiser and returns the loss; a GPU may still be computing it."""
         rate = self.args.rate * RECIPE.relative_rate(self.step, self.total)
         for group in self.optimiser.param_groups:
-            group["lr"] = rate * group["relative_rate"]
+            group["lr"] = rate
         self.model.train()
         self.optimiser.zero_grad(set_to_none=True)
         with torch.autocast(self.device.type, dtype=torch.bfloat16, enabled=self.precision == "bf16"):

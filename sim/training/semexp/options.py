@@ -22,8 +22,6 @@ class Args:
     """Seed of the network, of its exploration and of the episodes."""
     out: OutFolder = Path("runs/semexp")
     """Folder of the run; an existing run is continued."""
-    beside: tuple[Path, ...] = ()
-    """Folders of other runs to draw into the curve."""
     envs: Count = 8
     """Number of environments, all in this process."""
     rollout: Count = 30

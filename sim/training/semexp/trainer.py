@@ -9,13 +9,20 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
 import torch
+from gymnasium import spaces
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.distributions import DiagGaussianDistribution, Distribution
+from stable_baselines3.common.policies import ActorCriticPolicy
+from stable_baselines3.common.type_aliases import PyTorchObs, Schedule
 from stable_baselines3.common.vec_env import DummyVecEnv
+from torch import Tensor, nn
+from torch.optim import Adam
 
 from sim.core.files import write_atomically
 from sim.core.reading import Count, Number
@@ -23,7 +30,6 @@ from sim.homes.plans.plan import read_plan
 from sim.training.figures import empty_figure
 from sim.training.semexp.env import SemExpEnv
 from sim.training.semexp.options import Args
-from sim.training.semexp.policy import SemExpPolicy
 from sim.training.training_files import (
     HasState,
     append_row,
@@ -34,14 +40,14 @@ from sim.training.training_files import (
     require_options,
     save_state,
 )
-from stubborn.exploration.semexp_net import FILES, NetConfig
+from stubborn.exploration.semexp_net import FILES, NetConfig, SemExpNet
 
 LAST_EPISODES = 300
 """Number of episodes over which a row of the curve is a mean."""
 SMOOTHED = 12
 """The thick line of a curve is a running mean over the training divided by this number."""
 PLANS_IN_MEMORY = 256
-MAY_CHANGE = ("out", "minutes", "goals", "beside", "print_s", "save_s")
+MAY_CHANGE = ("out", "minutes", "goals", "print_s", "save_s")
 """Options in which a continued run may differ from its start."""
 _KEYS = ("steps_to_first_sight", "gt_explored", "num_steps", "collisions")
 
@@ -96,8 +102,7 @@ class Run:
         if not self.is_over:
             self.ppo.learn(2**62, callback=_Watch(self), reset_num_timesteps=False)
             self.save()
-        runs = [folder / "train.csv" for folder in (self.args.out, *self.args.beside)]
-        write_atomically(self.args.out / "curve.png", curves(runs))
+        write_atomically(self.args.out / "curve.png", curve(self.args.out / "train.csv"))
 
     def save(self) -> None:
         """Writes the state and the weights; each file is replaced in one step."""
@@ -198,23 +203,78 @@ class _Watch(BaseCallback):
             print("  ".join(f"{name} {value}" for name, value in row.items()), flush=True)
 
 
-def curves(files: Sequence[Path]) -> bytes:
-    """Returns a PNG of training curves: mean steps to first sight over primitive steps, and its running mean."""
+def curve(file: Path) -> bytes:
+    """Returns a PNG of a training curve: mean steps to first sight over primitive steps, and its running mean."""
     figure = empty_figure(6.4, 3.2, what="The curves of a training")
     axes = figure.subplots()
-    for file in files:
-        if not file.is_file():
-            continue
+    if file.is_file():
         table = {name: np.array(column) for name, column in read_columns(file).items()}
         kept = table["episodes"] >= LAST_EPISODES // 3
         steps, sights = table["steps"][kept] / 1e6, table["steps_to_first_sight"][kept]
-        (line,) = axes.plot(steps, sights, linewidth=0.5, alpha=0.4)
+        axes.plot(steps, sights, linewidth=0.5, alpha=0.4, color="C0")
         width = max(len(sights) // SMOOTHED, 1)
         smooth = [sights[max(0, i - width + 1) : i + 1].mean() for i in range(len(sights))]
-        axes.plot(steps, smooth, color=line.get_color(), label=file.parent.name)
+        axes.plot(steps, smooth, color="C0")
     axes.set(xlabel="primitive steps of the training, millions", ylabel="mean steps to first sight")
     axes.grid(alpha=0.3)
-    axes.legend()
     content = io.BytesIO()
     figure.savefig(content, format="png", dpi=100)
     return content.getvalue()
+
+
+class SemExpPolicy(ActorCriticPolicy):
+    """The two outputs of a `SemExpNet` are actor and critic; observations are those of `SemExpEnv`."""
+
+    net: SemExpNet
+
+    def __init__(
+        self, observation_space: spaces.Space, action_space: spaces.Space, lr_schedule: Schedule, config: NetConfig,
+        **_: Any,
+    ) -> None:  # fmt: skip
+        self._config = config
+        super().__init__(observation_space, action_space, lr_schedule)
+
+    def _build(self, lr_schedule: Schedule) -> None:
+        self.net = SemExpNet(self._config)
+        _initialise(self.net)
+        for weight in self.net.parameters():
+            if weight.ndim == 4:  # convolutions are quicker with it
+                weight.data = weight.data.contiguous(memory_format=torch.channels_last)
+        self.optimizer = Adam(self.parameters(), lr=lr_schedule(1), eps=1e-5)
+
+    def _outputs(self, obs: PyTorchObs) -> tuple[Distribution, Tensor]:
+        assert isinstance(obs, dict)
+        mean, logstd, values = self.net(*(obs[name] for name in ("geometry", "goals", "heading", "goal")))
+        assert isinstance(self.action_dist, DiagGaussianDistribution)
+        return self.action_dist.proba_distribution(mean, logstd.expand_as(mean)), values[:, None]
+
+    def forward(self, obs: PyTorchObs, deterministic: bool = False) -> tuple[Tensor, Tensor, Tensor]:
+        """Returns actions, values and the logarithms of the actions' probabilities."""
+        distribution, values = self._outputs(obs)
+        actions = distribution.get_actions(deterministic=deterministic)
+        return actions, values, distribution.log_prob(actions)
+
+    def evaluate_actions(self, obs: PyTorchObs, actions: Tensor) -> tuple[Tensor, Tensor, Tensor | None]:
+        """Returns values, and logarithms of probabilities and entropies of given actions."""
+        distribution, values = self._outputs(obs)
+        return values, distribution.log_prob(actions), distribution.entropy()
+
+    def get_distribution(self, obs: PyTorchObs) -> Distribution:
+        """Returns the distribution of actions."""
+        return self._outputs(obs)[0]
+
+    def predict_values(self, obs: PyTorchObs) -> Tensor:
+        """Returns the values."""
+        return self._outputs(obs)[1]
+
+
+def _initialise(net: SemExpNet) -> None:
+    """Sets the initial weights: orthogonal, so that the features depend on the maps from the start (PyTorch's own
+    initial weights of six layers nearly do not), and a policy with its mean near the middle of the local map."""
+    for layer in net.modules():
+        if isinstance(layer, nn.Conv2d | nn.Linear):
+            nn.init.orthogonal_(layer.weight, gain=2.0**0.5)
+            assert layer.bias is not None
+            nn.init.zeros_(layer.bias)
+    nn.init.orthogonal_(net.network.critic_linear.weight, gain=1.0)
+    nn.init.orthogonal_(net.dist.fc_mean.weight, gain=0.01)

@@ -71,7 +71,7 @@ def test_a_program_started_as_a_module_names_existing_modules(
     assert invocation.command("houses", "generate") == "stubborn houses generate"
 
 
-@pytest.mark.parametrize("name", ["pytest.__main__", "tools.research.physics_tables"])
+@pytest.mark.parametrize("name", ["pytest.__main__", "tools.research.lean_tables"])
 def test_other_programs_name_the_installed_command(name: str, project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     start_as_module(name, monkeypatch)
     assert invocation.command("episodes") == "stubborn episodes"

@@ -19,8 +19,7 @@ from sim.sensors.noise import NOISE_PRESETS
 from sim.sensors.sensor import SensorContext
 from sim.world.world import World
 from tests.helpers.worlds import open_floor, with_box, with_movable
-from tools.research.lean_tables import carpet_floor, largest_push_n, push_chair, ramp
-from tools.research.physics_tables import floor
+from tools.research.lean_tables import carpet_floor, floor, largest_push_n, push_chair, ramp
 
 FORWARD = Action.MOVE_FORWARD
 

@@ -9,9 +9,9 @@ import pytest
 
 from sim.core.geometry.pose import Pose
 from sim.core.interface import FORWARD_M, TURN_RAD, Action
-from sim.robot.blocking import Blocking
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import DriveConfig, RobotConfig
+from sim.robot.drive import Blocking
 from sim.world.world import World
 from tests.helpers.worlds import open_floor
 

@@ -12,7 +12,7 @@ import torch
 
 from sim.core.geometry.pose import Pose
 from sim.core.interface import GOAL_CATEGORIES, MOVES, MPCAT40_ID, Action, CameraModel, ConfigError, RobotModel
-from sim.training.cloned.samples import LabelledSteps, Streams
+from sim.training.cloned.trainer import LabelledSteps, Streams
 from stubborn.agents import make
 from stubborn.baselines.cloned import SHIPPED, ClonedAgent, ClonedConfig
 from stubborn.baselines.cloned_input import MOTION, NO_ACTION, Steps, motion_of, motions, small_categories, small_depth

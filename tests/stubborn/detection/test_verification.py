@@ -8,7 +8,7 @@ import pytest
 from sklearn.naive_bayes import GaussianNB
 
 from sim.core.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
-from sim.training.fits.verifier import fit, judge_by_category
+from sim.training.fits.verifier import fit
 from stubborn.detection.classifiers import Features, NaiveBayes
 from stubborn.detection.verification import AcceptAll, FittedVerifier, verifier_for
 from tests.helpers import wording
@@ -63,17 +63,6 @@ def test_the_classifiers_are_judged_on_candidates_of_houses_left_out():
     assert left_out["candidates"] == 300
     assert left_out["precision_before"] == pytest.approx(truth.mean(), abs=1e-3)
     assert left_out["precision"] > left_out["precision_before"]
-
-
-def test_a_verifier_is_judged_by_category(tmp_path: Path):
-    chairs, beds = examples(200, 0.3, seed=8), examples(100, 0.6, seed=9)
-    verifier = written(fit(log_of({"chair": chairs, "bed": beds}), 20), tmp_path)
-    found = judge_by_category(log_of({"chair": chairs, "bed": beds}), verifier)
-    assert list(found) == ["all", "chair", "bed"]
-    assert [each["candidates"] for each in found.values()] == [300, 200, 100]
-    accepted = np.array([verifier.accepts("bed", Features(*row)) for row in beds[0]])
-    assert found["bed"]["true_accepted"] == pytest.approx(accepted[beds[1]].mean(), abs=1e-4)
-    assert found["bed"]["precision"] == pytest.approx(beds[1][accepted].mean(), abs=1e-4)
 
 
 def test_the_method_none_accepts_all_and_unknown_methods_are_refused(tmp_path: Path):
@@ -133,14 +122,12 @@ def test_a_candidate_near_an_earlier_one_of_the_same_truth_does_not_count_again(
     assert content["methods"]["naive-bayes"]["left_out"]["candidates"] == 0  # one house: none is held out
 
 
-def test_candidates_of_failed_episodes_are_neither_fitted_nor_judged(tmp_path: Path):
+def test_candidates_of_failed_episodes_are_not_fitted():
     lines = log_of({"bed": examples(100, 0.5, seed=10)})
     content = fit(lines, 20)
     broken = [line | {"steps": 0} for line in lines[:30]]
     assert fit([*lines, *broken], 20) == content
     assert content["episodes"] == 100
-    verifier = written(content, tmp_path)
-    assert judge_by_category([*lines, *broken], verifier) == judge_by_category(lines, verifier)
 
 
 def test_too_few_candidates_are_refused_with_the_numbers():

@@ -13,7 +13,7 @@ from sim.core.interface import CameraModel, ConfigError
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.inputs import INPUTS
 from stubborn.segmentation.network import NetworkSegmenter
-from stubborn.segmentation.networks import NETWORKS, build_network, load_imagenet, with_geometry
+from stubborn.segmentation.networks import NETWORKS, build_network, with_geometry
 from stubborn.segmentation.rednet import CLASSES, RedNet, RedNetConfig, folded
 from stubborn.segmentation.unet import UNetConfig
 from tests.helpers import wording
@@ -100,8 +100,6 @@ def test_the_scores_of_a_u_net_have_the_resolution_of_its_logits() -> None:
         NetworkSegmenter(build_network(SMALL["dense"]).eval(), block_px=4, score_block_px=4)
 
 
-def test_imagenet_weights_are_for_one_encoder_only() -> None:
-    with pytest.raises(ConfigError, match="Only the network 'lite0'"):
-        load_imagenet(build_network(SMALL["dense"]))
+def test_an_unknown_encoder_is_refused() -> None:
     with pytest.raises(ConfigError, match="lite0"):
         replace(SMALL["dense"], encoder="vgg")

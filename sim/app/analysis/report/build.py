@@ -11,7 +11,7 @@ from jinja2 import Environment, StrictUndefined, Template
 from markupsafe import Markup
 
 from sim.app.analysis.comparison import LETTERS, Run, differences_table, require_same_episodes
-from sim.app.analysis.replicates import replicate_note
+from sim.app.analysis.metrics import replicate_note
 from sim.app.analysis.report import distributions
 from sim.app.analysis.report.drawings import Drawings, Trajectories, draw_episodes, read_trajectories
 from sim.app.analysis.report.episodes import Row, by_number, columns_of, facts_of_line, outcome_choices, row_of

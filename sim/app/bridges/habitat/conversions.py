@@ -20,16 +20,14 @@ import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, Protocol
 
 import numpy as np
-from gymnasium import spaces
 
 from sim.app.bridges.habitat_client import HABITAT_ACTIONS, HabitatActions
 from sim.app.bridges.stubborn_client import Observation as _Observation
 from sim.app.bridges.stubborn_client import from_habitat
 from sim.core.errors import AgentError, ConfigError, did_you_mean
-from sim.core.interface import GOAL_CATEGORIES, MPCAT40, Action, CameraModel, Observation
+from sim.core.interface import GOAL_CATEGORIES, Action, CameraModel, Observation
 
 HM3D_GOALS = ("chair", "bed", "plant", "toilet", "tv_monitor", "sofa")
 """The six goal categories of the ObjectNav challenges 2022 and 2023, in their order."""
@@ -46,13 +44,6 @@ class Observations(_Observation):
 
 HabitatSimActions = HabitatActions()
 """`HabitatSimActions.MOVE_FORWARD` or `.move_forward` is 1, as in Habitat."""
-
-
-class HabitatsAgent(Protocol):
-    """An agent with Habitat's interface."""
-
-    def reset(self) -> None: ...  # noqa: D102
-    def act(self, observations: Observations) -> object: ...  # noqa: D102
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,18 +94,6 @@ class Conversion:
         number = self.goal_number(GOAL_CATEGORIES[int(observation["objectgoal"][0])])
         converted["objectgoal"] = np.array([number], np.int64)
         return converted
-
-    def space(self, own: Mapping[str, spaces.Space[Any]]) -> spaces.Dict:
-        """Returns the space of the observations in Habitat's form, from the spaces of this project's sensors."""
-        spaces_by_name = dict(own)
-        height_px, width_px = self.camera.height_px, self.camera.width_px
-        spaces_by_name["objectgoal"] = spaces.Box(0, len(self.goals) - 1, (1,), np.int64)
-        if "depth" in spaces_by_name:
-            deepest = 1.0 if self.normalize_depth else self.camera.max_depth_m
-            spaces_by_name["depth"] = spaces.Box(0.0, deepest, (height_px, width_px, 1), np.float32)
-        if "semantic" in spaces_by_name:
-            spaces_by_name["semantic"] = spaces.Box(0, len(MPCAT40) - 1, (height_px, width_px, 1), np.int32)
-        return spaces.Dict(spaces_by_name)
 
     def _depth(self, depth_m: np.ndarray) -> np.ndarray:
         """Returns depth clipped to the camera's range and scaled, float32 (h, w)."""

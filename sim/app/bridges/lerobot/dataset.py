@@ -37,9 +37,6 @@ KEYFRAME_EVERY = 4
 _PIXELS = slice(None, None, 4)
 """Every fourth row and column of a picture counts in the statistics."""
 
-Stats = dict[str, dict[str, Any]]
-"""For each feature its min, max, mean, std, count and quantiles q01 to q99."""
-
 
 def require_pyarrow() -> None:
     """Raises ConfigError if the package that writes Parquet files is not installed."""

@@ -36,10 +36,8 @@ from sim.core.files import write_atomically
 from sim.core.interface import CameraModel, ConfigError
 from sim.training.segmentation.breakdown import Breakdown
 from sim.training.segmentation.dataset import LabelledView, list_shards, read_shard, spread_views, stored_block_px
-from sim.training.segmentation.evaluation import Iou, Reliability, confusion
-from sim.training.segmentation.fused import FusedViews
+from sim.training.segmentation.evaluation import Iou, Reliability, confusion, without_slivers
 from sim.training.segmentation.samples import NONE, Sampler, Samples
-from sim.training.segmentation.slivers import without_slivers
 from stubborn.segmentation.calibration import Calibration, fit_calibration
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.network import NetworkSegmenter
@@ -100,8 +98,6 @@ class Predictions:
     """The same of calibrated logits, as the agent uses them."""
     samples: dict[str, list[tuple[Tensor, Tensor]]]
     """Logits (k, classes) and true class channels (k,) of labelled pixels, by house."""
-    fused: FusedViews
-    """Calibrated posteriors of all views of a house, to be fused."""
     views: int = 0
 
 
@@ -192,7 +188,6 @@ def measure(args: Args, model: Network, metadata: Mapping[str, object]) -> Measu
         seen.matrix,
         seen.breakdown,
         seen.by_folder,
-        seen.fused.iou(),
         seen.views,
         before,
         after,
@@ -208,7 +203,7 @@ def predict(args: Args, model: Network, block_px: int, calibration: Calibration)
         ConfigError: views are stored at a lower resolution than the network needs.
     """
     empty = np.zeros((CLASSES, CLASSES), np.int64)
-    seen = Predictions(empty, Breakdown(), {}, empty.copy(), {}, FusedViews())
+    seen = Predictions(empty, Breakdown(), {}, empty.copy(), {})
     model.eval()
     for folder in args.views:
         before = seen.calibrated.copy()
@@ -255,14 +250,12 @@ def _add_view(
     """Adds the prediction on one view: its logits (classes, h, w) and class channels (h, w), both padded."""
     predicted = logits.argmax(dim=0).numpy()
     seen.matrix += confusion(predicted, truth.numpy())
-    posteriors = calibration.applied(logits).softmax(dim=0).numpy()
-    calibrated = posteriors.argmax(axis=0)
+    calibrated = calibration.applied(logits).argmax(dim=0).numpy()
     seen.calibrated += confusion(calibrated, truth.numpy())
     semantic = shrink(view.semantic, block_px // stored_px)
     rows, cols = padding(*semantic.shape).inner
     depth_m = shrink(view.depth_m, block_px // stored_px)
     seen.breakdown.add(calibrated[rows, cols], semantic, depth_m, block_px)
-    seen.fused.add(view.record, posteriors[:, rows, cols], truth.numpy()[rows, cols], depth_m, CameraModel())
     some, kept = logits[:, 2::8, 2::8].permute(1, 2, 0).reshape(-1, CLASSES), truth[2::8, 2::8].reshape(-1)
     pair = some[kept >= 0].clone(), kept[kept >= 0].clone()  # a clone is not an inference tensor
     seen.samples.setdefault(view.record["house"], []).append(pair)

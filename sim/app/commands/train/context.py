@@ -1,7 +1,7 @@
 """Fits which objects are near objects of each category, by which `stubborn-plus` weighs what its network reports.
 
     stubborn houses plans --pool train --first-seed 0 --houses 240 --out runs/plans/train
-    stubborn train context --plans runs/plans/train --shipped
+    stubborn train context --plans runs/plans/train --out runs/context.json
 
 One plan in ten is held back; on these the log loss of the categories is printed: by their frequency alone, and with the
 objects nearby. The agent reads a file of your own with `--config agent.seeker.context=FILE`.
@@ -18,11 +18,10 @@ import numpy as np
 
 from sim.app import cli
 from sim.core.files import write_atomically
-from sim.core.interface import ConfigError
 from sim.homes.plans.plan import read_plan
 from sim.training.fits.context import around, fit, log_losses
 from sim.training.plan_split import split_plans
-from stubborn.detection.context import SHIPPED, content_of
+from stubborn.detection.context import content_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,10 +30,8 @@ class Args:
 
     plans: tuple[Path, ...]
     """Folders of plans (`stubborn houses plans`)."""
-    out: cli.OutFile | None = None
+    out: cli.OutFile
     """File of the parameters (JSON)."""
-    shipped: bool = False
-    """In place of --out: replace the parameters that ship."""
     radius_m: cli.Positive = 2.5
     """Two objects are near each other if their middles are nearer than this in the plan."""
     seed: cli.Seed = 0
@@ -43,10 +40,6 @@ class Args:
 
 def main(args: Args) -> int:
     """Fits, writes and judges; returns the exit status."""
-    if args.out is not None and args.shipped:
-        raise ConfigError("--out and --shipped exclude each other.")
-    if args.out is None and not args.shipped:
-        raise ConfigError("Give --out FILE for the parameters, or --shipped to replace those that ship.")
     rng = np.random.default_rng(args.seed)
     fitted, held_back = (
         [around(read_plan(file), args.radius_m, rng) for file in files] for files in split_plans(args.plans)
@@ -61,7 +54,6 @@ def main(args: Args) -> int:
         quality |= {"log_loss": round(with_context, 3)}
     words = ["--plans", *map(str, args.plans), "--radius-m", f"{args.radius_m:g}", "--seed", str(args.seed)]
     content = {"command": f"stubborn train context {shlex.join(words)}", **quality, "context": content_of(context)}
-    file = args.out or SHIPPED
-    write_atomically(file, json.dumps(content, indent=1, allow_nan=False) + "\n")
-    print(f"written: {file}")
+    write_atomically(args.out, json.dumps(content, indent=1, allow_nan=False) + "\n")
+    print(f"written: {args.out}")
     return 0

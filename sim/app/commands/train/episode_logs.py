@@ -25,8 +25,8 @@ from sim.core.interface import ConfigError
 from sim.core.paths import assets_dir, code_hash
 from sim.core.reading import read_json
 from sim.episodes.splits import Split, load_split
+from sim.training.figures import require_packages
 from sim.training.fits.log_line import LogLine
-from sim.training.packages import require_packages
 
 LogLineT = TypeVar("LogLineT", bound=LogLine)
 BATCH = 100
@@ -54,15 +54,11 @@ class LogOptions:
     """Number of processes."""
     minutes: cli.NotNegative | None = None
     """Time limit of the episodes; 0 runs none."""
-    judge: bool = False
-    """Fit nothing; judge the existing parameters (--out) on these episodes."""
     seed: cli.Seed = 0
     """Seed of the episodes."""
-    shipped: bool = False
-    """In place of --out: write the parameters that ship for this kind of segmentation, or judge them."""
     log: cli.OutFolder | None = None
     """Folder of the log; None: a folder in runs, named after the command, --semantics and the split."""
-    out: cli.OutFile | None = None
+    out: cli.OutFile
     """File of the parameters (JSON)."""
 
     def command(self, name: str, episodes: int, *more: str) -> str:
@@ -78,7 +74,7 @@ class LogOptions:
         words = ["--semantics", self.semantics]
         words += [] if self.weights is None else ["--weights", str(self.weights)]
         words += ["--split", self.split, "--episodes", str(episodes), "--max-steps", str(self.max_steps), *more]
-        words += ["--seed", str(self.seed), *(["--shipped"] if self.out is None else ["--out", str(self.out)])]
+        words += ["--seed", str(self.seed), "--out", str(self.out)]
         return f"stubborn train {name} {shlex.join(words)}"
 
 
@@ -87,15 +83,15 @@ def checked_split(args: LogOptions) -> Split:
 
     Raises:
         ConfigError: the segmentation is exact, the fit is on val or test or a copy of them, there is no such split, or
-            scikit-learn, which fits and judges, is not installed.
+            scikit-learn, which fits, is not installed.
     """
     require_packages("sklearn")
     if not find_segmentation(args.semantics, args.weights).spec.needs_verification:
         kinds = [name for name, kind in KINDS.items() if kind.spec.needs_verification]
         raise ConfigError(f"--semantics '{args.semantics}' makes no errors to learn. Available: {', '.join(kinds)}.")
     split = load_split(args.split)
-    if not args.judge and (name := _shipped_for_judging().get(split.sha256)) is not None:
-        raise ConfigError(f"Nothing is fitted on '{name}'; use --judge there.")
+    if (name := _shipped_for_judging().get(split.sha256)) is not None:
+        raise ConfigError(f"Nothing is fitted on '{name}', which judges agents; give another --split.")
     return split
 
 
@@ -103,23 +99,6 @@ def checked_split(args: LogOptions) -> Split:
 def _shipped_for_judging() -> dict[str, str]:
     """Returns the names of the shipped splits on which nothing is fitted, by checksum."""
     return {load_split(assets_dir() / name).sha256: name for name in ("val", "test")}
-
-
-def parameters_file(args: LogOptions, folder: Path) -> Path:
-    """Returns the file of the parameters: --out, or with --shipped the shipped file of this kind of segmentation.
-
-    Raises:
-        ConfigError: neither option is given, or nothing ships for this segmentation.
-    """
-    if args.out is not None and args.shipped:
-        raise ConfigError("--out and --shipped exclude each other.")
-    if args.out is not None:
-        return args.out
-    if args.semantics not in KINDS:
-        raise ConfigError(f"--semantics '{args.semantics}' is your own: give --out FILE.")
-    if not args.shipped and not args.judge:
-        raise ConfigError("Give --out FILE for the parameters, or --shipped to replace those that ship.")
-    return folder / f"{args.semantics}.json"
 
 
 def default_log(command: str, args: LogOptions, split: Split) -> Path:

@@ -1,7 +1,6 @@
 """Fits how `stubborn-plus` fuses the views of an object to tracks whose true category is known.
 
     stubborn train fusion --split runs/unseen --episodes 100 --out runs/fusion.json
-    stubborn train fusion --split val --episodes 15 --judge
 
 The agent explores without stopping and looks at all candidates. Tracks of all categories are logged: an episode gives
 about a hundred. A track is logged with the mean posteriors of its views when these reach certain weights and at the
@@ -12,7 +11,7 @@ extend it, as long as split, code and detector are the same. --minutes 0 runs no
 `sim.training.fits.fusion` fits the parameters and judges them on houses left out.
 
 The houses should have furniture on which the network was not trained, otherwise the fit overestimates its quality: see
-docs/segmentation.md. Houses of val and test are for --judge only.
+docs/segmentation.md. Nothing is fitted on houses of val and test.
 """
 
 from __future__ import annotations
@@ -30,7 +29,6 @@ from sim.app.commands.train.episode_logs import (
     checked_split,
     default_log,
     lines_of,
-    parameters_file,
 )
 from sim.app.composition.segmenters import find_segmentation, make_segmenter
 from sim.app.evaluation.workers import RunnerSpec
@@ -41,9 +39,8 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.episode import Episode
 from sim.episodes.seeds import episode_seeds
 from sim.episodes.splits import Split
-from sim.training.fits.fusion import fit, judge, probabilities, samples_of
+from sim.training.fits.fusion import fit, samples_of
 from sim.training.fits.track_log import TrackLine, TrackRecorder, compared, file_of, read_tracks, write_tracks
-from stubborn.detection.fusion import FOLDER, read_fusion
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,9 +49,8 @@ class Args(LogOptions):
 
 
 def main(args: Args) -> int:
-    """Runs the episodes, then fits and writes, or judges; returns the exit status."""
+    """Runs the episodes, then fits and writes; returns the exit status."""
     split = checked_split(args)
-    file = parameters_file(args, FOLDER)
     episodes = tracks_of(args, split)
     samples = samples_of([{"house": line.house, **tracks} for line, tracks in episodes])
     if not samples:
@@ -62,9 +58,6 @@ def main(args: Args) -> int:
     about = {"episodes": len(episodes), "houses": len({line.house for line, _ in episodes})}
     about["tracks"] = sum(len(tracks["counts"]) for _, tracks in episodes)
     print(", ".join(f"{value} {name}" for name, value in about.items()))
-    if args.judge:
-        _print(judge(probabilities(read_fusion(file), samples), samples))
-        return 0
     fusion = fit(samples)
     content = {
         "semantics": args.semantics,
@@ -74,11 +67,11 @@ def main(args: Args) -> int:
         "fusion": msgspec.to_builtins(fusion),
         "left_out": compared(samples),
     }
-    write_atomically(file, json.dumps(content, indent=1, allow_nan=False) + "\n")
+    write_atomically(args.out, json.dumps(content, indent=1, allow_nan=False) + "\n")
     for name, quality in content["left_out"].items():
         print(name)
         _print(quality)
-    print(f"written: {file}")
+    print(f"written: {args.out}")
     return 0
 
 

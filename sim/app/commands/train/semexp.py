@@ -10,19 +10,14 @@ at the start.
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import torch
 
 from sim.core.interface import ConfigError
 from sim.core.invocation import command
-from sim.training.packages import require_packages
+from sim.training.figures import require_packages
 from sim.training.plan_split import HELD_BACK, split_plans
 from sim.training.semexp.options import Args as Args
-from sim.training.training_files import print_next_commands, read_columns
-
-_DRAWN = ("episodes", "steps", "steps_to_first_sight")
-"""Columns of a curve that are drawn."""
+from sim.training.training_files import print_next_commands
 
 
 def main(args: Args) -> int:
@@ -39,8 +34,6 @@ def main(args: Args) -> int:
         raise ConfigError(
             f"--batch and --envs x --rollout must be >= 2, got {args.batch} and {args.envs * args.rollout}."
         )
-    for folder in args.beside:
-        _require_curve(folder / "train.csv")
     torch.set_num_threads(1)  # the network is small
     run = Run(args, plans)
     run.train()
@@ -48,11 +41,3 @@ def main(args: Args) -> int:
     chosen = ("--agent", "semexp", "--semantics", "gt", "--config", f"agent.explorer.weights={weights}")
     print_next_commands(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
     return 0
-
-
-def _require_curve(file: Path) -> None:
-    """Raises ConfigError if a file of curves lacks a column that is drawn; one that does not exist is not drawn."""
-    if not file.is_file():
-        return
-    if not set(_DRAWN) <= set(read_columns(file)):
-        raise ConfigError(f"--beside: '{file}' is not a curve of this command.")

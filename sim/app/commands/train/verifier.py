@@ -1,7 +1,6 @@
 """Fits the verifier of a kind of segmentation to candidates that the agent finds in houses of the train split.
 
     stubborn train verifier --semantics noisy --split train --episodes 2000 --workers 2 --out runs/verifier.json
-    stubborn train verifier --semantics noisy --split val --episodes 200 --judge
 
 The agent runs without stopping. Each candidate that it would verify is logged with its four features, the truth
 (whether a STOP there would succeed) and the robot's position; the agent then continues as if it had rejected the
@@ -14,7 +13,7 @@ and detector are the same. --minutes 0 runs no episode and fits the existing log
 
 Then the verifier is fitted and written as JSON with the counts and its quality on houses left out
 (`sim.training.fits.verifier`).
-Houses of val and test are for --judge only.
+Nothing is fitted on houses of val and test.
 """
 
 from __future__ import annotations
@@ -22,7 +21,6 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import msgspec
 
@@ -32,7 +30,6 @@ from sim.app.commands.train.episode_logs import (
     checked_split,
     default_log,
     lines_of,
-    parameters_file,
 )
 from sim.app.composition.segmenters import find_segmentation, make_segmenter
 from sim.app.evaluation.workers import RunnerSpec
@@ -44,7 +41,7 @@ from sim.episodes.episode import Episode
 from sim.episodes.seeds import episode_seeds
 from sim.episodes.splits import Split
 from sim.training.fits.candidates import CandidateLine, CandidateRecorder
-from stubborn.detection.verification import FOLDER, NAIVE_BAYES, FittedVerifier
+from stubborn.detection.verification import NAIVE_BAYES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,23 +61,19 @@ class Args(LogOptions):
 
 
 def main(args: Args) -> int:
-    """Runs the episodes, then fits and writes, or judges; returns the exit status."""
+    """Runs the episodes, then fits and writes; returns the exit status."""
     if args.least_of_either < 2:
         raise ConfigError(f"--least-of-either must be at least 2, got {args.least_of_either}.")
     split = checked_split(args)
     from sim.training.fits.verifier import fit  # it imports scikit-learn
 
-    file = parameters_file(args, FOLDER)
     lines = candidates_of(args, split)
-    if args.judge:
-        print(judgement(lines, file))
-        return 0
     about = {"name": split.name, "version": split.version}
     command = args.command("verifier", len(lines), "--least-of-either", str(args.least_of_either))
     content = {"semantics": args.semantics, "command": command, "split": about, **fit(lines, args.least_of_either)}
-    write_atomically(file, json.dumps(content, indent=1, allow_nan=False) + "\n")
+    write_atomically(args.out, json.dumps(content, indent=1, allow_nan=False) + "\n")
     report(content)
-    print(f"written: {file}")
+    print(f"written: {args.out}")
     return 0
 
 
@@ -144,35 +137,3 @@ def report(content: Mapping[str, object]) -> None:
         for rows in method.left_out.values():
             for row in rows if isinstance(rows, list) else ():
                 print("  " + ", ".join(f"{key} {value}" for key, value in row.items()))
-
-
-def judgement(lines: Sequence[Mapping[str, object]], file: Path) -> str:
-    """Returns Markdown tables: the candidates of each category, before and after verification, and the calibration."""
-    from sim.training.fits.verifier import judge_by_category
-
-    header = (
-        "method", "goal", "true", "false", "mean P", "Brier score",
-        "precision before", "precision after", "true accepted", "false rejected",
-    )  # fmt: skip
-    rows = _table_head(header)
-    bins = _table_head(("method", "P from", "to", "candidates", "mean P", "true"))
-    for goal, quality in judge_by_category(lines, FittedVerifier.read(file)).items():
-        true = round(quality["precision_before"] * quality["candidates"])
-        mean = sum(row["candidates"] * row["mean_probability"] for row in quality["by_probability"])
-        keys = ("brier", "precision_before", "precision", "true_accepted", "false_rejected")
-        shares = (mean / quality["candidates"], *(quality[key] for key in keys))
-        cells = " | ".join("-" if share is None else f"{share:.2f}" for share in shares)
-        rows.append(f"| {NAIVE_BAYES} | {goal} | {true} | {quality['candidates'] - true} | {cells} |")
-        bins += [_bin_row(row) for row in quality["by_probability"] if goal == "all"]
-    return "\n".join([*rows, "", *bins])
-
-
-def _table_head(titles: Sequence[str]) -> list[str]:
-    return [f"| {' | '.join(titles)} |", "|---" * len(titles) + "|"]
-
-
-def _bin_row(row: Mapping[str, float]) -> str:
-    return (
-        f"| {NAIVE_BAYES} | {row['from']} | {row['to']} | {row['candidates']} | {row['mean_probability']:.2f} | "
-        f"{row['true_share']:.2f} |"
-    )

@@ -17,7 +17,7 @@ import numpy as np
 from sim.app.analysis.report.figures import proportion
 from sim.app.analysis.tables import ResultTable, to_markdown
 from sim.app.commands.traps.curves import QUANTITIES, Point, Rows, curve, point_of
-from sim.app.commands.traps.family_picture import draw_family
+from sim.app.commands.traps.picture import draw_family
 from sim.app.commands.traps.trial import TrapResult
 from sim.core.files import csv_text, write_picture, write_together
 from sim.env.objectnav import ObjectNavEnv

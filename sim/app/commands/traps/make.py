@@ -27,8 +27,7 @@ from sim.episodes.reachable_goals import find_reachable_goals
 from sim.episodes.splits import write_split
 from sim.homes.housegen.mjcf.builder import TEXTURE_DIR
 from sim.homes.housegen.splits.recipes import SPLIT_VERSION
-from sim.homes.housegen.traps.families.catalogue import FAMILIES, HELD_OUT
-from sim.homes.housegen.traps.families.contact_splits import CONTACT_SPLITS, TrapKey, in_turns
+from sim.homes.housegen.traps.families.catalogue import CONTACT_SPLITS, FAMILIES, HELD_OUT, TrapKey, in_turns
 from sim.homes.housegen.traps.families.draw import draw_trap
 from sim.homes.housegen.traps.families.family import DIFFICULTIES, Difficulty
 from sim.homes.housegen.traps.trap import Trap

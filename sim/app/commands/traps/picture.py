@@ -1,8 +1,6 @@
-"""Draws a trial: the trap from above with its invisible obstacles and the robot's true path, and the agent's map."""
+"""Pictures of traps: a trial with the robot's true path and the agent's map, and the traps of a family."""
 
 from __future__ import annotations
-
-import math
 
 import cv2
 import numpy as np
@@ -10,52 +8,30 @@ from numpy.typing import NDArray
 
 from sim.app.commands.traps.trial import Trial
 from sim.app.viewers.chase import hidden_obstacles
-from sim.app.viewers.house_pictures import camera_at, render
 from sim.app.viewers.text import BOLD, text_width, write
+from sim.app.viewers.topview import TopView
 from sim.app.viewers.viewer import Colour
-from sim.core.geometry.grid import GridFrame
-from sim.core.interface import MPCAT40_ID
 from sim.env.objectnav import ObjectNavEnv
-from sim.gl import mujoco
+from sim.episodes.episode import Episode
 from sim.houses.geoms import geom_polytope
-from sim.houses.house import House
-from sim.houses.labels import read_labels
-from sim.world.world import World
+from sim.houses.sidecar import TrapFacts
 
 Picture = NDArray[np.uint8]
 HEIGHT_PX = 480
 HEAD_PX, FOOT_PX = 32, 26
-"""Height of the title above the scene and of the legend below it."""
-FOVY_DEG = 6.0
-MARGIN_M = 0.3
-PATH, STOPPED, START, END = (40, 90, 220), (225, 30, 30), (20, 150, 60), (20, 20, 20)
+"""Height of the title above the plan and of the legend below it."""
 INVISIBLE: Colour = (20, 160, 225)
 """Colour of obstacles that cameras do not render."""
-LEGEND = (
-    ("driven path", PATH),
-    ("start", START),
-    ("end", END),
-    ("contact that stopped", STOPPED),
-    ("invisible", INVISIBLE),
-)
+LEGEND = (*TopView.legend[:-1], ("invisible", INVISIBLE))
 PAPER, INK = (245, 245, 245), (30, 30, 30)
-_TINT = 0.4
-_LEAN_M = (0.18, 0.30)
-"""A point of an invisible obstacle is drawn this far to the right and up for each metre of its height: from exactly
-above, a pane of glass would look like a line."""
+CAMERA_WIDTH_PX = HEIGHT_PX * 4 // 3
+TITLE_PX = 30
+"""Height of the title of a trap of a family."""
 
 
 def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Picture:
-    """Returns the top view and, if there is a map, the map next to it, uint8 (h, w, 3), between title and legend."""
-    world = env.scene.world
-    top = TopView(world.house, env.scene.task.truth.space(env.episode.start.floor_z_m).frame)
-    top.invisible(world)
-    top.path(trial.positions_m)
-    for _, contact in trial.stops:
-        top.dot(contact.position_m[:2], STOPPED, 4)
-    top.dot(trial.positions_m[0], START, 7)
-    top.dot(trial.positions_m[-1], END, 7)
-    picture = top.image
+    """Returns the plan and, if there is a map, the map next to it, uint8 (h, w, 3), between title and legend."""
+    picture = plan_of(env)
     if belief is not None:
         width = round(belief.shape[1] * HEIGHT_PX / belief.shape[0])
         small = np.asarray(cv2.resize(belief, (width, HEIGHT_PX), interpolation=cv2.INTER_AREA), np.uint8)
@@ -65,8 +41,20 @@ def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Pictu
     return _framed(picture, title)
 
 
+def plan_of(env: ObjectNavEnv) -> Picture:
+    """Returns the plan of the running episode (`TopView`), uint8 (HEIGHT_PX, w, 3), with the invisible obstacles."""
+    world = env.scene.world
+    rows, columns = env.scene.task.truth.space(env.episode.start.floor_z_m).frame.shape
+    view = TopView(env)
+    image = view.draw(round(HEIGHT_PX * columns / rows), HEIGHT_PX)
+    for geom in np.flatnonzero(hidden_obstacles(world)).tolist():
+        corners_m = geom_polytope(world.model, world.data, geom).vertices_m
+        cv2.polylines(image, [cv2.convexHull(view.pixels(corners_m[:, :2]))], True, INVISIBLE, 1, cv2.LINE_AA)
+    return image
+
+
 def _framed(picture: Picture, title: str) -> Picture:
-    """Returns a picture with a title above it and the legend of the top view below it."""
+    """Returns a picture with a title above it and the legend of the plan below it."""
     wide = picture.shape[1]
     head, foot = (np.full((high, wide, 3), PAPER, np.uint8) for high in (HEAD_PX, FOOT_PX))
     write(head, title, (10, 22), wide - 20, 18, INK, BOLD)
@@ -78,57 +66,28 @@ def _framed(picture: Picture, title: str) -> Picture:
     return np.vstack([head, picture, foot])
 
 
-class TopView:
-    """A picture of a scene from above without its ceiling, on which paths and points are drawn in metres."""
-
-    def __init__(self, house: House, frame: GridFrame) -> None:
-        low_m = np.array(frame.origin_xy_m)
-        size_m = np.array(frame.shape[::-1]) * frame.cell_m
-        self._middle_m = low_m + 0.5 * size_m
-        half_x, half_y = 0.5 * size_m + MARGIN_M
-        self._px_m = HEIGHT_PX / (2.0 * half_y)
-        self._width_px = 2 * round(half_x * self._px_m)
-        camera = camera_at(np.array([*self._middle_m, 0.0]), azimuth_deg=90.0, elevation_deg=-90.0)
-        camera.distance = half_y / math.tan(math.radians(0.5 * FOVY_DEG))
-        size_px = (self._width_px, HEIGHT_PX)
-        self.image: Picture = render(_without_ceiling(house), camera, size_px, fovy_deg=FOVY_DEG)
-
-    def path(self, places_m: list[tuple[float, float]]) -> None:
-        """Draws the path of the robot's centre."""
-        points = np.array([self._pixel(place) for place in places_m], np.int32)
-        cv2.polylines(self.image, [points.reshape(-1, 1, 2)], False, PATH, 2, cv2.LINE_AA)
-
-    def dot(self, place_m: tuple[float, float], colour: tuple[int, int, int], radius_px: int) -> None:
-        """Draws a point."""
-        cv2.circle(self.image, self._pixel(place_m), radius_px, colour, -1, cv2.LINE_AA)
-
-    def invisible(self, world: World) -> None:
-        """Draws obstacles that no camera renders as tinted surfaces, sheared to the right and up by their height."""
-        surfaces = np.zeros(self.image.shape[:2], np.uint8)
-        outlines = []
-        for geom in np.flatnonzero(hidden_obstacles(world)).tolist():
-            corners_m = geom_polytope(world.model, world.data, geom).vertices_m
-            leaning_m = corners_m[:, :2] + corners_m[:, 2:] * _LEAN_M
-            points = [self._pixel((x, y)) for x, y in leaning_m.tolist()]
-            outline = cv2.convexHull(np.array(points, np.int32))
-            cv2.fillConvexPoly(surfaces, outline, 1)
-            outlines.append(outline)
-        covered = surfaces > 0
-        self.image[covered] = ((1.0 - _TINT) * self.image[covered] + _TINT * np.array(INVISIBLE)).astype(np.uint8)
-        cv2.polylines(self.image, outlines, True, INVISIBLE, 2, cv2.LINE_AA)
-
-    def _pixel(self, place_m: tuple[float, float]) -> tuple[int, int]:
-        """Returns the pixel of a point."""
-        x = 0.5 * self._width_px + (place_m[0] - self._middle_m[0]) * self._px_m
-        y = 0.5 * HEIGHT_PX - (place_m[1] - self._middle_m[1]) * self._px_m
-        return round(x), round(y)
+def draw_family(env: ObjectNavEnv, episodes: list[Episode]) -> Picture:
+    """Returns a picture (h, w, 3) with a row for each episode."""
+    rows = [_row(env, episode) for episode in episodes]
+    width = max(row.shape[1] for row in rows)
+    padded = [cv2.copyMakeBorder(row, 0, 6, 0, width - row.shape[1], cv2.BORDER_CONSTANT, value=PAPER) for row in rows]
+    return np.asarray(np.vstack(padded), np.uint8)
 
 
-def _without_ceiling(house: House) -> mujoco.MjModel:
-    """Returns the scene without ceiling."""
-    spec = house.spec.copy()
-    labels = read_labels(spec.compile(), rules=house.rules, ignore_prefix="")
-    for geom in spec.geoms:
-        if labels.geom_category[geom.id] == MPCAT40_ID["ceiling"]:
-            geom.material, geom.rgba = "", (0.0, 0.0, 0.0, 0.0)
-    return spec.compile()
+def _row(env: ObjectNavEnv, episode: Episode) -> Picture:
+    """Returns the plan of the trap next to the first frame, below a title."""
+    observation, _ = env.reset(seed=0, options={"episode": episode})
+    frame = cv2.resize(observation["rgb"], (CAMERA_WIDTH_PX, HEIGHT_PX), interpolation=cv2.INTER_AREA)
+    picture = np.hstack([plan_of(env), np.asarray(frame, np.uint8)])
+    head = np.full((TITLE_PX, picture.shape[1], 3), PAPER, np.uint8)
+    write(head, _title(episode, env.split.sidecar(episode.house).trap), (10, 21), picture.shape[1] - 20, 16, INK, BOLD)
+    return np.vstack([head, picture])
+
+
+def _title(episode: Episode, facts: TrapFacts | None) -> str:
+    if facts is None:
+        return episode.house
+    return (
+        f"{episode.house}: gap {facts.gap_m:.2f} m, path {facts.shortest_path_m:.1f} m, "
+        f"{facts.open_path_m:.1f} m without what is hidden"
+    )

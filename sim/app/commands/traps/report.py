@@ -5,7 +5,7 @@
     stubborn traps report --split contact-val --agents oracle stubborn --out runs/contact
 
 Each agent runs every trap from the start headings of the split. The same command continues an interrupted run, with the
-same split and --max-steps only (`config.json`). A picture shows the trap from above with the robot's true path (blue)
+same split and --max-steps only (`config.json`). A picture shows the plan of the trap with the robot's true path (blue)
 and the contacts that stopped it (red), and the agent's map at the end.
 Traps of families also get curves with intervals and a picture of each family (`sim.app.commands.traps.family_report`).
 """

@@ -33,16 +33,6 @@ class Ring:
     """2: an ellipse; 4: a rounded rectangle."""
 
 
-@dataclass(frozen=True)
-class Leaf:
-    """A pointed leaf from base to tip, `width_m` wide; its middle is raised by `arch_m`."""
-
-    base_m: tuple[float, float, float]
-    tip_m: tuple[float, float, float]
-    width_m: float
-    arch_m: float = 0.0
-
-
 def named_mesh(kind: str, vertices_m: ArrayLike, faces: ArrayLike = ()) -> MeshShape:
     """Returns a mesh; its name contains a hash of its content.
 

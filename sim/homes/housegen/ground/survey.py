@@ -10,7 +10,6 @@ import numpy as np
 from sim.gl import mujoco
 from sim.homes.housegen.structure.openings import HALF_WALL_M
 
-_SLAB = "floor_00"
 _EPS_M = 1e-3
 _FIXTURES = ("shower", "bathtub", "sink")
 """Categories of the fixtures that wet the floor in front of them."""

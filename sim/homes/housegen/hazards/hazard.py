@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 ROBOT_HEIGHT_M = 0.88
 """Geoms between `CLIMB_M` and this height block the robot."""
 SITE_HEIGHT_M = 2.0
-Span = tuple[float, float]
-"""A coordinate and a larger one."""
 
 
 @dataclass(frozen=True)

@@ -61,7 +61,7 @@ FAULTS = {
     "sigstop": "no answer within 0.3 s",
     "exit_0": "its process ended with status 0 before it answered$",
     "exit_3": r"its process ended with status 3 before it answered; the last lines .*: Goodbye \| with status 3$",
-    "version": "version 2 of the protocol, not 1: copy stubborn_client.py again",
+    "version": "version 1 of the protocol, not 2: copy stubborn_client.py again",
     "huge_header": r"a message of 4294967295 \+ 0 bytes is too large",
     "huge_arrays": r"a message of 2 \+ 9223372036854775808 bytes is too large",
     "large_arrays": "its arrays have 268435456 bytes, at most 67108864",
@@ -158,7 +158,7 @@ def test_the_status_is_told_when_the_end_of_the_output_and_the_line_of_the_guard
     tmp_path: Path,
 ) -> None:
     process = process_pipe.AgentProcess(command("exit_0", tmp_path))
-    process.ask({"type": "start", "memory": None}, within_s=20)
+    process.ask({"type": "start"}, within_s=20)
     process.ask({"type": "reset"}, within_s=20)
     process._poll = LatePoll(process._poll)  # pyright: ignore[reportAttributeAccessIssue]
     with pytest.raises(AgentError, match=wording.ITS_PROCESS_ENDED_WITH_STATUS_0_BEFORE_IT_ANSWER):
@@ -213,45 +213,11 @@ def test_an_agent_cannot_control_the_terminal(tmp_path: Path, capsys: pytest.Cap
     assert capsys.readouterr().err == "\\x1b]0;title\\x07red\\x1b[2J 50%\n60%\n"
 
 
-SHORTENING = """
-import os, sys
-from sim.app.bridges.stubborn_client import serve
-class Agent:
-    def reset(self, goal, seed): pass
-    def act(self, observation):
-        links = ["/proc/self/fd/%d" % n for n in range(100) if os.path.lexists("/proc/self/fd/%d" % n)]
-        memory, *_ = [link for link in links if os.readlink(link).startswith("/memfd:stubborn")]
-        handle = os.open(memory, os.O_RDWR)
-        for size in (0, 100):
-            try:
-                os.ftruncate(handle, size)
-            except PermissionError:
-                print("refused", file=sys.stderr)
-        return 1
-serve(lambda setup: Agent())
-"""
-SHORTENED = """
-import sys
-from tests.sim.app.bridges.test_process import *
-agent = ProcessAgent([sys.executable, "-c", SHORTENING], **PARTS, config=ProcessConfig())
-agent.reset("chair", 0)
-print([int(agent.act(OBSERVATION)) for _ in range(3)])
-agent.close()
-"""
-
-
-def test_an_agent_that_shortens_the_shared_memory_does_not_end_the_simulator() -> None:
-    words = [sys.executable, "-c", SHORTENED]
-    host = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
-    assert (host.returncode, host.stdout) == (0, "[1, 1, 1]\n"), host.stderr
-    assert host.stderr.count("refused") == 6
-
-
 HOST = """
 import sys, time
 from sim.app.bridges.process_pipe import AgentProcess
 process = AgentProcess(sys.argv[1:])
-process.ask({"type": "start", "memory": None}, within_s=20)
+process.ask({"type": "start"}, within_s=20)
 process.ask({"type": "reset"}, within_s=20)
 process.ask({"type": "act"}, within_s=60)
 """
@@ -306,22 +272,12 @@ serve(lambda setup: Agent() if setup.camera.width_px == 640 and setup.goals[0] =
         "objectgoal": np.array([7], np.int64),
     }
     expected = np.concatenate([np.frombuffer(array.tobytes(), np.uint8) for array in observation.values()])
-    for shared in (True, False):
-        agent.reset("chair", 0)
-        if not shared:
-            agent.share_no_memory()
-        assert agent._process is not None
-        assert (agent._process.memory is not None) == shared
-        if not shared:  # in a new process too
-            agent.close()
-            agent.reset("chair", 0)
-            assert agent._process is not None
-            assert agent._process.memory is None
-        agent.act(observation)
-        agent.act({name: np.zeros_like(array) for name, array in observation.items()})
-        image, words = agent.map_image()
-        np.testing.assert_array_equal(image[:, 0, 1], expected)
-        assert words == "rgb depth gps objectgoal chair"
+    agent.reset("chair", 0)
+    agent.act(observation)
+    agent.act({name: np.zeros_like(array) for name, array in observation.items()})
+    image, words = agent.map_image()
+    np.testing.assert_array_equal(image[:, 0, 1], expected)
+    assert words == "rgb depth gps objectgoal chair"
     agent.close()
 
 

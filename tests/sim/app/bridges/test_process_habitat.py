@@ -54,10 +54,10 @@ if __name__ == "__main__":
 """
 
 
-def write_agent(folder: Path, goal_number: int, client: str | None = None) -> str:
+def write_agent(folder: Path, goal_number: int) -> str:
     """Writes agent and client file; returns the name of the agent in its process."""
     (folder / "own_of_habitat.py").write_text(OWN.replace("GOAL", str(goal_number)))
-    (folder / "stubborn_client.py").write_text(client or CLIENT.read_text())
+    (folder / "stubborn_client.py").write_text(CLIENT.read_text())
     return f"process:{shlex.quote(sys.executable)} {shlex.quote(str(folder / 'own_of_habitat.py'))}"
 
 
@@ -115,14 +115,6 @@ def test_an_agent_with_habitats_interface_gets_no_goals_in_words() -> None:
         for interface in ("stubborn", "habitat")
     ]
     assert takes_words == [True, False]
-
-
-def test_a_client_file_that_does_not_know_the_interface_is_named(tmp_path: Path) -> None:
-    old = CLIENT.read_text().replace("return dict(ready, interface=self.interface)", "return ready")
-    command = shlex.split(write_agent(tmp_path, 0, old).removeprefix("process:"))
-    parts: dict[str, Any] = {"camera": CameraModel(), "robot": RobotModel(), "success": SuccessRule(), "max_steps": 5}
-    with pytest.raises(ConfigError, match=r"agent\.interface=habitat"):
-        ProcessAgent(command, **parts, config=ProcessConfig(interface="habitat"))
 
 
 def test_a_goal_that_the_data_set_lacks_is_an_error_of_the_episode(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from sim.training.segmentation.averaged_checkpoints import AveragedCheckpoints
+from sim.training.segmentation.steps import AveragedCheckpoints
 from stubborn.segmentation.networks import build_network
 from stubborn.segmentation.unet import UNetConfig
 

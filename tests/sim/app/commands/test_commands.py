@@ -19,7 +19,7 @@ from sim.app.commands.main import COMMANDS
 from sim.core.interface import ConfigError
 from sim.episodes.splits import load_split, shipped_splits
 from sim.homes.housegen.splits.recipes import SPLIT_VERSION, SPLITS
-from sim.homes.housegen.traps.families.contact_splits import CONTACT_SPLITS
+from sim.homes.housegen.traps.families.catalogue import CONTACT_SPLITS
 from tests.helpers import documented
 from tests.helpers.documented import PYTHON, TRIALS, Only
 from tests.helpers.sampling import sample

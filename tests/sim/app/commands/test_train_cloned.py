@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from sim.app.commands.run import entry
-from sim.app.commands.train import cloned as train_cloned
 from sim.core.interface import MPCAT40_ID, Action, ConfigError
 from sim.training.cloned import trainer
+from sim.training.cloned import trainer as train_cloned
 from sim.training.cloned.demonstrations import (
     Demonstration,
     list_demonstrations,

@@ -15,7 +15,6 @@ from sim.homes.plans.export import export_plans
 from sim.homes.plans.plan import Plan, write_plan
 from sim.training.plan_split import split_plans
 from stubborn.detection.context import OBJECTS, read_context
-from tests.helpers import wording
 from tests.helpers.worlds import room, with_box
 
 SINK, TOWEL, BED, CLOTHES = (OBJECTS.index(name) for name in ("sink", "towel", "bed", "clothes"))
@@ -67,10 +66,6 @@ def test_it_writes_what_the_agent_reads_and_judges_plans_that_it_held_back(
     assert f"written: {out}" in capsys.readouterr().out
 
 
-def test_without_plans_or_a_file_it_says_what_to_give(tmp_path: Path):
+def test_without_plans_it_says_what_to_give(tmp_path: Path):
     with pytest.raises(ConfigError, match="No plan in"):
         main(Args(plans=(tmp_path,), out=tmp_path / "x.json"))
-    with pytest.raises(ConfigError, match="--out FILE"):
-        main(Args(plans=(tmp_path,)))
-    with pytest.raises(ConfigError, match=wording.EXCLUDE_EACH_OTHER):
-        main(Args(plans=(tmp_path,), out=tmp_path / "x.json", shipped=True))

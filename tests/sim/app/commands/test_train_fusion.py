@@ -110,7 +110,7 @@ def test_a_log_of_another_seed_and_a_broken_file_are_refused(seats: Path, tmp_pa
 )
 def test_it_refuses_val_and_exact_segmentation(options: dict, message: str):
     with pytest.raises(ConfigError, match=message):
-        train_tracks.main(train_tracks.Args(**{"split": "val", **options}))
+        train_tracks.main(train_tracks.Args(**{"split": "val", "out": Path("x.json"), **options}))
 
 
 def test_merged_tracks_are_counted_together():

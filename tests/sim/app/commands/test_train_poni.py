@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 import torch
 
-from sim.app.commands.train.poni import Args, main
 from sim.core.interface import ConfigError
 from sim.homes.plans.export import export_plans
 from sim.homes.plans.plan import read_plan, write_plan
 from sim.training.poni.potential_files import held_back
-from sim.training.poni.trainer import loss_of
+from sim.training.poni.trainer import Args, loss_of, main
 from stubborn.exploration.poni_net import CHANNELS, FILES, Predictor
 from tests.helpers import wording
 from tests.helpers.results import rows

@@ -185,7 +185,7 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
 
 
 def test_the_shipped_weights_have_a_name() -> None:
-    size, model, metadata = start_network(None, Path("shipped"), imagenet=False)
+    size, model, metadata = start_network(None, Path("shipped"))
     assert (size, model.config) == ("compact-both", NETWORKS["compact-both"])
     assert isinstance(metadata["step"], int)
     assert metadata["step"] > 0

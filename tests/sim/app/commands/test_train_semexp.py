@@ -61,7 +61,7 @@ def test_a_training_writes_curve_and_weights_and_is_continued(
     after = FILES.load(out / "semexp.safetensors")[0].state_dict()
     assert any((after[name] != before[name]).any() for name in before)
     assert SemExpConfig(weights=str(out / "semexp.safetensors")).make(SMALL_CAMERA).cells == 120
-    assert train_semexp.main(options(plans, out, goals=33, beside=(tmp_path / "none",))) == 0
+    assert train_semexp.main(options(plans, out, goals=33)) == 0
     assert rows(out / "train.csv") == again
     assert (out / "curve.png").read_bytes()[:4] == b"\x89PNG"
 
@@ -103,15 +103,12 @@ def test_storeys_of_a_house_are_held_back_together_and_stay_so_when_houses_are_a
     [
         ({"batch": 1}, "must be >= 2, got 1 and 240"),
         ({"envs": 1, "rollout": 1}, "must be >= 2, got 60 and 1"),
-        ({"beside": (Path("other"),)}, "'other/train.csv'"),
     ],
 )
 def test_options_that_would_fail_later_are_refused(
     plans: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: dict[str, Any], message: str
 ):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "other").mkdir()
-    (tmp_path / "other" / "train.csv").write_text("step,loss,note\n1,0.5,begun\n")
     with pytest.raises(ConfigError, match=message):
         train_semexp.main(train_semexp.Args(plans=(plans,), out=tmp_path / "out", minutes=0.01, **options))
 

@@ -23,7 +23,6 @@ from sim.episodes.splits import load_split, write_split
 from sim.training.fits import candidates
 from stubborn.detection.classifiers import Features
 from stubborn.detection.seeker import TargetSeeker
-from stubborn.detection.verification import FOLDER, FittedVerifier
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers import wording
 from tests.helpers.worlds import room, with_box
@@ -74,10 +73,16 @@ def test_an_episode_ends_when_the_robot_has_fallen(seats: Path, tmp_path: Path, 
 
 
 def test_the_recorded_command_names_all_options_that_change_the_fit_and_the_episodes():
-    args = train_verifier.Args(split="runs/my houses", semantics="rednet", weights=Path("a b.safetensors"), minutes=3.0)
+    args = train_verifier.Args(
+        split="runs/my houses",
+        semantics="rednet",
+        weights=Path("a b.safetensors"),
+        minutes=3.0,
+        out=Path("x.json"),
+    )
     assert replace(args, seed=2).command("verifier", 71, "--least-of-either", "7") == (
         "stubborn train verifier --semantics rednet --weights 'a b.safetensors' --split 'runs/my houses' "
-        "--episodes 71 --max-steps 200 --least-of-either 7 --seed 2 --shipped"
+        "--episodes 71 --max-steps 200 --least-of-either 7 --seed 2 --out x.json"
     )
 
 
@@ -171,35 +176,14 @@ def test_a_time_limit_leaves_whole_lines_and_zero_runs_nothing(seats: Path, tmp_
         train_verifier.candidates_of(replace(args, minutes=0.0, semantics="rednet"), loaded)
 
 
-def test_val_and_test_are_only_judged():
+def test_nothing_is_fitted_on_val_and_test():
     for split in ("val", "test"):
-        with pytest.raises(ConfigError, match=f"fitted on '{split}'; use --judge"):
-            train_verifier.main(train_verifier.Args(split=split))
-        with pytest.raises(ConfigError, match=f"fitted on '{split}'; use --judge"):
-            train_verifier.main(train_verifier.Args(split=str(assets_dir() / split)))
+        with pytest.raises(ConfigError, match=f"fitted on '{split}', which judges"):
+            train_verifier.main(train_verifier.Args(split=split, out=Path("x.json")))
+        with pytest.raises(ConfigError, match=f"fitted on '{split}', which judges"):
+            train_verifier.main(train_verifier.Args(split=str(assets_dir() / split), out=Path("x.json")))
 
 
 def test_segmentation_that_needs_no_verification_is_refused():
     with pytest.raises(ConfigError, match="'gt'"):
-        train_verifier.main(train_verifier.Args(semantics="gt"))
-
-
-def test_a_judgement_has_the_truth_and_the_probability_of_the_verifier():
-    file = FOLDER / "rednet.json"
-    near, far = ([12.0, 9.0, 0.95, 0.2, 1.0, 1.0, 1.0], [3.0, 0.8, 0.55, 0.9, 0.0, 4.0, 1.0])
-    lines = [{"episode_id": "a", "goal": "bed", "house": "h", "steps": 9, "candidates": [near, far]}]
-    verifier = FittedVerifier.read(file, "naive-bayes")
-    p = [verifier.probability("bed", Features(int(row[0]), *row[1:4])) for row in (near, far)]
-    brier = 0.5 * ((1.0 - p[0]) ** 2 + p[1] ** 2)
-    rows = train_verifier.judgement(lines, file).splitlines()
-    assert f"| naive-bayes | bed | 1 | 1 | {0.5 * sum(p):.2f} | {brier:.2f} | 0.50 | 1.00 | 1.00 | 1.00 |" in rows
-    assert f"| naive-bayes | 0.8 | 1.0 | 1 | {p[0]:.2f} | 1.00 |" in rows
-
-
-def test_the_shipped_parameters_are_replaced_only_when_the_options_say_so():
-    before = (train_verifier.FOLDER / "noisy.json").read_bytes()
-    with pytest.raises(ConfigError, match=r"--out.*FILE.*--shipped"):
-        train_verifier.main(train_verifier.Args(episodes=1))
-    with pytest.raises(ConfigError, match=r"--out.*FILE"):
-        train_verifier.main(train_verifier.Args(semantics="tests.helpers.segmentations:FLAT", shipped=True))
-    assert (train_verifier.FOLDER / "noisy.json").read_bytes() == before
+        train_verifier.main(train_verifier.Args(semantics="gt", out=Path("x.json")))

@@ -290,4 +290,4 @@ def test_shared_memory_that_cannot_be_used_is_named_with_the_remedy(monkeypatch:
 
     monkeypatch.setattr("sim.app.evaluation.processes.Calls", refuse)
     with pytest.raises(ConfigError, match=r"shared memory \(/dev/shm\).*Read-only file system.*--workers 1"):
-        processes._Process(threads=1, preload="")
+        processes._Process(RunnerSpec("", None), threads=1, limit_s=0.0)

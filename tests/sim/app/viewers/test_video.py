@@ -306,13 +306,13 @@ def test_the_plan_beside_a_map_has_the_heading_of_the_start_up(env: ObjectNavEnv
     env.reset(options={"episode": replace(EPISODE, start=Pose(-1.0, 0.0, yaw_rad))})
     view = TopView(env, heading_up=True)
     view.paint(300)
-    here, ahead, left = view._pixels(
+    here, ahead, left = view.pixels(
         np.array([(-1.0, 0.0), (-1.0 + np.cos(yaw_rad), np.sin(yaw_rad)), (-1.0 - np.sin(yaw_rad), np.cos(yaw_rad))])
     )
     assert abs(ahead[0] - here[0]) <= 1
     assert ahead[1] < here[1] - 20
     assert left[0] < here[0] - 20
-    corners = view._pixels(np.array([(x, y) for x in (-3.0, 3.0) for y in (-3.0, 3.0)]))
+    corners = view.pixels(np.array([(x, y) for x in (-3.0, 3.0) for y in (-3.0, 3.0)]))
     assert corners.min() >= 0
     assert corners.max() <= 300
 

@@ -10,7 +10,6 @@ import pytest
 
 pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
 
-from sim.app.web.answers import OpenFile
 from sim.app.web.driven import DrivenRuns
 from sim.app.web.server import Client, Hub, OnlyFromHere, _carry_out
 
@@ -80,29 +79,6 @@ def test_headers_that_are_missing_or_repeated_are_refused() -> None:
     assert status() == 403
     assert status(host, host) == 403
     assert status(host, (b"origin", b"http://127.0.0.1"), (b"origin", b"http://127.0.0.1")) == 403
-
-
-@pytest.mark.parametrize(
-    ("header", "sent"),
-    [
-        ("", b"0123456789"), ("bytes=2-4", b"234"), ("bytes=7-", b"789"), ("bytes=-2", b"89"), ("bytes=8-99", b"89"),
-        ("bytes=-99", b"0123456789"), ("bytes=99-", b"0123456789"), ("bytes=4-2", b"0123456789"),
-        ("bytes=0-1,3-4", b"0123456789"), ("bytes=-", b"0123456789"), ("x", b"0123456789"), ("bytes=-0", b"0123456789"),
-    ],
-)  # fmt: skip
-def test_a_range_of_a_file_is_sent_and_one_without_meaning_is_ignored(tmp_path: Path, header: str, sent: bytes) -> None:
-    (tmp_path / "file").write_bytes(b"0123456789")
-    code, headers, body = answer_to(OpenFile((tmp_path / "file").open("rb"), "video/mp4", header), [])
-    assert (body, headers[b"content-length"]) == (sent, b"%d" % len(sent))
-    assert (code == 206) == (len(sent) < 10) == (b"content-range" in headers)
-
-
-@pytest.mark.parametrize("now", [b"", b"0123", b"0123456789abc"])
-def test_a_file_that_changes_meanwhile_has_the_length_that_was_announced(tmp_path: Path, now: bytes) -> None:
-    (tmp_path / "file").write_bytes(b"0123456789")
-    answer = OpenFile((tmp_path / "file").open("rb"), "video/mp4")
-    (tmp_path / "file").write_bytes(now)
-    assert len(answer_to(answer, [])[2]) == 10
 
 
 def test_a_page_that_shows_another_picture_gets_the_present_frame_again(tmp_path: Path) -> None:

@@ -17,9 +17,9 @@ from sim.homes.plans.export import export_plans
 from sim.homes.plans.plan import Plan, house_of, storey_name
 from sim.homes.plans.sight import PlanCamera
 from sim.training.plan_env.walks import explore, reachable
-from sim.training.poni.potential_choices import Choices, add_choices
 from sim.training.poni.potential_files import SYMMETRIES, Batch, SampleSet, held_back, write_samples
 from sim.training.poni.potentials import Sample, SampleConfig, Truth, area_potential, sample_of, samples_of
+from sim.training.poni.trainer import Choices, add_choices
 from stubborn.exploration.patches import LAYERS
 from stubborn.mapping.masks import distance_to
 from stubborn.mapping.navmap import NavMap

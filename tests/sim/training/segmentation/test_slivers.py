@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sim.core.interface import MPCAT40_ID
-from sim.training.segmentation.slivers import SLIVER_PX, without_slivers
+from sim.training.segmentation.evaluation import SLIVER_PX, without_slivers
 
 
 def test_only_thin_regions_at_an_edge_become_void() -> None:
