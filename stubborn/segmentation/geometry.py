@@ -23,6 +23,8 @@ INVERSE_DEPTH, VALID, HEIGHT, RIGHT, UP, FORWARD = range(len(CHANNELS))
 _MEAN = tuple(map(np.float32, (0.5, 0.8, 0.9, 0.0, 0.1, -0.5)))
 _STD = tuple(map(np.float32, (0.5, 0.4, 0.7, 0.5, 0.4, 0.4)))
 """Rounded values near the statistics of generated houses; the network's first normalisation corrects the rest."""
+STATISTICS = (_MEAN, _STD)
+"""Mean and standard deviation by which the channels are scaled."""
 BASELINE_DEG = 0.5
 """Angle between the two pixels that give a normal: a smaller angle gives more noise, a larger one rounds more
 edges."""

@@ -20,6 +20,7 @@ from sim.core.paths import code_hash
 from sim.core.reading import Count, Number
 from sim.training.segmentation.balanced import Batches, ViewIndex
 from sim.training.segmentation.dataset import list_shards, pixel_counts, spread_views, stored_block_px, stored_views
+from sim.training.segmentation.device_batches import DeviceBatches, room_for
 from sim.training.segmentation.evaluation import Iou, evaluate
 from sim.training.segmentation.options import MAY_CHANGE, Args, check
 from sim.training.segmentation.recipe import PROGRESSIVE
@@ -128,12 +129,25 @@ class Trainer:
         counts = ", ".join(f"{name} {n} of {styles}" for name, (n, styles) in index.counts().items())
         print(f"{len(index.views)} views; objects and styles: {counts}", flush=True)
         sampler = Sampler(camera, 1, Augmentation(), second=second, used_block_px=used, area_weights=True)
-        self.data = Batches(index, sampler, RECIPE, batch=self.args.batch, seed=self.args.seed)
+        self.data = self._make_batches(index, sampler)
         self.val: Samples | Subset = Samples(
             spread_views(val_shards, self.args.val_count), Sampler(camera, used, second=second)
         )
         augmented = Sampler(camera, used, Augmentation(), second=second)
         self.whole = Samples(spread_views(shards, NORMALISATION_VIEWS), augmented)
+
+    def _make_batches(self, index: ViewIndex, sampler: Sampler) -> Batches | DeviceBatches:
+        """Returns the batches, on a GPU computed there if its memory has room for the views."""
+        made, count = {"batch": self.args.batch, "seed": self.args.seed}, len(index.views)
+        if self.device.type != "cuda":
+            return Batches(index, sampler, RECIPE, **made)
+        if (most := room_for(index.views, self.device)) < count:
+            print(f"The GPU's memory has room for {most} of {count} views: --workers processes make the samples.")
+            return Batches(index, sampler, RECIPE, **made)
+        began_s = time.perf_counter()
+        batches = DeviceBatches(index, sampler, RECIPE, **made, device=self.device, workers=self.args.workers)
+        print(f"{count} views on the GPU after {time.perf_counter() - began_s:.0f} s", flush=True)
+        return batches
 
     def run(self) -> None:
         """Trains until the steps are done or the time is up."""
@@ -205,7 +219,8 @@ class Trainer:
 
     def _batches(self) -> Iterator[Sequence[Tensor]]:
         """Yields the batch of each step until the steps are done or the time is up; measures how long each takes."""
-        loader = DataLoader(self.data, batch_size=None, sampler=_Steps(self), num_workers=self.args.workers)
+        workers = self.args.workers if isinstance(self.data, Batches) else 0  # the GPU makes the batches of the others
+        loader = DataLoader(self.data, batch_size=None, sampler=_Steps(self), num_workers=workers)
         batches = iter(loader)
         while self.step < self.total and not self._time_is_up():
             start_s = time.perf_counter()

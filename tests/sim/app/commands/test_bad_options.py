@@ -99,6 +99,11 @@ def test_every_number_and_path_of_a_command_is_checked_before_it_begins(
 
 BAD: dict[str, list[tuple[str, str]]] = {
     "sim.app.commands.report": [("nowhere", "it has no config.json"), ("FILE", "config.json")],
+    "tools.benchmarks.against": [
+        ("--against nowhere", "names no commit"),
+        ("--against HEAD --parts walk", "--parts must be some of"),
+        ("--against HEAD --rounds 0", "--rounds must be at least 1"),
+    ],
     "sim.app.commands.houses.check": [("--split nowhere", "Unknown split 'nowhere'"), ("--kind castle", "castle")],
     "sim.app.commands.compare": [("nowhere nowhere", "is not a run")],
     "tools.maintenance.describe_houses": [("--root nowhere --out OUT", "nowhere")],
