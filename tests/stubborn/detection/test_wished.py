@@ -127,7 +127,8 @@ def test_a_name_counts_against_that_of_the_main_neighbour_but_not_against_a_wall
 ) -> None:
     attributes = Attributes(GridFrame.around_start(20, 0.1), 8)
     for name in names:  # one frame each
-        seen = Pixels(np.ones((4, 4), np.int16), *[np.full((4, 4), -1)] * 2, np.zeros((4, 4)))
+        nowhere = np.full((4, 4), -1)
+        seen = Pixels(np.ones((4, 4), np.int16), nowhere, nowhere, np.zeros((4, 4)))
         attributes.add(seen, np.zeros((40, 4, 4), np.float32), None, (np.zeros((4, 4), np.int32), [name]))
     tracks = SimpleNamespace(now=lambda: np.arange(8))
     shares = attributes.name_shares(cast(Tracks, tracks), np.array([1]), frozenset({"toy train"}))

@@ -7,6 +7,7 @@ import inspect
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -46,7 +47,7 @@ def test_an_agent_that_does_not_take_a_kind_of_goal_is_refused_before_ros_is_loa
 ) -> None:
     monkeypatch.setattr(agent, "require_ros", lambda: pytest.fail("ROS was loaded"))
     with pytest.raises(ConfigError, match=f"--{option}: {said}"):
-        agent.main(agent.Args(agent="cloned", **{option: True}))
+        agent.main(replace(agent.Args(agent="cloned"), **{option: True}))
 
 
 @pytest.mark.parametrize(
