@@ -240,6 +240,8 @@ class Attributes:
 
     def _room_factor(self, tracks: Tracks, track: int, rooms: Sequence[str], undecided: float) -> float:
         """Returns the probability that a track is in a room of the wish, by the categories of the tracks around it."""
+        if not fitted().rooms.keys() & set(rooms):
+            return undecided  # a studio holds what several kinds of rooms hold, and has no numbers of its own
         x_m, y_m = tracks.middle_xy_m(track)
         held = {name for name in self._categories_around(tracks, track, x_m, y_m) if name in _room_categories()}
         if not held:

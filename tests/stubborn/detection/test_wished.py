@@ -11,7 +11,7 @@ import pytest
 
 from sim.core.geometry.grid import GridFrame
 from sim.core.interface import MPCAT40_ID, Observation, RobotModel
-from sim.core.wishes import WishError
+from sim.core.wishes import WishError, parse_wish
 from stubborn import agents
 from stubborn.detection.attributes import AT_LAST, UNDECIDED, Attributes
 from stubborn.detection.tracks import Pixels, Tracks
@@ -133,3 +133,11 @@ def test_a_name_counts_against_that_of_the_main_neighbour_but_not_against_a_wall
     tracks = SimpleNamespace(now=lambda: np.arange(8))
     shares = attributes.name_shares(cast(Tracks, tracks), np.array([1]), frozenset({"toy train"}))
     assert shares.tolist() == [share]
+
+
+def test_a_kind_of_room_without_numbers_is_undecided() -> None:
+    wish = parse_wish("the cooker in the studio")
+    attributes = Attributes(GridFrame.around_start(20, 0.1), 8)
+    around = SimpleNamespace(middle_xy_m=lambda _: pytest.fail("its surroundings cannot tell"))
+    assert wish.rooms == ("studio",)
+    assert attributes._room_factor(cast(Tracks, around), 1, wish.rooms, UNDECIDED) == UNDECIDED
