@@ -195,7 +195,7 @@ class AgentNode:
             "rgb": _Input(f"{COLOUR}/image_raw", self._colour),
             "depth": _Input(f"{DEPTH}/image_raw", self._depth),
             "imu": _Input("/imu", _inertia),
-            "odometry": _Input("/odom", _odometry),
+            "odometry": _Input("/odom", _odometry if pose == "/odom" else _odometry_alone),
             "gps": located,
             "compass": located,
         }
@@ -352,9 +352,13 @@ def _located(message: Any) -> dict[str, NDArray]:
 
 
 def _odometry(message: Any) -> dict[str, NDArray]:
+    return _odometry_alone(message) | _pose_readings(pose_of(message.pose.pose))
+
+
+def _odometry_alone(message: Any) -> dict[str, NDArray]:
+    """Returns no `gps` and `compass`, which `/pose` has: the message that arrives last would win."""
     pose = pose_of(message.pose.pose)
-    own = np.array([pose.x_m, pose.y_m, pose.yaw_rad], np.float32)
-    return {"odometry": own, **_pose_readings(pose)}
+    return {"odometry": np.array([pose.x_m, pose.y_m, pose.yaw_rad], np.float32)}
 
 
 def _inertia(message: Any) -> dict[str, NDArray]:
