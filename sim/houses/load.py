@@ -30,6 +30,12 @@ _NOT_CONVEX = {
     int(mujoco.mjtGeom.mjGEOM_SDF): "signed distance field",
 }
 _FLOOR_SHAPES = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_BOX))
+MIN_AMBIENT = 0.3
+"""A scene without lamps keeps its light if its headlight has at least this ambient part."""
+AMBIENT, HEADLIGHT = 0.5, 0.2
+"""Ambient and diffuse part of the headlight that is set."""
+SIDES = (((0.45, 0.3, -0.85), 0.25), ((-0.6, -0.35, -0.7), 0.12))
+"""Direction and strength of two added lights without shadows: the walls of a corner then differ in brightness."""
 
 
 def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None = None) -> House:
@@ -214,14 +220,6 @@ def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
         return spec.compile()
     except (ValueError, OSError, MemoryError) as error:
         raise HouseError(f"it is not an MJCF file that MuJoCo can read: {reason_of(error)}") from None
-
-
-MIN_AMBIENT = 0.3
-"""A scene without lamps keeps its light if its headlight has at least this ambient part."""
-AMBIENT, HEADLIGHT = 0.5, 0.2
-"""Ambient and diffuse part of the headlight that is set."""
-SIDES = (((0.45, 0.3, -0.85), 0.25), ((-0.6, -0.35, -0.7), 0.12))
-"""Direction and strength of two added lights without shadows: the walls of a corner then differ in brightness."""
 
 
 def add_light(spec: mujoco.MjSpec) -> tuple[str, ...]:

@@ -41,6 +41,9 @@ from stubborn.baselines.cloned_input import (
 )
 from stubborn.baselines.cloned_net import FILES, ClonedNet
 
+HELD_BACK = 10
+"""One of this many houses is held back."""
+
 
 @dataclass(frozen=True, eq=False)
 class LabelledSteps:
@@ -126,10 +129,6 @@ class Streams:
         """Returns a random demonstration, mirrored or not."""
         one = self._shown[int(self._rng.integers(len(self._shown)))]
         return one.mirrored() if self._rng.random() < 0.5 else one
-
-
-HELD_BACK = 10
-"""One of this many houses is held back."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -38,6 +38,8 @@ OBJECT_WEIGHT = 5.0
 """Weight of the mean loss over the goal categories; the loss of the area has weight 1."""
 SMOOTHED_ROWS = 8
 """Rows of `train.csv` of a running mean in the picture."""
+TIE = 0.02
+"""A frontier is as good as the best one if its true potential is less than this below."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -218,10 +220,6 @@ def draw_curve(out: Path) -> None:
 def _targets(batch: Batch) -> tuple[Tensor, Tensor]:
     """Returns the true potentials of a batch and which of them count."""
     return torch.from_numpy(batch.potentials), torch.from_numpy(batch.counts)
-
-
-TIE = 0.02
-"""A frontier is as good as the best one if its true potential is less than this below."""
 
 
 @dataclass

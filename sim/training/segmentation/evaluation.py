@@ -22,6 +22,8 @@ from stubborn.segmentation.rednet import CLASSES
 GOAL_CHANNELS = np.array([MPCAT40_ID[name] - 1 for name in GOAL_CATEGORIES])
 """Output channels of the goal categories."""
 RELIABILITY_BINS = 10
+SLIVER_PX = 24
+"""A sliver at an edge of the image extends less than this from the edge, in pixels of the 640 x 480 image."""
 
 
 def confusion(
@@ -170,10 +172,6 @@ def calibrated_iou(views: Sequence[tuple[Tensor, Tensor]]) -> Iou:
         for view, target in judged:
             matrix += confusion(calibration.applied(view.float()).argmax(dim=0).numpy(), target.numpy())
     return Iou.of(matrix)
-
-
-SLIVER_PX = 24
-"""A sliver at an edge of the image extends less than this from the edge, in pixels of the 640 x 480 image."""
 
 
 def without_slivers(semantic: UInt8[np.ndarray, "h w"], block_px: int) -> UInt8[np.ndarray, "h w"]:

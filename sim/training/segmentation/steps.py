@@ -15,6 +15,8 @@ from sim.training.segmentation.samples import IGNORED
 from stubborn.segmentation.checkpoints import load_network, mean_of, save_network
 from stubborn.segmentation.networks import Network
 
+PREFIX = "step-"
+
 
 def pyramid_loss(
     outputs: Sequence[Float[Tensor, "n classes _ _"]],
@@ -111,9 +113,6 @@ def set_normalisation(model: nn.Module, batches: Iterable[tuple[Tensor, Tensor]]
         layer.momentum = momentum
     if count == 0:
         raise ValueError("set_normalisation needs at least one batch.")
-
-
-PREFIX = "step-"
 
 
 class AveragedCheckpoints:

@@ -25,6 +25,9 @@ from stubborn.segmentation.unet import UNet
 ABOUT = """A {kind} ({parameters:,} parameters, {size_mb:.1f} MB) for images of {width} x {height} pixels and
 the categories of mpcat40. Its calibration was evaluated on the half of the houses to which it was not fitted. If the
 checkpoint was chosen by views of these houses as well, the mIoU is optimistic."""
+BACKGROUND = ("wall", "floor", "ceiling", "door", "window", "mirror", "shelving", "appliances", "lighting")
+"""Categories with columns of their own, in addition to the goals: objects are often confused with them."""
+DPI = 110
 
 
 @dataclass(frozen=True)
@@ -201,11 +204,6 @@ def _command(stage: Training) -> str:
         if value
     )
     return " ".join(["stubborn train segmentation", *options])
-
-
-BACKGROUND = ("wall", "floor", "ceiling", "door", "window", "mirror", "shelving", "appliances", "lighting")
-"""Categories with columns of their own, in addition to the goals: objects are often confused with them."""
-DPI = 110
 
 
 def draw_confusion(matrix: Int64[np.ndarray, "classes classes"], file: Path) -> None:

@@ -31,6 +31,12 @@ EXTRA_DOORS = {
     frozenset(("kitchen", "dining_room")): 0.8,
 }
 """Probability that two neighbouring rooms get a door, by their kinds."""
+WIDTH_M = (3.6, 7.5)
+"""Smallest and largest width of the block along the corridor."""
+DIVISIONS = 8
+"""Divisions of the block that are drawn until the corridor ends at one that is not the kitchen."""
+DOOR_WALL_M = 1.199
+"""Smallest length of a common wall, to the middle of the walls at its ends, that has a door."""
 
 
 def draw_floor_plan(
@@ -163,15 +169,6 @@ def _add_loops(rng: np.random.Generator, draft: Draft) -> None:
             probability = EXTRA_DOORS.get(frozenset((draft.kinds[a], draft.kinds[b])), 0.0)
             if probability and draft.shared_m(a, b) > 1.6 and rng.random() < probability:
                 draft.join(a, b, "door")
-
-
-WIDTH_M = (3.6, 7.5)
-"""Smallest and largest width of the block along the corridor."""
-
-DIVISIONS = 8
-"""Divisions of the block that are drawn until the corridor ends at one that is not the kitchen."""
-DOOR_WALL_M = 1.199
-"""Smallest length of a common wall, to the middle of the walls at its ends, that has a door."""
 
 
 def add_public_block(

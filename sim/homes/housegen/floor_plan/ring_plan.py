@@ -22,6 +22,8 @@ from sim.homes.housegen.floor_plan.rows import add_row, draw_length_m, with_stai
 
 COURT_M = 2.0
 """Distance of a wing from the row before it, whose rooms keep their windows."""
+PAIR_DEPTH_M = 4.4
+"""Depth from which a core has two rows of rooms back to back."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -173,10 +175,6 @@ def _add_rows(
             depths_m=(ring.wing_depth, ring.wing_depth), corridor_m=c,
         )  # fmt: skip
         add_wing(rng, draft, queue, wing, halls[n], scale, end_room=estate and rng.random() < 0.5)
-
-
-PAIR_DEPTH_M = 4.4
-"""Depth from which a core has two rows of rooms back to back."""
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,26 @@ FLAT_LAMPS = frozenset(("bathroom", "kitchen", "hallway", "stair_hall", "laundry
 """Rooms without a chandelier."""
 BESIDE_MIDDLE_M = ((0.0, 0.0), (0.8, 0.0), (-0.8, 0.0), (0.0, 0.8), (0.0, -0.8))
 """Places of a lamp from the middle of the ceiling, in the order in which they are tried."""
+PER_TOP, PER_TOP_M2, MAX_ON_TOP = 1.0, 4.0, 7
+"""Objects on a top at clutter 1: on any, more by its area in square metres, and the largest number."""
+FLOOR_PER_M2, MAX_ON_FLOOR = 0.3, 6
+"""Small objects on the floor of a room at clutter 1 by its area in square metres, and the largest number."""
+ON_FLOOR: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "hallway": ("shoes", "shoes", "bag"),
+        "bedroom": ("shoes", "bag", "flat", "toy", "box"),
+        "living_room": ("toy", "toy", "flat", "cable", "bag"),
+        "studio": ("shoes", "bag", "flat", "cable"),
+        "office": ("cable", "flat", "bag", "box"),
+        "closet": ("shoes", "shoes", "bag", "box"),
+        "laundry": ("box", "shoes"),
+        "gym": ("bag", "shoes"),
+        "dining_room": ("toy", "bag"),
+        "kitchen": ("box",),
+    }
+)
+"""Uses of the small objects on the floor by kind of room; a room has each at most as often as it is listed."""
+_FLAT_TRIES = 6
 
 
 class FurnishError(Exception):
@@ -111,28 +131,6 @@ def _hang_ceiling_lamps(layout: RoomLayout, source: FurnitureSource) -> None:
         for (dx, dy), design in itertools.product(BESIDE_MIDDLE_M, (lamp, *flatter)):
             if hang_from_ceiling(layout, design, x + dx, y + dy):
                 break
-
-
-PER_TOP, PER_TOP_M2, MAX_ON_TOP = 1.0, 4.0, 7
-"""Objects on a top at clutter 1: on any, more by its area in square metres, and the largest number."""
-FLOOR_PER_M2, MAX_ON_FLOOR = 0.3, 6
-"""Small objects on the floor of a room at clutter 1 by its area in square metres, and the largest number."""
-ON_FLOOR: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "hallway": ("shoes", "shoes", "bag"),
-        "bedroom": ("shoes", "bag", "flat", "toy", "box"),
-        "living_room": ("toy", "toy", "flat", "cable", "bag"),
-        "studio": ("shoes", "bag", "flat", "cable"),
-        "office": ("cable", "flat", "bag", "box"),
-        "closet": ("shoes", "shoes", "bag", "box"),
-        "laundry": ("box", "shoes"),
-        "gym": ("bag", "shoes"),
-        "dining_room": ("toy", "bag"),
-        "kitchen": ("box",),
-    }
-)
-"""Uses of the small objects on the floor by kind of room; a room has each at most as often as it is listed."""
-_FLAT_TRIES = 6
 
 
 def add_clutter(layout: RoomLayout, source: FurnitureSource) -> None:

@@ -17,6 +17,9 @@ from sim.homes.housegen.furniture.parts.leaves import Body, joined, tube
 from sim.homes.housegen.furniture.shapes import Ring, loft
 from sim.homes.housegen.furniture.workbench import Range, Workbench
 
+_SHARES = ((0.0, 0.55, 0.0), (0.28, 1.0, 0.25), (0.62, 0.6, -0.3), (1.0, 0.0, 0.35))
+"""Height and radius of the rings of a flame, as shares of its own, and how far they are shifted, in radii."""
+
 
 def _opening(w: Workbench, x: Range, half: float, z: Range, outer: float, top: float, look: Look) -> None:
     """Adds a block from x[0] to x[1] with a dark recess |y| < `half` between heights z.
@@ -231,10 +234,6 @@ STYLES = (
     Style("fireplace", "suspended", "heldout", suspended),
     Style("fireplace", "tiled_stove", "heldout", tiled_stove),
 )
-
-
-_SHARES = ((0.0, 0.55, 0.0), (0.28, 1.0, 0.25), (0.62, 0.6, -0.3), (1.0, 0.0, 0.35))
-"""Height and radius of the rings of a flame, as shares of its own, and how far they are shifted, in radii."""
 
 
 def flames(w: Workbench, x: float, z: float, tongues: Sequence[tuple[float, float, float]]) -> None:

@@ -39,6 +39,8 @@ _SHAPES = {
     "ellipsoid": mujoco.mjtGeom.mjGEOM_ELLIPSOID,
     "mesh": mujoco.mjtGeom.mjGEOM_MESH,
 }
+MESH_UNIT_M = 1e-3
+"""Mesh vertices are written as whole multiples of this length, which takes half the bytes of metres."""
 
 
 class HouseBuilder:
@@ -275,10 +277,6 @@ def _quat(euler_rad: tuple[float, float, float]) -> list[float]:
         cx * cy * sz + sx * sy * cz,
     )
     return [round(v, 6) + 0.0 for v in quat]
-
-
-MESH_UNIT_M = 1e-3
-"""Mesh vertices are written as whole multiples of this length, which takes half the bytes of metres."""
 
 
 class AssetTable:

@@ -24,10 +24,9 @@ FAMILIES: Mapping[str, type[Parameters]] = MappingProxyType(
 """The last two are held out: no agent may be developed or tuned on them."""
 HELD_OUT = tuple(name for name, family in FAMILIES.items() if family.held_out)
 """Names of the families that are held out."""
-
-
 VAL_SEEDS, TEST_SEEDS = range(5), range(5, 10)
 """Seeds of each family and difficulty. Seeds from 10 on are in no split: agents may be trained on their traps."""
+_OPEN = tuple(name for name in FAMILIES if name not in HELD_OUT)
 
 
 class TrapKey(NamedTuple):
@@ -46,7 +45,6 @@ def in_turns(families: Sequence[str], difficulties: Sequence[Difficulty], seeds:
                 yield TrapKey(family, difficulties[(turn + number) % len(difficulties)], seed)
 
 
-_OPEN = tuple(name for name in FAMILIES if name not in HELD_OUT)
 CONTACT_SPLITS: Mapping[str, tuple[TrapKey, ...]] = MappingProxyType(
     {
         "contact-val": tuple(in_turns(_OPEN, DIFFICULTIES, VAL_SEEDS)),
