@@ -209,7 +209,7 @@ def _hidden(standing: Sequence[Standing]) -> list[str]:
 
 
 def _rugs(standing: Sequence[Standing]) -> list[str]:
-    """Returns sentences on rugs at a fire, and on heavy furniture of which only a part stands on a rug."""
+    """Returns sentences on rugs at a fire, and on heavy furniture that stands only partly on a rug."""
     sentences = []
     for rug, item in itertools.product((item for item in standing if item.name == "rug"), standing):
         if abs(float(item.low[2] - rug.low[2])) > 0.1:
@@ -220,7 +220,7 @@ def _rugs(standing: Sequence[Standing]) -> list[str]:
         if is_heavy or item.name in _HALL_PIECES:
             share = _share_on_rug(rug, item)
             if ON_RUG_SHARES[0] < share < ON_RUG_SHARES[1]:
-                sentences.append(f"{item.label} stands with a part of its base on the rug {rug.label}")
+                sentences.append(f"{item.label} stands only partly on the rug {rug.label}")
     return sentences
 
 

@@ -42,15 +42,17 @@ def approach_on(
     pose: Pose,
     finder: ViewpointFinder,
     last_resort: LastResort,
+    *,
+    over_counters: bool = False,
 ) -> Approach | None:
     """Returns the approach to some candidates on a part of the map; its cell is relative to that part.
 
-    Returns None if they have no reachable viewpoint.
+    Returns None if they have no reachable viewpoint. For `last_resort` and `over_counters` see `ViewpointFinder.find`.
     """
     if not candidates.any():
         return None
     cells = nearest(candidates)
-    for viewpoints in finder.find(view, pose, cells, last_resort):
+    for viewpoints in finder.find(view, pose, cells, last_resort, over_counters=over_counters):
         approach = approach_to(view, viewpoints, cells.rows, cells.cols, pose, finder)
         if approach is not None:
             return approach

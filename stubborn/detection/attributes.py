@@ -216,9 +216,6 @@ class Attributes:
             result *= np.where(near, 1.0, np.where(well_seen, _SEEN_ALONE * undecided, undecided))
         if wish.size is not None:
             result *= self._size_factors(wish, tracks, candidates, result, undecided)
-        best = float(result.max(initial=0.0))
-        if late and 0.0 < best < AT_LAST:
-            result *= AT_LAST / best  # the house has the goal, and no better object was found
         return result.astype(np.float32)
 
     def _follow_merges(self, now: Int[np.ndarray, " numbers"]) -> None:

@@ -84,11 +84,7 @@ class PictureEvidence:
         """Returns the factor of a picture for each candidate; see `Attributes.factors`."""
         follow_merges(tracks.now(), self._own, self._around)
         undecided = AT_LAST if late else UNDECIDED
-        result = np.array([self._probability(goal, track, undecided) for track in candidates.tolist()])
-        best = float(result.max(initial=0.0))
-        if late and 0.0 < best < AT_LAST:
-            result *= AT_LAST / best  # the house has the object, and no better one was found
-        return result.astype(np.float32)
+        return np.array([self._probability(goal, track, undecided) for track in candidates.tolist()], np.float32)
 
     def _probability(self, goal: PictureGoal, track: int, undecided: float) -> float:
         """Returns the probability that a track is the object of a picture."""

@@ -70,7 +70,7 @@ class Seeker(Protocol):
         ...
 
     def retry(self) -> None:
-        """Ends the waiting times of candidates that were set aside: collision marks have been removed."""
+        """Ends the waiting times of candidates: nothing new was seen for long, and collision marks were removed."""
         ...
 
 

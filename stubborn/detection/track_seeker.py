@@ -75,6 +75,8 @@ class TrackSeekerConfig:
             )
         if self.counter_m < 0.0:
             raise ConfigError(f"TrackSeekerConfig.counter_m must be >= 0 m, got {self.counter_m}.")
+        if not 0.0 <= self.late_share <= 1.0:
+            raise ConfigError(f"TrackSeekerConfig.late_share must be in [0, 1], got {self.late_share}.")
         if self.near_best_m <= 0.0:
             raise ConfigError(f"TrackSeekerConfig.near_best_m must be > 0 m, got {self.near_best_m}.")
         if self.most_pushes < 1:
@@ -237,7 +239,8 @@ class TrackSeeker:
         attributes, picture = self.attributes, None if self.wished is None else self.wished.picture
         if picture is not None and self.pictured is not None:
             candidates = np.flatnonzero(probability >= self.config.look.visit)
-            probability[candidates] *= self.pictured.factors(picture, tracks, candidates, self._is_late)
+            factors = self.pictured.factors(picture, tracks, candidates, self._is_late)
+            probability[candidates] = self._weighed(probability[candidates], factors)
         if wish is None or attributes is None:
             return probability
         probability = np.minimum(probability, np.float32(1.0))
@@ -246,11 +249,20 @@ class TrackSeeker:
         candidates = candidates[probability[candidates] >= self.config.look.visit]
         if candidates.size:
             well_seen = np.array([bool(tracks.evidence.near_sectors(track).any()) for track in candidates.tolist()])
-            probability[candidates] *= attributes.factors(wish, tracks, candidates, self._is_late, well_seen)
-            best = float(probability[candidates].max())
-            if self.verdicts.exact and self._is_late and 0.0 < best < AT_LAST:
-                probability[candidates] *= AT_LAST / best  # its names are certain, and no better object was found
+            factors = attributes.factors(wish, tracks, candidates, self._is_late, well_seen)
+            probability[candidates] = self._weighed(probability[candidates], factors)
         return probability
+
+    def _weighed(
+        self, probability: Float32[np.ndarray, " n"], factors: Float32[np.ndarray, " n"]
+    ) -> Float32[np.ndarray, " n"]:
+        """Returns probabilities times the factors of conditions; late, those of the best object count as `AT_LAST`.
+
+        The house has the goal, and no better object was found. If names are certain, so is then the whole probability.
+        """
+        if not self._is_late:
+            return probability * factors
+        return _raised(probability * factors) if self.verdicts.exact else probability * _raised(factors)
 
     @property
     def _is_late(self) -> bool:
@@ -474,8 +486,9 @@ class TrackSeeker:
     ) -> Approach | None:
         """Returns the approach to some cells, on the local window if that is enough, else on the whole map."""
         for part in (window, self._known(navmap)):
-            last = resort if part is not window else LastResort.NONE
-            approach = approach_on(navmap.view(part), cells[part.index], pose, self.finder, last)
+            whole = part is not window  # what does in place of a viewpoint does so only if the whole map has none
+            last, view = resort if whole else LastResort.NONE, navmap.view(part)
+            approach = approach_on(view, cells[part.index], pose, self.finder, last, over_counters=whole)
             if approach is not None:
                 return on_map(approach, part)
         return None
@@ -579,3 +592,9 @@ class TrackSeeker:
     def _of_episode(self) -> Tracks:
         assert self.tracks is not None, "observe comes first"
         return self.tracks
+
+
+def _raised(values: Float32[np.ndarray, " n"]) -> Float32[np.ndarray, " n"]:
+    """Returns values in the same ratios, of which the largest is at least `AT_LAST` unless all are 0."""
+    best = float(values.max(initial=0.0))
+    return values * np.float32(AT_LAST / best) if 0.0 < best < AT_LAST else values

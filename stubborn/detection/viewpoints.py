@@ -68,16 +68,29 @@ class ViewpointFinder:
         self.target_edge_m = target_edge_m
         self.counter_m = counter_m
 
-    def find(self, view: NavMap, pose: Pose, nearest: NearestCells, last_resort: LastResort) -> Iterator[Viewpoints]:
+    def find(
+        self,
+        view: NavMap,
+        pose: Pose,
+        nearest: NearestCells,
+        last_resort: LastResort,
+        *,
+        over_counters: bool = False,
+    ) -> Iterator[Viewpoints]:
         """Yields viewpoints from the best kind to the last resort.
 
-        `nearest` holds, for each cell of the view, the distance and the place of the nearest candidate cell.
+        Args:
+            view: a part of the map.
+            pose: pose of the robot.
+            nearest: for each cell of the view, the distance and the place of the nearest candidate cell.
+            last_resort: the use of the nearest reachable place.
+            over_counters: also yield viewpoints over the edge of a counter, before the last resort; see `counter_m`.
         """
         gap_m = nearest.gap_cells * np.float32(view.frame.cell_m)
         unseen = self.planner.unseen(view)
         free_spaces: dict[CollisionLayer, FreeSpace] = {}
-        for over_counters in (False, True) if self.counter_m > 0.0 else (False,):
-            in_sight = self.in_sight(view, gap_m, nearest, self.distances.viewpoints_m[-1], over_counters=over_counters)
+        for over in (False, True) if over_counters and self.counter_m > 0.0 else (False,):
+            in_sight = self.in_sight(view, gap_m, nearest, self.distances.viewpoints_m[-1], over_counters=over)
             for within_m, layer in self.distances.tried_on(self.layers):
                 if layer not in free_spaces:
                     free_spaces[layer] = self.planner.free_space(view, pose, layer, unseen)

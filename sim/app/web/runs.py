@@ -130,7 +130,7 @@ class Runs:
             ConfigError: there is no such run, or a file cannot be read.
         """
         folder = self._folder_of(name)
-        packed = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the last part
+        packed = tempfile.TemporaryFile()  # noqa: SIM115 - closed when the response drops it
         try:
             # Its large files are compressed already.
             with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED, strict_timestamps=False) as archive:

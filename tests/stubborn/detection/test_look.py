@@ -208,6 +208,8 @@ def test_what_stands_on_a_counter_is_seen_over_its_edge_but_only_from_the_side_f
     distances = StopDistances.of(TargetConfig(), SuccessRule(), SegmenterSpec())
     finder = ViewpointFinder(PLANNER, BOTH_LAYERS, distances, 0.08, counter_m)
     x_m, y_m = (float(v) for v in navmap.frame.centres(30, 40))
-    kinds = list(finder.find(navmap, Pose(x_m, y_m, 0.0), nearest(target), LastResort.NONE))
+    pose, cells = Pose(x_m, y_m, 0.0), nearest(target)
+    assert not list(finder.find(navmap, pose, cells, LastResort.NONE))
+    kinds = list(finder.find(navmap, pose, cells, LastResort.NONE, over_counters=True))
     assert bool(kinds) == found
     assert all(kind.near_enough and np.nonzero(kind.cells)[1].max() < 60 for kind in kinds)

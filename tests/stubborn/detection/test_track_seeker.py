@@ -263,7 +263,7 @@ def test_late_or_with_nothing_new_to_see_the_best_object_of_certain_names_passes
     if nothing_new:
         seeker.retry()
     monkeypatch.setattr(seeker.attributes, "name_shares", lambda _, of, names: np.full(len(of), 0.8 * (names == BED)))
-    monkeypatch.setattr(seeker.attributes, "factors", lambda wish, _, of, *rest: np.full(len(of), 0.3))
+    monkeypatch.setattr(seeker.attributes, "factors", lambda wish, _, of, *rest: np.full(len(of), 0.3, np.float32))
     monkeypatch.setattr(tracks, "probabilities", lambda *_: np.eye(tracks.count + 1, dtype=np.float32)[track])
     probability = seeker._probabilities(tracks, parse_wish("the red bed"))
     assert probability[track] == pytest.approx(expected)
