@@ -196,7 +196,10 @@ class World:
         return self.config.motion == "contacts"
 
     def _glide(self, action: Action) -> Motion:
-        """Performs one action without physics, over the free space as it was at the first one on a storey."""
+        """Performs one action without physics, over the free space as it was at the first one on a storey.
+
+        The state is then that of a body at rest, which the sensor `imu` reads.
+        """
         pose, rise_m = self.pose, self.body_pose.rise_m
         if pose.floor_z_m not in self._glides:
             self._glides[pose.floor_z_m] = Glide(self.free_space(pose.floor_z_m))
@@ -204,6 +207,7 @@ class World:
         after, motion = performed(glide, pose, action, self.config.drive, sliding=sliding)
         self._body.place(after.x_m, after.y_m, after.floor_z_m + rise_m, after.yaw_rad)
         mujoco.mj_forward(self.model, self.data)
+        self.data.qacc[:] = 0.0  # those of wheels inside a rug, and of a body above the floor
         return motion
 
     def _checked(self, motion: Motion, z_before: float) -> Motion:

@@ -7,8 +7,11 @@ from sim.core.geometry.pose import Pose
 from sim.core.interface import Action
 from sim.robot.config import MotionKind, RobotConfig
 from sim.robot.velocity import Velocity
+from sim.sensors.measured import ImuSensor
+from sim.sensors.sensor import SensorContext
 from sim.world.world import World
 from tests.helpers.worlds import room
+from tools.research.lean_tables import add_box
 
 REACH_M = 2.0 - RobotConfig().model.radius_m
 """How far from the middle of a room of 4 x 4 m the middle of the robot can be."""
@@ -37,6 +40,20 @@ def test_a_wall_ends_a_motion_or_deflects_it() -> None:
     assert stopped.pose.xy_m == pytest.approx((REACH_M, 0.05 * math.tan(math.radians(30.0))), abs=0.03)
     assert slid.pose.xy_m == pytest.approx((REACH_M, 0.125), abs=0.03)
     assert slid.pose.yaw_rad == pytest.approx(start.yaw_rad)
+
+
+@pytest.mark.parametrize("motion", ["no-sliding", "sliding"])
+def test_without_physics_the_body_rests_at_each_place(motion: MotionKind) -> None:
+    """Wheels that overlap a rug push hard, but nothing moves: agents level their images by this sensor."""
+    house = room(4, 4)
+    add_box(house.spec, "floor_01", (1.0, 0.0, 0.006), (0.5, 1.0, 0.006))
+    world = World(house, robot=RobotConfig(motion=motion))
+    world.reset(Pose(0.0, 0.0, 0.0))
+    sensor = ImuSensor()
+    for action in (Action.MOVE_FORWARD, Action.MOVE_FORWARD, Action.TURN_LEFT, Action.MOVE_FORWARD):
+        world.move(action)
+        reading = sensor.read(SensorContext(sensor, {}, model=world.model, data=world.data))
+        assert reading == pytest.approx([0.0, 0.0, 9.81, 0.0, 0.0, 0.0], abs=0.05)
 
 
 def test_velocities_need_physics() -> None:
