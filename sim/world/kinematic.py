@@ -22,6 +22,8 @@ from sim.world.freespace import FreeSpace
 
 STEP_M = 0.005
 """Length of the pieces in which a motion is tried."""
+SMOOTH_CELLS = 2.0
+"""Standard deviation of the filter that takes the steps of cells out of the outline's direction."""
 BLOCKED_M = 1e-5
 """A motion that is shorter than commanded by more than this was blocked, as Habitat counts collisions."""
 
@@ -35,7 +37,8 @@ class Glide:
         inside = cv2.distanceTransform(free, cv2.DIST_L2, 5)
         outside = cv2.distanceTransform(1 - free, cv2.DIST_L2, 5)
         self._depth: NDArray[np.float32] = np.where(free, inside - 0.5, 0.5 - outside).astype(np.float32)  # in cells
-        smooth = cv2.GaussianBlur(self._depth, (5, 5), 0.0)
+        smooth = cv2.GaussianBlur(self._depth, (0, 0), SMOOTH_CELLS)
+        self._outward_m = [share * space.frame.cell_m for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
         self._uphill = np.stack(np.gradient(smooth)[::-1], axis=-1)  # (rows, cols, 2): x and y, away from obstacles
 
     def try_step(
@@ -54,13 +57,25 @@ class Glide:
                 continue
             if not sliding:
                 break
-            nx, ny = self._away_from_obstacle(x, y)
-            into = min(0.0, dx * nx + dy * ny)
-            sx, sy = dx - into * nx, dy - into * ny
-            if not self._is_allowed(x, y, x + sx, y + sy):
+            beside = self._beside(x, y, dx, dy)
+            if beside is None:
                 break
-            x, y = x + sx, y + sy
+            x, y = beside
         return x, y
+
+    def _beside(self, x: float, y: float, dx: float, dy: float) -> tuple[float, float] | None:
+        """Returns where a blocked piece of a motion ends that slides along the obstacle; None: it is blocked there too.
+
+        The outline of the free space has steps, since it consists of cells; the disc is moved around each.
+        """
+        nx, ny = self._away_from_obstacle(x, y)
+        into = min(0.0, dx * nx + dy * ny)
+        along_x, along_y = x + dx - into * nx, y + dy - into * ny
+        for out_m in self._outward_m:
+            end = along_x + out_m * nx, along_y + out_m * ny
+            if self._is_allowed(x, y, *end):
+                return end
+        return None
 
     def _is_allowed(self, x0_m: float, y0_m: float, x1_m: float, y1_m: float) -> bool:
         """Returns whether a piece ends on a free cell, or leads out of an obstacle in which it began."""

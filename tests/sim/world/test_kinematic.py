@@ -42,6 +42,24 @@ def test_a_wall_ends_a_motion_or_deflects_it() -> None:
     assert slid.pose.yaw_rad == pytest.approx(start.yaw_rad)
 
 
+@pytest.mark.parametrize("hit_deg", [30.0, 75.0])
+@pytest.mark.parametrize("wall_deg", [7.0, 20.0, 45.0])
+def test_the_robot_slides_along_walls_of_all_directions(wall_deg: float, hit_deg: float) -> None:
+    """The outline of free space that consists of cells has steps along a wall that is oblique to them."""
+    angle_rad = math.radians(wall_deg)
+    along, across = (math.cos(angle_rad), math.sin(angle_rad)), (-math.sin(angle_rad), math.cos(angle_rad))
+    house = room(10, 10)
+    add_box(house.spec, "wall_99", (0.0, 0.0, 0.5), (4.0, 0.05, 0.5))
+    house.spec.geom("wall_99").quat = (math.cos(angle_rad / 2), 0.0, 0.0, math.sin(angle_rad / 2))
+    x_m, y_m = (-1.5 * a - 0.3 * b for a, b in zip(along, across, strict=True))
+    world = World(house, robot=RobotConfig(motion="sliding"))
+    world.reset(Pose(x_m, y_m, angle_rad + math.radians(hit_deg)))
+    for _ in range(6):
+        world.move(Action.MOVE_FORWARD)
+    slid_m = (world.pose.x_m - x_m) * along[0] + (world.pose.y_m - y_m) * along[1]
+    assert slid_m == pytest.approx(6 * 0.25 * math.cos(math.radians(hit_deg)), rel=0.1)
+
+
 @pytest.mark.parametrize("motion", ["no-sliding", "sliding"])
 def test_without_physics_the_body_rests_at_each_place(motion: MotionKind) -> None:
     """Wheels that overlap a rug push hard, but nothing moves: agents level their images by this sensor."""
