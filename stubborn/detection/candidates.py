@@ -25,8 +25,6 @@ class CandidateParts:
     """Number of the candidate that a cell belongs to; 0: no candidate."""
     count: int
     """Candidates have the numbers 1 to `count`."""
-    touches_rejected: Bool[np.ndarray, " numbers"]
-    """True for the number of a candidate next to a rejected object or its margin; entry 0 is False."""
 
     @classmethod
     def of(cls, view: NavMap, candidate_score: float, least_cells: int) -> CandidateParts:
@@ -34,7 +32,7 @@ class CandidateParts:
         shown = view.score_max > candidate_score
         unrejected = shown & ~view.rejected
         if not unrejected.any():
-            return cls(np.zeros(shown.shape, np.intp), 0, np.zeros(1, np.bool_))
+            return cls(np.zeros(shown.shape, np.intp), 0)
         objects, _ = numbered_parts(_grown(shown))  # pieces of one outline, with gaps between them
         parts, areas = numbered_parts(unrejected)
         rejected_cells = np.bincount(objects[shown & view.rejected], minlength=int(objects.max()) + 1)
@@ -42,9 +40,8 @@ class CandidateParts:
         object_of[parts[unrejected]] = objects[unrejected]
         counts = (areas >= least_cells) & (areas > rejected_cells[object_of])
         counts[0] = False  # the background
-        adjacent = np.bincount(parts[_grown(view.rejected)], minlength=len(areas)) > 0
         number = np.where(counts, np.cumsum(counts), 0)
-        return cls(number[parts], int(counts.sum()), np.append(False, adjacent[counts]))
+        return cls(number[parts], int(counts.sum()))
 
     @property
     def mask(self) -> Bool[np.ndarray, "rows cols"]:

@@ -39,9 +39,6 @@ class TargetConfig:
     """Cells within this distance of rejected cells are rejected too."""
     verify_until_step: int = 200
     """A candidate first found later is not verified: no time is left to look elsewhere."""
-    verify_late_fragments: bool = True
-    """A late candidate is verified after all if it touches a rejected object, because it may be another part of it. The
-    paper does not verify it."""
     retry_after_steps: int = 15
     """A candidate that could not be reached is tried again after this many steps of exploration, then after twice as
     many, and so on."""

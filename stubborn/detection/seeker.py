@@ -264,8 +264,7 @@ class TargetSeeker:
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
         """Verifies the candidate at a map cell; a rejected one never counts again in this episode.
 
-        Returns False without a candidate. A late candidate is accepted without verification, unless it touches a
-        rejected object (`TargetConfig.verify_late_fragments`).
+        Returns False without a candidate. A late candidate is accepted without verification.
         """
         whole = self._known(navmap)
         view, parts = navmap.view(whole), self.parts(navmap)
@@ -277,8 +276,7 @@ class TargetSeeker:
         best = _seen_best(view, instance)
         features = features_of(view, best)
         found_late = bool((view.found_step[instance] > self.config.verify_until_step).all())
-        is_fragment = self.config.verify_late_fragments and bool(parts.touches_rejected[number])
-        if (found_late and not is_fragment) or self.verifier.accepts(self.goal, features):
+        if found_late or self.verifier.accepts(self.goal, features):
             self.confidence = self._rated(features)
             row, col = divmod(best, view.frame.shape[1])
             self.accepted_cell = row + whole.rows.start, col + whole.cols.start

@@ -436,15 +436,14 @@ def test_a_candidate_first_found_after_step_200_is_not_verified():
     assert seeker(refuse).judge(navmap, (22, 44)) is False
 
 
-@pytest.mark.parametrize("verified", [True, False])
-def test_a_late_candidate_that_touches_a_rejected_object_is_verified_if_the_config_says_so(verified: bool):
+def test_a_late_candidate_is_not_verified_beside_a_rejected_object_either():
     navmap, _ = known(text_of(room(R=(30, 10))))
     navmap.score_max[20:25, 40:50] = 0.9
     navmap.found_step[20:25, 40:50] = 201
     navmap.rejected[20:25, 38:40] = True  # next to the candidate
     refuse = RefuseAll()
-    assert seeker(refuse, verify_late_fragments=verified).judge(navmap, (22, 44)) is not verified
-    assert len(refuse.asked) == verified
+    assert seeker(refuse).judge(navmap, (22, 44)) is True
+    assert refuse.asked == []
 
 
 def test_reset_forgets_deferred_candidates_and_their_waiting_times():
