@@ -608,6 +608,20 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _ROBOT,
         f"{_RUN} --robot {{tmp}}/r/carrier.xml {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/run",
     ),
+    # docs/differences.md
+    f"{_RUN} --agent stubborn --split val --episodes 120 --out runs/default": (
+        f"{_RUN} --agent stubborn --split val --episodes 1 --config task.max_steps=3 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --agent stubborn --split val --episodes 120 --config agent.target.least_cells=1"
+    " agent.mapping.rim_px=0 --out runs/paper_way": (
+        f"{_RUN} --agent stubborn --split val --episodes 1 --config agent.target.least_cells=1 agent.mapping.rim_px=0"
+        " task.max_steps=3 --out {tmp}/run",
+    ),
+    "stubborn compare runs/default runs/paper_way": _COMPARED,
+    # docs/motions.md
+    "stubborn reproduce motions --semantics gt --split val --episodes 100 --workers 2": (
+        "stubborn reproduce motions --agents oracle 'oracle --motion sliding' --episodes 1 --out {tmp}/paper",
+    ),
     "stubborn reproduce splits --episodes 100 --agents stubborn stubborn-plus oracle": (
         "stubborn reproduce splits --agents random oracle --episodes 1 --out {tmp}/paper",
     ),

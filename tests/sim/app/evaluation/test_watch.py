@@ -16,7 +16,7 @@ def test_a_signal_during_a_call_of_c_ends_the_run(raised: type[BaseException], s
             raise raised
 
     function = ctypes.CDLL(None).abs
-    function.argtypes = [Number]
+    function.argtypes = [Number]  # pyright: ignore[reportAttributeAccessIssue]
     with pytest.raises(ctypes.ArgumentError) as caught:
         function(1)
     assert is_stop(caught.value) is stops
