@@ -620,7 +620,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn compare runs/default runs/paper_way": _COMPARED,
     # docs/motions.md
     "stubborn reproduce motions --semantics gt --split val --episodes 100 --workers 2": (
-        "stubborn reproduce motions --agents oracle 'oracle --motion sliding' --episodes 1 --out {tmp}/paper",
+        "stubborn reproduce motions --semantics gt --split val --agents oracle 'oracle --motion sliding' --episodes 1"
+        " --workers 1 --out {tmp}/paper",
     ),
     "stubborn reproduce splits --episodes 100 --agents stubborn stubborn-plus oracle": (
         "stubborn reproduce splits --agents random oracle --episodes 1 --out {tmp}/paper",
