@@ -11,6 +11,7 @@ the command writes is an `OutFile` or `OutFolder`, and is refused before any wor
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import dataclasses
 import io
 import math
@@ -65,6 +66,19 @@ class Terminated(KeyboardInterrupt):
     """SIGTERM: ends the command like Ctrl-C, so that its workers end and its unfinished files are removed."""
 
 
+_STOPS = {KeyboardInterrupt.__name__, Terminated.__name__}
+
+
+def is_stop(error: BaseException) -> bool:
+    """Returns whether an error is Ctrl-C or SIGTERM.
+
+    One that arrives while a call of C converts its arguments, as calls of OpenGL do, is hidden in the error of ctypes:
+    "argument 1: Terminated: ".
+    """
+    hidden = isinstance(error, ctypes.ArgumentError) and not _STOPS.isdisjoint(str(error).split(": "))
+    return hidden or isinstance(error, KeyboardInterrupt)
+
+
 def chosen(text: str, names: Iterable[str], *, option: str) -> list[str]:
     """Returns the names of a comma-separated option, in the order of `names`.
 
@@ -109,9 +123,11 @@ def run(
             return _refused(f"{names or 'A file'} cannot be read or written: {reason_of(error)}.")
         except MemoryError:
             return _refused("There is not enough memory for this.")
-        except KeyboardInterrupt as stop:
+        except (KeyboardInterrupt, ctypes.ArgumentError) as stop:
+            if not is_stop(stop):
+                raise
             print(f"\n{stopped}", file=sys.stderr)
-            return 143 if isinstance(stop, Terminated) else 130
+            return 143 if Terminated.__name__ in (type(stop).__name__, *str(stop).split(": ")) else 130
 
 
 def leave_soon(status: int) -> int:

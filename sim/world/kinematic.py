@@ -38,8 +38,8 @@ class Glide:
         outside = cv2.distanceTransform(1 - free, cv2.DIST_L2, 5)
         self._depth: NDArray[np.float32] = np.where(free, inside - 0.5, 0.5 - outside).astype(np.float32)  # in cells
         smooth = cv2.GaussianBlur(self._depth, (0, 0), SMOOTH_CELLS)
-        self._outward_m = [share * space.frame.cell_m for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
         self._uphill = np.stack(np.gradient(smooth)[::-1], axis=-1)  # (rows, cols, 2): x and y, away from obstacles
+        self._outward_m = [share * space.frame.cell_m for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
 
     def try_step(
         self, start_xy_m: tuple[float, float], end_xy_m: tuple[float, float], *, sliding: bool

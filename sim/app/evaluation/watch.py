@@ -8,10 +8,11 @@ may loop in C or have stopped the process.
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import time
 from collections.abc import Callable, Iterator, MutableSequence
 from multiprocessing.context import SpawnContext
+
+from sim.app import cli
 
 Steps = Callable[[], int | None]
 """Returns the number of steps of a running episode so far; None: not known in this process."""
@@ -23,9 +24,6 @@ BETWEEN_CALLS_S = 1800.0
 """Longest time without a call, in which houses are loaded and kernels are compiled."""
 FACTORY_S = 120.0
 """Smallest time limit for the factory of an agent, which loads weights; `--step-timeout` may be shorter."""
-
-_STOPS = ("KeyboardInterrupt", "Terminated")
-"""The types of the errors that end a run."""
 
 
 class Calls:
@@ -105,12 +103,8 @@ def counted_steps() -> int:
 
 
 def is_stop(error: BaseException) -> bool:
-    """Returns whether an error is Ctrl-C or SIGTERM; False in a worker, where only a user's code can raise it.
-
-    A signal during a call of OpenGL arrives as the error of ctypes, whose text begins with the type of the first one.
-    """
-    hidden = isinstance(error, ctypes.ArgumentError) and any(name in str(error) for name in _STOPS)
-    return (hidden or isinstance(error, KeyboardInterrupt)) and _calls is None
+    """Returns whether an error is Ctrl-C or SIGTERM; False in a worker, where only a user's code can raise it."""
+    return _calls is None and cli.is_stop(error)
 
 
 @contextlib.contextmanager
