@@ -4,6 +4,10 @@
     python -m pytest -p pytest_benchmark.plugin tools/benchmarks/test_speed.py -k step --benchmark-cprofile=cumtime
     python -m pytest -p pytest_benchmark.plugin tools/benchmarks/test_speed.py --benchmark-json=runs/bench.json
 
+With a checkout of https://github.com/allenai/molmospaces and the package lxml on PYTHONPATH, its renderer takes part:
+
+    PYTHONPATH=molmospaces python -m pytest -p pytest_benchmark.plugin tools/benchmarks/test_speed.py -k images
+
 `--benchmark-cprofile=cumtime` shows the stages of a step. To compare two commits, run each with `--benchmark-autosave`;
 `pytest-benchmark compare` then shows both. Other work on the machine changes the times, so run them in turns.
 """
@@ -11,19 +15,22 @@
 from __future__ import annotations
 
 import itertools
+import math
 import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import gymnasium
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from sim.app.commands.bench import PlainRenderer, free_poses, make_agent, make_env
+from sim.app.commands.bench import PlainRenderer, default_quality, free_poses, make_agent, make_env
+from sim.core.geometry.pose import Pose
 from sim.core.interface import MOVES as EVERY_MOVE
 from sim.core.interface import Action, CameraModel
 from sim.core.paths import CACHE_VARIABLE
@@ -49,18 +56,52 @@ SMALL = CameraModel(width_px=128, height_px=96)
 VIEWS = 30
 
 
-@pytest.mark.parametrize("renderer", ["ours", "plain"])
+class MolmoSpacesRenderer:
+    """The OpenGL renderer of MolmoSpaces, called as its environment calls it: one update and one pass per image.
+
+    Args:
+        world: house and robot; its model is not changed.
+    """
+
+    def __init__(self, world: World) -> None:
+        rendering = pytest.importorskip("molmo_spaces.renderer.opengl_rendering")
+        camera, self._model = CameraModel(), default_quality(world.model)
+        self._height_m = camera.height_m
+        self._renderer = rendering.MjOpenGLRenderer(model=self._model, width=camera.width_px, height=camera.height_px)
+        self._data = mujoco.MjData(self._model)
+        mujoco.mj_forward(self._model, self._data)
+
+    def render(self, pose: Pose, sensors: Sequence[str]) -> dict[str, NDArray[np.generic]]:
+        """Returns one image for each of `rgb`, `depth` and `semantic` (here geom, type and body ids)."""
+        images = {}
+        for sensor in sensors:
+            self._renderer.update(self._data, mujoco.MjvCamera())
+            for eye in self._renderer.scene.camera:
+                eye.pos = pose.x_m, pose.y_m, self._height_m
+                eye.forward = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), 0.0
+                eye.up = 0.0, 0.0, 1.0
+            if sensor == "depth":
+                self._renderer.enable_depth_rendering()
+            elif sensor == "semantic":
+                self._renderer.enable_segmentation_rendering()
+            images[sensor] = self._renderer.render()
+            self._renderer.disable_depth_rendering()
+            self._renderer.disable_segmentation_rendering()
+        return images
+
+
+@pytest.mark.parametrize("renderer", ["ours", "plain", "molmospaces"])
 @pytest.mark.parametrize("name", IMAGES)
 def test_images(benchmark: BenchmarkFixture, name: str, renderer: str) -> None:
-    """A frame of our camera, and of `mujoco.Renderer` at its default quality, at the same poses."""
+    """A frame of our camera, of `mujoco.Renderer` and of MolmoSpaces' renderer, at the same poses."""
     benchmark.group = name
     split, sensors = load_split("val"), IMAGES[name]
     world = World(split.load_house(split.houses[0]))
     poses = itertools.cycle(free_poses(world, 20, np.random.default_rng(0)))
     mujoco.mj_forward(world.model, world.data)
-    if renderer == "plain":
-        plain = PlainRenderer(world)
-        benchmark(lambda: plain.render(next(poses), sensors))
+    if renderer != "ours":
+        other = PlainRenderer(world) if renderer == "plain" else MolmoSpacesRenderer(world)
+        benchmark(lambda: other.render(next(poses), sensors))
         return
     camera = Camera(world.model, world.labels, profile="fast")
     benchmark(lambda: camera.render(world.data, next(poses), sensors))

@@ -107,15 +107,8 @@ class PlainRenderer:
     """
 
     def __init__(self, world: World) -> None:
-        camera = CameraModel()
+        camera, model = CameraModel(), default_quality(world.model)
         self._height_m = camera.height_m
-        self._model = model = copy.copy(world.model)
-        default = mujoco.MjSpec().visual.quality
-        for name in ("offsamples", "numslices", "numstacks", "numquads", "shadowsize"):
-            setattr(model.vis.quality, name, getattr(default, name))
-        model.stat.extent, model.vis.map.znear, model.vis.map.zfar = 1.0, Z_NEAR_M, Z_FAR_M
-        model.vis.global_.offwidth, model.vis.global_.offheight = camera.width_px, camera.height_px
-        model.vis.global_.fovy = math.degrees(camera.vfov_rad)
         self._renderer = mujoco.Renderer(model, camera.height_px, camera.width_px)
         self._option = mujoco.MjvOption()
         self._option.geomgroup[:] = 0
@@ -144,6 +137,17 @@ class PlainRenderer:
     def close(self) -> None:
         """Frees the renderer."""
         self._renderer.close()
+
+
+def default_quality(model: mujoco.MjModel) -> mujoco.MjModel:
+    """Returns a copy of a model with MuJoCo's quality of rendering, and the field of view of our robot's camera."""
+    model, camera, default = copy.copy(model), CameraModel(), mujoco.MjSpec().visual.quality
+    for name in ("offsamples", "numslices", "numstacks", "numquads", "shadowsize"):
+        setattr(model.vis.quality, name, getattr(default, name))
+    model.stat.extent, model.vis.map.znear, model.vis.map.zfar = 1.0, Z_NEAR_M, Z_FAR_M
+    model.vis.global_.offwidth, model.vis.global_.offheight = camera.width_px, camera.height_px
+    model.vis.global_.fovy = math.degrees(camera.vfov_rad)
+    return model
 
 
 def free_poses(world: World, count: int, rng: np.random.Generator) -> list[Pose]:
