@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import cv2
@@ -22,6 +22,8 @@ from stubborn.segmentation.rednet import CLASSES
 GOAL_CHANNELS = np.array([MPCAT40_ID[name] - 1 for name in GOAL_CATEGORIES])
 """Output channels of the goal categories."""
 RELIABILITY_BINS = 10
+DRAWS = 1000
+"""Number of draws of houses for an interval."""
 SLIVER_PX = 24
 """A sliver at an edge of the image extends less than this from the edge, in pixels of the 640 x 480 image."""
 
@@ -63,6 +65,49 @@ class Iou:
             float(np.mean(list(by_category.values()))) if by_category else math.nan,
             float(right.sum() / max(1, truth.sum())),
         )
+
+
+@dataclass
+class Confusions:
+    """Confusion matrices of the views of each house, for the interval of the mIoU over houses."""
+
+    matrices: dict[tuple[str, str], Int64[np.ndarray, "classes classes"]] = field(default_factory=dict)
+    """By folder of views and house."""
+
+    def add(self, folder: str, house: str, matrix: Int64[np.ndarray, "classes classes"]) -> None:
+        """Adds a matrix; see `confusion`."""
+        key = folder, house
+        self.matrices[key] = self.matrices[key] + matrix if key in self.matrices else matrix
+
+    def of(self, folder: str | None = None) -> Int64[np.ndarray, "classes classes"]:
+        """Returns the sum of the matrices of one folder, or of all."""
+        return sum(self._by_house(folder).values(), np.zeros((CLASSES, CLASSES), np.int64))
+
+    def folders(self) -> list[str]:
+        """Returns the names of the folders in the order in which they came."""
+        return list(dict.fromkeys(folder for folder, _ in self.matrices))
+
+    def goals_text(self, folder: str | None = None) -> str:
+        """Returns the mIoU over the goal categories with its 95 % interval, such as `0.512 [0.470, 0.548]`.
+
+        The interval holds the 2.5th to the 97.5th percentile of `DRAWS` sets of as many houses, drawn with replacement.
+        There is none for one house.
+        """
+        houses = np.stack(list(self._by_house(folder).values()))
+        value = f"{Iou.of(houses.sum(axis=0)).goals:.3f}"
+        if len(houses) < 2:
+            return value
+        rng = np.random.default_rng(0)
+        draws = [houses[rng.integers(len(houses), size=len(houses))].sum(axis=0) for _ in range(DRAWS)]
+        low, high = np.nanquantile([Iou.of(matrix).goals for matrix in draws], (0.025, 0.975))
+        return f"{value} [{low:.3f}, {high:.3f}]"
+
+    def _by_house(self, folder: str | None) -> dict[str, Int64[np.ndarray, "classes classes"]]:
+        summed = dict[str, Int64[np.ndarray, "classes classes"]]()
+        for (name, house), matrix in self.matrices.items():
+            if folder in (None, name):
+                summed[house] = summed[house] + matrix if house in summed else matrix
+        return summed
 
 
 @dataclass

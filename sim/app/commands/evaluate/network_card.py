@@ -15,7 +15,7 @@ from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, ConfigError
 from sim.core.reading import convert
 from sim.training.figures import empty_figure
 from sim.training.segmentation.breakdown import Breakdown
-from sim.training.segmentation.evaluation import GOAL_CHANNELS, Iou, Reliability
+from sim.training.segmentation.evaluation import GOAL_CHANNELS, Confusions, Iou, Reliability
 from sim.training.segmentation.options import Args
 from sim.training.training_files import read_columns
 from stubborn.segmentation.calibration import Calibration
@@ -23,8 +23,9 @@ from stubborn.segmentation.networks import Network
 from stubborn.segmentation.unet import UNet
 
 ABOUT = """A {kind} ({parameters:,} parameters, {size_mb:.1f} MB) for images of {width} x {height} pixels and
-the categories of mpcat40. Its calibration was evaluated on the half of the houses to which it was not fitted. If the
-checkpoint was chosen by views of these houses as well, the mIoU is optimistic."""
+the categories of mpcat40. Brackets hold the 95 % interval over houses. The calibration was evaluated on the half of the
+houses to which it was not fitted. If the checkpoint was chosen by views of these houses as well, the mIoU is
+optimistic."""
 BACKGROUND = ("wall", "floor", "ceiling", "door", "window", "mirror", "shelving", "appliances", "lighting")
 """Categories with columns of their own, in addition to the goals: objects are often confused with them."""
 DPI = 110
@@ -59,13 +60,11 @@ class Measured:
 
     iou: Iou
     """Results of the network's own logits."""
-    calibrated: Iou
+    calibrated: Confusions
     """Results of calibrated logits, as the agent uses them; the fields below are of these too, except for `matrix`."""
     matrix: Int64[np.ndarray, "classes classes"]
     """Confusion matrix, see `sim.training.segmentation.evaluation.confusion`."""
     breakdown: Breakdown
-    by_folder: dict[str, float]
-    """Calibrated mIoU over the goal categories of each folder of views."""
     views: int
     before: Reliability
     """Reliability without a calibration, on the houses to which the calibration was not fitted."""
@@ -120,11 +119,11 @@ def _about(network: Evaluated, block_px: int) -> Iterable[str]:
 
 
 def _summary(network: Evaluated, measured: Measured, stages: Sequence[Training]) -> Iterable[str]:
-    iou, own = measured.calibrated, measured.iou
+    iou, own = Iou.of(measured.calibrated.of()), measured.iou
     yield "| | |\n|---|---|"
-    yield f"| mIoU, goal categories present, calibrated as agents use it | {iou.goals:.3f} |"
+    yield f"| mIoU, goal categories present, calibrated as agents use it | {measured.calibrated.goals_text()} |"
     yield f"| mIoU, goal categories present, without calibration | {own.goals:.3f} |"
-    yield from (f"| mIoU, views `{name}` | {value:.3f} |" for name, value in measured.by_folder.items())
+    yield from folder_lines(measured.calibrated)
     yield f"| mIoU, all categories present | {iou.everything:.3f} |"
     yield f"| pixel accuracy | {iou.accuracy:.3f} |"
     yield f"| pixel accuracy without calibration | {own.accuracy:.3f} |"
@@ -136,6 +135,12 @@ def _summary(network: Evaluated, measured: Measured, stages: Sequence[Training])
     yield ""
 
 
+def folder_lines(confusions: Confusions) -> Iterator[str]:
+    """Yields a line with the mIoU of each folder of views, Markdown, if there are several."""
+    names = confusions.folders()
+    yield from (f"| mIoU, views `{name}` | {confusions.goals_text(name)} |" for name in names if len(names) > 1)
+
+
 def training_text(stage: Training) -> str:
     """Returns the length of a training, its code, and whether its weights were averaged."""
     phrases = [f"{stage.step} steps", f"{stage.hours} h", *([] if stage.code is None else [stage.code])]
@@ -144,13 +149,13 @@ def training_text(stage: Training) -> str:
 
 
 def _categories(measured: Measured) -> Iterable[str]:
-    recall = measured.breakdown.found_by_category()
+    recall, iou = measured.breakdown.found_by_category(), Iou.of(measured.calibrated.of())
     yield "An object is a connected region of a category in a view; it is found if half of its pixels are right.\n"
     yield "| category | IoU | IoU without calibration | objects | found |\n|---|--:|--:|--:|--:|"
     for name in GOAL_CATEGORIES:
         if name in measured.iou.by_category:
             count, share = recall.get(name, (0, float("nan")))
-            calibrated, own = (iou.by_category[name] for iou in (measured.calibrated, measured.iou))
+            calibrated, own = (of.by_category[name] for of in (iou, measured.iou))
             yield f"| {name} | {calibrated:.3f} | {own:.3f} | {count} | {100 * share:.0f} % |"
     yield ""
 

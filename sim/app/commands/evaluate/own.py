@@ -15,7 +15,7 @@ import torch
 from jaxtyping import Float32, Int64
 from torch import Tensor
 
-from sim.app.commands.evaluate.network_card import distances_and_sizes
+from sim.app.commands.evaluate.network_card import distances_and_sizes, folder_lines
 from sim.app.composition.own_segmentation import OwnSegmenter, built, load_specification
 from sim.app.services.client import is_address
 from sim.app.services.remote import HttpConfig, HttpSegmenter
@@ -23,10 +23,9 @@ from sim.core.configuration import parse_assignments, with_fields
 from sim.core.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError, Observation
 from sim.training.segmentation.breakdown import Breakdown
 from sim.training.segmentation.dataset import LabelledView, list_shards, read_shard, spread_views, stored_block_px
-from sim.training.segmentation.evaluation import Iou, confusion
+from sim.training.segmentation.evaluation import Confusions, Iou, confusion
 from stubborn.segmentation.calibration import Calibration, fit_calibration
 from stubborn.segmentation.preprocess import shrink
-from stubborn.segmentation.rednet import CLASSES
 
 NO_GOAL = MPCAT40_ID["misc"] - 1
 """Channel of the pixels in which a segmenter that has only `scores` finds no goal category."""
@@ -48,11 +47,8 @@ class OwnMeasured:
     """The results of a user's segmentation."""
 
     name: str
-    matrix: Int64[np.ndarray, "classes classes"] = field(default_factory=lambda: np.zeros((CLASSES, CLASSES), np.int64))
-    """Confusion matrix, see `sim.training.segmentation.evaluation.confusion`."""
+    confusions: Confusions = field(default_factory=Confusions)
     breakdown: Breakdown = field(default_factory=Breakdown)
-    by_folder: dict[str, float] = field(default_factory=dict)
-    """mIoU over the goal categories of each folder of views."""
     frames_ms: list[float] = field(default_factory=list)
     """Time of each frame, milliseconds."""
     samples: dict[str, list[tuple[Float32[np.ndarray, "k classes"], Int64[np.ndarray, " k"]]]] = field(
@@ -78,7 +74,6 @@ def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Seque
     measured, segmenter = OwnMeasured(name), None
     shape: tuple[int, ...] = ()
     for folder in folders:
-        before = measured.matrix.copy()
         shards = list_shards(folder)
         block_px = stored_block_px(shards)
         views = spread_views(shards, count) if count else (view for shard in shards for view in read_shard(shard))
@@ -87,12 +82,11 @@ def measure_own(name: str, folders: Sequence[Path], *, count: int, config: Seque
                 shape = view.semantic.shape
                 camera = CameraModel(width_px=shape[1], height_px=shape[0])
                 segmenter = segmenter_for(name, camera, parse_assignments(config))
-            _add_view(measured, segmenter, view, block_px)
+            _add_view(measured, segmenter, folder.name, view, block_px)
             if isinstance(segmenter.inner, HttpSegmenter):
                 observation, channels = {"rgb": view.rgb, "depth": view.depth_m}, view.semantic.astype(np.int64) - 1
                 sample = segmenter.inner.samples(observation, channels)
                 measured.samples.setdefault(view.record["house"], []).append(sample)
-        measured.by_folder[folder.name] = Iou.of(measured.matrix - before).goals
     return measured
 
 
@@ -119,7 +113,7 @@ def segmenter_for(name: str, camera: CameraModel, settings: Mapping[str, object]
     return built(name, own, camera=camera, config=with_fields(_Settings(own.config), settings).detector)
 
 
-def _add_view(measured: OwnMeasured, segmenter: OwnSegmenter, view: LabelledView, block_px: int) -> None:
+def _add_view(measured: OwnMeasured, segmenter: OwnSegmenter, folder: str, view: LabelledView, block_px: int) -> None:
     began_s = time.perf_counter()
     channels = _channels(segmenter, {"rgb": view.rgb, "depth": view.depth_m})
     measured.frames_ms.append(1000.0 * (time.perf_counter() - began_s))
@@ -127,7 +121,8 @@ def _add_view(measured: OwnMeasured, segmenter: OwnSegmenter, view: LabelledView
     whole = channels.repeat(fraction, axis=0).repeat(fraction, axis=1).astype(np.uint8)
     coarser = max(1, GRID_PX // block_px)
     predicted, truth, depth_m = (shrink(image, coarser) for image in (whole, view.semantic, view.depth_m))
-    measured.matrix += confusion(predicted.astype(np.int64), truth.astype(np.int64) - 1)
+    matrix = confusion(predicted.astype(np.int64), truth.astype(np.int64) - 1)
+    measured.confusions.add(folder, view.record["house"], matrix)
     measured.breakdown.add(predicted.astype(np.int64), truth, depth_m, block_px * coarser)
 
 
@@ -179,10 +174,10 @@ def own_text(measured: OwnMeasured) -> str:
 
 
 def _lines(measured: OwnMeasured) -> Iterator[str]:
-    iou, recall = Iou.of(measured.matrix), measured.breakdown.found_by_category()
+    iou, recall = Iou.of(measured.confusions.of()), measured.breakdown.found_by_category()
     yield f"# {measured.name}\n\n| | |\n|---|---|"
-    yield f"| mIoU, goal categories present | {iou.goals:.3f} |"
-    yield from (f"| mIoU, views `{name}` | {value:.3f} |" for name, value in measured.by_folder.items())
+    yield f"| mIoU, goal categories present | {measured.confusions.goals_text()} |"
+    yield from folder_lines(measured.confusions)
     yield f"| pixel accuracy | {iou.accuracy:.3f} |"
     yield f"| number of views | {len(measured.frames_ms)} |"
     yield f"| time per frame | {float(np.median(measured.frames_ms)):.0f} ms |\n"

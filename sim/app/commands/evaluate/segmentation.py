@@ -18,7 +18,7 @@ import itertools
 import json
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -36,7 +36,7 @@ from sim.core.files import write_atomically
 from sim.core.interface import CameraModel, ConfigError
 from sim.training.segmentation.breakdown import Breakdown
 from sim.training.segmentation.dataset import LabelledView, list_shards, read_shard, spread_views, stored_block_px
-from sim.training.segmentation.evaluation import Iou, Reliability, confusion, without_slivers
+from sim.training.segmentation.evaluation import Confusions, Iou, Reliability, confusion, without_slivers
 from sim.training.segmentation.samples import NONE, Sampler, Samples
 from stubborn.segmentation.calibration import Calibration, fit_calibration
 from stubborn.segmentation.checkpoints import load_network, save_network
@@ -91,12 +91,10 @@ class Predictions:
 
     matrix: Int64[np.ndarray, "classes classes"]
     """Confusion matrix, see `sim.training.segmentation.evaluation.confusion`."""
-    breakdown: Breakdown
-    by_folder: dict[str, float]
-    """Calibrated mIoU over the goal categories of each folder of views."""
-    calibrated: Int64[np.ndarray, "classes classes"]
-    """The same of calibrated logits, as the agent uses them."""
-    samples: dict[str, list[tuple[Tensor, Tensor]]]
+    breakdown: Breakdown = field(default_factory=Breakdown)
+    calibrated: Confusions = field(default_factory=Confusions)
+    """Confusion matrices of calibrated logits, as the agent uses them."""
+    samples: dict[str, list[tuple[Tensor, Tensor]]] = field(default_factory=dict)
     """Logits (k, classes) and true class channels (k,) of labelled pixels, by house."""
     views: int = 0
 
@@ -184,10 +182,9 @@ def measure(args: Args, model: Network, metadata: Mapping[str, object]) -> Measu
         reliability.add(scores.T.numpy(), truth.numpy())
     return Measured(
         Iou.of(seen.matrix),
-        Iou.of(seen.calibrated),
+        seen.calibrated,
         seen.matrix,
         seen.breakdown,
-        seen.by_folder,
         seen.views,
         before,
         after,
@@ -202,11 +199,9 @@ def predict(args: Args, model: Network, block_px: int, calibration: Calibration)
     Raises:
         ConfigError: views are stored at a lower resolution than the network needs.
     """
-    empty = np.zeros((CLASSES, CLASSES), np.int64)
-    seen = Predictions(empty, Breakdown(), {}, empty.copy(), {})
+    seen = Predictions(np.zeros((CLASSES, CLASSES), np.int64))
     model.eval()
     for folder in args.views:
-        before = seen.calibrated.copy()
         shards = list_shards(folder)
         stored_px = stored_block_px(shards)
         parts = [spread_views(shards, args.count)] if args.count else (list(read_shard(shard)) for shard in shards)
@@ -215,8 +210,7 @@ def predict(args: Args, model: Network, block_px: int, calibration: Calibration)
             if not args.slivers:
                 views = [replace(view, semantic=without_slivers(view.semantic, stored_px)) for view in part]
             for view, logits, truth in _predicted(model, views, block_px, stored_px, args.mirror):
-                _add_view(seen, view, logits, truth, block_px, stored_px, calibration)
-        seen.by_folder[folder.name] = Iou.of(seen.calibrated - before).goals
+                _add_view(seen, folder.name, view, logits, truth, block_px, stored_px, calibration)
     return seen
 
 
@@ -244,14 +238,14 @@ def _mirrored(view: LabelledView) -> LabelledView:
 
 
 def _add_view(
-    seen: Predictions, view: LabelledView, logits: Tensor, truth: Tensor, block_px: int, stored_px: int,
+    seen: Predictions, folder: str, view: LabelledView, logits: Tensor, truth: Tensor, block_px: int, stored_px: int,
     calibration: Calibration,
 ) -> None:  # fmt: skip
     """Adds the prediction on one view: its logits (classes, h, w) and class channels (h, w), both padded."""
     predicted = logits.argmax(dim=0).numpy()
     seen.matrix += confusion(predicted, truth.numpy())
     calibrated = calibration.applied(logits).argmax(dim=0).numpy()
-    seen.calibrated += confusion(calibrated, truth.numpy())
+    seen.calibrated.add(folder, view.record["house"], confusion(calibrated, truth.numpy()))
     semantic = shrink(view.semantic, block_px // stored_px)
     rows, cols = padding(*semantic.shape).inner
     depth_m = shrink(view.depth_m, block_px // stored_px)

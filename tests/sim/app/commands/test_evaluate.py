@@ -20,6 +20,7 @@ from sim.app.commands.evaluate import segmentation as evaluate_rednet
 from sim.app.commands.evaluate.segmentation import Args
 from sim.app.services.remote import posteriors_bytes, read_view
 from sim.core.interface import MPCAT40_ID, ConfigError
+from sim.training.segmentation.evaluation import Iou
 from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
@@ -135,7 +136,7 @@ def test_mirror_images_slivers_and_the_calibration_change_what_is_measured(tmp_p
     args = Args(views=(tmp_path / "one", tmp_path / "two"), weights=weights, block_px=2, threads=1)
     model, metadata = load_network(weights)
     plain = evaluate_rednet.measure(args, model, metadata)
-    assert (plain.calibrated.goals, plain.calibrated.accuracy) == (plain.iou.goals, plain.iou.accuracy)
+    assert (plain.calibrated.of() == plain.matrix).all()
     mirrored = evaluate_rednet.measure(replace(args, mirror=True), model, metadata)
     assert mirrored.matrix.sum() == plain.matrix.sum()
     assert (mirrored.matrix != plain.matrix).any()
@@ -146,7 +147,8 @@ def test_mirror_images_slivers_and_the_calibration_change_what_is_measured(tmp_p
     metadata["calibration"] = Calibration(torch.ones(40), sofa).to_metadata()
     shifted = evaluate_rednet.measure(args, model, metadata)
     assert (shifted.matrix == plain.matrix).all()
-    assert shifted.calibrated.accuracy == pytest.approx(plain.matrix[MPCAT40_ID["sofa"] - 1].sum() / plain.matrix.sum())
+    sofas = plain.matrix[MPCAT40_ID["sofa"] - 1].sum()
+    assert Iou.of(shifted.calibrated.of()).accuracy == pytest.approx(sofas / plain.matrix.sum())
 
 
 def test_the_calibration_of_the_shipped_weights_is_replaced_only_when_the_options_say_so(tmp_path: Path) -> None:
@@ -165,7 +167,7 @@ def test_a_segmentation_of_ones_own_is_evaluated(
     write_views(tmp_path / "views", 4)
     assert evaluate_rednet.main(Args(views=(tmp_path / "views",), semantics=f"{OWN}:{name}")) == 0
     printed = capsys.readouterr().out
-    assert "| mIoU, goal categories present | 1.000 |" in printed
+    assert "| mIoU, goal categories present | 1.000 [1.000, 1.000] |" in printed
     assert "| sofa | 1.000 | 4 | 100 % |" in printed
     assert "| number of views | 4 |" in printed
     assert accuracy is None or f"| pixel accuracy | {accuracy} |" in printed
@@ -176,7 +178,7 @@ def test_it_is_evaluated_on_the_grid_of_the_shipped_network(tmp_path: Path, monk
     counted = []
     for stored_px in (2, 4):
         monkeypatch.setattr(own, "stored_block_px", lambda shards, stored_px=stored_px: stored_px)
-        counted.append(own.measure_own(f"{OWN}:BRIGHT", [tmp_path / "views"], count=0, config=()).matrix.sum())
+        counted.append(own.measure_own(f"{OWN}:BRIGHT", [tmp_path / "views"], count=0, config=()).confusions.of().sum())
     assert counted == [2 * 24 * 32, 2 * 48 * 64]
 
 

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from sim.core.interface import MPCAT40_ID
-from sim.training.segmentation.evaluation import GOAL_CHANNELS, Iou, Reliability, calibrated_iou, confusion
+from sim.training.segmentation.evaluation import GOAL_CHANNELS, Confusions, Iou, Reliability, calibrated_iou, confusion
 from sim.training.segmentation.samples import IGNORED
 from stubborn.segmentation.calibration import fit_temperature
 from stubborn.segmentation.rednet import CLASSES
@@ -62,3 +62,22 @@ def test_a_constant_error_of_the_logits_is_calibrated_away_on_views_that_it_was_
     raw = sum(confusion(logits.argmax(dim=0).numpy(), truth.numpy()) for logits, truth in views)
     assert Iou.of(np.asarray(raw)).by_category["chair"] < 0.5
     assert calibrated_iou(views).by_category["chair"] > 0.85
+
+
+def test_the_interval_of_the_miou_is_over_houses() -> None:
+    right, wrong = np.zeros((40, 40), np.int64), np.zeros((40, 40), np.int64)
+    chair, wall = GOAL_CHANNELS[0], 0
+    right[chair, chair] = wrong[chair, wall] = 10
+    counts = Confusions()
+    for number in range(8):
+        counts.add("views", f"house_{number}", wrong if number % 4 == 0 else right)
+        counts.add("views", f"house_{number}", wrong if number % 4 == 0 else right)  # a second view of the house
+    counts.add("more", "house_0", right)
+    assert counts.folders() == ["views", "more"]
+    assert counts.of("more").sum() == 10
+    assert counts.of().sum() == 170
+    assert counts.goals_text("more") == "1.000"
+    value, low, high = (float(text.strip("[],")) for text in counts.goals_text("views").split())
+    assert value == 0.75
+    assert low in (0.375, 0.5)  # 3 of 8 houses or fewer are right in 2.7 % of the draws, 4 or fewer in 11 %
+    assert high == 1.0
