@@ -511,7 +511,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     "stubborn train names --views views --val-views views_val --minutes 30 --out runs/names": (
         _VIEWS.replace("--views 4", "--views 40").replace("shard 4", "shard 40") + " --extras instances",
-        "stubborn train names --views {tmp}/views --val-views {tmp}/views --minutes 0.02 --out {tmp}/names",
+        "stubborn train names --views {tmp}/views --val-views {tmp}/views --minutes 0.02 --batch 2 --val-count 4"
+        " --out {tmp}/names",
     ),
     "stubborn views --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
     "stubborn views show --views views_objects --out views.png": (

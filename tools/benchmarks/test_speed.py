@@ -115,14 +115,24 @@ def test_step(benchmark: BenchmarkFixture, semantics: str) -> None:
     benchmark.pedantic(lambda: next(steps), rounds=500, warmup_rounds=2)
 
 
+@pytest.mark.parametrize("split", ["val", "large"])
+def test_step_by_size_of_the_house(benchmark: BenchmarkFixture, split: str) -> None:
+    """A step of `stubborn` with ground truth and its environment; homes of `large` have 300 to 800 m2."""
+    benchmark.group = "size"
+    steps = _steps("gt", split)
+    benchmark.pedantic(lambda: next(steps), rounds=500, warmup_rounds=2)
+
+
 def test_start_of_a_command(benchmark: BenchmarkFixture) -> None:
     """A command that runs no episode."""
     benchmark.pedantic(_python, ("-m", "sim.run", "--list-agents"), rounds=9, warmup_rounds=1)
 
 
-def test_first_step_in_a_new_house(benchmark: BenchmarkFixture) -> None:
-    """The reset to a house that is not loaded, and one step."""
-    env = make_env("gt")
+@pytest.mark.parametrize("split", ["val", "large"])
+def test_first_step_in_a_new_house(benchmark: BenchmarkFixture, split: str) -> None:
+    """The reset to a house that is not loaded, and one step; homes of `large` have 300 to 800 m2."""
+    benchmark.group = "house"
+    env = make_env("gt", split)
     firsts = iter({episode.house: episode for episode in env.split.episodes}.values())
 
     def start() -> None:
@@ -208,9 +218,9 @@ def test_learning_in_vectors(benchmark: BenchmarkFixture, number: int, mode: str
     envs.close()
 
 
-@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("workers", [1, 2, 4])
 def test_workers(benchmark: BenchmarkFixture, workers: int) -> None:
-    """The same 16 episodes with one worker and with two."""
+    """The same 16 episodes with one worker, two and four."""
     benchmark.group = "16 episodes"
     with tempfile.TemporaryDirectory() as out:
         words = ("--episodes", "16", "--semantics", "gt", "--workers", str(workers), "--out", f"{out}/run")
@@ -235,9 +245,9 @@ def peak_mb() -> float:
     return next(1024e-6 * int(line.split()[1]) for line in lines if line.startswith("VmHWM"))
 
 
-def _steps(semantics: str) -> Iterator[None]:
-    """Runs one step of agent and environment at each call, in episodes of val."""
-    env = make_env(semantics)
+def _steps(semantics: str, split: str = "val") -> Iterator[None]:
+    """Runs one step of agent and environment at each call, in episodes of a split."""
+    env = make_env(semantics, split)
     agent = make_agent(env, semantics)
     for episode in itertools.cycle(env.split.episodes):
         observation, _ = env.reset(seed=0, options={"episode": episode})

@@ -167,10 +167,10 @@ def make_agent(env: ObjectNavEnv, semantics: str) -> Agent:
     )
 
 
-def make_env(semantics: str) -> ObjectNavEnv:
-    """Returns the environment of `val` with the sensors that this kind of segmentation needs."""
+def make_env(semantics: str, split: str = "val") -> ObjectNavEnv:
+    """Returns the environment of a split with the sensors that this kind of segmentation needs."""
     spec = KINDS[semantics].spec
-    return ObjectNavEnv(split="val", sensors=("depth", *spec.sensors), truth=spec.truth)
+    return ObjectNavEnv(split=split, sensors=("depth", *spec.sensors), truth=spec.truth)
 
 
 def _images(sensors: Sequence[str], houses: int, poses: int) -> Figure:
