@@ -93,14 +93,24 @@ class Confusions:
         The interval holds the 2.5th to the 97.5th percentile of `DRAWS` sets of as many houses, drawn with replacement.
         There is none for one house.
         """
-        houses = np.stack(list(self._by_house(folder).values()))
-        value = f"{Iou.of(houses.sum(axis=0)).goals:.3f}"
-        if len(houses) < 2:
-            return value
-        rng = np.random.default_rng(0)
-        draws = [houses[rng.integers(len(houses), size=len(houses))].sum(axis=0) for _ in range(DRAWS)]
-        low, high = np.nanquantile([Iou.of(matrix).goals for matrix in draws], (0.025, 0.975))
-        return f"{value} [{low:.3f}, {high:.3f}]"
+        value, drawn = self._goals(folder)
+        return f"{value:.3f}{_interval(drawn)}"
+
+    def difference_text(self, other: Confusions, folder: str | None = None) -> str:
+        """Returns this mIoU minus another one on the same views, and its interval, such as `+0.031 [0.018, 0.036]`.
+
+        Both take the same draws of houses.
+        """
+        (ours, our_draws), (theirs, their_draws) = self._goals(folder), other._goals(folder)
+        return f"{ours - theirs:+.3f}{_interval(our_draws - their_draws)}"
+
+    def _goals(self, folder: str | None) -> tuple[float, Float64[np.ndarray, " draws"]]:
+        """Returns the mIoU over the goal categories, and that of each draw of houses; no draws for one house."""
+        by_house = self._by_house(folder)
+        houses = np.stack([by_house[name] for name in sorted(by_house)])
+        rng, count = np.random.default_rng(0), len(houses)
+        drawn = (houses[rng.integers(count, size=count)].sum(axis=0) for _ in range(DRAWS if count > 1 else 0))
+        return Iou.of(houses.sum(axis=0)).goals, np.array([Iou.of(matrix).goals for matrix in drawn])
 
     def _by_house(self, folder: str | None) -> dict[str, Int64[np.ndarray, "classes classes"]]:
         summed = dict[str, Int64[np.ndarray, "classes classes"]]()
@@ -108,6 +118,14 @@ class Confusions:
             if folder in (None, name):
                 summed[house] = summed[house] + matrix if house in summed else matrix
         return summed
+
+
+def _interval(drawn: Float64[np.ndarray, " draws"]) -> str:
+    """Returns the 95 % interval of the values of the draws, such as ` [0.470, 0.548]`; "" without draws."""
+    if len(drawn) == 0:
+        return ""
+    low, high = np.nanquantile(drawn, (0.025, 0.975))
+    return f" [{low:.3f}, {high:.3f}]"
 
 
 @dataclass

@@ -2,6 +2,7 @@
 
     stubborn evaluate --views runs/views_val_fast runs/views_val_good
     stubborn evaluate --views runs/views_val_fast --semantics my_network:SEGMENTATION --config detector.weights=my.pt
+    stubborn evaluate --views runs/views_val_fast --weights new.safetensors --against old.safetensors
     stubborn evaluate --views runs/views_train --semantics http://localhost:8000 --calibration server.json
     stubborn evaluate --weights runs/rednet/rednet.safetensors --views runs/views_val_fast \\
         --calibrate --card stubborn/segmentation/weights/README.md
@@ -58,6 +59,8 @@ class Args:
     """Folders of shards of one size (`stubborn views`), of houses that the network was not trained on."""
     weights: Path | None = None
     """Weights of the network; None: the shipped ones."""
+    against: Path | None = None
+    """Weights of another network: print the difference between the two mIoUs on the same views."""
     semantics: str | None = None
     """A segmentation of your own, package.module:NAME, or a server, http://HOST:PORT, in place of a network of this
     project."""
@@ -127,6 +130,8 @@ def main(args: Args) -> int:
         save_network(file, model, metadata)
     about = Evaluated(file, model, metadata, args.threads)
     print(card_text(about, measured))
+    if args.against is not None:
+        print("\n".join(comparison_lines(args, measured.calibrated, args.against)))
     if args.card is not None:
         write_card(args.card, about, measured, args.curves)
     return 0
@@ -191,6 +196,26 @@ def measure(args: Args, model: Network, metadata: Mapping[str, object]) -> Measu
         calibration,
         frame_ms(model, block_px, mirrored=args.mirror),
     )
+
+
+def comparison_lines(args: Args, ours: Confusions, against: Path) -> Iterator[str]:
+    """Yields the difference between the mIoU of a network and that of another one, for all views and for each folder.
+
+    Args:
+        args: views and options; the resolution is that of the other network's weights.
+        ours: results of the network, calibrated as its weights say.
+        against: weights of the other network.
+
+    Raises:
+        ConfigError: the weights cannot be read, or the views are stored at a lower resolution than they need.
+    """
+    model, metadata = load_network(against)
+    block_px, calibration = training_stages(metadata)[-1].block_px, Calibration.from_metadata(metadata)
+    theirs = predict(args, model, block_px, calibration).calibrated
+    yield f"mIoU over the goal categories minus that of '{against}', with 95 % intervals over houses:\n"
+    yield f"all views: {ours.difference_text(theirs)}"
+    if len(names := ours.folders()) > 1:
+        yield from (f"{name}: {ours.difference_text(theirs, name)}" for name in names)
 
 
 def predict(args: Args, model: Network, block_px: int, calibration: Calibration) -> Predictions:

@@ -151,6 +151,25 @@ def test_mirror_images_slivers_and_the_calibration_change_what_is_measured(tmp_p
     assert Iou.of(shifted.calibrated.of()).accuracy == pytest.approx(sofas / plain.matrix.sum())
 
 
+def test_two_networks_are_compared_on_the_same_views(
+    tmp_path: Path, weights: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("one", "two"):
+        write_views(tmp_path / name, 4)
+    other = tmp_path / "other.safetensors"
+    model, metadata = load_network(weights)
+    sofa = torch.zeros(40)
+    sofa[MPCAT40_ID["sofa"] - 1] = 1e4
+    save_network(other, model, metadata | {"calibration": Calibration(torch.ones(40), sofa).to_metadata()})
+    views = (tmp_path / "one", tmp_path / "two")
+    assert evaluate_rednet.main(Args(views=views, weights=weights, against=weights, threads=1)) == 0
+    assert capsys.readouterr().out.count("+0.000 [0.000, 0.000]") == 3  # all views and each folder
+    evaluate_rednet.main(Args(views=views, weights=other, against=weights, threads=1))
+    values = re.findall(r"(?:all views|one|two): ([-+]\d\.\d+) ", capsys.readouterr().out)
+    assert len(values) == 3
+    assert float(values[0]) != 0.0
+
+
 def test_the_calibration_of_the_shipped_weights_is_replaced_only_when_the_options_say_so(tmp_path: Path) -> None:
     for file in (None, SHIPPED_REDNET):
         with pytest.raises(ConfigError, match=r"--weights.*FILE.*--shipped"):

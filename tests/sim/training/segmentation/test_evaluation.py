@@ -81,3 +81,17 @@ def test_the_interval_of_the_miou_is_over_houses() -> None:
     assert value == 0.75
     assert low in (0.375, 0.5)  # 3 of 8 houses or fewer are right in 2.7 % of the draws, 4 or fewer in 11 %
     assert high == 1.0
+
+
+def test_the_difference_of_two_networks_is_taken_on_the_same_draws_of_houses() -> None:
+    chair, wall = GOAL_CHANNELS[0], 0
+    ours, theirs = Confusions(), Confusions()
+    for number in range(10):
+        easy = 90 if number % 2 else 40
+        for counts, right in ((ours, easy + 5), (theirs, easy)):
+            matrix = np.zeros((40, 40), np.int64)
+            matrix[chair, chair], matrix[chair, wall] = right, 100 - right
+            counts.add("views", f"house_{number}", matrix)
+    assert ours.goals_text() != theirs.goals_text()
+    assert ours.difference_text(theirs) == "+0.050 [0.050, 0.050]"
+    assert theirs.difference_text(ours) == "-0.050 [-0.050, -0.050]"
