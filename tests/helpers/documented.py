@@ -408,7 +408,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         " --config detector.weights={tmp}/my_network.pt",
     ),
     f"stubborn evaluate --views runs/views_test --weights {_SHIPPED}": (
-        _VIEWS,
+        _VIEWS.replace("shard 4", "shard 2"),
         f"stubborn evaluate --views {{tmp}}/views --weights {_SHIPPED}",
     ),
     f"{_RUN} --agent stubborn-plus --semantics examples.my_segmentation:SEGMENTATION"
@@ -473,13 +473,26 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     "stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer": _TRANSFER[:-1],
     "stubborn episodes --split runs/transfer --recipe val": _TRANSFER,
-    "stubborn views --split runs/transfer --views 200 --seed 12 --out runs/views_transfer": (
-        *_TRANSFER,
-        "stubborn views --split {tmp}/transfer --views 2 --seed 12 --out {tmp}/views",
+    "stubborn views --split val --views 1200 --views-per-shard 40 --shrink 2 --profile fast --out runs/views_val": (
+        _VIEWS,
     ),
-    "stubborn evaluate --views runs/views_transfer": (
+    "stubborn views --split val --views 600 --views-per-shard 20 --seed 1 --shrink 2 --profile fast"
+    " --out runs/views_val_1": (f"{_VIEWS} --seed 1",),
+    "stubborn views --split runs/transfer --views 200 --seed 12 --shrink 2 --profile fast --out runs/views_transfer": (
+        *_TRANSFER,
+        "stubborn views --split {tmp}/transfer --views 2 --seed 12 --shrink 4 --profile fast --out {tmp}/views",
+    ),
+    "stubborn views --split runs/procthor --views 400 --seed 12 --shrink 2 --profile fast --out runs/views_rooms": (
+        f"{_VIEWS} --seed 12",
+    ),
+    "stubborn evaluate --views runs/views_val runs/views_val_1": (
         _VIEWS.replace("shard 4", "shard 2"),
-        "stubborn evaluate --views {tmp}/views",
+        "stubborn evaluate --views {tmp}/views {tmp}/views",
+    ),
+    "stubborn evaluate --views runs/views_val --weights runs/finer/rednet.safetensors"
+    " --against stubborn/segmentation/weights/rednet.safetensors": (
+        _VIEWS.replace("shard 4", "shard 2"),
+        f"stubborn evaluate --views {{tmp}}/views --weights {_SHIPPED} --against {_SHIPPED}",
     ),
     f"{_RUN} --agent stubborn-plus --split runs/transfer --episodes 25": (
         *_TRANSFER,
